@@ -323,6 +323,32 @@ void defineBrowser(py::module_& module) {
             self->change([&] { self->running->key(which, pressed); });
           },
           py::arg("name"), py::arg("pressed"))
+      .def(
+          "press_key",
+          [](const BrowserPtr& self, const std::string& name, bool pressed) {
+            const auto lock = self->lock();
+            bool taken = false;
+            self->change([&] { taken = self->running->worldKey(name, pressed); });
+            return taken;
+          },
+          py::arg("name"), py::arg("pressed") = true,
+          "Presses (or releases) a key of the world's keyboard for its KeySensor or StringSensor: "
+          "the character that it types, or a name such as 'F1', 'Up', 'Shift' or 'Enter'. Returns "
+          "whether a sensor has taken it.")
+      .def(
+          "type_text",
+          [](const BrowserPtr& self, const std::string& text) {
+            const auto lock = self->lock();
+            bool taken = false;
+            self->change([&] { taken = self->running->worldText(text); });
+            return taken;
+          },
+          py::arg("text"),
+          "Presses and releases the key of each character; a line feed is the key Enter. Returns "
+          "whether a sensor has taken any.")
+      .def_property_readonly(
+          "senses_keys", [](const BrowserPtr& self) { return self->running->sensesKeys(); },
+          "Whether a KeySensor or StringSensor of the world is enabled.")
       .def_property(
           "navigation",
           [](const BrowserPtr& self) { return navigationName(self->running->navigation()); },

@@ -179,6 +179,7 @@ constexpr Field fields[] = {{"Appearance", "acousticProperties"},
 // What X3D calls a field or event of VRML97 otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3).
 struct Renamed {
   std::string_view type, x3d, own;
+  int since = 3; // the first major version of X3D that says so
 };
 constexpr Renamed renamed[] = {
     {"Collision", "enabled", "collide"},
@@ -188,6 +189,9 @@ constexpr Renamed renamed[] = {
     {"LOD", "set_children", "set_level"},
     {"LOD", "children_changed", "level_changed"},
     {"LOD", "level_changed", "activeLevel_changed"},
+    {"LoadSensor", "children", "watchList", 4},
+    {"LoadSensor", "set_children", "set_watchList", 4},
+    {"LoadSensor", "children_changed", "watchList_changed", 4},
     {"Switch", "children", "choice"},
     {"Switch", "set_children", "set_choice"},
     {"Switch", "children_changed", "choice_changed"},
@@ -201,9 +205,9 @@ std::string_view ownName(std::string_view type, std::string_view name) {
   return name;
 }
 
-std::string_view x3dName(std::string_view type, std::string_view name) {
+std::string_view x3dName(std::string_view type, std::string_view name, int version) {
   for (const Renamed& one : renamed)
-    if (one.type == type && one.own == name) return one.x3d;
+    if (one.type == type && one.own == name && version >= one.since) return one.x3d;
   return name;
 }
 
@@ -215,6 +219,15 @@ const Value* x3dDefault(std::string_view type, std::string_view field) {
 bool isX3dNode(std::string_view type) {
   return std::find(std::begin(nodes), std::end(nodes), type) != std::end(nodes);
 }
+
+bool isGpuNode(std::string_view type) {
+  constexpr std::string_view programs[] = {
+      "ComposedShader", "FloatVertexAttribute", "Matrix3VertexAttribute", "Matrix4VertexAttribute",
+      "PackagedShader", "ProgramShader",        "ShaderPart",             "ShaderProgram"};
+  return std::find(std::begin(programs), std::end(programs), type) != std::end(programs);
+}
+
+bool isGpuField(std::string_view field) { return field == "shaders" || field == "attrib"; }
 
 bool isX3dField(std::string_view type, std::string_view field) {
   if (field.starts_with("set_")) field.remove_prefix(4);

@@ -15,14 +15,19 @@ constexpr std::string_view x3dAccessName(Access access) {
 }
 
 bool isX3dNode(std::string_view type);
+// Return whether a node of X3D, or a field that holds such nodes, belongs to a program for graphics
+// processors (clause 31): it can only be run there.
+bool isGpuNode(std::string_view type);
+bool isGpuField(std::string_view field);
 // Returns whether X3D adds this field to a node type of VRML97.
 bool isX3dField(std::string_view type, std::string_view field);
 // Returns the name in VRML97 of a field or event of a node of X3D: "choice" for a Switch's
 // "children", "set_choice" for its "set_children". Other names are returned as
 // they are.
 std::string_view ownName(std::string_view type, std::string_view name);
-// Returns the name in X3D of a field or event of ours: the reverse of ownName.
-std::string_view x3dName(std::string_view type, std::string_view name);
+// Returns the name in X3D of a field or event of ours: the reverse of ownName. version: the major
+// version of X3D.
+std::string_view x3dName(std::string_view type, std::string_view name, int version);
 
 // Returns the default of a field of VRML97 where X3D gives it another one; null: they are the same.
 const Value* x3dDefault(std::string_view type, std::string_view field);

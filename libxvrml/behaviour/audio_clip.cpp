@@ -26,8 +26,9 @@ struct State : Media {
   }
   TimeFields fields(const Node& node) const override {
     const auto& n = static_cast<const nodes::AudioClip&>(node);
-    return {n.startTime, n.stopTime, duration > 0 && n.pitch > 0 ? duration / n.pitch : 0, n.loop,
-            true};
+    return {n.startTime, n.stopTime, duration > 0 && n.pitch > 0 ? duration / n.pitch : 0,
+            n.loop,      true,       n.pauseTime,
+            n.resumeTime};
   }
   void play(Events&, Node&, const TimeStep& step) override { position = step.fraction * duration; }
 
@@ -48,7 +49,7 @@ Playing playingOf(const Node& node) {
   if (node.type().index != nodes::AudioClip::typeIndex || !node.live || !liveOf(node)->part)
     return {};
   auto* state = static_cast<State*>(liveOf(node)->part->state.get());
-  if (!state || !state->time.active() || state->path.empty()) return {};
+  if (!state || !state->time.active() || state->time.paused() || state->path.empty()) return {};
   if (!state->clip) {
     try {
       state->clip = std::make_shared<Clip>(readWav(state->path, [&](uint64_t bytes) {

@@ -15,6 +15,8 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addEventUtilityBehaviours(add);
   addSequencerBehaviours(add);
   addFollowerBehaviours(add);
+  addKeySensorBehaviours(add);
+  addLoadSensorBehaviours(add);
   addTimeSensorBehaviours(add);
   addAudioClipBehaviours(add);
   addMovieTextureBehaviours(add);

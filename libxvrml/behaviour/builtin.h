@@ -15,16 +15,19 @@ void addBuiltinBehaviours(const AddBehaviour& add);
 void addBindingBehaviours(const AddBehaviour& add); // Viewpoint, NavigationInfo, Background, Fog
 // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
 void addPointingBehaviours(const AddBehaviour& add);
-void addRegionBehaviours(const AddBehaviour& add);   // ProximitySensor, VisibilitySensor
-void addInlineBehaviours(const AddBehaviour& add);   // set_url loads the content
-void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
+void addRegionBehaviours(const AddBehaviour& add); // ProximitySensor, VisibilitySensor
+void addInlineBehaviours(const AddBehaviour& add); // set_url loads the content
+// addChildren, removeChildren; the level of an LOD
+void addGroupingBehaviours(const AddBehaviour& add);
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addSplineInterpolatorBehaviours(const AddBehaviour& add);
 void addSquadInterpolatorBehaviours(const AddBehaviour& add);
 void addEaseBehaviours(const AddBehaviour& add);
 void addEventUtilityBehaviours(const AddBehaviour& add); // filters and triggers
 void addSequencerBehaviours(const AddBehaviour& add);
-void addFollowerBehaviours(const AddBehaviour& add); // chasers and dampers
+void addFollowerBehaviours(const AddBehaviour& add);  // chasers and dampers
+void addKeySensorBehaviours(const AddBehaviour& add); // KeySensor, StringSensor
+void addLoadSensorBehaviours(const AddBehaviour& add);
 void addTimeSensorBehaviours(const AddBehaviour& add);
 void addAudioClipBehaviours(const AddBehaviour& add);
 void addMovieTextureBehaviours(const AddBehaviour& add);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "behaviour/builtin.h"
+#include "behaviour/lod.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -44,6 +45,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
 void addGroupingBehaviours(const AddBehaviour& add) {
   for (const NodeType* type : nodeTypes())
     if (type->is("parent") || type->is("selecting")) add(*type, {.receive = receive});
+  add(nodes::LOD::nodeType(), {.begin = beginLod, .receive = receive, .look = lookLod});
 }
 
 } // namespace xvrml

@@ -23,14 +23,17 @@ std::vector<std::string> enclosingFiles(const Node& node) {
 
 } // namespace
 
+// A field `load` FALSE takes the content away (ISO/IEC 19775-1 9.4.2).
 bool loadInlineContent(Engine& engine, Node& node) {
   auto* inlineNode = dynamic_cast<InlineNode*>(&node);
   if (!inlineNode || !engine.browser()) return false;
+  if (!inlineNode->load && !inlineNode->content) return false;
   World& world = engine.browser()->world();
   engine.contentUnloading(node);
   // The old content is destroyed here unless something else refers to it.
   const std::shared_ptr<const Scope> old = std::exchange(inlineNode->content, nullptr);
   inlineNode->share.clear();
+  inlineNode->tried = false;
   const BudgetPtr budget = budgetOf(world);
   const uint64_t before = budget->used();
   Loader(world, world.options).loadDeferredInline(*inlineNode, enclosingFiles(node));
@@ -45,7 +48,7 @@ uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
   uint64_t loaded = 0;
   walk(rootsOf(scope), [&](Node& node, std::vector<Node*>& open) {
     const auto* inlineNode = dynamic_cast<const InlineNode*>(&node);
-    if (inlineNode && !inlineNode->content && !inlineNode->url.empty())
+    if (inlineNode && inlineNode->load && !inlineNode->content && !inlineNode->url.empty())
       loaded += loadInlineContent(engine, node);
     childrenInHierarchy(node, open);
   });
@@ -54,8 +57,11 @@ uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
 
 namespace {
 
+// load TRUE of an Inline that has its content, or FALSE of one that has none, changes nothing.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
-  if (in.name == "url") loadInlineContent(static_cast<Engine&>(events), node);
+  const bool loads =
+      in.name == "load" && static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
+  if (in.name == "url" || loads) loadInlineContent(static_cast<Engine&>(events), node);
 }
 
 } // namespace

@@ -15,12 +15,16 @@ Media& mediaOf(Events& events, Node& node) { return *static_cast<Media*>(events.
 void send(Events& events, Node& node, Media& media, const TimeStep& step) {
   if (!step.running) return;
   if (step.begins) events.send(node, "isActive", true);
+  if (step.resumes) events.send(node, "isPaused", false);
   media.play(events, node, step);
+  if (!step.alreadySent) events.send(node, "elapsedTime", step.elapsed);
+  if (step.pauses) events.send(node, "isPaused", true);
   if (step.ends) events.send(node, "isActive", false);
 }
 
-bool maySendActive(const Events& events, const Node& node) {
-  return !events.hasSent(node, *node.type().find("isActive"));
+MaySend maySend(const Events& events, const Node& node) {
+  return {!events.hasSent(node, *node.type().find("isActive")),
+          !events.hasSent(node, *node.type().find("isPaused"))};
 }
 
 bool isRate(const FieldInfo& field) { return field.name == "pitch" || field.name == "speed"; }
@@ -40,8 +44,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
     events.send(node, "duration_changed", media.duration);
   }
   const TimeFields fields = media.fields(node);
-  const TimeStep step = media.time.fieldChanged(fields, events.now(), maySendActive(events, node),
-                                                in.name == "startTime");
+  const TimeStep step =
+      media.time.fieldChanged(fields, events.now(), maySend(events, node), in.name == "startTime");
   send(events, node, media, step);
   events.wantTicks(node, media.time.wantsTicks(fields, events.now()));
 }
@@ -49,7 +53,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
 void tick(Events& events, Node& node) {
   Media& media = mediaOf(events, node);
   const TimeFields fields = media.fields(node);
-  send(events, node, media, media.time.tick(fields, events.now(), maySendActive(events, node)));
+  send(events, node, media, media.time.tick(fields, events.now(), maySend(events, node)));
   if (!media.time.wantsTicks(fields, events.now())) events.wantTicks(node, false);
 }
 

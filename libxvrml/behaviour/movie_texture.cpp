@@ -52,7 +52,8 @@ struct State : Media {
   TimeFields fields(const Node& node) const override {
     const auto& n = static_cast<const nodes::MovieTexture&>(node);
     return {n.startTime, n.stopTime, duration > 0 ? duration / std::abs(double(n.speed)) : 0,
-            n.loop, true};
+            n.loop,      true,       n.pauseTime,
+            n.resumeTime};
   }
 
   void play(Events& events, Node& node, const TimeStep& step) override {

@@ -10,6 +10,7 @@
 #include "behaviour/builtin.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
+#include "nodes/viewpoint.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -19,6 +20,7 @@ struct RegionState : NodeState {
   bool active = false;
   Vec3f position; // last value sent
   Rotation orientation;
+  Vec3f center;
 };
 
 struct Region {
@@ -60,6 +62,22 @@ bool viewerInside(const Node& node, const Region& region, const Matrix& view,
   return false;
 }
 
+// Computes the centerOfRotation of the bound viewpoint in the sensor's coordinates (ISO/IEC 19775-1
+// 22.4.1). Returns false if there is none.
+bool centerOfRotation(Events& events, const Matrix& viewerToSensor, Vec3f& center) {
+  const Interaction& interaction = interactionOf(events);
+  const Node* viewpoint = interaction.binding.bound().viewpoint;
+  const auto fields = viewpointFields(viewpoint);
+  Matrix toViewer;
+  if (!fields || !fields->centerOfRotation || !invert(interaction.viewer.view(), toViewer))
+    return false;
+  const Vector p =
+      transformPoint(compose(viewerToSensor, compose(toViewer, Viewer::surroundingsOf(viewpoint))),
+                     vector(*fields->centerOfRotation));
+  center = {float(p.x), float(p.y), float(p.z)};
+  return true;
+}
+
 void lookProximity(Events& events, Node& node) {
   auto& state = static_cast<RegionState&>(*events.state(node));
   const auto& sensor = static_cast<nodes::ProximitySensor&>(node);
@@ -80,6 +98,10 @@ void lookProximity(Events& events, Node& node) {
     events.send(node, "orientation_changed", orientation);
   state.position = position;
   state.orientation = orientation;
+  Vec3f center;
+  if (!centerOfRotation(events, viewer, center)) return;
+  if (entered || center != state.center) events.send(node, "centerOfRotation_changed", center);
+  state.center = center;
 }
 
 // Clips a convex polygon to the inner side of a plane through the eye (Sutherland and Hodgman

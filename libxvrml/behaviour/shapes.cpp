@@ -27,6 +27,8 @@ void appendVisibleChildren(Node& node, const Matrix& toWorld, const Matrix& view
       parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
   } else if (const auto* collision = nodeCast<nodes::Collision>(&node)) {
     for (const NodeRef& child : collision->children) parts.push_back(child.get());
+  } else if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {
+    appendShownChildren(*layer, parts);
   } else {
     childrenInHierarchy(node, parts);
   }

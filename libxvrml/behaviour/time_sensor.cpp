@@ -1,4 +1,5 @@
-// time_sensor.cpp: TimeSensor (clause 6.50), based on the state machine of time-dependent nodes.
+// time_sensor.cpp: TimeSensor (clause 6.50, ISO/IEC 19775-1 8.4.1), based on the state machine of
+// time-dependent nodes.
 #include "behaviour/builtin.h"
 #include "behaviour/time_dependent.h"
 #include "xvrml/nodes.h"
@@ -14,7 +15,8 @@ struct State : NodeState {
 struct SentFields {
   const FieldInfo &isActive = fieldNamed("isActive"), &cycleTime = fieldNamed("cycleTime"),
                   &fraction = fieldNamed("fraction_changed"), &time = fieldNamed("time"),
-                  &startTime = fieldNamed("startTime");
+                  &startTime = fieldNamed("startTime"), &elapsed = fieldNamed("elapsedTime"),
+                  &isPaused = fieldNamed("isPaused");
   static const FieldInfo& fieldNamed(std::string_view name) {
     return fieldOf<nodes::TimeSensor>(name);
   }
@@ -26,11 +28,17 @@ const SentFields& sentFields() {
 
 TimeFields fieldsOf(const Node& node) {
   const auto& sensor = static_cast<const nodes::TimeSensor&>(node);
-  return {sensor.startTime, sensor.stopTime, sensor.cycleInterval, sensor.loop, sensor.enabled};
+  return {sensor.startTime, sensor.stopTime,  sensor.cycleInterval, sensor.loop,
+          sensor.enabled,   sensor.pauseTime, sensor.resumeTime};
 }
 
 TimeDependent& machine(Events& events, Node& node) {
   return static_cast<State*>(events.state(node))->time;
+}
+
+MaySend maySend(const Events& events, const Node& node) {
+  return {!events.hasSent(node, sentFields().isActive),
+          !events.hasSent(node, sentFields().isPaused)};
 }
 
 // Sends the events of a step in the order of 6.50: isActive TRUE first, isActive FALSE last.
@@ -38,11 +46,14 @@ void send(Events& events, Node& node, const TimeStep& step) {
   const SentFields& out = sentFields();
   if (step.running) {
     if (step.begins) events.send(node, out.isActive, true);
+    if (step.resumes) events.send(node, out.isPaused, false);
     if (step.newCycle) events.send(node, out.cycleTime, step.cycleStart);
     if (!step.alreadySent) {
       events.send(node, out.fraction, float(step.fraction));
       events.send(node, out.time, step.time);
+      events.send(node, out.elapsed, step.elapsed);
     }
+    if (step.pauses) events.send(node, out.isPaused, true);
     if (step.ends) events.send(node, out.isActive, false);
   }
 }
@@ -64,16 +75,16 @@ bool accept(Events& events, Node& node, const FieldInfo& field, const Value& val
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
   const TimeFields fields = fieldsOf(node);
   TimeDependent& time = machine(events, node);
-  const bool maySendActive = !events.hasSent(node, sentFields().isActive);
   send(events, node,
-       time.fieldChanged(fields, events.now(), maySendActive, &in == &sentFields().startTime));
+       time.fieldChanged(fields, events.now(), maySend(events, node),
+                         &in == &sentFields().startTime));
   events.wantTicks(node, time.wantsTicks(fields, events.now()));
 }
 
 void tick(Events& events, Node& node) {
   const TimeFields fields = fieldsOf(node);
   TimeDependent& time = machine(events, node);
-  send(events, node, time.tick(fields, events.now(), !events.hasSent(node, sentFields().isActive)));
+  send(events, node, time.tick(fields, events.now(), maySend(events, node)));
   if (!time.wantsTicks(fields, events.now())) events.wantTicks(node, false);
 }
 

@@ -144,6 +144,30 @@ void Browser::key(Key key, bool pressed) {
   impl_->runJobs();
 }
 
+bool Browser::worldKey(std::string_view name, bool pressed) {
+  Engine& engine = *impl_->engine;
+  if (engine.settling()) return false;
+  engine.beginCascade(engine.now());
+  const bool taken = interactionOf(engine).keyboard.key(name, pressed);
+  engine.settle();
+  impl_->runJobs();
+  return taken;
+}
+
+bool Browser::worldText(std::string_view text) {
+  bool taken = false;
+  while (!text.empty()) {
+    const size_t bytes = utf8Length(text);
+    const std::string_view name = text[0] == '\n' ? "Enter" : text.substr(0, bytes);
+    taken |= worldKey(name, true);
+    worldKey(name, false);
+    text.remove_prefix(bytes);
+  }
+  return taken;
+}
+
+bool Browser::sensesKeys() const { return interactionOf(*impl_->engine).keyboard.senses(); }
+
 Navigation Browser::navigation() const { return interactionOf(*impl_->engine).navigation.type(); }
 
 bool Browser::setNavigation(Navigation type) {

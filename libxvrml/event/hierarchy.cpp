@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/node_matrix.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
 #include "xvrml/nodes.h"
@@ -74,9 +75,7 @@ bool isInScene(const Node& node) {
 Matrix localToWorld(const Path& path) {
   Matrix matrix;
   for (Node* node : path)
-    if (const auto* t = nodeCast<nodes::Transform>(node))
-      matrix = compose(matrix, transformMatrix({t->center, t->translation, t->scale, t->rotation,
-                                                t->scaleOrientation}));
+    if (hasMatrix(*node)) matrix = compose(matrix, matrixOf(*node));
   return matrix;
 }
 

@@ -8,8 +8,8 @@
 
 namespace xvrml {
 
-// The geometry nodes, those that worlds use most first. Each has a function in a file of its own,
-// Mesh buildBox(const nodes::Box&, const MeshOptions&, Faults&) and so on.
+// The geometry nodes, those that worlds use most first. Most have a file of their own, related ones
+// share one: Mesh buildBox(const nodes::Box&, const MeshOptions&, Faults&) and so on.
 #define XVRML_GEOMETRY_NODES(X)                                                                    \
   X(IndexedFaceSet)                                                                                \
   X(Box)                                                                                           \
@@ -21,6 +21,23 @@ namespace xvrml {
   X(ElevationGrid)                                                                                 \
   X(Extrusion)                                                                                     \
   X(Text)                                                                                          \
+  X(IndexedTriangleSet)                                                                            \
+  X(TriangleSet)                                                                                   \
+  X(IndexedTriangleStripSet)                                                                       \
+  X(IndexedTriangleFanSet)                                                                         \
+  X(TriangleStripSet)                                                                              \
+  X(TriangleFanSet)                                                                                \
+  X(IndexedQuadSet)                                                                                \
+  X(QuadSet)                                                                                       \
+  X(LineSet)                                                                                       \
+  X(Rectangle2D)                                                                                   \
+  X(Disk2D)                                                                                        \
+  X(Circle2D)                                                                                      \
+  X(Polyline2D)                                                                                    \
+  X(Polypoint2D)                                                                                   \
+  X(TriangleSet2D)                                                                                 \
+  X(Arc2D)                                                                                         \
+  X(ArcClose2D)                                                                                    \
   X(ORTQuadric)                                                                                    \
   X(ORTAsphere)
 
@@ -29,11 +46,18 @@ namespace xvrml {
 XVRML_GEOMETRY_NODES(XVRML_DECLARE_BUILDER)
 #undef XVRML_DECLARE_BUILDER
 
+// The colours of a Color or ColorRGBA.
+struct ColorValues {
+  std::span<const Color> rgb; // the node's, or `own`
+  std::vector<Color> own;
+  std::vector<float> alphas; // opacity of each colour, 0 to 1; empty for a Color
+};
+
 // Return the arrays of property nodes, also through a prototype instance. They return an empty span
 // for NULL and for nodes of another type.
 std::span<const Vec3f> coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
-std::span<const Color> colorValues(const NodeRef& node);
+ColorValues colorValues(const NodeRef& node);
 std::span<const Vec2f> textureCoordinates(const NodeRef& node);
 
 inline uint64_t triangleLimit(const MeshOptions& options) {

@@ -71,7 +71,9 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
   set.solid = node.solid;
   set.ccw = node.ccw;
   set.creaseAngle = node.creaseAngle;
-  bind(set.colors, colorValues(node.color), node.colorPerVertex, set.points.size(), faces,
+  ColorValues colors = colorValues(node.color);
+  set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
+  bind(set.colors, set.colors.values, node.colorPerVertex, set.points.size(), faces,
        Fault::colorMissing, faults);
   bind(set.normals, normalVectors(node.normal), node.normalPerVertex, set.points.size(), faces,
        Fault::normalMissing, faults);

@@ -35,7 +35,10 @@ bool Faults::invisible() const {
 void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const {
   if (!diagnostics || !any()) return;
   const std::string_view type = node.type().name;
-  const char* noun = type == "IndexedLineSet" ? "line" : type == "PointSet" ? "point" : "face";
+  const bool line = type == "IndexedLineSet" || type == "LineSet" || type == "Polyline2D";
+  const bool point = type == "PointSet" || type == "Polypoint2D";
+  const char* noun = line ? "line" : point ? "point" : "face";
+  const char* index = node.type().is("indexedGeometry") ? "index" : "coordIndex";
   std::string text;
   auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   for (size_t i = 0; i < entries_.size(); i++) {
@@ -48,7 +51,7 @@ void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view
             ? fmt::format("{}", entry.count)
             : fmt::format("{} {}{}", entry.count, noun, entry.count == 1 ? "" : "s");
     append(i == size_t(Fault::indexRange)
-               ? fmt::format("{} left out: coordIndex[{}] has no point", counted, entry.first)
+               ? fmt::format("{} left out: {}[{}] has no point", counted, index, entry.first)
                : fmt::format("{} {}{} (first at index {})", counted, faultTexts[i], which,
                              entry.first));
   }

@@ -181,7 +181,8 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
     faults.note("too many points or indices");
     return {};
   }
-  set.colors.values = colorValues(node.color);
+  ColorValues colors = colorValues(node.color);
+  set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   set.normals.values = normalVectors(node.normal);
   set.texCoords.values = textureCoordinates(node.texCoord);
   bool flat = set.normals.values.empty() && !(node.creaseAngle > 0);

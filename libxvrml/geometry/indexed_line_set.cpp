@@ -1,18 +1,31 @@
-// indexed_line_set.cpp: IndexedLineSet (clause 6.24): polylines as segments, with colours per
-// vertex or per polyline.
+// indexed_line_set.cpp: IndexedLineSet (clause 6.24) and LineSet of X3D (ISO/IEC 19775-1 11.4.9):
+// polylines as segments, with colours per vertex or per polyline.
+#include <algorithm>
+#include <string>
+#include <utility>
+
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 
 namespace xvrml {
 namespace {
 
+// The fields of both nodes.
+struct Lines {
+  const NodeRef& coord;
+  const NodeRef& color;
+  std::span<const int32_t> coordIndex;
+  bool colorPerVertex = true;
+  std::span<const int32_t> colorIndex = {};
+};
+
 class LineReader {
  public:
-  LineReader(const nodes::IndexedLineSet& node, Faults& faults)
+  LineReader(const Lines& node, Faults& faults)
       : node_(node), faults_(faults), points_(coordinates(node.coord)),
-        colors_(colorValues(node.color)) {
+        values_(colorValues(node.color)), colors_(values_.rgb) {
     // Colours that match the points one to one need no extra vertices.
-    ownVertices_ = !allFinite(points_) || !allFinite(colors_) ||
+    ownVertices_ = !allFinite(points_) || !allFinite(colors_) || !values_.alphas.empty() ||
                    (!colors_.empty() && (!node.colorPerVertex || !node.colorIndex.empty() ||
                                          colors_.size() < points_.size()));
   }
@@ -80,27 +93,33 @@ class LineReader {
     uint32_t point = uint32_t(node_.coordIndex[place]);
     if (!ownVertices_) return point;
     mesh_.ownPoints.push_back(points_[point]);
-    if (!colors_.empty()) mesh_.ownColors.push_back(color(place, point, line));
+    if (!colors_.empty()) addColor(place, point, line);
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
 
-  // Returns the colour by colorIndex if given, else by point or polyline (clause 6.24).
-  Color color(size_t place, uint32_t point, uint64_t line) {
+  // Adds the colour by colorIndex if given, else by point or polyline (clause 6.24).
+  void addColor(size_t place, uint32_t point, uint64_t line) {
     int64_t at = node_.colorPerVertex ? point : int64_t(line);
     if (!node_.colorIndex.empty()) {
       uint64_t where = node_.colorPerVertex ? place : line;
       at = where < node_.colorIndex.size() ? node_.colorIndex[where] : -1;
     }
+    Color color{1, 1, 1};
+    float alpha = 1;
     if (at < 0 || uint64_t(at) >= colors_.size()) {
       faults_.add(Fault::colorMissing, place);
-      return {1, 1, 1};
+    } else {
+      color = isFinite(colors_[size_t(at)]) ? colors_[size_t(at)] : Color{};
+      if (!values_.alphas.empty()) alpha = values_.alphas[size_t(at)];
     }
-    return isFinite(colors_[size_t(at)]) ? colors_[size_t(at)] : Color{};
+    mesh_.ownColors.push_back(color);
+    if (!values_.alphas.empty()) mesh_.ownAlphas.push_back(alpha);
   }
 
-  const nodes::IndexedLineSet& node_;
+  const Lines& node_;
   Faults& faults_;
   std::span<const Vec3f> points_;
+  ColorValues values_;
   std::span<const Color> colors_;
   bool ownVertices_ = false;
   Mesh mesh_;
@@ -109,7 +128,36 @@ class LineReader {
 } // namespace
 
 Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions&, Faults& faults) {
-  return LineReader(node, faults).run();
+  const Lines lines{node.coord, node.color, node.coordIndex, node.colorPerVertex, node.colorIndex};
+  return LineReader(lines, faults).run();
+}
+
+Mesh buildLineSet(const nodes::LineSet& node, const MeshOptions&, Faults& faults) {
+  const size_t points = coordinates(node.coord).size();
+  if (points >= INT32_MAX || node.vertexCount.size() >= INT32_MAX) {
+    faults.note("too many points or lines");
+    return {};
+  }
+  // The index of an IndexedLineSet of the same lines.
+  MFInt32 index;
+  size_t next = 0;
+  bool wrong = false, missing = false;
+  for (size_t i = 0; i < node.vertexCount.size(); i++) {
+    const int32_t wanted = node.vertexCount[i];
+    if (wanted < 2 && !std::exchange(wrong, true))
+      faults.note("vertexCount[" + std::to_string(i) + "] is " + std::to_string(wanted) +
+                  ", but should be 2 or more");
+    if (wanted > 0 && size_t(wanted) > points - next && !std::exchange(missing, true))
+      faults.note("vertexCount[" + std::to_string(i) + "] asks for " + std::to_string(wanted) +
+                  " vertices where " + std::to_string(points - next) + " are left");
+    const size_t end = next + std::min(size_t(std::max(wanted, 0)), points - next);
+    if (wanted >= 2)
+      for (size_t point = next; point < end; point++) index.push_back(int32_t(point));
+    if (!index.empty() && index.back() != -1) index.push_back(-1);
+    next = end;
+  }
+  if (node.vertexCount.empty() && points > 0) faults.note("vertexCount is empty; nothing is drawn");
+  return LineReader({node.coord, node.color, index}, faults).run();
 }
 
 } // namespace xvrml

@@ -1,7 +1,11 @@
 // mesh.cpp: chooses the builder of a geometry node and sets the views of a Mesh to its own arrays.
 #include "geometry/mesh.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "geometry/builders.h"
+#include "geometry/texture_generator.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -12,6 +16,7 @@ void Mesh::viewOwn() {
   normals = ownNormals;
   texCoords = ownTexCoords;
   colors = ownColors;
+  alphas = ownAlphas;
 }
 
 std::span<const Vec3f> coordinates(const NodeRef& node) {
@@ -24,13 +29,34 @@ std::span<const Vec3f> normalVectors(const NodeRef& node) {
   return normal ? std::span<const Vec3f>(normal->vector) : std::span<const Vec3f>();
 }
 
-std::span<const Color> colorValues(const NodeRef& node) {
-  auto* color = nodeCast<nodes::Color>(renderedNode(node.get()));
-  return color ? std::span<const Color>(color->color) : std::span<const Color>();
+ColorValues colorValues(const NodeRef& node) {
+  ColorValues values;
+  Node* rendered = renderedNode(node.get());
+  if (auto* color = nodeCast<nodes::Color>(rendered)) {
+    values.rgb = color->color;
+  } else if (auto* withAlpha = nodeCast<nodes::ColorRGBA>(rendered)) {
+    values.own.reserve(withAlpha->color.size());
+    values.alphas.reserve(withAlpha->color.size());
+    for (const ColorRGBA& c : withAlpha->color) {
+      values.own.push_back({c.r, c.g, c.b});
+      values.alphas.push_back(std::isfinite(c.a) ? std::clamp(c.a, 0.0f, 1.0f) : 1.0f);
+    }
+    values.rgb = values.own;
+  }
+  return values;
+}
+
+bool hasVertexAlpha(Node& geometry) {
+  Node* node = renderedNode(&geometry);
+  if (!node) return false;
+  const FieldInfo* field = node->type().find("color");
+  if (!field || field->type != FieldType::SFNode) return false;
+  return nodeCast<nodes::ColorRGBA>(
+             renderedNode(static_cast<NodeRef*>(node->storage(*field))->get())) != nullptr;
 }
 
 std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
-  auto* coordinate = nodeCast<nodes::TextureCoordinate>(renderedNode(node.get()));
+  auto* coordinate = nodeCast<nodes::TextureCoordinate>(firstTextureCoordinate(node));
   return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
 }
 
@@ -60,6 +86,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   Faults faults;
   for (const TryBuild build : builders)
     if (build(node, options, mesh, faults)) break;
+  generateTextureCoordinates(*node, options, mesh);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }

@@ -35,13 +35,14 @@ struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
   // Views of the node's own arrays where these can be used unchanged, else of the vectors below.
-  // One entry per vertex; normals, texCoords and colors are empty or as long as points.
+  // One entry per vertex; normals, texCoords, colors and alphas are empty or as long as points.
   std::span<const Vec3f> points;
   std::span<const uint32_t> indices; // 3 per triangle, 2 per line segment, 1 per point
   std::span<const Vec3f> normals;    // empty: flat, with the face normal
   std::span<const Vec2f> texCoords;
   std::span<const Color> colors;
-  bool solid = true; // back faces are culled
+  std::span<const float> alphas; // opacity, 0 to 1, of the colours of a ColorRGBA
+  bool solid = true;             // back faces are culled
   bool ccw = true;
   float radius = 0; // radius of a sphere
   // If not empty, what the ray tracer draws in place of the triangles.
@@ -51,6 +52,7 @@ struct Mesh {
   std::vector<uint32_t> ownIndices;
   std::vector<Vec2f> ownTexCoords;
   std::vector<Color> ownColors;
+  std::vector<float> ownAlphas;
   void viewOwn(); // makes all views refer to the owned vectors
 
   Mesh() = default;
@@ -74,5 +76,8 @@ struct MeshOptions {
 // there is nothing to draw. The node must outlive the mesh. The coord, color, normal and texCoord
 // children may be prototype instances (renderedNode).
 Mesh buildMesh(Node& geometry, const MeshOptions& options);
+
+// Returns whether the node's colours are those of a ColorRGBA, so that they have opacities.
+bool hasVertexAlpha(Node& geometry);
 
 } // namespace xvrml

@@ -9,7 +9,8 @@ namespace xvrml {
 Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faults) {
   Mesh mesh;
   std::span<const Vec3f> points = coordinates(node.coord);
-  std::span<const Color> colors = colorValues(node.color);
+  ColorValues values = colorValues(node.color);
+  const std::span<const Color> colors = values.rgb;
   if (points.empty() || points.size() >= UINT32_MAX) return mesh;
   for (uint32_t i = 0; i < points.size(); i++) {
     if (isFinite(points[i]))
@@ -22,16 +23,23 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
       mesh.ownPoints.push_back(points[index]);
       if (!colors.empty())
         mesh.ownColors.push_back(index < colors.size() ? colors[index] : Color{1, 1, 1});
+      if (!values.alphas.empty())
+        mesh.ownAlphas.push_back(index < colors.size() ? values.alphas[index] : 1.0f);
     }
     std::iota(mesh.ownIndices.begin(), mesh.ownIndices.end(), 0);
     mesh.viewOwn();
   } else {
     mesh.points = points;
     mesh.indices = mesh.ownIndices;
-    if (!colors.empty() && colors.size() < points.size()) {
+    if (!colors.empty() && (colors.size() < points.size() || !values.alphas.empty())) {
       mesh.ownColors.assign(colors.begin(), colors.end());
       mesh.ownColors.resize(points.size(), Color{1, 1, 1});
       mesh.colors = mesh.ownColors;
+      if (!values.alphas.empty()) {
+        mesh.ownAlphas = std::move(values.alphas);
+        mesh.ownAlphas.resize(points.size(), 1.0f);
+        mesh.alphas = mesh.ownAlphas;
+      }
     } else if (!colors.empty())
       mesh.colors = colors.first(points.size());
   }

@@ -11,6 +11,7 @@ namespace xvrml {
 struct InlineNode : nodes::Inline {
   using nodes::Inline::Inline;
   std::shared_ptr<const Scope> content; // null until it is loaded
+  bool tried = false;                   // its urls were tried; without content they cannot be read
   Share share; // reservation of the world's budget for content that a running world has loaded
 };
 

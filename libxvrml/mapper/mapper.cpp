@@ -7,16 +7,17 @@
 #include "mapper/extent.h"
 #include "mapper/mapper_impl.h"
 #include "mapper/model.h"
+#include "nodes/viewpoint.h"
 
 namespace xvrml {
 
 using namespace mapper;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
-    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor),
+    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), cubes(w, textures),
       custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, custom),
       objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes, custom),
-      environment(w, o.linearColor, classes, textures, custom),
+      environment(w, o.linearColor, classes, textures, cubes, custom),
       camera(cameraOf(nullptr, Matrix(), o.aspect)) {
   summarise(graph, world.diagnostics);
   std::vector<Place> gone;
@@ -33,6 +34,7 @@ OpenRTMapper::Impl::~Impl() {
     environment.clear();
     surfaces.clear();
     custom.clear();
+    cubes.clear();
     textures.clear();
   } catch (const std::bad_alloc&) {} // the remaining objects are freed with the context
 }
@@ -120,7 +122,16 @@ std::vector<SensorInfo> OpenRTMapper::sensors() const {
 
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const std::vector<int32_t>& places = impl_->viewpointPlaces();
-  return impl_->cameraAt(index < places.size() ? places[index] : none);
+  const CameraSettings camera = impl_->cameraAt(index < places.size() ? places[index] : none);
+  if (index >= places.size()) return camera;
+  // viewAll of X3D: back until everything is seen
+  const Place& place = impl_->places.all[size_t(places[index])];
+  const auto fields = viewpointFields(impl_->graph.items[place.item].node.get());
+  if (!fields || !fields->viewAll || !*fields->viewAll || impl_->bounds().empty) return camera;
+  CameraSettings all =
+      cameraAround(impl_->bounds(), camera.matrix, camera.fovy, impl_->options.aspect);
+  all.shader = camera.shader;
+  return all;
 }
 
 CameraSettings OpenRTMapper::fitCamera(double fovy) const {
@@ -169,7 +180,7 @@ void OpenRTMapper::map(const CameraSettings& camera) {
     around.background = {};
     around.backgroundPlace = none;
   }
-  m.environment.updateForFrame(m.places, around);
+  m.environment.updateForFrame(m.graph, m.places, around);
   m.objects.updateForFrame();
   m.lights.updateForFrame(m.graph, m.places);
   m.lights.atCamera(m.lightsModel() ? CameraLight::model

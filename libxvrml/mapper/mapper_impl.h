@@ -7,6 +7,7 @@
 #include "mapper/graph/objects.h"
 #include "mapper/graph/places.h"
 #include "mapper/shading/appearance.h"
+#include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
 #include "mapper/shading/lights.h"
 #include "mapper/views.h"
@@ -22,6 +23,7 @@ struct OpenRTMapper::Impl {
   mapper::Places places;
   mapper::ShaderClasses classes;
   mapper::Textures textures;
+  mapper::CubeMaps cubes;
   mapper::CustomShaders custom;
   mapper::Surfaces surfaces;
   mapper::Objects objects;

@@ -20,8 +20,9 @@ template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
 
 uint64_t contentHash(const Mesh& m) {
   const uint64_t flags = uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9;
-  return hashed(m.colors,
-                hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
+  const uint64_t colorless =
+      hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags))));
+  return hashed(m.alphas, hashed(m.colors, colorless));
 }
 
 double reachOf(const Mesh& m) {
@@ -34,8 +35,8 @@ double reachOf(const Mesh& m) {
 
 uint64_t ownBytes(const Mesh& m) {
   return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
-         m.ownColors.capacity() * sizeof(Color) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
-         m.ownIndices.capacity() * sizeof(uint32_t);
+         m.ownColors.capacity() * sizeof(Color) + m.ownAlphas.capacity() * sizeof(float) +
+         m.ownTexCoords.capacity() * sizeof(Vec2f) + m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
 template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
@@ -153,6 +154,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   const size_t corners = entry.mesh->indices.size();
   entry.extent.reach = reachOf(*entry.mesh);
   entry.extent.kind = entry.mesh->kind;
+  entry.extent.alpha = !entry.mesh->alphas.empty();
   switch (entry.mesh->kind) {
   case Mesh::Kind::empty: entry.extent.primitives = 0; break;
   case Mesh::Kind::triangles: entry.extent.primitives = corners / 3; break;
@@ -175,7 +177,7 @@ bool Meshes::sameContent(int32_t a, int32_t b) {
   return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw &&
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
-         equalBytes(m.colors, n.colors);
+         equalBytes(m.colors, n.colors) && equalBytes(m.alphas, n.alphas);
 }
 
 int32_t Meshes::newGroup(uint64_t hash) {
@@ -340,6 +342,7 @@ void compact(const Mesh& mesh, Mesh& out) {
     if (!mesh.normals.empty()) out.ownNormals.push_back(mesh.normals[i]);
     if (!mesh.texCoords.empty()) out.ownTexCoords.push_back(mesh.texCoords[i]);
     if (!mesh.colors.empty()) out.ownColors.push_back(mesh.colors[i]);
+    if (!mesh.alphas.empty()) out.ownAlphas.push_back(mesh.alphas[i]);
   }
   out.ownIndices.reserve(mesh.indices.size());
   for (const uint32_t i : mesh.indices)

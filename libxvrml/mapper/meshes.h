@@ -30,6 +30,12 @@ class Meshes {
   // Requires texture coordinates from now on. Returns true if an already built mesh has to be
   // rebuilt.
   bool needTexture(int32_t mesh);
+  // Returns whether events have put a ColorRGBA in place of a Color, or a Color in place of a
+  // ColorRGBA, since the mesh was built.
+  bool switchedAlpha(int32_t mesh) const {
+    const Entry& entry = entries_[size_t(mesh)];
+    return entry.known && entry.extent.alpha != hasVertexAlpha(*entry.geometry);
+  }
   // Invalidates the mesh because fields of the node have changed.
   void changed(int32_t mesh);
   // Sets whether events reach the geometry. A dynamic mesh is never grouped with equal ones.
@@ -42,7 +48,8 @@ class Meshes {
   struct Extent {
     Mesh::Kind kind = Mesh::Kind::empty;
     uint64_t primitives = 0;
-    double reach = 0; // largest absolute coordinate
+    double reach = 0;   // largest absolute coordinate
+    bool alpha = false; // it has opacities
   };
   Extent extent(int32_t mesh);
   // Returns the mesh whose object also draws this one: a mesh with equal content, perhaps itself.

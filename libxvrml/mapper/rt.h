@@ -73,6 +73,10 @@ class ShaderSetup {
   void vector(const char* name, Vec3f v) { set(name, {&v.x, 3}); }
   void color(const char* name, Color c) { set(name, {&c.r, 3}); }
   void floats(const char* name, std::span<const float> v) { set(name, v); }
+  // Sets a list, which may be empty.
+  void list(const char* name, std::span<const float> v) {
+    rtParameterfv(handle(name), v.size(), v.data());
+  }
   void texture(const char* name, RTid texture) { rtParameterTexture(handle(name), texture); }
   void matrix(const char* name, const Matrix& m) {
     float f[16];

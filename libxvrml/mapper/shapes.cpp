@@ -131,6 +131,10 @@ void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
   parts_[size_t(writing_)].moving.push_back(item);
 }
 
+SurfaceUse Objects::useOf(const Item& item) const {
+  return {item.lines && !item.viaMesh, hasVertexAlpha(graph_.meshes.geometry(item.mesh))};
+}
+
 // Writes a shape. Its number is the name of everything it draws, so that the id channel tells
 // shapes apart even within a shared object.
 void Objects::writeShape(ItemId id, const Matrix& matrix) {
@@ -139,14 +143,15 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
   if (item.viaMesh) {
     const int32_t part = partOfMesh(graph_.meshes.equal(item.mesh));
     const RTid instance = instantiate(part, matrix, item.number, false);
-    if (instance != 0) rtInstanceShader(instance, surfaces_.surfaceFor(appearance, false).shader);
+    if (instance != 0)
+      rtInstanceShader(instance, surfaces_.surfaceFor(appearance, useOf(item)).shader);
     if (item.recolored) keep(id, instance, matrix);
   } else {
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
     if (extent.primitives == 0) return;
     measure(matrix, extent.reach, item.node->source, "Shape");
     if (!finite(matrix)) return;
-    const Surface surface = surfaces_.surfaceFor(appearance, item.lines);
+    const Surface surface = surfaces_.surfaceFor(appearance, useOf(item));
     rtLoadName(item.number);
     load(matrix);
     if (!draw(item.mesh, surface, isTextured(appearance))) return;
@@ -169,6 +174,8 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += extent.primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
+  rtLineWidth(surface.lineWidth);
+  rtPointSize(surface.pointSize);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   if (m.kind == Mesh::Kind::sphere) {
@@ -194,16 +201,18 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {
                     textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
   // Lines and points use emissiveColor.
   const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles;
-  if (!m.colors.empty() && !linear_) {
+  const int components = m.alphas.empty() ? 3 : 4;
+  if (!m.colors.empty() && !linear_ && m.alphas.empty()) {
     rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());
   } else if (!m.colors.empty() || plain) {
     colors_.clear();
-    colors_.reserve(3 * m.points.size());
+    colors_.reserve(size_t(components) * m.points.size());
     for (size_t i = 0; i < m.points.size(); ++i) {
-      const Color c = plain ? surface.lineColor : convert(m.colors[i], true);
+      const Color c = plain ? surface.lineColor : convert(m.colors[i], linear_);
       colors_.insert(colors_.end(), {c.r, c.g, c.b});
+      if (components == 4) colors_.push_back(m.alphas[i]);
     }
-    rtColorPointer(3, RT_FLOAT, 0, colors_.data());
+    rtColorPointer(components, RT_FLOAT, 0, colors_.data());
   } else {
     rtColorPointer(3, RT_FLOAT, 0, nullptr);
   }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "geometry/node_matrix.h"
 #include "mapper/mapper_impl.h"
 #include "xvrml/change.h"
 #include "xvrml/walk.h"
@@ -93,7 +94,7 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
   viewsStale |= graph.items[id].placeDependent;
   boundsStale = true;
   if (graph.items[id].kind == Kind::billboard) return; // updated with every frame
-  if (!nodeCast<nodes::Transform>(&node)) {
+  if (!hasMatrix(node)) {
     graph.plan(id);
     work.regroup = true;
     return;
@@ -115,13 +116,15 @@ void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
     const int32_t mesh = graph.meshes.find(&node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
+    const bool otherAlpha = graph.meshes.switchedAlpha(mesh);
     graph.meshes.changed(mesh);
     work.meshes.push_back(mesh);
     boundsStale = countsStale = true;
     forEachShape(graph, node, [&](ItemId shape) {
       const Item& item = graph.items[shape];
       if (!expected && !item.merged) work.regroup = true;
-      if (!expected || item.merged || item.objectReason != ObjectReason::none || !item.viaMesh)
+      if (!expected || item.merged || item.objectReason != ObjectReason::none || !item.viaMesh ||
+          otherAlpha)
         work.rewrite.push_back(shape);
     });
     return false;
@@ -140,11 +143,16 @@ void OpenRTMapper::Impl::appearanceChanged(Work& work, Node& first) {
         !graph.items[id].merged && graph.items[id].objectReason != ObjectReason::appearance;
     return;
   }
-  if (first.type().is("texture") && !textures.changed(first)) return; // only the picture changed
+  const bool cube = first.type().is("environmentTexture");
+  if (cube) cubes.changed(first);
+  if (!cube && first.type().is("texture") && !textures.changed(first))
+    return; // only the picture changed
   walkHolders(first, work.visited, [&](Node& node) {
     if (node.type().index == nodes::ORTShader::typeIndex) custom.changed(node);
     if (node.type().index == nodes::ORTLight::typeIndex) lights.changed(node);
-    environment.changed(node); // for the shader of an ORTBackground
+    if (first.type().is("textureProperty") && node.type().is("texture")) textures.changed(node);
+    // For the shader of an ORTBackground, the pictures of TextureBackgrounds and EnvironmentLights.
+    environment.changed(node);
     if (!isAppearance(node)) return node.type().index < 0 || !planOf(node.type());
     work.appearances.push_back(&node);
     return false;
@@ -183,9 +191,12 @@ void OpenRTMapper::Impl::lightChanged(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
   // The headlight of a NavigationInfo is read every frame.
   if (id == 0 || !isLight(graph.items[id].kind)) return;
+  const bool scoped = graph.items[id].scoped;
   graph.readLight(id);
   lights.changed(node);
+  environment.changed(node);
   if (graph.items[id].on && !graph.items[id].placeDependent) work.regroup = true;
+  if (graph.items[id].scoped != scoped) work.regroup = true;
 }
 
 void OpenRTMapper::Impl::regroup() {

@@ -68,8 +68,8 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
 }
 
 namespace {
-// Returns whether a DirectionalLight that is on shines on a group above a place, and only there
-// (clause 6.16).
+// Returns whether a light that is on shines on a group above a place, and only there (clause 6.16,
+// ISO/IEC 19775-1 17.2.1.2).
 bool inScopedLight(const Graph& graph, const Places& places, const Place& place) {
   for (int32_t above = place.parent; above > 0; above = places.all[size_t(above)].parent) {
     const Place& group = places.all[size_t(above)];
@@ -77,7 +77,7 @@ bool inScopedLight(const Graph& graph, const Places& places, const Place& place)
       const int32_t child = places.children[group.firstChild + i];
       if (child == none) continue;
       const Item& item = graph.items[places.all[size_t(child)].item];
-      if (item.kind == Kind::directionalLight && item.on) return true;
+      if (isLight(item.kind) && item.scoped && item.on) return true;
     }
   }
   return false;
@@ -95,9 +95,10 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
     info.node = item.node;
     toArray(place.world, info.matrix);
     if (inScopedLight(graph, places, place))
-      diagnostics.warn(item.node->source,
-                       "ORTSensor: a DirectionalLight in a group lights the shapes of that group "
-                       "alone, and is not in the reading; sensors see those at the top level");
+      diagnostics.warn(
+          item.node->source,
+          "ORTSensor: a light in a group that lights the shapes of that group alone is "
+          "not in the reading; sensors see those at the top level");
     list.push_back(std::move(info));
   }
   return list;

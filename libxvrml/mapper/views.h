@@ -6,6 +6,7 @@
 
 #include "mapper/graph/places.h"
 #include "mapper/rt.h"
+#include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/mapper.h"
@@ -39,25 +40,33 @@ CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspe
 // on).
 bool hasHeadlight(const Bound& bound);
 
-// Sets Background and Fog as the scene's environment: one shader of the class VRML97Environment
-// (clauses 6.5 and 6.19), or the shader of an ORTBackground.
+// Sets Background, TextureBackground, Fog and EnvironmentLight as the scene's environment: one
+// shader of the class VRML97Environment, or the shader of an ORTBackground.
 class Environment {
  public:
   Environment(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
-              CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
+              CubeMaps& cubes, CustomShaders& custom)
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), cubes_(cubes),
         custom_(custom) {}
   // Notes that fields of the node have changed. It has no effect unless the node is bound.
-  void changed(const Node& node) { stale_ |= &node == background_.get() || &node == fog_.get(); }
+  void changed(const Node& node) {
+    stale_ |= &node == background_.get() || &node == fog_.get() || &node == light_.get();
+  }
   // Updates the environment if anything has changed. The places' world matrices must be those of
   // the frame.
-  void updateForFrame(const Places& places, const Bound& bound);
+  void updateForFrame(const Graph& graph, const Places& places, const Bound& bound);
   void clear(); // removes the environment
   uint64_t parametersSet() const { return sets_; }
 
  private:
-  void setAll(ShaderSetup& shader, const RTid (&pictures)[6]);
-  void setBackground(ShaderSetup& shader, const nodes::Background& node, const RTid (&pictures)[6]);
+  using Faces = RTid[cubeFaces]; // in the order of CubeFace
+  void setAll(ShaderSetup& shader, const Faces& pictures, const CubeMap& light);
+  template <class Sky>
+  void setBackground(ShaderSetup& shader, const Sky& node, const Faces& pictures);
+  void setLight(ShaderSetup& shader, const CubeMap& light);
+  void picturesOfBackground(Faces& pictures);
+  CubeMap picturesOfLight();
+  int32_t findLight(const Graph& graph, const Places& places);
   void setFog(ShaderSetup& shader);
   void useCustom(nodes::ORTBackground& node);
 
@@ -65,9 +74,12 @@ class Environment {
   bool linear_;
   ShaderClasses& classes_;
   Textures& textures_;
+  CubeMaps& cubes_;
   CustomShaders& custom_;
-  NodeRef background_, fog_;
-  Matrix matrix_, fogMatrix_;  // matrices of the environment and of the fog's coordinate system
+  NodeRef background_, fog_, light_;
+  // Matrices of the environment and of the coordinate systems of the fog and the light.
+  Matrix matrix_, fogMatrix_, lightMatrix_;
+  bool reportedLights_ = false;
   RTid shader_ = 0, used_ = 0; // our own shader; the shader that the scene uses
   bool stale_ = false;
   uint64_t sets_ = 0;

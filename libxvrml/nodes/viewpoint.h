@@ -19,6 +19,8 @@ struct ViewpointFields {
   const MFFloat* extent;         // left, bottom, right, top of a view in parallel projection
   const Vec3f* centerOfRotation; // of X3D
   const bool* retainUserOffsets; // of X3D
+  const bool* viewAll;           // of X3D
+  Node* navigationInfo;          // of X3D, as written; null: none
   Node* shader;                  // camera shader as written; null: the built-in camera
 };
 
@@ -32,6 +34,7 @@ inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
     const FieldInfo* field = node->type().find(name);
     return field && field->type == type ? node->storage(*field) : nullptr;
   };
+  const auto* info = static_cast<const SFNode*>(at("navigationInfo", FieldType::SFNode));
   const auto* shader = static_cast<const SFNode*>(at("shader", FieldType::SFNode));
   // nodegen has checked that the node has the fields of its abstract type, which are not optional.
   return ViewpointFields{*static_cast<const SFVec3f*>(at("position", FieldType::SFVec3f)),
@@ -42,6 +45,8 @@ inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
                          static_cast<const MFFloat*>(at("fieldOfView", FieldType::MFFloat)),
                          static_cast<const SFVec3f*>(at("centerOfRotation", FieldType::SFVec3f)),
                          static_cast<const SFBool*>(at("retainUserOffsets", FieldType::SFBool)),
+                         static_cast<const SFBool*>(at("viewAll", FieldType::SFBool)),
+                         info ? info->get() : nullptr,
                          shader ? shader->get() : nullptr};
 }
 

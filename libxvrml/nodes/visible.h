@@ -2,11 +2,15 @@
 // 10.3.1), for code that walks what is drawn. [any thread that owns the nodes]
 #pragma once
 
-#include "xvrml/node.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 
 // Returns false if the node has a field `visible` that is FALSE.
 bool isVisible(const Node& node);
+// Returns whether a CADLayer shows its child with this index (ISO/IEC 19775-1 32.4.3).
+inline bool showsChild(const nodes::CADLayer& layer, size_t child) {
+  return child >= layer.visible.size() || layer.visible[child];
+}
 
 } // namespace xvrml

@@ -124,6 +124,7 @@ class Builder : public ParseSink {
   FieldTarget targetOf(const FieldInfo& field, bool resumed);
   const NodeType* typeOf(std::string_view name, bool use) const;
   bool isMissingField(const NodeType& type, const Name& name);
+  void reportGpuProgram(const Name& name);
   void reportUnknownNode(const Name& type);
   void warnOfX3d(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at);

@@ -24,10 +24,22 @@ bool Builder::lacksField(const NodeType& type, std::string_view name) const {
   return isX3d() && (type.index >= 0 || type.name == "Script") && isX3dField(type.name, name);
 }
 
+// Reports once for a file that shaders are not run.
+void Builder::reportGpuProgram(const Name& name) {
+  if (isFirst("shaders"))
+    locator_.warn(name.at, fmt::format("{} is a part of a program for graphics processors: such "
+                                       "programs are not run, and shapes look as their materials say",
+                                       describe(name)));
+}
+
 // Reports such a field or event, once for each name. Returns false for other names and in files of
 // VRML97.
 bool Builder::isMissingField(const NodeType& type, const Name& name) {
   if (!lacksField(type, name.text)) return false;
+  if (isGpuField(name.text)) {
+    reportGpuProgram(name);
+    return true;
+  }
   if (isFirst(fmt::format("{}.{}", type.name, name.text)))
     locator_.warn(name.at, fmt::format("field {} of {} is not supported: it is left out here and "
                                        "below",
@@ -37,6 +49,7 @@ bool Builder::isMissingField(const NodeType& type, const Name& name) {
 
 // Reports a node type that is not known. In an X3D file each type is reported once.
 void Builder::reportUnknownNode(const Name& type) {
+  if (isX3d() && isGpuNode(type.text)) return reportGpuProgram(type);
   if (isX3d() && !isFirst(std::string(type.text))) return;
   const bool ofX3d = isX3dNode(type.text);
   if (isX3d() && ofX3d) {

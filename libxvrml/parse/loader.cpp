@@ -119,7 +119,8 @@ void Loader::complete(ParsedFile& file, uint64_t depth) {
 }
 
 void Loader::loadInline(InlineNode& node, uint64_t depth) {
-  if (node.url.empty() || node.content) return;
+  if (!node.load || node.url.empty() || node.content) return;
+  node.tried = true;
   std::string reasons;
   for (const std::string& url : node.url) {
     const ResolvedUrl resolved =

@@ -152,12 +152,11 @@ bool Parser::interfaceDeclaration(bool isExtern) {
 //                     | eventIn fieldType eventInId IS eventInId
 //                     | eventOut fieldType eventOutId IS eventOutId
 //                     | field fieldType fieldId IS fieldId
+// X3D also has exposedField, which it calls inputOutput (29.2.2).
 bool Parser::scriptBodyElement() {
   const Token keyword = lexer_.next();
   Access access{};
   readAccess(keyword, access);
-  const bool exposed = access == Access::exposedField;
-  if (exposed) access = Access::field; // the program needs the value
   FieldType type;
   if (!fieldType(type)) {
     skipDeclaration();
@@ -165,16 +164,14 @@ bool Parser::scriptBodyElement() {
   }
   Token id;
   if (!name(id, "a name for the interface")) return false;
-  if (exposed && x3d_)
-    lexer_.warn(keyword.at(), fmt::format("inputOutput of a Script is read as initializeOnly: {} "
-                                          "takes and sends no events",
-                                          describe(id)));
-  else if (exposed)
+  if (access == Access::exposedField && !x3d_)
     lexer_.error(keyword.at(), fmt::format("a Script declares field, eventIn and eventOut, not "
-                                           "exposedField (6.40): {} is read as a field",
+                                           "exposedField (6.40): {} works as in X3D, but other "
+                                           "browsers refuse it",
                                            describe(id)));
   const bool isConnection = lexer_.peek().is("IS");
-  const bool hasValue = access == Access::field && !isConnection;
+  const bool hasValue =
+      (access == Access::field || access == Access::exposedField) && !isConnection;
   const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);
   const bool good = !hasValue || fieldValue(target);
   sink_.closeDeclaration(good);

@@ -11,12 +11,13 @@
 namespace xvrml {
 namespace {
 
-// Loads the content of an Inline whose url has changed.
+// Loads the content of an Inline whose url or load has changed.
 void loadAgain(World& world, InlineNode& node) {
   if (!world.options.loadInlines) return;
   // Destroyed here if nothing else refers to it.
   const std::shared_ptr<const Scope> old = std::exchange(node.content, nullptr);
   node.share.clear();
+  node.tried = false;
   const BudgetPtr budget = budgetOf(world);
   const uint64_t before = budget->used();
   Loader(world, world.options)
@@ -36,7 +37,8 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
   while (!open.empty()) {
     const auto [one, from] = open.back();
     open.pop_back();
-    if (auto* inlineNode = dynamic_cast<InlineNode*>(one); inlineNode && from->name == "url")
+    if (auto* inlineNode = dynamic_cast<InlineNode*>(one);
+        inlineNode && (from->name == "url" || from->name == "load"))
       loadAgain(world, *inlineNode);
     auto* instance = dynamic_cast<ProtoInstance*>(one);
     if (!instance) continue;

@@ -382,12 +382,6 @@ void X3dElements::openDeclaration(const Name& element, Attributes attributes) {
     locator_.error(named.at, fmt::format("expected a field type, found {}", describe(named)));
     return skip(attributes);
   }
-  if (script && access == Access::exposedField) {
-    access = Access::field; // the program needs the value
-    locator_.warn(word->at, fmt::format("inputOutput of a Script is read as initializeOnly: {} "
-                                        "takes and sends no events",
-                                        describe(name)));
-  }
   const bool hasValue = !isExtern && (access == Access::field || access == Access::exposedField);
   const FieldTarget target = sink_.openDeclaration(access, type, name, hasValue);
   push(Kind::declaration, element);

@@ -41,6 +41,11 @@ struct Script {
   // Returns whether the engine has the type in its table. Before minor version 2 of the ABI there
   // were the types of VRML97 alone.
   bool knows(FieldType type) const { return abiMinor >= 2 || isVrml97Type(type); }
+  // Returns the access that the engine is told. Before minor version 2 a Script had no
+  // exposedFields: the engine sees a field, and gets no events for it.
+  Access accessFor(const FieldInfo& field) const {
+    return abiMinor < 2 && field.access == Access::exposedField ? Access::field : field.access;
+  }
   bool flag(uint32_t bit) const { return info.flags & bit; }
   // Returns whether a call is running in its process, for this Script or another one. Events wait
   // meanwhile.

@@ -160,7 +160,8 @@ void ScriptHost::describe(Script& script, ScriptProgram program) {
   for (const FieldInfo& field : script.node->type().fields) {
     if (!Script::isOwn(field)) continue;
     if (script.knows(field.type))
-      script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
+      script.fields.push_back(
+          {field.name.c_str(), xsType(field.type), xsAccess(script.accessFor(field))});
     else
       log(script, 2, 0,
           fmt::format(

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "event/hierarchy.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
@@ -87,30 +88,46 @@ struct HostTable {
 
   static XsResult send(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
-      const FieldInfo* out = name ? script.node->type().find(name) : nullptr;
-      if (!out || out->access != Access::eventOut)
-        return noField(script, *script.node, "eventOut", name);
+      const FieldInfo* out = name ? script.node->type().findEventOut(name) : nullptr;
+      if (!out || !Script::isOwn(*out)) return noField(script, *script.node, "eventOut", name);
       Value taken;
       if (!take(host, script, value, out->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
-      for (Script::Output& output : script.outputs)
-        if (!output.to && output.field == out) {
-          output.value = std::move(taken);
-          return XS_OK;
-        }
-      script.outputs.push_back({{}, out, std::move(taken)});
+      if (out->access == Access::exposedField) return writeExposed(host, script, *out, taken);
+      output(script, *out, std::move(taken));
       return XS_OK;
     });
+  }
+
+  // Notes an event from the Script's own node. It leaves when the function returns.
+  static void output(Script& script, const FieldInfo& out, Value value) {
+    for (Script::Output& output : script.outputs)
+      if (!output.to && output.field == &out) {
+        output.value = std::move(value);
+        return;
+      }
+    script.outputs.push_back({{}, &out, std::move(value)});
+  }
+
+  // Sets an inputOutput field of the Script, which sends NAME_changed (ISO/IEC 19775-1 4.4.2.2).
+  static XsResult writeExposed(ScriptHost& host, Script& script, const FieldInfo& field,
+                               Value value) {
+    if (!host.engine_.store(*script.node, field, std::move(value)))
+      return refuse(script, XS_FAILED, "not a value it can have");
+    output(script, field, script.node->get(field));
+    return XS_OK;
   }
 
   static XsResult write(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       const FieldInfo* field = name ? script.node->type().find(name) : nullptr;
-      const bool own = field && field->access == Access::field && Script::isOwn(*field);
+      const bool own = field && holdsValue(*field) && Script::isOwn(*field);
       if (!own) return noField(script, *script.node, "field that it may write,", name);
       Value taken;
       if (!take(host, script, value, field->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
+      if (field->access == Access::exposedField)
+        return writeExposed(host, script, *field, std::move(taken));
       return host.engine_.store(*script.node, *field, std::move(taken))
                  ? XS_OK
                  : refuse(script, XS_FAILED, "not a value it can have");
@@ -358,6 +375,40 @@ struct HostTable {
     return XS_OK;
   }
 
+  // --- The scene of the Script ---
+
+  // Returns the scene that the Script stands in: the content of the innermost Inline above it, else
+  // the world's. Bodies of prototypes have no scenes of their own here.
+  static const Scope& sceneOf(ScriptHost& host, const Node& script) {
+    const std::vector<Path> paths = pathsTo(script, 1);
+    if (!paths.empty())
+      for (size_t i = paths[0].size(); i-- > 0;)
+        if (const Scope* content = inlineScope(*paths[0][i])) return *content;
+    return host.world_.scope;
+  }
+
+  static XsResult namedNode(Host table, XsNode self, XsString name, XsValue* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      const std::string wanted = text(host, name);
+      const auto& names = sceneOf(host, *script.node).names;
+      const auto found = names.find(wanted);
+      if (!out || found == names.end() || !found->second)
+        return refuse(script, XS_NO_NODE, fmt::format("the scene has no node '{}'", wanted));
+      *out = script.lent.lend(SFNode(found->second), script.handles);
+      return XS_OK;
+    });
+  }
+  static XsResult rootNodes(Host table, XsNode self, XsValue* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      if (!out) return refuse(script, XS_FAILED, "no place for the answer");
+      MFNode roots;
+      for (const NodeRef& root : sceneOf(host, *script.node).roots)
+        if (root) roots.push_back(root);
+      *out = script.lent.lend(std::move(roots), script.handles);
+      return XS_OK;
+    });
+  }
+
   // --- The library's own objects ---
 
   static void* object(Host table, XsNode self, XsNode number) {
@@ -405,7 +456,9 @@ ScriptHost::Table::Table(ScriptHost& host)
              HostTable::log,
              HostTable::lastError,
              HostTable::object,
-             HostTable::number},
+             HostTable::number,
+             HostTable::namedNode,
+             HostTable::rootNodes},
       host(host) {}
 
 } // namespace xvrml

@@ -86,7 +86,7 @@ void Writer::line() {
 }
 
 std::string_view Writer::spelled(const NodeType& type, std::string_view field) const {
-  return isX3d() && type.index >= 0 ? x3dName(type.name, field) : field;
+  return isX3d() && type.index >= 0 ? x3dName(type.name, field, version_.major) : field;
 }
 
 void Writer::scope(const Scope& scope) {

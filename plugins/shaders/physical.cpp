@@ -170,6 +170,10 @@ struct Physical : rts::Surface<Physical> {
   rts::Param<int32_t> alphaMode{
       "alphaMode", opaque, "0: opaque; 1: mask, nothing where alpha is below alphaCutoff; 2: blend",
       0, 2};
+  rts::Param<int32_t> vertexAlpha{"vertexAlpha", 0,
+                                  "1: the alpha of the geometry's colours stands in place of "
+                                  "1 - transparency; 0: it multiplies it",
+                                  0, 1};
   rts::Param<float> alphaCutoff{"alphaCutoff", .5f, "smallest alpha that mode 1 shows", 0, 1};
   rts::Param<int32_t> lit{
       "lit", 1, "0: reflects nothing; emissiveTexture then has the alpha (UnlitMaterial)", 0, 1};
@@ -257,7 +261,9 @@ struct Physical : rts::Surface<Physical> {
   }
   float opacity(const rts::Hit& hit, rts::Vec4 texel) const {
     if (alphaMode == opaque) return 1;
-    const float alpha = unit((1 - transparency) * texel.w * alphaOf(hit));
+    const bool replaced = vertexAlpha && (hit.flags & RTS_HIT_COLOR) != 0;
+    const float own = replaced ? 1.f : 1 - transparency;
+    const float alpha = unit(own * texel.w * alphaOf(hit));
     if (alphaMode == mask) return alpha >= alphaCutoff ? 1 : 0;
     return alpha;
   }

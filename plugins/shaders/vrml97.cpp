@@ -16,6 +16,7 @@ const RtsClass* const classes[] = {
     &vrml97::thinLensClass,
     &vrml97::panoramaClass,
     &vrml97::globalIlluminationClass,
+    &vrml97::x3dMaterialClass,
 };
 
 } // namespace

@@ -164,6 +164,7 @@ inline void addFacts(RtsHost& host) {
   host.error = [](RtsBatch* b, float* error) {
     for (uint32_t i = 0; i < fake(b).hitCount; i++) error[i] = 1e-6f * float(i + 1);
   };
+  host.backdrop = [](RtsBatch* b, uint32_t* seen) { std::fill_n(seen, fake(b).hitCount, 0u); };
 }
 
 inline FakeHost::FakeHost() : RtsHost{} {

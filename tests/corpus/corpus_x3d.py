@@ -21,7 +21,7 @@ from corpus import vv
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CELL, CAPTION, COLUMNS, ROWS = (200, 150), 14, 3, 6
 UNKNOWN = re.compile(r"nodes of type '([^']*)' are not supported|'([^']*)' is not a known node type"
-                     r"|field '([^']*)' of (\w+) is not supported|(\w+) (?:is|are) not supported")
+                     r"|field '([^']*)' of (\w+) is not supported|(IMPORT|mappings) (?:is|are) not supported")
 
 
 def arguments():

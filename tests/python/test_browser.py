@@ -226,6 +226,17 @@ def test_the_viewer(browser):
         browser.key("return", True)
 
 
+def test_keys_for_the_world():
+    browser = xvrml.Browser(b"#X3D V3.3 utf8\nPROFILE Immersive\nDEF T StringSensor { }\n")
+    assert browser.senses_keys
+    assert browser.type_text("h\u00fc!\n") and browser.press_key("x") and browser.press_key("x", False)
+    assert not browser.press_key("no key")
+    text = browser.node("T")
+    assert (text.finalText, text.enteredText) == ("h\u00fc!", "x")
+    text.enabled = False
+    assert not browser.senses_keys and not browser.type_text("x")
+
+
 def test_the_pointer(browser):
     heard = []
     for event in ("isOver", "isActive", "touchTime", "hitPoint_changed"):

@@ -193,6 +193,26 @@ def test_viewpoints(start):
     refused("node", "no viewpoint", vv.bind, "Side")
 
 
+KEYS = """#X3D V3.3 utf8
+PROFILE Immersive
+DEF K KeySensor { }
+DEF T StringSensor { enabled FALSE }
+"""
+
+
+def test_keys_for_the_world(start, tmp_path):
+    (tmp_path / "keys.x3dv").write_text(KEYS)
+    vv = start().connect()
+    assert not vv.key("a")
+    vv.load(str(tmp_path / "keys.x3dv"))
+    assert vv.key("F2", True) and vv.key("a") and not vv.key("no key")
+    assert (vv.get("K", "actionKeyPress"), vv.get("K", "keyRelease")) == (2, "a")
+    vv.set("T", "enabled", True)
+    assert vv.type("some\ntext")
+    assert (vv.get("T", "finalText"), vv.get("T", "enteredText")) == ("some", "text")
+    refused("command", "key", vv.call, "key")
+
+
 def test_time_stands_still_and_is_skipped(start):
     vv = start("world.wrl", *SMALL, "--epoch", "1000000").connect()
     now = vv.time(paused=True)

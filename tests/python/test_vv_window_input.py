@@ -39,6 +39,19 @@ def test_the_same_input_gives_the_same_bytes(vv):
     assert (vv.folder / "c.ppm").read_bytes() != made[0]
 
 
+def test_what_is_typed_reaches_the_sensors_of_the_world(vv):
+    vv.write(
+        "world.x3dv", "#X3D V3.3 utf8\nPROFILE Immersive\nDEF K KeySensor { }\n"
+        "DEF S Script { inputOnly SFString down inputOnly SFInt32 action url \"ecmascript:\n"
+        "function down(v) { print('key ' + v); } function action(v) { print('action ' + v); }\" }\n"
+        "ROUTE K.keyPress TO S.down\nROUTE K.actionKeyPress TO S.action\n")
+    vv.write("in.txt", "0.1 key A\n0.2 key A shift\n0.3 key Up\n0.4 type \"x y\"\n0.5 key S ctrl\n")
+    done = vv("world.x3dv", "--input", "in.txt", "-o", "a.ppm", "--size", "8x6", "--spp", 1)
+    assert done.returncode == 0, done.talk
+    said = re.findall(r"(?:key|action) \S+", done.talk)
+    assert said == ["key a", "key A", "action 17", "key x", "key y"]
+
+
 def test_with_and_without_a_window_input_gives_the_same_bytes(window, vv):
     vv.write("world.wrl", SPINNING)
     vv.write(

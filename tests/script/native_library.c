@@ -8,6 +8,8 @@
 #include <xvrml/xscript.h>
 
 float twice(float x) { return 2 * x; }
+float addOne(float x) { return x + 1; }
+float tenTimes(float x) { return 10 * x; }
 double half(double x) { return x / 2; }
 int32_t invert(int32_t yes) { return !yes; }
 int64_t wide(int64_t x, uint8_t small) { return x * 1000 + small; }

@@ -64,6 +64,12 @@ TEST(ControlLine, CommandsAreRead) {
   EXPECT_EQ(picture.channels.size(), 2u);
   EXPECT_EQ(picture.file, "x.exr");
 
+  const PressKey key =
+      std::get<PressKey>(good(R"({"command":"key","key":"F1","pressed":false})").command->action);
+  EXPECT_EQ(key.key, "F1");
+  EXPECT_EQ(key.pressed, std::optional(false));
+  EXPECT_EQ(std::get<PressKey>(good(R"({"command":"key","text":"a b"})").command->action).text,
+            "a b");
   EXPECT_EQ(*std::get<Time>(good(R"({"command":"time","skip":0.25})").command->action).skip, .25);
   EXPECT_EQ(std::get<Bind>(good(R"({"command":"bind","viewpoint":2})").command->action).viewpoint,
             "2");
@@ -101,6 +107,8 @@ TEST(ControlLine, MessagesSayWhereAndWhat) {
       "render: file: the path of a file");
   bad(R"({"command":"render","file":""})", "command", "render: file: the path of a file");
   bad(R"({"command":"load","url":["a.wrl","b\u0000.wrl"]})", "command", "load: url[1]: the path");
+  bad(R"({"command":"key"})", "command", "key");
+  bad(R"({"command":"key","key":"a","pressed":1})", "command", "key: pressed");
   bad(R"({"command":"time","skip":-1})", "command", "time: skip: seconds from 0");
   bad(R"({"command":"route","from":["A"],"to":["B","c"]})", "command", "route: from");
   bad(R"({"command":"release","nodes":["A"]})", "command",

@@ -172,6 +172,17 @@ Action readTime(Members& m) {
   return time;
 }
 
+Action readKey(Members& m) {
+  PressKey press;
+  if (m.has("text")) {
+    press.text = m.text("text");
+    return press;
+  }
+  press.key = m.text("key");
+  if (m.has("pressed")) press.pressed = switchOf(m.at("pressed"), m.need("pressed"));
+  return press;
+}
+
 Action readBind(Members& m) {
   const Json& json = m.need("viewpoint");
   if (json.is_number_unsigned()) return Bind{json.dump()};
@@ -232,6 +243,7 @@ constexpr Row table[] = {
      }},
     {"render", readRender},
     {"time", readTime},
+    {"key", readKey},
     {"quit", [](Members&) -> Action { return Quit{}; }},
 };
 

@@ -77,11 +77,16 @@ struct Time {
   std::optional<bool> paused;
   std::optional<double> skip; // seconds
 };
+struct PressKey {
+  std::string key;             // a name of xvrml::Browser::worldKey; "": text
+  std::optional<bool> pressed; // nothing: pressed and released
+  std::string text;
+};
 struct Quit {};
 
 using Action =
     std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute, Describe,
-                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit>;
+                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit, PressKey>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

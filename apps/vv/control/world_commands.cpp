@@ -152,6 +152,7 @@ std::string WorldCommands::perform(const Command& command) {
                            [this](const ListViewpoints&) { return listViewpoints(); },
                            [this](const Bind& c) { return bind(c); },
                            [this](const Replace& c) { return replace(c); },
+                           [this](const PressKey& c) { return press(c); },
                            [this](const Time& c) { return time(c); }, other),
                     command.action);
 }
@@ -360,6 +361,14 @@ std::string WorldCommands::listViewpoints() {
                         list.empty() ? "" : ",", client_.numbers.of(one.node), jsonText(one.name),
                         jsonText(one.description), one.node.get() == bound);
   return "[" + list + "]";
+}
+
+std::string WorldCommands::press(const PressKey& press) {
+  if (press.key.empty()) return browser_.worldText(press.text) ? "true" : "false";
+  bool taken = false;
+  if (press.pressed.value_or(true)) taken = browser_.worldKey(press.key, true);
+  if (!press.pressed.value_or(false)) taken |= browser_.worldKey(press.key, false);
+  return taken ? "true" : "false";
 }
 
 std::string WorldCommands::bind(const Bind& bind) {

@@ -37,6 +37,7 @@ class WorldCommands {
   std::string bind(const Bind& bind);
   std::string replace(const Replace& replace);
   std::string time(const Time& time);
+  std::string press(const PressKey& press);
 
   xvrml::NodeRef nodeOf(const NodeName& name) const;
   std::string valueText(const xvrml::Value& value);

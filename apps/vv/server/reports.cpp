@@ -64,6 +64,7 @@ std::string Reports::stateOf(const Page& page, double now) {
     if (viewpoints_[i] == pilot.viewpoint()) state.viewpoint = int(i);
   state.hand = page.role != Page::Role::follower && pilot.overSensor();
   state.bottom = bottomOf(page, now);
+  state.keys = page.role != Page::Role::follower && session.browser().sensesKeys();
   state.facts = overlayLines(session.facts(page.view), session.pilot().paused(), OverlayLevel::all);
   return stateText(state);
 }

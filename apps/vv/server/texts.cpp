@@ -48,7 +48,8 @@ std::string stateText(const PageState& state) {
                   {"viewpoint", state.viewpoint},
                   {"hand", state.hand},
                   {"bottom", state.bottom},
-                  {"facts", state.facts}});
+                  {"facts", state.facts},
+                  {"keys", state.keys}});
 }
 
 std::string viewpointsText(const std::vector<xvrml::ViewpointName>& viewpoints) {

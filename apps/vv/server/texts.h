@@ -23,6 +23,7 @@ struct PageState {
   bool hand = false;              // the pointer is over a sensor or an Anchor
   std::string bottom;             // a message, or the description of what is under the pointer
   std::vector<std::string> facts; // lines about the picture
+  bool keys = false;              // a sensor of the world gets the keys
 };
 
 std::string helloText();

@@ -102,6 +102,11 @@ std::string Pilot::hint() const {
   if (!pointer_.isOverSensor()) return {};
   for (const xvrml::NodeRef& node : browser_.sensorsAtPointer()) {
     const auto* anchor = xvrml::nodeCast<xvrml::nodes::Anchor>(node.get());
+    const xvrml::FieldInfo* text = node->type().find("description");
+    const auto* description = text && text->type == xvrml::FieldType::SFString
+                                  ? static_cast<const std::string*>(node->storage(*text))
+                                  : nullptr;
+    if (!anchor && description && !description->empty()) return *description; // a sensor of X3D
     if (!anchor) continue;
     return !anchor->description.empty() ? anchor->description
            : anchor->url.empty()        ? std::string()
@@ -323,10 +328,13 @@ Action Pilot::handle(const InputEvent& event) {
   }
   case Kind::leave:
     held_.clear();
+    worldKeys_.release(browser_);
     pointer_.leave();
     break;
   case Kind::wheel: wheel(event); break;
+  case Kind::type: browser_.worldText(event.text); break;
   case Kind::down:
+    if (worldKeys_.press(browser_, event)) break;
     shift_ = event.shift;
     alt_ = event.alt;
     if (event.text == "Left" || event.text == "Right" || event.text == "Up" ||
@@ -334,8 +342,9 @@ Action Pilot::handle(const InputEvent& event) {
       held_.insert(event.text);
       break;
     }
-    return press(actionOf(event));
+    return press(actionOf(worldKeys_.commandOf(browser_, event)));
   case Kind::up:
+    worldKeys_.release(browser_, event);
     shift_ = event.shift;
     alt_ = event.alt;
     held_.erase(event.text);

@@ -13,6 +13,7 @@
 #include "libpicture/camera.h"
 #include "session/input/keys.h"
 #include "session/input/pointer.h"
+#include "session/input/world_keys.h"
 #include "session/viewer.h"
 #include "session/world_time.h"
 #include "xvrml/browser.h"
@@ -74,7 +75,8 @@ class Pilot {
   const xvrml::Node* viewpoint() const { return viewer_->viewpoint(); }
   // Tells whether input that is held down moves the viewer: keys, or the pointer while walking.
   bool isSteering() const;
-  std::string hint() const; // description of the Anchor under the pointer
+  // Returns the description of the Anchor or sensor under the pointer.
+  std::string hint() const;
   std::string takeMessage() { return std::exchange(message_, {}); }
 
  private:
@@ -99,6 +101,7 @@ class Pilot {
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
   std::set<std::string> held_; // keys that are held down
+  WorldKeys worldKeys_;        // keys that the world's sensors get
   bool shift_ = false, alt_ = false;
   std::string message_;
 };

@@ -12,6 +12,7 @@
 
 #include "options/values.h"
 #include "printable.h"
+#include "session/input/world_keys.h"
 
 namespace vv {
 
@@ -73,6 +74,7 @@ struct Screen::Impl {
   std::array<Texture, places> panels;
   std::vector<uint32_t> pixels; // scratch storage for the picture
   bool changed = true, isHand = false, pressed = false;
+  std::string typed; // what the last key types by its name
 
   ~Impl() {
     picture.drop();
@@ -143,10 +145,18 @@ struct Screen::Impl {
       const std::string name = SDL_GetKeyName(e.key.keysym.sym);
       if (!e.key.repeat && !name.empty() && !isTextKey(name)) // some keys have no name
         key(e.type == SDL_KEYDOWN ? Kind::down : Kind::up, name, e.key.keysym.mod, out);
+      if (e.type == SDL_KEYUP) break;
+      InputEvent pressed;
+      pressed.text = name;
+      setModifiers(pressed, e.key.keysym.mod);
+      typed = typedBy(pressed);
       break;
     }
     case SDL_TEXTINPUT:
-      if (!isTextKey(e.text.text)) break;
+      if (!isTextKey(e.text.text)) {
+        if (typed != e.text.text) key(Kind::type, e.text.text, 0, out);
+        break;
+      }
       key(Kind::down, e.text.text, 0, out);
       key(Kind::up, e.text.text, 0, out);
       break;

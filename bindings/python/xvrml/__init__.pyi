@@ -680,6 +680,16 @@ class Browser(World):
     def key(self, name: str, pressed: bool) -> None:
         ...
 
+    def press_key(self, name: str, pressed: bool = ...) -> bool:
+        ...
+
+    def type_text(self, text: str) -> bool:
+        ...
+
+    @property
+    def senses_keys(self) -> bool:
+        ...
+
     @property
     def navigation(self) -> str:
         ...

@@ -377,6 +377,20 @@ class Control:
         """Jumps to a viewpoint, named by DEF name, description or number from 0."""
         self.call("bind", viewpoint=viewpoint)
 
+    def key(self, key: str, pressed: Optional[bool] = None) -> bool:
+        """Presses a key for the world's KeySensor or StringSensor, and releases it: the character
+        that it types, or a name such as "F1", "Up", "Shift" or "Enter". With pressed it is only
+        pressed or only released. Returns whether a sensor has taken it."""
+        members: Dict[str, Any] = {"key": key}
+        if pressed is not None: members["pressed"] = pressed
+        taken: bool = self.call("key", **members)
+        return taken
+
+    def type(self, text: str) -> bool:
+        """Presses and releases the key of each character; a line feed is Enter."""
+        taken: bool = self.call("key", text=text)
+        return taken
+
     def load(self, *urls: str, timeout: Optional[float] = None) -> str:
         """Loads another world: the first file that can be read. All numbers of nodes and
         subscriptions end. Returns its path."""

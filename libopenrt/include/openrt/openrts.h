@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 4 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 5 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -446,6 +446,10 @@ struct RtsHost {
   /* Writes a bound of the rounding error of the hits' positions along the geometric normal, in
    * world units. */
   void (*error)(RtsBatch* batch, float* error);
+  /* Since 1.5, for `miss`: writes 1 for each direction that is seen as a backdrop: the ray comes
+   * from the camera and has passed transparent surfaces at most. Writes 0 for directions from which
+   * light is wanted: those of mirrored, refracted and scattered rays and of light samples. */
+  void (*backdrop)(RtsBatch* batch, uint32_t* seen);
 };
 #define RTS_MAX_LOBES 8
 

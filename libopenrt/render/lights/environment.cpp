@@ -8,7 +8,7 @@
 namespace openrt {
 
 SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const uint32_t* lanes,
-                         uint32_t n) {
+                         uint32_t n, const uint32_t* straight) {
   const uint32_t size = padded(n);
   SkyAlongRays sky;
   for (auto& a : sky.direction) a = context.arena.take<float>(size);
@@ -22,6 +22,7 @@ SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const ui
   const ShaderSlot& shader = environment.shader;
   RtsBatch batch = makeBatch(context);
   batch.lanes = n;
+  batch.straight = straight;
   {
     const RunningShader running(*shader.shaderClass);
     shader.shaderClass->miss(&context.scene.host, &batch, shader.params, n, sky.direction,
@@ -39,7 +40,10 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
   const uint32_t n = uint32_t(wave.missed.size());
   if (n == 0 || !shaderClass || !shaderClass->miss) return;
   ArenaScope scope(context.arena);
-  const SkyAlongRays sky = evaluateSky(context, wave.rays, wave.missed.data(), n);
+  auto* straight = context.arena.take<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < padded(n); i++)
+    straight[i] = !wave.states.flagsOf(wave.missed[std::min(i, n - 1)]).deflected();
+  const SkyAlongRays sky = evaluateSky(context, wave.rays, wave.missed.data(), n, straight);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = wave.missed[i], path = wave.states.path[lane];
     const float pdf = wave.states.pdf[lane];

@@ -12,9 +12,10 @@ namespace openrt {
 struct SkyAlongRays {
   float *direction[3], *rgba[4]; // direction: unit, in the environment's local space
 };
-// Evaluates the environment's shader in the directions of n rays.
+// Evaluates the environment's shader in the directions of n rays. straight: by ray, 1 where the
+// camera looks straight at the environment; null: nowhere.
 SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const uint32_t* lanes,
-                         uint32_t n);
+                         uint32_t n, const uint32_t* straight = nullptr);
 
 // Adds the sky that the missed rays of a wave see, with the MIS weight of BSDF sampling.
 void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLights& unsampled,

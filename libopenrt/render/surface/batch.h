@@ -56,6 +56,8 @@ struct RtsBatch {
   const uint32_t* order = nullptr;            // lanes of the hits; null: camera rays, in order
   uint32_t rays = 0;                          // number of camera rays
   uint32_t lanes = 0; // number of lanes of a batch that has neither hits nor camera rays
+  // By lane of an environment's batch: 1 where the camera looks straight; null: nowhere.
+  const uint32_t* straight = nullptr;
   const openrt::Crossing* crossing = nullptr; // boundaries of media by hit; null: there are none
   // By hit: number of rays it has traced; allocated with the first request.
   uint32_t* requests = nullptr;

@@ -116,6 +116,11 @@ void error(RtsBatch* batch, float* out) {
   for (uint32_t i = 0; i < batch->hitCount(); i++) out[i] = batch->points->error[batch->pointOf(i)];
 }
 
+void backdrop(RtsBatch* batch, uint32_t* seen) {
+  const uint32_t lanes = batch->lanesWithoutHits();
+  for (uint32_t i = 0; i < lanes; i++) seen[i] = batch->straight ? batch->straight[i] : 0;
+}
+
 void log(const RtsHost* host, int level, const char* text) {
   const auto* self = static_cast<const RenderHost*>(host);
   if (self->logCallback) self->logCallback(level, text, self->logUser);
@@ -145,6 +150,7 @@ void fillHost(RtsHost& host) {
   host.ids = ids;
   host.path = path;
   host.error = error;
+  host.backdrop = backdrop;
 }
 
 } // namespace openrt

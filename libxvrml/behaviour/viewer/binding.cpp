@@ -9,6 +9,7 @@
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
 #include "nodes/bindable.h"
+#include "nodes/viewpoint.h"
 #include "xvrml/nodes.h"
 #include "xvrml/walk.h"
 
@@ -20,6 +21,10 @@ void Binding::sendBindEvents(Node& node, bool bound) {
   engine_.send(node, "isBound", bound);
   engine_.send(node, "bindTime", engine_.now()); // Viewpoints only
   engine_.changed(node, *node.type().find("set_bind"));
+  // The NavigationInfo of a viewpoint is bound and unbound with it (ISO/IEC 19775-1:2023 23.3.1).
+  if (const auto viewpoint = viewpointFields(&node))
+    if (Node* info = renderedNode(viewpoint->navigationInfo))
+      if (const FieldInfo* bind = info->type().find("set_bind")) engine_.post(*info, *bind, bound);
 }
 
 // Rules a and b: sends isBound FALSE of the old node, then isBound TRUE of the new node, at the

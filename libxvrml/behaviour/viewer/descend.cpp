@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
+#include "geometry/node_matrix.h"
+#include "nodes/visible.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
 
 bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner) {
-  if (node.type().index == nodes::Transform::typeIndex) {
-    const auto& t = static_cast<const nodes::Transform&>(node);
-    inner = compose(toWorld, transformMatrix({t.center, t.translation, t.scale, t.rotation,
-                                              t.scaleOrientation}));
+  if (hasMatrix(node)) {
+    inner = compose(toWorld, matrixOf(node));
     return determinant(inner) != 0;
   }
   inner = toWorld;
@@ -24,6 +24,11 @@ bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Ma
                                              transformDirection(toLocal, up)));
   }
   return true;
+}
+
+void appendShownChildren(const nodes::CADLayer& layer, std::vector<Node*>& parts) {
+  for (size_t i = 0; i < layer.children.size(); ++i)
+    if (showsChild(layer, i)) parts.push_back(layer.children[i].get());
 }
 
 size_t levelFor(const nodes::LOD& lod, const Matrix& toWorld, const Matrix& view) {

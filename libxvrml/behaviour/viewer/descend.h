@@ -16,4 +16,7 @@ bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Ma
 // levels.
 size_t levelFor(const nodes::LOD& lod, const Matrix& toWorld, const Matrix& view);
 
+// Appends the children of a CADLayer that its list `visible` shows.
+void appendShownChildren(const nodes::CADLayer& layer, std::vector<Node*>& parts);
+
 } // namespace xvrml

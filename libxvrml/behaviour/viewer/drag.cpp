@@ -51,21 +51,47 @@ double intersectRound(const Vector& origin, const Vector& direction, double radi
 // Returns whether the press hit the far side of the round body.
 bool isFar(const PickRay& ray, const Vector& fromAxis) { return ray.direction.dot(fromAxis) > 0; }
 
+// The axes that a sensor of X3D turns with axisRotation (ISO/IEC 19775-1 20.4.1, 20.4.2). A drag
+// works in the turned system; what is sent is in the sensor's own.
+class Axes {
+ public:
+  explicit Axes(const Rotation& rotation) {
+    Matrix inverse;
+    const Matrix m = xvrml::rotation(rotation);
+    if (!finite(m) || !invert(m, inverse)) return;
+    out_ = m;
+    in_ = inverse;
+  }
+  Vector in(const Vector& p) const { return transformPoint(in_, p); }
+  Vector out(const Vector& p) const { return transformPoint(out_, p); }
+  PickRay in(const PickRay& ray) const {
+    PickRay turned = ray;
+    turned.origin = in(ray.origin);
+    turned.direction = in(ray.direction);
+    return turned;
+  }
+
+ private:
+  Matrix in_, out_;
+};
+
 class PlaneDrag final : public Drag {
  public:
   PlaneDrag(nodes::PlaneSensor& sensor, const Vector& point)
-      : sensor_(sensor), start_(point), offset_(vector(sensor.offset)) {}
+      : sensor_(sensor), axes_(sensor.axisRotation), start_(axes_.in(point)),
+        offset_(axes_.in(vector(sensor.offset))) {}
 
-  void move(Events& events, const PickRay& ray) override {
+  void move(Events& events, const PickRay& world) override {
+    const PickRay ray = axes_.in(world);
     Vector p;
     if (!onPlane(ray, start_, {0, 0, 1}, p)) return;
     p.z = start_.z; // removes rounding
     Vector moved = p - start_ + offset_;
     moved.x = limited(moved.x, sensor_.minPosition.x, sensor_.maxPosition.x);
     moved.y = limited(moved.y, sensor_.minPosition.y, sensor_.maxPosition.y);
-    last_ = narrow(moved);
+    last_ = narrow(axes_.out(moved));
     has_ = true;
-    events.send(sensor_, "trackPoint_changed", narrow(p));
+    events.send(sensor_, "trackPoint_changed", narrow(axes_.out(p)));
     events.send(sensor_, "translation_changed", last_);
   }
 
@@ -76,6 +102,7 @@ class PlaneDrag final : public Drag {
 
  private:
   nodes::PlaneSensor& sensor_;
+  const Axes axes_;
   Vector start_, offset_;
   Vec3f last_;
   bool has_ = false;
@@ -131,15 +158,19 @@ class SphereDrag final : public Drag {
 
 class CylinderDrag final : public Drag {
  public:
-  CylinderDrag(nodes::CylinderSensor& sensor, const PickRay& ray, const Vector& point)
-      : sensor_(sensor), start_(point), offset_(sensor.offset) {
+  CylinderDrag(nodes::CylinderSensor& sensor, const PickRay& world, const Vector& pressed)
+      : sensor_(sensor), axes_(sensor.axisRotation), start_(axes_.in(pressed)),
+        offset_(sensor.offset) {
+    const PickRay ray = axes_.in(world);
+    const Vector& point = start_;
     const Vector flat(ray.direction.x, 0, ray.direction.z);
     disk_ = std::atan2(flat.length(), std::abs(ray.direction.y)) < double(sensor.diskAngle);
     far_ = isFar(ray, {point.x, 0, point.z});
     angle_ = around(point);
   }
 
-  void move(Events& events, const PickRay& ray) override {
+  void move(Events& events, const PickRay& world) override {
+    const PickRay ray = axes_.in(world);
     Vector p;
     if (!(disk_ ? onDisk(ray, p) : onCylinder(ray, p))) return;
     // Use the angle nearest to the last one: a drag may go round more than once.
@@ -147,8 +178,9 @@ class CylinderDrag final : public Drag {
     angle_ = around(p);
     last_ = float(limited(turned_ + offset_, sensor_.minAngle, sensor_.maxAngle));
     has_ = true;
-    events.send(sensor_, "trackPoint_changed", narrow(p));
-    events.send(sensor_, "rotation_changed", Rotation{0, 1, 0, last_});
+    const Vec3f axis = narrow(axes_.out({0, 1, 0}));
+    events.send(sensor_, "trackPoint_changed", narrow(axes_.out(p)));
+    events.send(sensor_, "rotation_changed", Rotation{axis.x, axis.y, axis.z, last_});
   }
 
   void end(Events& events) override {
@@ -179,6 +211,7 @@ class CylinderDrag final : public Drag {
   }
 
   nodes::CylinderSensor& sensor_;
+  const Axes axes_;
   Vector start_;
   double offset_, angle_ = 0, turned_ = 0;
   bool disk_ = false, far_ = false;

@@ -1,5 +1,8 @@
 // hearing.cpp: computes what the viewer of a running world hears: its Sounds (clause 6.42) and
 // their directions, for xvrml/media.h. [the browser's thread]
+#include <algorithm>
+#include <cmath>
+
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "xvrml/browser.h"
@@ -19,6 +22,16 @@ std::vector<Node*> soundsBelow(const Scope& scope) {
 }
 
 Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+// Returns the factor that a clip brings of its own (ISO/IEC 19775-1:2023 16.4.1). Beyond a limit
+// every sample is as loud as a device can play it, so that sums stay finite.
+double gainOf(const Node* source) {
+  constexpr double most = 1000;
+  const auto* clip = source->type().index == nodes::AudioClip::typeIndex
+                         ? static_cast<const nodes::AudioClip*>(source)
+                         : nullptr;
+  return clip && std::isfinite(clip->gain) ? std::clamp(double(clip->gain), -most, most) : 1;
+}
 
 } // namespace
 
@@ -47,7 +60,9 @@ std::vector<Heard> heardIn(Browser& browser) {
       const Vector eye = transformPoint(toLocal, transformPoint(view, Vector(0)));
       const Vector place =
           transformPoint(toViewer, transformPoint(toWorld, vector(sound.location)));
-      heard.push_back({node, playing, soundLevels(sound, narrow(eye), narrow(place))});
+      SoundLevels levels = soundLevels(sound, narrow(eye), narrow(place));
+      const double gain = gainOf(source);
+      heard.push_back({node, playing, {levels.left * gain, levels.right * gain}});
     }
   }
   return heard;

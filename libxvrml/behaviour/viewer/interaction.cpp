@@ -20,6 +20,7 @@ void Interaction::changed(Node& node, const FieldInfo& field) {
   case Change::children: picker.changed(node); break;
   default: break;
   }
+  if (field.name == "viewAll" && &node == binding.bound().viewpoint) viewer.showAll();
   moved_ |= field.change == Change::transform || field.change == Change::view ||
             field.change == Change::children;
 }
@@ -28,6 +29,7 @@ void Interaction::forgotten(const Node& node) {
   picker.forgotten(node);
   binding.forget(node);
   pointer.forget(node);
+  keyboard.forget(node);
 }
 
 void Interaction::ticked() {

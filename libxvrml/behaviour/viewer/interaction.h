@@ -3,6 +3,7 @@
 #pragma once
 
 #include "behaviour/viewer/binding.h"
+#include "behaviour/viewer/keyboard.h"
 #include "behaviour/viewer/navigation.h"
 #include "behaviour/viewer/pick.h"
 #include "behaviour/viewer/pointer.h"
@@ -15,7 +16,7 @@ class Interaction final : public EngineObserver {
  public:
   explicit Interaction(Engine& engine)
       : engine(engine), viewer(engine, binding), binding(engine, viewer), picker(engine),
-        pointer(*this), navigation(*this) {}
+        pointer(*this), navigation(*this), keyboard(engine) {}
 
   void began(const Scope& scope) override;
   void changed(Node& node, const FieldInfo& field) override;
@@ -29,6 +30,7 @@ class Interaction final : public EngineObserver {
   Picker picker;
   Pointer pointer;
   Navigator navigation;
+  Keyboard keyboard;
   const Scope* scope = nullptr; // the world's scope; null before the world has begun
   double aspect = 4.0 / 3;      // width / height of the picture
   // Sounds in the scene when Engine::structure() was soundsStructure (see hearing.cpp).

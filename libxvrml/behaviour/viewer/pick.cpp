@@ -7,6 +7,7 @@
 
 #include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
+#include "geometry/node_matrix.h"
 #include "nodes/visible.h"
 #include "xvrml/browser.h"
 #include "xvrml/nodes.h"
@@ -25,6 +26,9 @@ void partsOf(Node& node, std::vector<Node*>& parts) {
     if (choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size())
       parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
     return;
+  }
+  if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {
+    return appendShownChildren(*layer, parts);
   }
   childrenInHierarchy(node, parts);
 }
@@ -84,7 +88,7 @@ PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
     if (part) box.extend(entries_[part].bounds);
   if (box.empty()) return box;
   PickBox outer;
-  if (node.type().index == nodes::Transform::typeIndex) {
+  if (hasMatrix(node)) {
     Matrix inner;
     if (innerMatrix(node, Matrix(), Matrix(), inner)) outer.extend(box, inner);
   } else if (node.type().index == nodes::Billboard::typeIndex) { // for any rotation

@@ -6,7 +6,7 @@
 #include <Imath/ImathMatrixAlgo.h>
 #include <Imath/ImathQuat.h>
 
-#include "behaviour/viewer/binding.h"
+#include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "geometry/lens.h"
 #include "nodes/viewpoint.h"
@@ -81,6 +81,10 @@ CameraSettings Viewer::camera(double aspect) const {
   toArray(view(), camera.matrix);
   const auto fields = viewpointFields(bound());
   setLens(camera, fields, surroundings(), aspect);
+  if (shownRadius_ > 0 && fields && fields->extent) {
+    toArray(view(), camera.matrix); // an extent beside the middle does not count
+    camera.height = 2 * shownRadius_ * std::max(1.0, aspect > 0 ? 1 / aspect : 1);
+  }
   return camera;
 }
 
@@ -90,6 +94,36 @@ void Viewer::keep(const Matrix& view, const Node* viewpoint) {
   Matrix inverse;
   offset_ = invert(placeOf(viewpoint), inverse) ? compose(inverse, view) : Matrix();
   hasLast_ = false;
+}
+
+// Looks at the middle of the sphere around the world's bounds, so that it fits into a picture of
+// any shape.
+bool Viewer::seeAll(const Node* viewpoint) {
+  shownRadius_ = 0;
+  const auto fields = viewpointFields(viewpoint);
+  Interaction& interaction = interactionOf(engine_);
+  if (!fields || !fields->viewAll || !*fields->viewAll || !interaction.scope) return false;
+  const PickBox box = interaction.picker.bounds(interaction.scope->roots);
+  const Vector middle = (box.low + box.high) / 2;
+  const double radius = (box.high - box.low).length() / 2;
+  if (box.empty() || !(radius > 0) || !(radius < 1e30)) return false;
+  double distance = 2 * radius;
+  if (fields->fieldOfView)
+    distance = radius / std::sin(std::clamp(double(*fields->fieldOfView), 1e-3, 3.0) / 2);
+  else
+    shownRadius_ = radius;
+  Matrix view = rigid(placeOf(viewpoint));
+  const Vector eye = middle + Vector(view.x[2][0], view.x[2][1], view.x[2][2]) * distance;
+  view.x[3][0] = eye.x;
+  view.x[3][1] = eye.y;
+  view.x[3][2] = eye.z;
+  keep(view, viewpoint);
+  return true;
+}
+
+void Viewer::showAll() {
+  const Matrix from = view();
+  if (seeAll(bound())) jump(from);
 }
 
 void Viewer::moveTo(const Matrix& view) {
@@ -134,6 +168,7 @@ void Viewer::completeTransition() {
 
 // Rule b of 6.53. `to` is already on the stack; the view is still relative to `from`.
 void Viewer::bind(Node* from, Node* to) {
+  shownRadius_ = 0;
   const Matrix seen = shown(rigid(compose(leavingPlace(from), offset_)));
   saved_[from] = offset_;
   const auto before = saved_.find(to);
@@ -141,11 +176,13 @@ void Viewer::bind(Node* from, Node* to) {
   saved_.erase(to);
   if (!begun_) { // nothing was visible yet: jump FALSE has no view to keep
     offset_ = Matrix();
+    seeAll(to);
   } else if (const auto next = viewpointFields(to); next && !next->jump) {
     keep(seen, to);
     moving_.running = false;
   } else {
     offset_ = offset;
+    if (offset == Matrix()) seeAll(to);
     jump(seen);
   }
 }
@@ -153,6 +190,7 @@ void Viewer::bind(Node* from, Node* to) {
 // Rule c: returns to the saved position relative to the next Viewpoint. If the leaving Viewpoint
 // has jump FALSE, the view stays.
 void Viewer::unbind(Node& from, Node* to) {
+  shownRadius_ = 0;
   const Matrix seen = shown(rigid(compose(leavingPlace(&from), offset_)));
   const Matrix moved = offset_;
   const auto saved = saved_.find(to);

@@ -29,6 +29,9 @@ class Viewer {
   static Matrix placeOf(const Node* viewpoint);
   // Moves the viewer to a position in the world, as navigation does. A transition ends.
   void moveTo(const Matrix& view);
+  // Moves the viewer back until the whole world is seen, in the direction of the bound viewpoint
+  // (its field viewAll).
+  void showAll();
   // Returns the viewer to the bound Viewpoint.
   void reset();
   void restart(); // resets the view for a new world that has no Viewpoint bound
@@ -58,6 +61,7 @@ class Viewer {
   Matrix target() const;                                // the view without a transition
   Matrix shown(const Matrix& target) const;             // the view with the transition applied
   void keep(const Matrix& view, const Node* viewpoint); // sets the offset that leads to `view`
+  bool seeAll(const Node* viewpoint); // sets the offset from which viewAll sees everything
   void jump(const Matrix& from);
   double transitionSeconds() const; // how long a jump from now on takes
   void completeTransition();
@@ -76,6 +80,9 @@ class Viewer {
     double start = 0, seconds = 0;
     Matrix from;
   } moving_;
+  // Radius of the world that a viewpoint in parallel projection shows for viewAll; 0: it shows what
+  // it says.
+  double shownRadius_ = 0;
   bool jumped_ = false, begun_ = false;
   double speed_ = 0, lastTick_ = 0;
   Vector lastOffset_{0, 0, 0};

@@ -52,6 +52,7 @@ struct FaceSet {
   Attribute<Vec3f> normals;
   Attribute<Vec2f> texCoords;
   Attribute<Color> colors;
+  std::vector<float> alphas; // as long as colors.values, or empty: opaque
   bool solid = true, ccw = true;
   bool convex = true; // promised by the author; checked
   // This many leading faces are split without checks (strips of quadrilaterals).
@@ -65,6 +66,14 @@ struct FaceSet {
   uint32_t faceCount() const { return faceStart.empty() ? 0 : uint32_t(faceStart.size() - 1); }
   uint32_t name(uint32_t face) const { return faceName.empty() ? face : faceName[face]; }
   std::vector<uint32_t> facesOfCorners() const;
+
+  // Sets the values of the colours. own: what `rgb` refers to, or empty if a node owns it.
+  void takeColors(std::span<const Color> rgb, std::vector<Color>&& own,
+                  std::vector<float>&& opacities) {
+    colors.own = std::move(own); // keeps its storage
+    colors.values = rgb;
+    alphas = std::move(opacities);
+  }
 };
 
 // Builds the mesh. Degenerate and non-finite parts are dropped and counted in faults.

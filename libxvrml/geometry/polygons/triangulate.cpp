@@ -207,10 +207,14 @@ class Triangulation {
         set_.colors,
         [&](auto values, const uint32_t* at) {
           V3d sum(0, 0, 0);
+          double alpha = 0;
           for (uint32_t i = 0; i < c.count; i++) {
             Color color = at[i] != noValue ? values[at[i]] : Color{1, 1, 1};
             sum += V3d(color.r, color.g, color.b) * c.weight[i];
+            if (!set_.alphas.empty())
+              alpha += (at[i] != noValue ? double(set_.alphas[at[i]]) : 1.0) * c.weight[i];
           }
+          if (!set_.alphas.empty()) set_.alphas.push_back(float(alpha));
           return sum;
         },
         [](const V3d& sum) {

@@ -48,6 +48,10 @@ Mesh inPlace(FaceSet&& set, std::span<const uint32_t> triangles) {
   takeAttribute(set.normals, points, mesh.normals, mesh.ownNormals);
   takeAttribute(set.texCoords, points, mesh.texCoords, mesh.ownTexCoords);
   takeAttribute(set.colors, points, mesh.colors, mesh.ownColors);
+  if (mesh.colors.empty() || set.alphas.empty()) return mesh;
+  mesh.ownAlphas = std::move(set.alphas);
+  mesh.ownAlphas.resize(points, 1.0f);
+  mesh.alphas = mesh.ownAlphas;
   return mesh;
 }
 
@@ -113,6 +117,8 @@ class Welder {
       mesh_.ownTexCoords.push_back(key[1] == noValue ? Vec2f{0, 0} : set_.texCoords.values[key[1]]);
     if (has(set_.colors))
       mesh_.ownColors.push_back(key[2] == noValue ? Color{1, 1, 1} : set_.colors.values[key[2]]);
+    if (has(set_.colors) && !set_.alphas.empty())
+      mesh_.ownAlphas.push_back(key[2] == noValue ? 1.0f : set_.alphas[key[2]]);
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
 

@@ -173,6 +173,15 @@ class Browser {
   // Sets the callback for an Anchor whose urls lead elsewhere. [called within pointer or activate,
   // outside of cascades]
   void onAnchor(std::function<void(Node& anchor)> callback);
+  // Presses or releases a key of the world's keyboard for the KeySensor or StringSensor that is
+  // enabled (ISO/IEC 19775-1 21), at now(). name: the character that the key types, in UTF-8, or F1
+  // to F12, Home, End, PageUp, PageDown, Up, Down, Left, Right, Shift, Control, Alt, Enter,
+  // Backspace, Tab, Escape, Delete or Space. Returns false if no sensor is enabled, or for any
+  // other name. The viewer does not move.
+  bool worldKey(std::string_view name, bool pressed);
+  // Presses and releases the key of each character of a text in UTF-8; a line feed is Enter.
+  bool worldText(std::string_view text);
+  bool sensesKeys() const; // a KeySensor or StringSensor in the scene is enabled
   // Moves the viewer for dt seconds, at now(). Call it between ticks.
   void navigate(const NavigationInput& input, double dt);
   void key(Key key, bool pressed); // while an arrow key is held, ticks move the viewer

@@ -54,7 +54,7 @@ Playing playingOf(const Node& audioClip);
 double soundGain(const nodes::Sound& sound, const Vec3f& viewer);
 
 struct SoundLevels {
-  double left = 0, right = 0; // amplitude factors in [0,1.42]
+  double left = 0, right = 0; // amplitude factors in [0,1.42], or those times AudioClip.gain
 };
 // Returns the amplitude factors for both ears. With `spatialize`, their total power is the same for
 // all directions; otherwise both are the gain. viewer: in the Sound's coordinates; fromViewer: the

@@ -170,7 +170,7 @@ typedef struct XsScriptInfo {
   XsString text; /* the program: the text after the scheme, or the file's bytes */
   uint32_t fieldCount;
   /* The fields and events that the Script declares, in order, without url, directOutput and
-   * mustEvaluate. */
+   * mustEvaluate. Since minor version 2 there are exposedFields, too (inputOutput in X3D). */
   const XsField* fields;
   /* --- 1.1 --- */
   /* Bytes that the program may use, if the engine can tell; beyond them it fails as if out of
@@ -179,11 +179,13 @@ typedef struct XsScriptInfo {
 } XsScriptInfo;
 
 typedef struct XsEvent {
-  uint32_t size;    /* sizeof(XsEvent) in the host's header */
-  uint32_t index;   /* index of the eventIn in XsScriptInfo.fields */
-  const char* name; /* name of the eventIn */
-  XsValue value;    /* valid until the function returns */
-  double time;      /* the event's timestamp in seconds */
+  uint32_t size;  /* sizeof(XsEvent) in the host's header */
+  uint32_t index; /* index of the eventIn or exposedField in XsScriptInfo.fields */
+  /* Name of the eventIn or exposedField x. An exposedField already has the value and has sent it
+   * on; the stock engines call the program's function set_x. */
+  const char* name;
+  XsValue value; /* valid until the function returns */
+  double time;   /* the event's timestamp in seconds */
 } XsEvent;
 
 /* An engine's number or pointer for an interpreter. The host only passes it back. */
@@ -266,7 +268,8 @@ struct XsHost {
    * eventOut gets several, the last one counts. Each eventOut sends at most once per cascade; later
    * events are dropped (4.10.3). */
   XsResult (*send)(const XsHost* host, XsNode self, const char* eventOut, const XsValue* value);
-  /* Sets one of the Script's own fields, without an event. */
+  /* Sets one of the Script's own fields, without an event. An exposedField x also sends x_changed,
+   * as if by `send`. */
   XsResult (*write)(const XsHost* host, XsNode self, const char* field, const XsValue* value);
 
   /* --- Nodes --- */
@@ -332,6 +335,13 @@ struct XsHost {
   void* (*object)(const XsHost* host, XsNode self, XsNode node);
   /* Returns the number of such a node, as if it had been read from a field; 0 if there is none. */
   XsNode (*number)(const XsHost* host, XsNode self, void* object);
+
+  /* --- 1.2: the scene that the Script stands in: the world's file, or the content of an Inline. An
+   * engine reads these members only if `size` says that they are there. */
+  /* out: the SFNode of a DEF name. XS_NO_NODE if the scene has no such name. */
+  XsResult (*namedNode)(const XsHost* host, XsNode self, XsString name, XsValue* out);
+  /* out: an MFNode, the outermost nodes. */
+  XsResult (*rootNodes)(const XsHost* host, XsNode self, XsValue* out);
 };
 
 #if defined(_WIN32)

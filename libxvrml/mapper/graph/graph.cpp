@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "geometry/node_matrix.h"
 #include "mapper/shading/appearance.h"
 #include "nodes/visible.h"
 #include "xvrml/nodes.h"
@@ -41,14 +42,11 @@ bool Graph::planRoots() {
 }
 
 Matrix Graph::matrixOf(const Item& item) {
-  const auto* t = nodeCast<nodes::Transform>(item.node);
-  return t ? transformMatrix(
-                 {t->center, t->translation, t->scale, t->rotation, t->scaleOrientation})
-           : Matrix();
+  return item.node ? xvrml::matrixOf(*item.node) : Matrix();
 }
 
 Matrix Graph::below(const Matrix& outside, const Item& item) {
-  if (!nodeCast<nodes::Transform>(item.node)) return outside;
+  if (!item.node || !hasMatrix(*item.node)) return outside;
   const Matrix matrix = matrixOf(item);
   return matrix == Matrix() ? outside : compose(outside, matrix);
 }
@@ -58,6 +56,7 @@ void Graph::readLight(ItemId id) {
   Plan plan;
   planOf(item.node->type())(context_, *item.node, plan);
   item.on = plan.on;
+  item.scoped = plan.scoped;
 }
 
 ItemId Graph::newItem() {
@@ -105,6 +104,8 @@ void Graph::planItem(ItemId id) {
   item.isInline = plan.isInline;
   item.awaited = plan.awaited;
   item.on = plan.on;
+  item.scoped = plan.scoped;
+  item.limitsLights = plan.limitsLights;
   item.children = children;
   int32_t mesh = none;
   if (auto* shape = nodeCast<nodes::Shape>(item.node); shape && item.kind == Kind::shape)

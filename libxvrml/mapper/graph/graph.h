@@ -30,6 +30,7 @@ enum class Kind : uint8_t {
   lod,
   directionalLight,
   localLight,
+  environmentLight,
   viewpoint,
   background,
   fog,
@@ -37,7 +38,9 @@ enum class Kind : uint8_t {
   sensor
 };
 constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint && k <= Kind::navigationInfo; }
-constexpr bool isLight(Kind k) { return k == Kind::directionalLight || k == Kind::localLight; }
+constexpr bool isLight(Kind k) {
+  return k >= Kind::directionalLight && k <= Kind::environmentLight;
+}
 
 // The author's hint on a group: merge (ORTStatic) or instantiate (ORTInstance).
 enum class Hint : uint8_t { none, merge, instantiate };
@@ -87,12 +90,14 @@ struct Item {
   Kind kind = Kind::none;
   Hint hint = Hint::none;
   bool planned = false;
-  bool isInline = false; // an Inline's content begins here
-  bool awaited = false;  // an Inline whose content is still to come
-  bool on = true;        // for a light: it is on
-  uint32_t name = 0;     // index into Graph::names; 0: none
-  int32_t mesh = none;   // for a shape: index into Meshes
-  uint32_t number = 0;   // for a shape: index into Graph::shapes, the value in the id channel
+  bool isInline = false;     // an Inline's content begins here
+  bool awaited = false;      // an Inline whose content is still to come
+  bool on = true;            // for a light: it is on
+  bool scoped = false;       // for a light: it shines only on what is below its parent group
+  bool limitsLights = false; // lights below it shine at most on what is below it
+  uint32_t name = 0;         // index into Graph::names; 0: none
+  int32_t mesh = none;       // for a shape: index into Meshes
+  uint32_t number = 0;       // for a shape: index into Graph::shapes, the value in the id channel
 
   // Computed by Graph::settle.
   uint32_t position = 0; // index into Graph::order
@@ -106,7 +111,8 @@ struct Item {
   bool lines = false;       // contains lines or points; their width depends on the place
   bool draws = false;       // contains, or may later contain, something to draw
   bool merged = false;      // below an ORTStatic: events on it cause no split
-  bool scopesLight = false; // one of its children is a DirectionalLight
+  bool scopesLight = false; // a light below it shines only on what is below it
+  bool holdsLights = false; // contains lights that shine beyond their parent group
   bool moves = false;       // events reach its matrix
   bool changes = false;     // events reach its children, or the content of a shape's own object
   bool recolored = false;   // for a shape: events reach its appearance field
@@ -129,6 +135,8 @@ struct Plan {
   bool awaited = false;        // an Inline whose content is still to come
   bool keepEmpty = false;      // children keep their index even if nothing is drawn for them (LOD)
   bool on = true;              // for a light: it is on
+  bool scoped = false;         // for a light: it shines only on what is below its parent group
+  bool limitsLights = false;   // lights below it shine at most on what is below it
   std::vector<Node*> children; // as in the file: may contain prototype instances and nulls
 
   void add(const MFNode& nodes) {
@@ -164,7 +172,7 @@ class Graph {
   // Items planned again by the last settle() and still reachable.
   const std::vector<ItemId>& replanned() const { return replanned_; }
 
-  // Returns the matrix of an item, which is that of its Transform: it is computed when it is
+  // Returns the matrix of an item, which is that of its node: it is computed when it is
   // needed, because a million matrices take more memory than time.
   static Matrix matrixOf(const Item& item);
   static Matrix below(const Matrix& outside, const Item& item);

@@ -107,6 +107,7 @@ class Objects {
   void enter(ItemId item, int32_t place, const Matrix& matrix);
   void expand(const Step& step);
   void drain();
+  SurfaceUse useOf(const Item& shape) const;
   void writeShape(ItemId item, const Matrix& matrix);
   bool draw(int32_t mesh, const Surface& surface, bool textured);
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);

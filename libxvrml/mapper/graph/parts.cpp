@@ -204,7 +204,7 @@ bool Objects::recolored(ItemId id) {
   const auto found = trackedInstances_.find(id);
   if (found == trackedInstances_.end()) return true;
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
-  const RTid shader = surfaces_.surfaceFor(appearance, false).shader;
+  const RTid shader = surfaces_.surfaceFor(appearance, useOf(item)).shader;
   for (const TrackedInstance& p : found->second) rtInstanceShader(p.instance, shader);
   return true;
 }

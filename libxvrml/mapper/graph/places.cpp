@@ -36,6 +36,9 @@ void Places::expand(const Graph& graph) {
     place.inlined = item.isInline || (parent != none && all[size_t(parent)].inlined);
     place.split = parent == none || level != none || item.kind == Kind::billboard ||
                   item.kind == Kind::lod || item.scopesLight || isSplit(item.objectReason);
+    place.limit = item.limitsLights && item.scopesLight ? int32_t(all.size())
+                  : parent != none                      ? all[size_t(parent)].limit
+                                                        : none;
     place.firstChild = uint32_t(children.size());
     place.childCount = uint32_t(item.children.size());
     children.resize(children.size() + item.children.size(), none);

@@ -21,6 +21,8 @@ struct Place {
   uint32_t childCount = 0;
   int32_t level = none; // for a child of an LOD: its level
   bool inlined = false; // below an Inline
+  // The place at or above this one that limits lights (Item::limitsLights).
+  int32_t limit = none;
   // Has an object of its own: the root, billboards, LODs, LOD levels, groups that events reach,
   // groups that scope a light.
   bool split = false;

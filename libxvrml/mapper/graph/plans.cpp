@@ -5,6 +5,7 @@
 
 #include "mapper/graph/graph.h"
 #include "nodes/bindable.h"
+#include "nodes/visible.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -58,9 +59,12 @@ void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
   plan.isInline = true;
   const Scope* scope = inlineScope(node);
-  plan.awaited = !scope && !context.world.options.loadInlines &&
-                 !static_cast<nodes::Inline&>(node).url.empty();
+  const auto& content = static_cast<nodes::Inline&>(node);
+  plan.awaited =
+      !scope && !context.world.options.loadInlines && content.load && !content.url.empty();
   if (scope) plan.add(scope->roots);
+  // Inline has the field `global` since ISO/IEC 19775-1:2023 (9.4.2).
+  plan.limitsLights = versionOf(node).major >= 4 && !static_cast<nodes::Inline&>(node).global;
 }
 
 void planStatic(PlanContext&, Node& node, Plan& plan) {
@@ -82,18 +86,44 @@ template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
   plan.kind = kind;
   plan.on = static_cast<Light&>(node).on;
 }
+// The defaults of `global` are the rules of VRML97 (clauses 6.16, 6.35 and 6.45), which lacks it.
+template <class Light> void planScopedLight(Node& node, Kind kind, Plan& plan) {
+  planLight<Light>(node, kind, plan);
+  plan.scoped = !static_cast<Light&>(node).global;
+}
 void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
-  planLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
+  planScopedLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
 }
 void planPointLight(PlanContext&, Node& node, Plan& plan) {
-  planLight<nodes::PointLight>(node, Kind::localLight, plan);
+  planScopedLight<nodes::PointLight>(node, Kind::localLight, plan);
 }
 void planSpotLight(PlanContext&, Node& node, Plan& plan) {
-  planLight<nodes::SpotLight>(node, Kind::localLight, plan);
+  planScopedLight<nodes::SpotLight>(node, Kind::localLight, plan);
+}
+void planEnvironmentLight(PlanContext&, Node& node, Plan& plan) {
+  planLight<nodes::EnvironmentLight>(node, Kind::environmentLight, plan);
 }
 
 void planOrtLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::ORTLight>(node, Kind::localLight, plan);
+}
+
+// X3D clause 32: groups of drawings.
+void planCadAssembly(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::CADAssembly&>(node).children);
+}
+void planCadPart(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::CADPart&>(node).children);
+}
+void planCadFace(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::group;
+  plan.children.push_back(static_cast<nodes::CADFace&>(node).shape.get());
+}
+void planCadLayer(PlanContext&, Node& node, Plan& plan) {
+  const auto& layer = static_cast<nodes::CADLayer&>(node);
+  plan.kind = Kind::group;
+  for (size_t i = 0; i < layer.children.size(); ++i)
+    if (showsChild(layer, i)) plan.children.push_back(layer.children[i].get());
 }
 
 void planViewpointGroup(PlanContext&, Node& node, Plan& plan) {
@@ -120,6 +150,10 @@ std::vector<PlanFunction>& table() {
     set(nodes::Anchor::typeIndex, planAnchor);
     set(nodes::Collision::typeIndex, planCollision);
     set(nodes::Transform::typeIndex, planTransform);
+    set(nodes::CADAssembly::typeIndex, planCadAssembly);
+    set(nodes::CADPart::typeIndex, planCadPart);
+    set(nodes::CADFace::typeIndex, planCadFace);
+    set(nodes::CADLayer::typeIndex, planCadLayer);
     set(nodes::Switch::typeIndex, planSwitch);
     set(nodes::LOD::typeIndex, planLod);
     set(nodes::Billboard::typeIndex, planBillboard);
@@ -130,6 +164,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::DirectionalLight::typeIndex, planDirectionalLight);
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
+    set(nodes::EnvironmentLight::typeIndex, planEnvironmentLight);
     set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::ORTSensor::typeIndex, planSensor);
     set(nodes::ViewpointGroup::typeIndex, planViewpointGroup);

@@ -110,11 +110,12 @@ class Summary {
   void summariseShape(Item& item) {
     Node& geometry = graph_.meshes.geometry(item.mesh);
     const bool reached = graph_.meshes.dynamic(item.mesh) && !item.merged;
-    const bool lines = geometry.type().is("lines");
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
+    const bool lines = geometry.type().is("lines") || extent.kind == Mesh::Kind::lines ||
+                       extent.kind == Mesh::Kind::points;
     item.shapes = 1;
     item.triangles = extent.kind == Mesh::Kind::triangles ? extent.primitives : 0;
-    item.lines = lines || extent.kind == Mesh::Kind::lines || extent.kind == Mesh::Kind::points;
+    item.lines = lines;
     item.draws = true;
     item.recolored = !lines && !item.merged && reachedBy(item, Change::appearance);
     if (lines && reached) item.objectReason = ObjectReason::geometry;
@@ -162,8 +163,8 @@ class Summary {
 
   void countItem(ItemId id, bool strip) {
     Item& item = graph_.items[id];
-    item.placeDependent = item.draws = item.scopesLight = item.lines = item.viaMesh =
-        item.recolored = item.changes = false;
+    item.placeDependent = item.draws = item.scopesLight = item.holdsLights = item.lines =
+        item.viaMesh = item.recolored = item.changes = false;
     item.objectReason = ObjectReason::none;
     item.primitives = item.triangles = item.shapes = item.places = 0;
     if (item.kind == Kind::shape) summariseShape(item);
@@ -175,13 +176,16 @@ class Summary {
       item.placeDependent |= child.placeDependent;
       item.draws |= child.draws;
       item.lines |= child.lines;
-      item.scopesLight |= child.placeDependent && child.kind == Kind::directionalLight;
+      item.scopesLight |= child.placeDependent && isLight(child.kind) && child.scoped;
+      item.holdsLights |=
+          child.placeDependent && (isLight(child.kind) ? !child.scoped : child.holdsLights);
       if (!counts) continue;
       item.primitives =
           addSaturating(item.primitives, isSplit(child.objectReason) ? 1 : child.primitives);
       item.triangles = addSaturating(item.triangles, child.triangles);
       item.shapes = addSaturating(item.shapes, child.shapes);
     }
+    item.scopesLight |= item.limitsLights && item.holdsLights;
     applyHints(item);
     item.placeDependent |= isPlaceDependent(item);
     // Events may later add place-dependent children. This is decided now, so that the groups above
@@ -191,7 +195,7 @@ class Summary {
       item.places =
           addSaturating(item.places, item.kind == Kind::lod ? 1 + item.children.size() : 1);
     if (strip && paths_[id] > 1 && item.placeDependent) {
-      item.placeDependent = item.scopesLight = false;
+      item.placeDependent = item.scopesLight = item.holdsLights = false;
       item.places = 0;
     }
   }

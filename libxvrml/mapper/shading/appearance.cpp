@@ -6,7 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "mapper/shading/layers.h"
+#include "mapper/shading/line_properties.h"
 #include "mapper/shading/physical.h"
+#include "mapper/shading/x3d_material.h"
 #include "xvrml/change.h"
 #include "xvrml/nodes.h"
 
@@ -19,7 +22,8 @@ struct Parts {
   Node* anyMaterial = nullptr; // also one of X3D 4
   const nodes::Appearance* plain = nullptr;
   Node* texture = nullptr;
-  nodes::TextureTransform* textureTransform = nullptr;
+  Node* anyTransform = nullptr; // also a MultiTextureTransform
+  const nodes::TextureTransform* textureTransform = nullptr;
   nodes::ORTShader* shader = nullptr;
 };
 
@@ -27,8 +31,8 @@ template <class T> void surfaceParts(const T& appearance, Parts& parts) {
   parts.anyMaterial = renderedNode(appearance.material.get());
   parts.material = nodeCast<nodes::Material>(parts.anyMaterial);
   parts.texture = renderedNode(appearance.texture.get());
-  parts.textureTransform =
-      nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
+  parts.anyTransform = renderedNode(appearance.textureTransform.get());
+  parts.textureTransform = firstTransform(parts.anyTransform, "");
 }
 
 Parts partsOf(Node* appearance) {
@@ -44,11 +48,18 @@ Parts partsOf(Node* appearance) {
   return parts;
 }
 
+X3dParts x3dPartsOf(const Parts& parts) {
+  return {parts.plain, parts.anyMaterial, parts.texture, parts.anyTransform};
+}
+
 } // namespace
 
 bool isTextured(Node* appearance) {
   const Parts parts = partsOf(appearance);
-  return parts.texture || parts.shader || (parts.anyMaterial && hasPictures(*parts.anyMaterial));
+  if (parts.texture || parts.shader) return true;
+  if (parts.anyMaterial && hasPictures(*parts.anyMaterial)) return true;
+  Node* back = parts.plain ? renderedNode(parts.plain->backMaterial.get()) : nullptr;
+  return back && hasPictures(*back);
 }
 
 namespace {
@@ -74,7 +85,7 @@ constexpr uint64_t bytesOfShader = bytesOfSurface - bytesOfSharedSurface;
 constexpr size_t smallWorld = 256;
 
 // Returns the bytes of all values that decide how a surface looks.
-std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) {
+std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply, bool vertexAlpha) {
   std::string key;
   key.reserve(64); // a material takes 60 bytes
   const auto add = [&key](const auto& value) {
@@ -82,6 +93,7 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) 
   };
   add(texture);
   add(multiply);
+  add(vertexAlpha);
   if (const nodes::Material* m = parts.material) {
     for (const Color& color : {m->diffuseColor, m->emissiveColor, m->specularColor})
       add(convert(color, linear));
@@ -98,12 +110,12 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) 
 // appearances, and no events reach this one.
 bool Surfaces::mayShare(const Entry& entry) const {
   Node* node = entry.appearance.get();
-  if (!node || surfaces_.size() <= smallWorld) return false;
+  if (!node || surfaces_[entry.vertexAlpha].size() <= smallWorld) return false;
   const Parts parts = partsOf(node);
   if (parts.shader || isPhysical(parts.anyMaterial)) return false;
   for (const Node* part :
        {static_cast<const Node*>(node), static_cast<const Node*>(parts.material),
-        static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.textureTransform)})
+        static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.anyTransform)})
     if (part && part->live && reachOf(*part) != 0) return false;
   return true;
 }
@@ -133,32 +145,40 @@ void Surfaces::leaveShared(Entry& entry) {
   shared_.erase(*shared.key);
 }
 
-Surface Surfaces::surfaceFor(Node* appearance, bool lines) {
+Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
   Node* node = renderedNode(appearance);
-  const auto [it, fresh] = (lines ? lines_ : surfaces_).try_emplace(node);
+  const auto [it, fresh] = (use.lines ? lines_ : surfaces_)[use.vertexAlpha].try_emplace(node);
   Entry& entry = it->second;
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
   entry.textured = isTextured(node);
+  entry.vertexAlpha = use.vertexAlpha;
   const uint64_t bytes = partsOf(node).shader ? bytesOfSurface : bytesOfSharedSurface;
   if (!take(entry, bytes)) return entry.surface;
   entry.bytes = uint32_t(bytes);
-  if (!lines)
+  if (!use.lines) warnOfFaces(partsOf(node).plain, world_);
+  if (!use.lines)
     makeSurface(entry);
   else if (take(entry, bytesOfShader))
-    entry.own = (entry.surface = makeLines(node)).shader;
+    entry.own = (entry.surface = makeLines(entry)).shader;
   return entry.surface;
 }
 
 // Makes the surface of lines and points (clauses 6.24 and 6.36): unlit, in the colours of the
 // geometry, else in emissiveColor.
-Surface Surfaces::makeLines(Node* appearance) {
+Surface Surfaces::makeLines(const Entry& entry) {
+  Node* appearance = entry.appearance.get();
   Surface surface;
   ShaderSetup shader(classes_.get("VRML97", ""));
   surface.shader = shader.id();
   shader.integer("lit", 0);
+  if (entry.vertexAlpha) shader.integer("vertexAlpha", 1);
   if (Node* material = partsOf(appearance).anyMaterial)
     surface.lineColor = convert(emissionOf(*material), linear_);
+  const LineSizes sizes = lineSizes(partsOf(appearance).plain);
+  surface.lineWidth = sizes.line;
+  surface.pointSize = sizes.point;
+  warnOfLines(partsOf(appearance).plain, world_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
   return surface;
@@ -206,6 +226,12 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
   return custom_.shaderFor(node, RT_SURFACE, &appearance, preset);
 }
 
+// In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
+// 17.2.2.3).
+bool Surfaces::multiplies(const Entry& entry) const {
+  return multiplyTextures || (entry.appearance && versionOf(*entry.appearance).texturesMultiply());
+}
+
 // Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
   const Parts parts = partsOf(entry.appearance.get());
@@ -215,16 +241,14 @@ void Surfaces::makeSurface(Entry& entry) {
       return;
     }
   }
+  if (!parts.shader && needsX3dMaterial(x3dPartsOf(parts))) return makeX3d(entry);
   if (!parts.shader && isPhysical(parts.anyMaterial)) return makePhysical(entry);
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
-  // In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
-  // 17.2.2.3).
-  const bool multiplies =
-      multiplyTextures || (entry.appearance && versionOf(*entry.appearance).texturesMultiply());
+  const bool multiplied = multiplies(entry);
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
-    const std::string key = keyOf(parts, texture, linear_, multiplies);
+    const std::string key = keyOf(parts, texture, linear_, multiplied, entry.vertexAlpha);
     if (entry.shared && *entry.shared->key == key) {
       entry.surface.shader = entry.shared->shader;
       return;
@@ -251,7 +275,8 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool fallback = parts.shader != nullptr;
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
-  if (multiplies && shader.fresh()) shader.integer("multiplyTexture", 1);
+  if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
+  if (entry.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
     shader.matrix("textureTransform",
                   textureMatrix(t->center, t->rotation, t->scale, t->translation));
@@ -278,30 +303,59 @@ void Surfaces::makePhysical(Entry& entry) {
   entry.surface.shader = entry.physical = setup->id();
   setPhysical(*setup, *parts.anyMaterial, {parts.plain, parts.texture, parts.textureTransform},
               textures_, world_, linear_);
+  if (entry.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, parts.anyMaterial->type().name);
+}
+
+// Makes a surface that needs the class X3DMaterial, or sets new parameters.
+void Surfaces::makeX3d(Entry& entry) {
+  X3dParts parts = x3dPartsOf(partsOf(entry.appearance.get()));
+  parts.multiplies = multiplies(entry);
+  if (entry.shared) leaveShared(entry);
+  if (entry.x3d == 0 && !take(entry, bytesOfShader)) {
+    entry.surface = Surface();
+    return;
+  }
+  std::optional<ShaderSetup> setup;
+  const RTid shaderClass = classes_.get("X3DMaterial", "");
+  if (entry.x3d == 0)
+    setup.emplace(shaderClass);
+  else
+    setup.emplace(shaderClass, entry.x3d, sets_);
+  entry.surface.shader = entry.x3d = setup->id();
+  setX3dMaterial(*setup, parts, textures_, world_, linear_);
+  if (entry.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
+  report(world_.diagnostics, entry.appearance->source, "appearance");
 }
 
 Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
-  if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
-    const RTid before = it->second.surface.shader;
-    if (it->second.bytes > 0) makeSurface(it->second);
-    effect.other = it->second.surface.shader != before;
-    const bool textured = isTextured(&appearance);
-    effect.textured = textured && !it->second.textured;
-    it->second.textured = textured;
-  }
-  if (const auto it = lines_.find(&appearance); it != lines_.end()) {
-    Node* material = partsOf(&appearance).anyMaterial;
-    const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
-    effect.colored = !(color == it->second.surface.lineColor);
-    it->second.surface.lineColor = color;
-  }
+  for (Entries& surfaces : surfaces_)
+    if (const auto it = surfaces.find(&appearance); it != surfaces.end()) {
+      const RTid before = it->second.surface.shader;
+      if (it->second.bytes > 0) makeSurface(it->second);
+      effect.other |= it->second.surface.shader != before;
+      const bool textured = isTextured(&appearance);
+      effect.textured |= textured && !it->second.textured;
+      it->second.textured = textured;
+    }
+  for (Entries& lines : lines_)
+    if (const auto it = lines.find(&appearance); it != lines.end()) {
+      Node* material = partsOf(&appearance).anyMaterial;
+      const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
+      const LineSizes sizes = lineSizes(partsOf(&appearance).plain);
+      Surface& surface = it->second.surface;
+      effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
+                        sizes.point != surface.pointSize;
+      surface.lineColor = color;
+      surface.lineWidth = sizes.line;
+      surface.pointSize = sizes.point;
+    }
   return effect;
 }
 
 void Surfaces::clear() {
-  for (Entries* entries : {&surfaces_, &lines_})
+  for (Entries* entries : {&surfaces_[0], &surfaces_[1], &lines_[0], &lines_[1]})
     for (auto& [node, entry] : *entries) forget(entry);
 }
 
@@ -314,6 +368,10 @@ void Surfaces::forget(Entry& entry) {
   }
   if (entry.physical != 0) {
     rtDeleteShader(entry.physical);
+    quota_.give(bytesOfShader);
+  }
+  if (entry.x3d != 0) {
+    rtDeleteShader(entry.x3d);
     quota_.give(bytesOfShader);
   }
   if (entry.appearance) custom_.forget(*entry.appearance);

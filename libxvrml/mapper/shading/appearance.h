@@ -20,7 +20,17 @@ bool isTextured(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
-  Color lineColor{1, 1, 1}; // for lines and points without colours of their own
+  Color lineColor{1, 1, 1};           // for lines and points without colours of their own
+  float lineWidth = 1, pointSize = 1; // in pixels
+};
+
+// What a surface is for.
+struct SurfaceUse {
+  // Lines or points, which are neither lit nor textured (clauses 6.24, 6.36).
+  bool lines = false;
+  // The geometry's colours are those of a ColorRGBA, whose opacities stand in place of the
+  // material's transparency (ISO/IEC 19775-1 11.4.3).
+  bool vertexAlpha = false;
 };
 
 class Surfaces {
@@ -30,15 +40,14 @@ class Surfaces {
       : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
         custom_(custom), quota_(world, "appearances") {}
 
-  // Returns the surface of a Shape's appearance, which may be null or a prototype instance. lines:
-  // for IndexedLineSet and PointSet, which are neither lit nor textured (clauses 6.24, 6.36).
-  Surface surfaceFor(Node* appearance, bool lines);
+  // Returns the surface of a Shape's appearance, which may be null or a prototype instance.
+  Surface surfaceFor(Node* appearance, SurfaceUse use);
 
   // The effect that a change of an appearance node, or of a node it holds, has on the shapes that
   // use it.
   struct Effect {
     bool other = false;    // they need another shader
-    bool colored = false;  // lines need another colour
+    bool colored = false;  // lines need another colour or width
     bool textured = false; // they now have a texture and had none before
   };
   // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.
@@ -47,7 +56,9 @@ class Surfaces {
   // whether a rendered appearance is used.
   template <class Uses> void forgetUnless(const Uses& uses);
   void clear(); // deletes everything
-  size_t count() const { return surfaces_.size() + lines_.size(); }
+  size_t count() const {
+    return surfaces_[0].size() + surfaces_[1].size() + lines_[0].size() + lines_[1].size();
+  }
   uint64_t parametersSet() const { return sets_; }
   bool multiplyTextures = false; // OpenRTMapper::setMultiplyTextures
 
@@ -63,15 +74,19 @@ class Surfaces {
     Surface surface;
     RTid own = 0;             // own shader of the class VRML97
     RTid physical = 0;        // own shader of the class Physical
+    RTid x3d = 0;             // own shader of the class X3DMaterial
     Shared* shared = nullptr; // shader shared with equal appearances; then `own` is 0
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
     bool textured = false;
+    bool vertexAlpha = false;
   };
   using Entries = std::unordered_map<const Node*, Entry>;
-  Surface makeLines(Node* appearance);
+  Surface makeLines(const Entry& entry);
   void makeSurface(Entry& entry);
   void makePhysical(Entry& entry);
+  void makeX3d(Entry& entry);
+  bool multiplies(const Entry& entry) const;
   bool mayShare(const Entry& entry) const;
   bool share(Entry& entry, const std::string& key);
   void leaveShared(Entry& entry);
@@ -85,13 +100,13 @@ class Surfaces {
   Textures& textures_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries surfaces_, lines_;
+  Entries surfaces_[2], lines_[2];                 // without and with vertexAlpha
   std::unordered_map<std::string, Shared> shared_; // by the values, see keyOf()
   uint64_t sets_ = 0;
 };
 
 template <class Uses> void Surfaces::forgetUnless(const Uses& uses) {
-  for (Entries* entries : {&surfaces_, &lines_})
+  for (Entries* entries : {&surfaces_[0], &surfaces_[1], &lines_[0], &lines_[1]})
     for (auto it = entries->begin(); it != entries->end();) {
       if (!it->first || uses(it->first)) {
         ++it;

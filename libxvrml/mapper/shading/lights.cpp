@@ -124,7 +124,7 @@ void Lights::updateForFrame(const Graph& graph, Places& places) {
   bool behindNew = false;
   for (Place& place : places.all) {
     const Item& item = graph.items[place.item];
-    if (!isLight(item.kind)) continue;
+    if (!isLight(item.kind) || item.kind == Kind::environmentLight) continue;
     if (!place.active || !item.on || !finite(place.world)) {
       removeLight(place.light);
       continue;
@@ -133,11 +133,7 @@ void Lights::updateForFrame(const Graph& graph, Places& places) {
     if (behindNew || remade_.contains(item.node.get())) removeLight(place.light);
     behindNew |= place.light == 0;
     makeOrMove(place, item);
-    // A DirectionalLight illuminates only the descendants of its parent group. The group has an
-    // object of its own for this (see Places). At the top level of the file its scope is the whole
-    // world.
-    if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0)
-      scope(place, places);
+    if (place.light != 0) scope(place, item, places);
   }
   remade_.clear();
   if (behindNew) removeCameraLights();
@@ -166,11 +162,18 @@ void Lights::makeOrMove(Place& place, const Item& item) {
   report(world_.diagnostics, item.node->source, item.node->type().name);
 }
 
-void Lights::scope(Place& place, const Places& places) {
-  const RTid scope = places.all[places.splitAbove(place.parent)].instance;
-  if (scope == 0)
-    return removeLight(
-        place.light); // the group could not be placed, so there is nothing to illuminate
+// A scoped light illuminates only the descendants of its parent group, and other lights of an
+// Inline may illuminate only what that Inline holds. The group has an object of its own for this
+// (see Places). At the top level of the file the scope of a light is the whole world.
+void Lights::scope(Place& place, const Item& item, const Places& places) {
+  const int32_t group = item.scoped ? place.parent : place.limit;
+  RTid scope = 0;
+  if (group != none && group != 0) {
+    scope = places.all[places.splitAbove(group)].instance;
+    if (scope == 0)
+      return removeLight(
+          place.light); // the group could not be placed, so there is nothing to illuminate
+  }
   if (scope == place.lightScope) return;
   rtLightScope(place.light, scope);
   place.lightScope = scope;

@@ -39,7 +39,7 @@ class Lights {
 
  private:
   void makeOrMove(Place& place, const Item& item);
-  void scope(Place& place, const Places& places);
+  void scope(Place& place, const Item& item, const Places& places);
   // Removes a light. bytes: what it gives back to the world's budget (lights at the camera took
   // nothing).
   void removeLight(RTid& light, uint64_t bytes = bytesOfLight);

@@ -8,8 +8,10 @@ namespace {
 // Values of the parameter alphaMode.
 enum AlphaMode { opaque, mask, blend };
 
+} // namespace
+
 // AUTO blends: an opaque surface then has an alpha of 1 everywhere (ISO/IEC 19775-1:2023 12.4.2).
-AlphaMode alphaModeOf(const nodes::Appearance* appearance, World& world) {
+int alphaModeOf(const nodes::Appearance* appearance, World& world) {
   if (!appearance || appearance->alphaMode == "AUTO" || appearance->alphaMode == "BLEND")
     return blend;
   if (appearance->alphaMode == "OPAQUE") return opaque;
@@ -19,6 +21,8 @@ AlphaMode alphaModeOf(const nodes::Appearance* appearance, World& world) {
                              "\", expected AUTO, OPAQUE, MASK or BLEND: AUTO is used");
   return blend;
 }
+
+namespace {
 
 // Sets what both materials have.
 template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
@@ -55,6 +59,8 @@ void setMaterial(ShaderSetup& shader, const nodes::UnlitMaterial& m, const Physi
   if (!own) shader.texture("emissiveTexture", textures.ofNode(parts.texture));
 }
 
+} // namespace
+
 void warnOfMappings(const Node& material, std::initializer_list<const std::string*> mappings,
                     World& world) {
   const std::string* first = nullptr;
@@ -71,8 +77,6 @@ void warnOfMappings(const Node& material, std::initializer_list<const std::strin
   }
 }
 
-} // namespace
-
 bool isPhysical(Node* material) {
   return nodeCast<nodes::PhysicalMaterial>(material) || nodeCast<nodes::UnlitMaterial>(material);
 }
@@ -81,10 +85,14 @@ Color emissionOf(Node& material) {
   if (const auto* m = nodeCast<nodes::Material>(&material)) return m->emissiveColor;
   if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material)) return m->emissiveColor;
   if (const auto* m = nodeCast<nodes::UnlitMaterial>(&material)) return m->emissiveColor;
+  if (const auto* m = nodeCast<nodes::TwoSidedMaterial>(&material)) return m->emissiveColor;
   return {1, 1, 1};
 }
 
 bool hasPictures(Node& material) {
+  if (const auto* m = nodeCast<nodes::Material>(&material))
+    return m->ambientTexture || m->diffuseTexture || m->emissiveTexture || m->normalTexture ||
+           m->shininessTexture || m->specularTexture;
   if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material))
     return m->baseTexture || m->emissiveTexture || m->metallicRoughnessTexture || m->normalTexture;
   if (const auto* m = nodeCast<nodes::UnlitMaterial>(&material)) return bool(m->emissiveTexture);

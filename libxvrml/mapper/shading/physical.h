@@ -2,6 +2,9 @@
 // Physical. [the mapper's thread]
 #pragma once
 
+#include <initializer_list>
+#include <string>
+
 #include "mapper/rt.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/nodes.h"
@@ -13,6 +16,12 @@ namespace xvrml::mapper {
 bool isPhysical(Node* material);
 // Returns the emissiveColor of a material of any type. It is the colour of lines and points.
 Color emissionOf(Node& material);
+// Returns the value of the parameter alphaMode for an appearance, which may be null: 0 opaque, 1
+// mask, 2 blend.
+int alphaModeOf(const nodes::Appearance* appearance, World& world);
+// Warns if the names of mappings differ.
+void warnOfMappings(const Node& material, std::initializer_list<const std::string*> mappings,
+                    World& world);
 // Returns whether a material has a picture of its own.
 bool hasPictures(Node& material);
 

@@ -27,15 +27,16 @@ bool usable(const RadianceImage& image) { return image.width > 0 && image.height
 struct OwnImage {
   const Image* image = nullptr;
   bool repeatS = true, repeatT = true;
+  NodeRef properties; // TextureProperties
 };
 bool ownImage(Node& node, OwnImage& own) {
   if (auto* pixels = nodeCast<nodes::PixelTexture>(&node)) {
     own = {pixels->image.components > 0 ? &pixels->image : nullptr, pixels->repeatS,
-           pixels->repeatT};
+           pixels->repeatT, pixels->textureProperties};
     return true;
   }
   if (auto* movie = nodeCast<nodes::MovieTexture>(&node)) {
-    own = {currentImage(node), movie->repeatS, movie->repeatT};
+    own = {currentImage(node), movie->repeatS, movie->repeatT, movie->textureProperties};
     return true;
   }
   return false;
@@ -49,6 +50,12 @@ RTid Textures::ofData(Node* texture) { return find(texture, true); }
 
 RTid Textures::find(Node* texture, bool data) {
   Node* node = renderedNode(texture);
+  if (const auto* multi = nodeCast<nodes::MultiTexture>(node)) {
+    world_.diagnostics.warn(node->source,
+                            "MultiTexture: only the texture of an appearance and diffuseTexture of "
+                            "a Material have layers; here the first texture is used");
+    node = multi->texture.empty() ? nullptr : renderedNode(multi->texture[0].get());
+  }
   if (!node) return 0;
   const auto [it, fresh] = nodes_.try_emplace(node, TextureEntry{NodeRef(node), 0, data});
   if (!fresh) {
@@ -62,18 +69,41 @@ RTid Textures::find(Node* texture, bool data) {
   return nodes_[node].id = id;
 }
 
-RTid Textures::makeNode(Node& node, bool data) {
+RTid Textures::ofFace(Node* texture) {
+  Node* node = renderedNode(texture);
+  if (!node) return 0;
+  const auto [it, fresh] = faces_.try_emplace(node, TextureEntry{NodeRef(node), 0, false});
+  if (!fresh) return it->second.id;
+  const RTid id = makeNode(*node, false, true);
+  return faces_[node].id = id;
+}
+
+void Textures::drop(RTid texture) {
+  if (texture == 0) return;
+  remove(texture);
+  --count_;
+}
+
+ImageRoom Textures::roomForPicture() const {
+  return {world_.options.limits, room(), share_.budget().get()};
+}
+
+RTid Textures::makeNode(Node& node, bool data, bool face) {
   data_ = data;
   struct Reset {
     bool& flag;
     ~Reset() { flag = false; }
   } reset{data_};
   if (auto* image = nodeCast<nodes::ImageTexture>(&node))
-    return ofUrls(image->url, node, image->repeatS, image->repeatT);
+    return ofUrls(image->url, node,
+                  face ? samplingOf(false, false)
+                       : samplingOf(image->repeatS, image->repeatT, image->textureProperties));
   RTid id = 0;
   if (OwnImage own; ownImage(node, own)) {
     try {
-      if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
+      if (own.image)
+        id = make(*own.image, face ? samplingOf(false, false)
+                                   : samplingOf(own.repeatS, own.repeatT, own.properties));
     } catch (const std::runtime_error& failure) {
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
     }
@@ -90,7 +120,8 @@ RTid Textures::makeNode(Node& node, bool data) {
 
 void Textures::clear() {
   std::vector<RTid> ids;
-  for (const auto& [node, known] : nodes_) ids.push_back(known.id);
+  for (const Entries* entries : {&nodes_, &faces_})
+    for (const auto& [node, known] : *entries) ids.push_back(known.id);
   for (const auto& [file, made] : files_) ids.push_back(made.first);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -100,32 +131,43 @@ void Textures::clear() {
 }
 
 bool Textures::changed(Node& node) {
-  const auto found = nodes_.find(&node);
-  if (found == nodes_.end()) return false; // the texture is loaded on first use
+  if (nodeCast<nodes::MultiTexture>(&node)) return true;
+  const bool other = changedIn(nodes_, node, false);
+  return changedIn(faces_, node, true) || other;
+}
+
+bool Textures::changedIn(Entries& entries, Node& node, bool face) {
+  const auto found = entries.find(&node);
+  if (found == entries.end()) return false; // the texture is loaded on first use
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
+    if (own.properties && !face) setSampling(samplingOf(own.repeatS, own.repeatT, own.properties));
     try {
       upload(before, *own.image);
     } catch (const std::runtime_error& failure) { // as makeNode() does
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
       remove(before);
       --count_;
-      nodes_[&node].id = 0;
+      entries[&node].id = 0;
     }
     report(world_.diagnostics, node.source, node.type().name);
-    return nodes_[&node].id != before;
+    return entries[&node].id != before;
   }
   if (OwnImage own; before != 0 && ownImage(node, own)) { // the node has no picture any more
     remove(before);
     --count_;
   }
-  const RTid id = makeNode(node, found->second.data);
-  nodes_[&node].id = id;
+  const RTid id = makeNode(node, found->second.data, face);
+  entries[&node].id = id;
   return id != before;
 }
 
 RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT) {
+  return ofUrls(urls, node, samplingOf(repeatS, repeatT));
+}
+
+RTid Textures::ofUrls(const MFString& urls, const Node& node, const Sampling& sampling) {
   const std::string& base = node.source.file ? *node.source.file : world_.path;
   std::string error;
   for (const std::string& url : urls) {
@@ -133,7 +175,7 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
         isDataUrl(url) ? ResolvedUrl{url, {}, {}} : resolveUrl(url, base, world_.options);
     std::string why = resolved.error;
     if (why.empty())
-      if (const RTid id = ofFile(resolved.path, repeatS, repeatT, why)) return id;
+      if (const RTid id = ofFile(resolved.path, sampling, why)) return id;
     if (error.empty())
       error = why.find(url) == std::string::npos ? shortened(url) + ": " + why : why;
   }
@@ -144,27 +186,27 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
 }
 
 RTid Textures::black() {
-  RTid& texture = files_[{std::string(), false, false, false}].first; // no file has an empty path
+  RTid& texture = files_[{std::string(), Sampling(), false}].first; // no file has an empty path
   if (texture == 0) {
     RadianceImage texel;
     texel.width = texel.height = 1;
     texel.rgb.assign(3, 0.0f);
-    texture = make(texel, false, false);
+    texture = make(texel, samplingOf(false, false));
   }
   return texture;
 }
 
-RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error) {
-  const auto [it, fresh] = files_.try_emplace({path, repeatS, repeatT, data_}, 0, std::string());
+RTid Textures::ofFile(const std::string& path, const Sampling& sampling, std::string& error) {
+  const auto [it, fresh] = files_.try_emplace({path, sampling, data_}, 0, std::string());
   auto& [id, why] = it->second;
   if (fresh) {
     try {
       const Limits& limits = world_.options.limits;
-      const ImageRoom room{limits, this->room(), share_.budget().get()};
+      const ImageRoom room = roomForPicture();
       const std::vector<uint8_t> bytes = readPictureFile(path, room);
       id = looksLikeRadiance(bytes.data(), bytes.size())
-               ? make(decodeRadiance(bytes.data(), bytes.size(), limits), repeatS, repeatT)
-               : make(decodeImage(bytes.data(), bytes.size(), room), repeatS, repeatT);
+               ? make(decodeRadiance(bytes.data(), bytes.size(), limits), sampling)
+               : make(decodeImage(bytes.data(), bytes.size(), room), sampling);
       if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
     } catch (const std::exception& failure) { why = failure.what(); }
   }
@@ -210,7 +252,13 @@ void Textures::upload(RTid texture, const RadianceImage& image) {
   ++loaded_;
 }
 
-template <class Picture> RTid Textures::make(const Picture& image, bool repeatS, bool repeatT) {
+void Textures::setSampling(const Sampling& sampling) {
+  rtTexParameteri(RT_TEXTURE_WRAP_S, int(sampling.wrapS));
+  rtTexParameteri(RT_TEXTURE_WRAP_T, int(sampling.wrapT));
+  rtTexParameteri(RT_TEXTURE_MAG_FILTER, sampling.nearest ? RT_NEAREST : RT_LINEAR);
+}
+
+template <class Picture> RTid Textures::make(const Picture& image, const Sampling& sampling) {
   if (!usable(image)) return 0;
   RTid id = 0;
   rtGenTextures(1, &id);
@@ -222,8 +270,7 @@ template <class Picture> RTid Textures::make(const Picture& image, bool repeatS,
     remove(id);
     throw;
   }
-  rtTexParameteri(RT_TEXTURE_WRAP_S, repeatS ? RT_REPEAT : RT_CLAMP_TO_EDGE);
-  rtTexParameteri(RT_TEXTURE_WRAP_T, repeatT ? RT_REPEAT : RT_CLAMP_TO_EDGE);
+  setSampling(sampling);
   rtTexParameteri(RT_TEXTURE_SRGB, srgb_ && !data_ ? 1 : 0);
   ++count_;
   return id;

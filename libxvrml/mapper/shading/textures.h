@@ -2,12 +2,14 @@
 // mode. Made on first use. [the mapper's thread]
 #pragma once
 
+#include <compare>
 #include <map>
 #include <string>
 #include <tuple>
 #include <unordered_map>
 
 #include "base/budget.h"
+#include "image/image.h"
 #include "mapper/rt.h"
 #include "xvrml/radiance.h"
 #include "xvrml/world.h"
@@ -19,7 +21,8 @@ class Textures {
   Textures(World& world, bool linearColor)
       : world_(world), srgb_(linearColor), share_(budgetOf(world)) {}
 
-  // Returns the texture of an ImageTexture, PixelTexture or MovieTexture node (or null). Returns 0
+  // Returns the texture of an ImageTexture, PixelTexture or MovieTexture node (or null), or of the
+  // first texture of a MultiTexture, with a warning. Returns 0
   // if there is none or it cannot be loaded (reported once).
   RTid ofNode(Node* texture);
   // The same for a picture of numbers, such as normals, which are never decoded as colours. A node
@@ -28,6 +31,16 @@ class Textures {
   // Returns the first URL of a list that leads to a picture. node: for messages, and its file is
   // the base of relative URLs.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
+  // The same for a face of a panorama or cube map: the picture does not repeat, whatever the node
+  // says, because its edges meet those of other faces.
+  RTid ofFace(Node* texture);
+  // Makes a picture that the caller keeps, without repetition, and deletes it. Throws
+  // std::runtime_error if the world's budget does not allow it.
+  RTid add(const Image& image) { return make(image, false, false); }
+  RTid add(const RadianceImage& image) { return make(image, false, false); }
+  void drop(RTid texture);
+  // Returns the memory that another picture from a file may take.
+  ImageRoom roomForPicture() const;
   // Returns a black texel, used for an environment whose picture cannot be loaded.
   RTid black();
   // Uploads the new picture of a texture node, under the same id if the node owns its picture.
@@ -39,16 +52,30 @@ class Textures {
   uint64_t missing() const { return missing_; }
 
  private:
-  RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
+  // How a picture goes on beyond its edges, and how it is enlarged.
+  struct Sampling {
+    RTenum wrapS = RT_REPEAT, wrapT = RT_REPEAT;
+    bool nearest = false;
+    auto operator<=>(const Sampling&) const = default;
+  };
+  static Sampling samplingOf(bool repeatS, bool repeatT);
+  // The sampling of a node with TextureProperties, which may be null.
+  Sampling samplingOf(bool repeatS, bool repeatT, const NodeRef& properties) const;
+  RTid ofUrls(const MFString& urls, const Node& node, const Sampling& sampling);
+  RTid ofFile(const std::string& path, const Sampling& sampling, std::string& error);
   // Throws std::runtime_error if the world's budget does not allow the picture.
-  template <class Picture> RTid make(const Picture& image, bool repeatS, bool repeatT);
+  template <class Picture> RTid make(const Picture& image, const Sampling& sampling);
+  static void setSampling(const Sampling& sampling);
   void upload(RTid texture, const Image& image);
   void upload(RTid texture, const RadianceImage& image); // values are used unchanged
   void take(RTid texture, uint64_t bytes);
   void remove(RTid texture);
   uint64_t room() const; // bytes that still images may still take
+  struct TextureEntry;
+  using Entries = std::unordered_map<const Node*, TextureEntry>;
   RTid find(Node* texture, bool data);
-  RTid makeNode(Node& texture, bool data);
+  RTid makeNode(Node& texture, bool data, bool face = false);
+  bool changedIn(Entries& entries, Node& texture, bool face);
 
   struct TextureEntry {
     NodeRef node;
@@ -61,10 +88,10 @@ class Textures {
   Share share_;                              // share of the world's budget
   std::unordered_map<RTid, uint64_t> bytes_; // bytes of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
-  std::unordered_map<const Node*, TextureEntry> nodes_;
-  // The texture of each file, by repeat modes and whether it holds numbers, or the reason why there
+  Entries nodes_, faces_; // faces_: those of ofFace()
+  // The texture of each file, by its sampling and whether it holds numbers, or the reason why there
   // is none.
-  std::map<std::tuple<std::string, bool, bool, bool>, std::pair<RTid, std::string>> files_;
+  std::map<std::tuple<std::string, Sampling, bool>, std::pair<RTid, std::string>> files_;
 };
 
 } // namespace xvrml::mapper

@@ -17,12 +17,14 @@ namespace xvrml::wire {
 template <auto... Members> struct FunctionList {
   static constexpr size_t size = sizeof...(Members);
 };
-using HostFunctions = FunctionList<
-    &XsHost::send, &XsHost::write, &XsHost::read, &XsHost::post, &XsHost::describe, &XsHost::field,
-    &XsHost::findField, &XsHost::retain, &XsHost::release, &XsHost::getName, &XsHost::getVersion,
-    &XsHost::getCurrentSpeed, &XsHost::getCurrentFrameRate, &XsHost::getWorldUrl,
-    &XsHost::setDescription, &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
-    &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute, &XsHost::log>;
+using HostFunctions =
+    FunctionList<&XsHost::send, &XsHost::write, &XsHost::read, &XsHost::post, &XsHost::describe,
+                 &XsHost::field, &XsHost::findField, &XsHost::retain, &XsHost::release,
+                 &XsHost::getName, &XsHost::getVersion, &XsHost::getCurrentSpeed,
+                 &XsHost::getCurrentFrameRate, &XsHost::getWorldUrl, &XsHost::setDescription,
+                 &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
+                 &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute,
+                 &XsHost::log, &XsHost::namedNode, &XsHost::rootNodes>;
 
 // Output arguments.
 template <class T> constexpr bool isOut =

@@ -1,4 +1,5 @@
-// browser.cpp: Defines the Browser object (C.6.3), print, and the constants TRUE and FALSE.
+// browser.cpp: Defines the Browser object (C.6.3), print, and the constants TRUE and FALSE. What
+// X3D adds to it (ISO/IEC 19777-1) is in scene.cpp.
 #include <cstring>
 
 #include "slots.h"
@@ -187,6 +188,8 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
                                        {"loadURL", loadUrl, 2},
                                        {"createVrmlFromString", createVrmlFromString, 1},
                                        {"createVrmlFromURL", createVrmlFromUrl, 3},
+                                       {"createX3DFromString", createVrmlFromString, 1},
+                                       {"createX3DFromURL", createVrmlFromUrl, 3},
                                        {"addRoute", addRoute, 4},
                                        {"deleteRoute", deleteRoute, 4},
                                        {"print", print, DUK_VARARGS},
@@ -197,6 +200,7 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
       {"addRoute", addRoute, 4},     {"deleteRoute", deleteRoute, 4}, {"__xvrmlCopy", copyOf, 1}};
   duk_push_object(ctx);
   putMethods(ctx, methods, std::size(methods));
+  putX3d(ctx);
   duk_put_global_string(ctx, "Browser");
   duk_push_global_object(ctx);
   putMethods(ctx, globals, std::size(globals));

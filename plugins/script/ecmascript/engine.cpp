@@ -23,7 +23,7 @@ XsResult initialize(XsInterpreter interpreter, double time) {
   return callFunction(of(interpreter), "initialize", nullptr, time);
 }
 XsResult event(XsInterpreter interpreter, const XsEvent* event) {
-  return callFunction(of(interpreter), event->name, &event->value, event->time);
+  return receiveEvent(of(interpreter), *event);
 }
 XsResult eventsProcessed(XsInterpreter interpreter, double time) {
   return callFunction(of(interpreter), "eventsProcessed", nullptr, time);

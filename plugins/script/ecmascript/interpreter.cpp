@@ -193,6 +193,7 @@ duk_ret_t runProgram(duk_context* ctx, void* data) {
 struct Call {
   Interpreter& self;
   const char* name;
+  const char* otherName; // tried if there is no function `name`; null: none
   const XsValue* value;
   double time;
 };
@@ -200,7 +201,11 @@ struct Call {
 duk_ret_t runCall(duk_context* ctx, void* data) {
   const Call& call = *static_cast<Call*>(data);
   duk_get_global_string(ctx, call.name);
-  if (!duk_is_callable(ctx, -1)) return 0;
+  if (!duk_is_callable(ctx, -1)) {
+    if (!call.otherName) return 0;
+    duk_get_global_string(ctx, call.otherName);
+    if (!duk_is_callable(ctx, -1)) return 0;
+  }
   if (call.value) {
     pushValue(ctx, call.self, *call.value);
     duk_push_number(ctx, call.time);
@@ -283,8 +288,21 @@ void destroyInterpreter(Interpreter* self) {
 
 XsResult callFunction(Interpreter& self, const char* name, const XsValue* value, double time,
                       bool shutdown) {
-  Call call{self, name, value, time};
+  Call call{self, name, nullptr, value, time};
   return enter(self, runCall, &call, name, !shutdown);
+}
+
+// An inputOutput field x of X3D calls set_x, because x is the variable with its value. A program
+// that declares a function x has no such variable.
+XsResult receiveEvent(Interpreter& self, const XsEvent& event) {
+  if (self.info->fields[event.index].access != XS_EXPOSED_FIELD)
+    return callFunction(self, event.name, &event.value, event.time);
+  renewOwn(self, event.name);
+  try {
+    const std::string function = std::string("set_") + event.name;
+    Call call{self, function.c_str(), event.name, &event.value, event.time};
+    return enter(self, runCall, &call, function.c_str(), true);
+  } catch (const std::bad_alloc&) { return XS_FAILED; }
 }
 
 void step(Interpreter& self) {

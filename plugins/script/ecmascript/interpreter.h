@@ -98,6 +98,8 @@ void destroyInterpreter(Interpreter* interpreter);
 // arguments, and then sends what it has assigned.
 XsResult callFunction(Interpreter& self, const char* name, const XsValue* value, double time,
                       bool shutdown = false);
+// Delivers an event: calls the function of the eventIn's name, or set_x for an inputOutput field x.
+XsResult receiveEvent(Interpreter& self, const XsEvent& event);
 
 // Called at the start of every native function: calls shouldStop now and then. Does not return when
 // the Script is stopped.

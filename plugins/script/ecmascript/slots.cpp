@@ -234,6 +234,11 @@ duk_ret_t flushSlots(duk_context* ctx, void* data) {
   return 0;
 }
 
+void renewOwn(Interpreter& self, const char* name) {
+  for (Slot& slot : self.slots)
+    if (slot.node == 0 && !slot.dirty && slot.name == name) slot.call = 0;
+}
+
 void registerFields(duk_context* ctx, Interpreter& self) {
   duk_push_global_object(ctx);
   for (uint32_t i = 0; i < self.info->fieldCount; ++i) {
@@ -244,6 +249,11 @@ void registerFields(duk_context* ctx, Interpreter& self) {
     if (place < 0) throwRange(ctx, "out of memory");
     if (place > most) break;
     putAccessor(ctx, field.name, getOwn, setOwn, place);
+    if (field.access != XS_EXPOSED_FIELD) continue;
+    duk_push_sprintf(ctx, "%s_changed", field.name);
+    duk_insert(ctx, -2);
+    putAccessor(ctx, duk_get_string(ctx, -2), getOwn, setOwn, place);
+    duk_remove(ctx, -2);
   }
   duk_pop(ctx);
 }

@@ -23,6 +23,11 @@ void markDirty(duk_context* ctx, Interpreter& self, int slot);
 // Passes all assigned values to the host. Must run in a protected call.
 duk_ret_t flushSlots(duk_context* ctx, void* self);
 void registerFields(duk_context* ctx, Interpreter& self);
+// Makes the next read of an own field ask the host, because an event has changed the field.
+void renewOwn(Interpreter& self, const char* name);
+
+// scene.cpp: Adds what X3D's Browser object has to the object on top: properties, and the scene.
+void putX3d(duk_context* ctx);
 
 // from_host.cpp: Pushes the program's form of a value.
 void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place place = {});

@@ -54,7 +54,8 @@ class Interpreter {
   XsResult event(const XsEvent& event) {
     releaseNodes(event.index);
     inputs_[event.index].copy(event.value);
-    if (elementType(event.value.type) == XS_SFNODE)
+    if (elementType(event.value.type) == XS_SFNODE &&
+        info_.fields[event.index].access == XS_EVENT_IN)
       for (uint32_t i = 0; i < event.value.count; ++i)
         host_->retain(host_, info_.self, event.value.of.nodes[i]);
     arrived_ = true;
@@ -106,7 +107,8 @@ class Interpreter {
 
   Slot& input(uint32_t field) {
     XsValue value;
-    const bool own = info_.fields[field].access == XS_FIELD;
+    const XsAccess access = info_.fields[field].access;
+    const bool own = access == XS_FIELD || access == XS_EXPOSED_FIELD;
     if (own &&
         host_->read(host_, info_.self, info_.self, info_.fields[field].name, &value) == XS_OK)
       inputs_[field].copy(value);
@@ -144,7 +146,8 @@ class Interpreter {
       if (host) return; // the function gets the host and may use any event
     }
     for (uint32_t i = 0; i < info_.fieldCount; ++i)
-      if (info_.fields[i].access != XS_FIELD && !used.contains(i))
+      if (info_.fields[i].access != XS_FIELD && info_.fields[i].access != XS_EXPOSED_FIELD &&
+          !used.contains(i))
         log(2, 0,
             std::string("native: no function ") +
                 (info_.fields[i].access == XS_EVENT_IN ? "takes " : "gives ") +

@@ -38,6 +38,11 @@ bool isScalar(XsType type) {
   return type == XS_SFBOOL || type == XS_SFFLOAT || type == XS_SFINT32 || type == XS_SFTIME ||
          type == XS_SFDOUBLE;
 }
+// Returns the name of the event that a field receives; "" if it receives none.
+std::string eventName(const XsField& field) {
+  if (field.access == XS_EVENT_IN) return field.name;
+  return field.access == XS_EXPOSED_FIELD ? std::string("set_") + field.name : std::string();
+}
 bool isLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 class Reader {
@@ -90,7 +95,7 @@ class Reader {
       const XsAccess access = info_.fields[i].access;
       const bool event =
           call.when == Call::When::events || (call.when == Call::When::event && call.event == i);
-      if (access == XS_FIELD || (access == XS_EVENT_IN && event))
+      if (access == XS_FIELD || access == XS_EXPOSED_FIELD || (access == XS_EVENT_IN && event))
         call.arguments.push_back(argument);
       argument.write = true;
       if (access == XS_EVENT_OUT && !quiet) outs.push_back(argument);
@@ -133,7 +138,7 @@ class Reader {
                                                             {"poll", Call::When::poll},
                                                             {"shutdown", Call::When::shutdown}};
     for (uint32_t i = 0; i < info_.fieldCount; ++i)
-      if (info_.fields[i].access == XS_EVENT_IN && word == info_.fields[i].name) {
+      if (word == eventName(info_.fields[i])) {
         call.when = Call::When::event;
         call.event = i;
         return;
@@ -264,7 +269,7 @@ std::string_view trimmed(std::string_view text) {
 void callsByName(Program& program, const XsScriptInfo& info, const Lookup& own) {
   std::vector<std::string> names;
   for (uint32_t i = 0; i < info.fieldCount; ++i)
-    if (info.fields[i].access == XS_EVENT_IN) names.emplace_back(info.fields[i].name);
+    if (const std::string event = eventName(info.fields[i]); !event.empty()) names.push_back(event);
   for (const char* fixed : {"initialize", "poll", "shutdown"})
     if (std::find(names.begin(), names.end(), fixed) == names.end()) names.emplace_back(fixed);
   std::string looked;

@@ -214,7 +214,9 @@ XsResult Interpreter::load() {
 }
 
 XsResult Interpreter::event(const XsEvent& event) {
-  const py::object function = globals_.attr("get")(event.name);
+  const bool exposed = info_.fields[event.index].access == XS_EXPOSED_FIELD;
+  const py::object function =
+      globals_.attr("get")(exposed ? std::string("set_") + event.name : event.name);
   if (function.is_none()) return XS_OK;
   return run([&] {
     function(*fitting(function, py::make_tuple(toPython(event.value, nodes_), event.time)));

@@ -192,8 +192,12 @@ XsResult Interpreter::callProcedure(const char* name, const std::vector<Object>&
 
 XsResult Interpreter::event(const XsEvent& event) {
   if (stopped_) return XS_STOPPED;
-  if (exited_ || !isProcedure((std::string("::") + event.name).c_str())) return XS_OK;
-  return callProcedure(event.name, {toTcl(*this, event.value), Tcl_NewDoubleObj(event.time)});
+  if (exited_) return XS_OK;
+  const bool exposed = info_->fields[event.index].access == XS_EXPOSED_FIELD;
+  if (exposed) renewVariable(linked_, event.name, toTcl(*this, event.value));
+  const std::string name = (exposed ? "set_" : "") + std::string(event.name);
+  if (!isProcedure(("::" + name).c_str())) return XS_OK;
+  return callProcedure(name.c_str(), {toTcl(*this, event.value), Tcl_NewDoubleObj(event.time)});
 }
 
 XsResult Interpreter::tick(double time) {

@@ -148,9 +148,9 @@ int setField(Interpreter& interpreter, XsNode node, const std::string& name, Tcl
   if (fromTcl(interpreter, object, type, value) != TCL_OK) return TCL_ERROR;
   using Output = Interpreter::Output;
   const bool own = node == interpreter.self();
-  const Output kind = own && access == XS_EVENT_OUT ? Output::send
-                      : own && access == XS_FIELD   ? Output::write
-                                                    : Output::post;
+  const Output kind = !own || access == XS_EVENT_IN ? Output::post
+                      : access == XS_FIELD          ? Output::write
+                                                    : Output::send;
   return interpreter.answer(interpreter.give(kind, node, name.c_str(), std::move(value)));
 }
 

@@ -27,7 +27,7 @@ char* refused(Tcl_Interp* tcl) {
 
 char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int flags) {
   Linked& linked = *static_cast<Linked*>(data);
-  if (flags & TCL_INTERP_DESTROYED) return nullptr;
+  if ((flags & TCL_INTERP_DESTROYED) || linked.renewed) return nullptr;
   if (flags & TCL_TRACE_UNSETS) {
     if (flags & TCL_TRACE_DESTROYED) link(linked); // the variable cannot be unset
     return nullptr;
@@ -73,6 +73,18 @@ void addVariables(Interpreter& interpreter, std::vector<std::unique_ptr<Linked>>
         field.access == XS_EVENT_OUT ? Interpreter::Output::send : Interpreter::Output::write;
     made.last = known ? toTcl(interpreter, value) : Object(Tcl_NewObj());
     link(made);
+  }
+}
+
+void renewVariable(const std::vector<std::unique_ptr<Linked>>& linked, const char* name,
+                   Object value) {
+  for (const auto& one : linked) {
+    if (one->variable != name) continue;
+    one->last = std::move(value);
+    one->renewed = true;
+    Tcl_SetVar2Ex(one->interpreter->tcl(), name, nullptr, one->last.get(), TCL_GLOBAL_ONLY);
+    one->renewed = false;
+    return;
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace vrml97 {
 
-extern const RtsClass surfaceClass, globalIlluminationClass;
+extern const RtsClass surfaceClass, globalIlluminationClass, x3dMaterialClass;
 extern const RtsClass directionalLightClass, pointLightClass, spotLightClass;
 extern const RtsClass environmentClass;
 extern const RtsClass perspectiveCameraClass, orthographicCameraClass, thinLensClass, panoramaClass;

@@ -1,6 +1,7 @@
-// environment.cpp: Background (ISO/IEC 14772-1 clause 6.5) and Fog (clause 6.19). Local space is
-// that of the background. Only directions matter there, because a background ignores translation;
-// the fog has its own matrix. [render]
+// environment.cpp: Background (ISO/IEC 14772-1 clause 6.5), Fog (clause 6.19), and the light of an
+// EnvironmentLight (ISO/IEC 19775-1:2023 17.4.2) that shines from behind a Background. Local space
+// is that of the background. Only directions matter there, because a background ignores
+// translation; the fog has its own matrix. [render]
 #include <algorithm>
 #include <iterator>
 
@@ -20,11 +21,22 @@ struct EnvironmentParams {
   float fogColor[3];
   float fogRange;
   float fogMatrix[16];
+  float transparency;
+  RtsTexture light[6]; // as `panorama`
+  RtsTexture lightMap;
+  float lightColor[3];
+  float lightMatrix[16];
 };
 
 #define VRML97_PANORAMA(name, index, text)                                                         \
   {                                                                                                \
     name, RTS_TEXTURE, offsetof(EnvironmentParams, panorama) + (index) * sizeof(RtsTexture), {},   \
+        0.0f, 0.0f, text                                                                           \
+  }
+
+#define VRML97_LIGHT(name, index, text)                                                            \
+  {                                                                                                \
+    name, RTS_TEXTURE, offsetof(EnvironmentParams, light) + (index) * sizeof(RtsTexture), {},      \
         0.0f, 0.0f, text                                                                           \
   }
 
@@ -92,6 +104,40 @@ const RtsParam environmentParams[] = {
      0.0f,
      0.0f,
      "matrix from local vectors to the fog's space; only its 3x3 part counts"},
+    {"transparency",
+     RTS_FLOAT,
+     offsetof(EnvironmentParams, transparency),
+     {0.0f},
+     0.0f,
+     1.0f,
+     "transparency of sky and ground colours"},
+    VRML97_LIGHT("lightFront", 0, "picture along -z of a light from all around"),
+    VRML97_LIGHT("lightBack", 1, "picture along +z of that light"),
+    VRML97_LIGHT("lightLeft", 2, "picture along -x of that light"),
+    VRML97_LIGHT("lightRight", 3, "picture along +x of that light"),
+    VRML97_LIGHT("lightTop", 4, "picture along +y of that light, its upper edge towards +z"),
+    VRML97_LIGHT("lightBottom", 5, "picture along -y of that light, its upper edge towards -z"),
+    {"lightMap",
+     RTS_TEXTURE,
+     offsetof(EnvironmentParams, lightMap),
+     {},
+     0.0f,
+     0.0f,
+     "instead of the six pictures: one of all longitudes and latitudes, its middle along -z"},
+    {"lightColor",
+     RTS_COLOR,
+     offsetof(EnvironmentParams, lightColor),
+     {0.0f, 0.0f, 0.0f},
+     0.0f,
+     0.0f,
+     "radiance of the light from all around; multiplies its pictures; 0 0 0: the sky shines"},
+    {"lightMatrix",
+     RTS_MATRIX,
+     offsetof(EnvironmentParams, lightMatrix),
+     {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+     0.0f,
+     0.0f,
+     "matrix from local directions to those of the light; only its 3x3 part counts"},
 };
 
 // Colours at angles from a pole. The first angle is 0; angles are clamped to 0..limit and never
@@ -144,11 +190,12 @@ void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint3
   constexpr float pi = 3.14159265358979f;
   const Gradient sky = gradientOf(host, batch, p.skyColor, p.skyAngle, pi);
   const Gradient ground = gradientOf(host, batch, p.groundColor, p.groundAngle, pi / 2);
+  const float opaque = 1.0f - p.transparency; // colours are premultiplied
   const uint32_t lanes = wholeLanes(n);
   if (sky.stops <= 1 && ground.stops <= 1) {
     // One colour in all directions: ground with a single colour has no extent.
-    for (int c = 0; c < 3; c++) constant(sky.stops ? sky.color[c] : 0.0f, lanes, rgba[c]);
-    constant(sky.stops ? 1.0f : 0.0f, lanes, rgba[3]);
+    for (int c = 0; c < 3; c++) constant(sky.stops ? opaque * sky.color[c] : 0.0f, lanes, rgba[c]);
+    constant(sky.stops ? opaque : 0.0f, lanes, rgba[3]);
     return;
   }
   float* angle = host->scratch(batch, lanes);
@@ -161,8 +208,8 @@ void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint3
       lookUp(ground, std::max(pi - angle[i], 0.0f), rgb);
     else if (sky.stops)
       lookUp(sky, angle[i], rgb);
-    for (int c = 0; c < 3; c++) rgba[c][i] = rgb[c];
-    rgba[3][i] = below || sky.stops ? 1.0f : 0.0f;
+    for (int c = 0; c < 3; c++) rgba[c][i] = opaque * rgb[c];
+    rgba[3][i] = below || sky.stops ? opaque : 0.0f;
   }
 }
 
@@ -185,8 +232,8 @@ FaceCoords faceCoordsOf(float x, float y, float z) {
   return y >= 0 ? place(4, x, z, ay) : place(5, x, -z, ay);
 }
 
-// Composites the pictures over the colours by their alpha.
-void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
+// Composites the pictures on the six faces over the colours by their alpha.
+void panorama(const RtsHost* host, RtsBatch* batch, const RtsTexture (&faces)[6], uint32_t n,
               const float* const d[3], float* const rgba[4]) {
   const uint32_t lanes = wholeLanes(n);
   float *s = host->scratch(batch, lanes), *t = host->scratch(batch, lanes);
@@ -197,7 +244,7 @@ void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, 
   for (uint32_t i = 0; i < lanes; i++) {
     const uint32_t from = std::min(i, n - 1);
     const FaceCoords look = faceCoordsOf(d[0][from], d[1][from], d[2][from]);
-    texture[i] = p.panorama[look.face];
+    texture[i] = faces[look.face];
     s[i] = look.s;
     t[i] = look.t;
   }
@@ -210,14 +257,80 @@ void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, 
   }
 }
 
+bool anyOf(const RtsTexture (&faces)[6]) {
+  return std::any_of(std::begin(faces), std::end(faces), [](RtsTexture t) { return t != 0; });
+}
+
+// Writes what is seen of the background.
+void background(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
+                const float* const direction[3], float* const rgba[4]) {
+  sky(host, batch, p, n, direction, rgba);
+  if (anyOf(p.panorama)) panorama(host, batch, p.panorama, n, direction, rgba);
+}
+
+bool lights(const EnvironmentParams& p) {
+  return p.lightColor[0] > 0.0f || p.lightColor[1] > 0.0f || p.lightColor[2] > 0.0f;
+}
+
+VRML97_CLONES void mapPlaces(uint32_t n, const float* __restrict x, const float* __restrict y,
+                             const float* __restrict z, float* __restrict u, float* __restrict v) {
+  constexpr float pi = 3.14159265358979f;
+  for (uint32_t i = 0; i < n; i++) {
+    const float turn = angleOf(-z[i], x[i] < 0.0f ? -x[i] : x[i]); // from -z
+    u[i] = 0.5f + (x[i] < 0.0f ? -turn : turn) * (0.5f / pi);
+    v[i] = 1.0f - angleOf(y[i], squareRoot(x[i] * x[i] + z[i] * z[i])) * (1.0f / pi);
+  }
+}
+
+// Writes the radiance of an EnvironmentLight (ISO/IEC 19775-1:2023 17.4.2). Without pictures it is
+// the same all around.
+void environmentLight(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
+                      const float* const direction[3], float* const rgba[4]) {
+  const uint32_t lanes = wholeLanes(n);
+  const float* m = p.lightMatrix;
+  float* d[3];
+  for (int c = 0; c < 3; c++) {
+    d[c] = host->scratch(batch, lanes);
+    for (uint32_t i = 0; i < lanes; i++) {
+      const uint32_t from = std::min(i, n - 1);
+      d[c][i] =
+          m[c] * direction[0][from] + m[4 + c] * direction[1][from] + m[8 + c] * direction[2][from];
+    }
+  }
+  if (p.lightMap != 0) {
+    float *u = host->scratch(batch, lanes), *v = host->scratch(batch, lanes);
+    mapPlaces(lanes, d[0], d[1], d[2], u, v);
+    const float* const uv[2] = {u, v};
+    host->sample(batch, p.lightMap, n, uv, rgba);
+  } else {
+    const bool pictures = anyOf(p.light);
+    for (int c = 0; c < 3; c++) constant(pictures ? 0.0f : 1.0f, lanes, rgba[c]);
+    if (pictures) panorama(host, batch, p.light, n, d, rgba);
+  }
+  for (int c = 0; c < 3; c++)
+    for (uint32_t i = 0; i < n; i++) rgba[c][i] *= p.lightColor[c];
+  constant(1.0f, lanes, rgba[3]);
+}
+
+// An EnvironmentLight stands in for the background, except where the camera looks straight at it.
 void miss(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
           const float* const direction[3], float* const rgba[4]) {
   if (n == 0) return;
   const auto& p = *static_cast<const EnvironmentParams*>(params);
-  sky(host, batch, p, n, direction, rgba);
-  if (std::any_of(std::begin(p.panorama), std::end(p.panorama),
-                  [](RtsTexture t) { return t != 0; }))
-    panorama(host, batch, p, n, direction, rgba);
+  if (!lights(p)) return background(host, batch, p, n, direction, rgba);
+  auto* seen = reinterpret_cast<uint32_t*>(host->scratch(batch, wholeLanes(n)));
+  host->backdrop(batch, seen);
+  const bool any = std::any_of(seen, seen + n, [](uint32_t s) { return s != 0; });
+  const bool all = std::all_of(seen, seen + n, [](uint32_t s) { return s != 0; });
+  if (all) return background(host, batch, p, n, direction, rgba);
+  environmentLight(host, batch, p, n, direction, rgba);
+  if (!any) return;
+  float* behind[4];
+  for (float*& c : behind) c = host->scratch(batch, wholeLanes(n));
+  background(host, batch, p, n, direction, behind);
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = 0; i < n; i++)
+      if (seen[i]) rgba[c][i] = behind[c][i];
 }
 
 VRML97_CLONES void fogDistances(const float* __restrict m, uint32_t n, const float* __restrict x,
@@ -262,8 +375,10 @@ void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_
                                                                        fraction);
 }
 
-// A Background is visible but lights nothing (clause 6.5).
-uint32_t environmentTraits(const RtsHost*, const void*) { return RTS_BACKDROP; }
+// A Background is visible but lights nothing (clause 6.5); an EnvironmentLight does.
+uint32_t environmentTraits(const RtsHost*, const void* params) {
+  return lights(*static_cast<const EnvironmentParams*>(params)) ? 0 : RTS_BACKDROP;
+}
 
 constexpr RtsClass makeEnvironmentClass() {
   RtsClass c{};

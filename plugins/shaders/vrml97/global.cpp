@@ -22,7 +22,7 @@ struct Lobes {
 
 float atLeast0(float x) { return larger(x, 0.0f); }
 
-void fill(const RtsHits* hits, const Terms& t, const Lobes& lobes) {
+void fill(const RtsHits* hits, const Summary& summary, const Terms& t, const Lobes& lobes) {
   for (uint32_t i = 0; i < hits->count; i++) {
     const float alpha = smaller(atLeast0(t.alpha[i]), 1.0f),
                 exponent = smaller(atLeast0(t.exponent[i]), blinn_phong::sharpest);
@@ -37,6 +37,9 @@ void fill(const RtsHits* hits, const Terms& t, const Lobes& lobes) {
       if (lobes.behind) lobes.behind->weight[c][i] = 1.0f - alpha;
     }
     if (lobes.highlight) lobes.highlight->data[0][i] = exponent;
+    if (summary.bent)
+      for (RtsLobe* lobe : {lobes.diffuse, lobes.highlight})
+        for (int c = 0; c < 3 && lobe; c++) lobe->normal[c][i] = t.normal[c][i];
   }
 }
 
@@ -67,15 +70,22 @@ uint32_t scatterTraits(const SurfaceParams& p) {
   return (p.lit ? 0u : uint32_t(RTS_NO_SCATTER)) |
          (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
          (!p.lit || any(p.emissiveColor) ? uint32_t(RTS_EMISSIVE) : 0u) |
-         // Colours of vertices do not change the emission of lit surfaces, but the alpha of a
-         // texture does.
-         (p.lit && any(p.emissiveColor) && !p.texture ? uint32_t(RTS_UNIFORM_EMISSION) : 0u);
+         // Colours of vertices do not change the emission of lit surfaces, but their alpha
+         // and that of a texture do.
+         (p.lit && any(p.emissiveColor) && !p.texture && !p.vertexAlpha
+              ? uint32_t(RTS_UNIFORM_EMISSION)
+              : 0u);
 }
 
 void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
   if (hits->count == 0) return;
   Terms t;
   const Summary summary = makeTerms(host, batch, hits, t);
+  scatterTerms(host, batch, hits, summary, t, out);
+}
+
+void scatterTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, const Summary& summary,
+                  const Terms& t, RtsSurface* out) {
   if (out->albedo[0]) albedo(hits, t, out->albedo);
   bool clear = false;
   for (uint32_t i = 0; i < hits->count; i++) {
@@ -89,7 +99,7 @@ void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurfa
     if (lobes.highlight) lobes.highlight->coat = 1;
   }
   if (clear) lobes.behind = host->lobe(batch, RTS_LOBE_TRANSPARENT);
-  fill(hits, t, lobes);
+  fill(hits, summary, t, lobes);
 }
 
 const RtsClass globalIlluminationClass = makeGlobalIlluminationClass();

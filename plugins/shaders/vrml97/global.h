@@ -11,4 +11,8 @@ uint32_t scatterTraits(const SurfaceParams& params);
 // Describes hits by lobes (RtsClass.surface).
 void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
 
+// Describes hits whose terms are known by lobes.
+void scatterTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, const Summary& summary,
+                  const Terms& t, RtsSurface* out);
+
 } // namespace vrml97

@@ -1,5 +1,6 @@
 // material.cpp: Computes parameters, textures and colours of VRML97 surfaces for each lane. The
-// alpha of the geometry's colours is not used, as the standard has none. [render]
+// alpha of the geometry's colours is used only where `vertexAlpha` asks for it, because VRML97 has
+// none. [render]
 #include "vrml97/material.h"
 
 #include <algorithm>
@@ -82,11 +83,19 @@ const RtsParam surfaceParams[] = {
      0.0f,
      1.0f,
      "1: a colour texture multiplies diffuseColor, as in X3D; 0: it replaces diffuseColor"},
+    {"vertexAlpha",
+     RTS_INT,
+     offsetof(SurfaceParams, vertexAlpha),
+     {0.0f},
+     0.0f,
+     1.0f,
+     "1: the alpha of the geometry's colours stands in place of 1 - transparency, as ColorRGBA of "
+     "X3D asks; 0: it is not used"},
 };
 const uint32_t surfaceParamCount = sizeof(surfaceParams) / sizeof(surfaceParams[0]);
 
 bool isTransparent(const RtsHost* host, const SurfaceParams& p) {
-  return (p.lit && p.transparency > 0.0f) ||
+  return (p.lit && p.transparency > 0.0f) || p.vertexAlpha ||
          (p.texture != 0 && hasAlpha(host->components(host, p.texture)));
 }
 
@@ -105,7 +114,7 @@ Terms allocate(const RtsHost* host, RtsBatch* batch, uint32_t lanes) {
     t.diffuse[c] = next();
     t.specular[c] = next();
   }
-  t.ambient = next();
+  t.ambient[0] = t.ambient[1] = t.ambient[2] = next();
   t.exponent = next();
   t.alpha = next();
   return t;
@@ -130,7 +139,7 @@ template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint
     fill(t.specular[c], lit ? p.specularColor[c] : 0.0f);
     summary.specular |= lit & (p.specularColor[c] != 0.0f);
   }
-  fill(t.ambient, p.ambientIntensity);
+  fill(t.ambient[0], p.ambientIntensity);
   fill(t.exponent, 128.0f * p.shininess);
   fill(t.alpha, lit ? 1.0f - p.transparency : 1.0f);
   summary.lit |= lit;
@@ -188,11 +197,17 @@ Texels fetch(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t
   return texels;
 }
 
+float opacityOf(const RtsHits* hits, uint32_t lane) {
+  return smaller(larger(hits->color[3][lane], 0.0f), 1.0f);
+}
+
 // Combines material, geometry and texture colours by clauses 4.14.2 and 4.14.3, tables 4.5 (unlit)
 // and 4.6 (lit). Lines and points follow clauses 6.24 and 6.36.
 void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, const Terms& t) {
   for (uint32_t i = 0; i < hits->count; i++) {
     const bool lit = paramsOf(hits, i).lit != 0, own = (hits->flags[i] & RTS_HIT_COLOR) != 0;
+    const bool ownAlpha = own && paramsOf(hits, i).vertexAlpha != 0;
+    if (ownAlpha) t.alpha[i] = opacityOf(hits, i);
     if (hits->flags[i] & RTS_HIT_LINE) {
       for (int c = 0; c < 3; c++) {
         if (own) t.glow[c][i] = hits->color[c][i];
@@ -209,7 +224,8 @@ void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, 
                    : multiplies    ? plain * texels.rgba[c][i]
                                    : texels.rgba[c][i];
     }
-    if (hasAlpha(components)) t.alpha[i] = texels.rgba[3][i];
+    if (hasAlpha(components))
+      t.alpha[i] = ownAlpha ? t.alpha[i] * texels.rgba[3][i] : texels.rgba[3][i];
   }
 }
 
@@ -218,6 +234,7 @@ void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, 
 Summary makeTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Terms& t) {
   const uint32_t n = wholeLanes(hits->count);
   t = allocate(host, batch, n);
+  std::copy_n(hits->normal, 3, t.normal);
   const Summary summary = materials(hits, n, t);
   if (summary.special)
     colours(hits, summary, summary.textured ? fetch(host, batch, hits, n) : Texels{}, t);
@@ -241,9 +258,11 @@ void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
   const Texels texels = textured ? fetch(host, batch, hits, lanes) : Texels{};
   for (uint32_t i = 0; i < hits->count; i++) {
     const SurfaceParams& p = paramsOf(hits, i);
-    const float untextured = p.lit ? p.transparency : 0.0f;
+    const bool ownAlpha = p.vertexAlpha && (hits->flags[i] & RTS_HIT_COLOR) != 0;
+    const float own = ownAlpha ? opacityOf(hits, i) : 1.0f;
+    const float untextured = ownAlpha ? 1.0f - own : p.lit ? p.transparency : 0.0f;
     const float through =
-        textured && hasAlpha(texels.components[i]) ? 1.0f - texels.rgba[3][i] : untextured;
+        textured && hasAlpha(texels.components[i]) ? 1.0f - own * texels.rgba[3][i] : untextured;
     for (int c = 0; c < 3; c++) transmission[c][i] = through;
   }
 }

@@ -107,12 +107,13 @@ void lights(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, const Sum
   for (uint32_t k = 0; k < count; k++) {
     RtsIllumination light{};
     host->illuminate(batch, k, hits, &light);
-    if (cosinesAndWanted(n, hits->normal, light, t, cosine, wanted))
+    if (cosinesAndWanted(n, t.normal, light, t, cosine, wanted))
       host->shadow(batch, k, hits, wanted, &light);
     for (int c = 0; c < 3; c++)
-      addDiffuse(n, cosine, light.color[c], light.ambient[c], t.diffuse[c], t.ambient, radiance[c]);
+      addDiffuse(n, cosine, light.color[c], light.ambient[c], t.diffuse[c], t.ambient[c],
+                 radiance[c]);
     if (!summary.specular) continue;
-    highlights(n, hits->normal, hits->direction, light.toLight, cosine, t.exponent, factor);
+    highlights(n, t.normal, hits->direction, light.toLight, cosine, t.exponent, factor);
     for (int c = 0; c < 3; c++) addSpecular(n, factor, light.color[c], t.specular[c], radiance[c]);
   }
 }
@@ -125,15 +126,24 @@ VRML97_CLONES void finish(uint32_t n, const float* __restrict alpha, float* __re
   }
 }
 
-void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
-  if (hits->count == 0) return;
+} // namespace
+
+void shadeTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, const Summary& summary,
+                const Terms& t, RtsShading* out) {
   const uint32_t n = wholeLanes(hits->count);
-  Terms t;
-  const Summary summary = makeTerms(host, batch, hits, t);
   if (out->albedo[0]) albedo(hits, t, out->albedo);
   for (int c = 0; c < 3; c++) std::copy_n(t.glow[c], n, out->radiance[c]);
   if (summary.lit) lights(host, batch, hits, summary, t, out->radiance);
   for (int c = 0; c < 3; c++) finish(n, t.alpha, out->radiance[c], out->transmission[c]);
+}
+
+namespace {
+
+void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
+  if (hits->count == 0) return;
+  Terms t;
+  const Summary summary = makeTerms(host, batch, hits, t);
+  shadeTerms(host, batch, hits, summary, t, out);
 }
 
 RtsClass makeSurfaceClass() {

@@ -255,23 +255,31 @@ function nameOf(event) {
 
 class Keys {
   // own: functions for the keys that the page handles itself. taken: tells whether vv knows a key.
-  constructor(own, taken, send) {
+  // typed: tells whether a sensor of the world takes what is typed.
+  constructor(own, taken, typed, send) {
+    const modifiers = (event) => ({
+      // The key "!" is "!", with whatever keys it is typed.
+      shift: event.shiftKey && (event.key.length > 1 || /[a-z]/i.test(event.key)),
+      ctrl: event.ctrlKey,
+      alt: event.altKey,
+    });
     this.held = new Set();
     window.addEventListener("keydown", (event) => {
       const name = nameOf(event);
       if (this.isElsewhere(event) || event.metaKey || (event.ctrlKey && !arrows[event.key])) return;
-      const action = own[event.shiftKey ? `Shift+${name}` : name] || own[name];
-      if (!action && !taken(name)) return;
+      const types = typed() && /^[ -~]+$/.test(name) && !/^(F1|F11|Escape)$/.test(name);
+      const action = types ? null : own[event.shiftKey ? `Shift+${name}` : name] || own[name];
+      if (!types && !action && !taken(name)) return;
       event.preventDefault();
       if (action) return event.repeat || action();
       if (event.repeat && arrows[event.key]) return;
       this.held.add(name);
-      send({ type: "down", key: name, shift: event.shiftKey, ctrl: event.ctrlKey, alt: event.altKey });
+      send({ type: "down", key: name, ...modifiers(event) });
     });
     window.addEventListener("keyup", (event) => {
       const name = nameOf(event);
       if (!this.held.delete(name)) return;
-      send({ type: "up", key: name, shift: event.shiftKey, ctrl: event.ctrlKey, alt: event.altKey });
+      send({ type: "up", key: name, ...modifiers(event) });
     });
   }
 
@@ -312,7 +320,7 @@ class Page {
       Q: () => {}, // only the terminal ends vv
       Escape: () => this.giveUp(),
     };
-    new Keys(own, (name) => this.known.has(name), send);
+    new Keys(own, (name) => this.known.has(name), () => this.state.keys, send);
     $("own").onclick = () => send({ type: this.state.role === "own" ? "follow" : "own" });
     $("png").onclick = () => this.save("png");
     $("exr").onclick = () => this.save("exr");

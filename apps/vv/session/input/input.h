@@ -18,6 +18,7 @@ struct InputEvent {
     wheel,     // amount: notches, away from the user
     down,      // the key `text` goes down
     up,        // the key `text` goes up
+    type,      // `text` is typed for the world's sensors alone
     viewpoint, // go to the viewpoint `text`: a name, a description or a number from 0
     save,      // save the picture to the file `text`
     open,      // open the file `text`

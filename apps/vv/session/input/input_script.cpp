@@ -24,8 +24,8 @@ struct Word {
 constexpr Word words[] = {
     {"move", Kind::move},   {"press", Kind::press}, {"release", Kind::release},
     {"leave", Kind::leave}, {"wheel", Kind::wheel}, {"down", Kind::down},
-    {"up", Kind::up},       {"key", Kind::down},    {"viewpoint", Kind::viewpoint},
-    {"save", Kind::save},   {"quit", Kind::quit}};
+    {"up", Kind::up},       {"key", Kind::down},    {"type", Kind::type},
+    {"save", Kind::save},   {"quit", Kind::quit},   {"viewpoint", Kind::viewpoint}};
 
 const char* wordOf(Kind kind) {
   for (const Word& word : words)
@@ -108,6 +108,7 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
     event.text = line.nextName("a key");
     readModifiers(line, event);
     break;
+  case Kind::type: event.text = line.nextName("a text"); break;
   case Kind::viewpoint: event.text = line.all("a name"); break;
   case Kind::save:
   case Kind::open: event.text = line.all("a file name"); break;
@@ -178,7 +179,8 @@ std::string inputLine(double time, const InputEvent& event) {
     break;
   case Kind::wheel: line += fmt::format(" {}", event.amount); break;
   case Kind::down:
-  case Kind::up: line += " " + nameInLine(event.text); break;
+  case Kind::up:
+  case Kind::type: line += " " + nameInLine(event.text); break;
   case Kind::viewpoint:
   case Kind::save:
   case Kind::open: line += " " + event.text; break;

@@ -7,6 +7,7 @@
 //   leave
 //   wheel NOTCHES
 //   key|down|up NAME [shift ...]   (key: down and up)
+//   type TEXT                      (in quotation marks if it has blanks; for the world's sensors)
 //   viewpoint NAME
 //   save FILE
 //   quit

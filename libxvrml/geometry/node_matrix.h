@@ -1,0 +1,16 @@
+// node_matrix.h: the matrix that a node gives its children: that of a Transform or a CADPart. Code
+// that walks down to what is drawn asks here, so that all of it knows the same nodes. Pure
+// functions, any thread that owns the nodes.
+#pragma once
+
+#include "geometry/matrix.h"
+#include "xvrml/node.h"
+
+namespace xvrml {
+
+// Returns whether nodes of this type place their children with a matrix.
+bool hasMatrix(const Node& node);
+// Returns the matrix of a node; the identity if hasMatrix is false.
+Matrix matrixOf(const Node& node);
+
+} // namespace xvrml

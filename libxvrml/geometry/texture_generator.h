@@ -1,0 +1,18 @@
+// texture_generator.h: texture coordinates that a TextureCoordinateGenerator computes (ISO/IEC
+// 19775-1 18.4.8), and the coordinates of a MultiTextureCoordinate (18.4.4).
+#pragma once
+
+#include "geometry/mesh.h"
+#include "xvrml/node.h"
+
+namespace xvrml {
+
+// Returns the node that has the coordinates of the first picture: the node itself, or the first of
+// a MultiTextureCoordinate. Prototype instances are resolved; null: none.
+Node* firstTextureCoordinate(const NodeRef& texCoord);
+
+// Replaces the texture coordinates of a mesh of triangles if its geometry has a
+// TextureCoordinateGenerator, and warns of what its mode cannot be here.
+void generateTextureCoordinates(Node& geometry, const MeshOptions& options, Mesh& mesh);
+
+} // namespace xvrml

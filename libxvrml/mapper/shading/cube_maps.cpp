@@ -1,0 +1,97 @@
+#include "mapper/shading/cube_maps.h"
+
+#include <exception>
+
+#include "base/data_url.h"
+#include "base/locator.h"
+#include "image/decoders.h"
+#include "xvrml/radiance.h"
+
+namespace xvrml::mapper {
+
+CubeMap CubeMaps::of(Node* node) {
+  Node* cube = renderedNode(node);
+  if (!cube) return {};
+  if (auto* six = nodeCast<nodes::ComposedCubeMapTexture>(cube)) return composed(*six);
+  if (auto* file = nodeCast<nodes::ImageCubeMapTexture>(cube)) {
+    const auto [it, fresh] = files_.try_emplace(cube, Entry{NodeRef(cube), {}, false});
+    Entry& entry = it->second;
+    if (fresh || entry.stale) {
+      drop(entry.map);
+      entry.stale = false;
+      entry.map = read(*file);
+    }
+    return entry.map;
+  }
+  if (refused_.insert(cube).second)
+    world_.diagnostics.warn(cube->source, cube->type().name +
+                                              " has no pictures that shine; use "
+                                              "ComposedCubeMapTexture or ImageCubeMapTexture");
+  return {};
+}
+
+void CubeMaps::changed(const Node& node) {
+  if (const auto found = files_.find(&node); found != files_.end()) found->second.stale = true;
+}
+
+void CubeMaps::clear() {
+  for (auto& [node, entry] : files_) drop(entry.map);
+  files_.clear();
+}
+
+void CubeMaps::drop(CubeMap& map) {
+  for (const RTid face : map.faces) textures_.drop(face);
+  textures_.drop(map.sphere);
+  map = {};
+}
+
+CubeMap CubeMaps::composed(const nodes::ComposedCubeMapTexture& node) {
+  const NodeRef* const faces[cubeFaces] = {&node.front, &node.back, &node.left,
+                                           &node.right, &node.top,  &node.bottom};
+  CubeMap map;
+  for (size_t i = 0; i < cubeFaces; ++i) map.faces[i] = textures_.ofFace(faces[i]->get());
+  return map;
+}
+
+CubeMap CubeMaps::read(const nodes::ImageCubeMapTexture& node) {
+  const std::string& base = node.source.file ? *node.source.file : world_.path;
+  std::string error;
+  for (const std::string& url : node.url) {
+    const ResolvedUrl resolved =
+        isDataUrl(url) ? ResolvedUrl{url, {}, {}} : resolveUrl(url, base, world_.options);
+    std::string why = resolved.error;
+    if (why.empty()) {
+      try {
+        const CubeMap map = decode(resolved.path);
+        report(world_.diagnostics, node.source, "ImageCubeMapTexture");
+        return map;
+      } catch (const std::exception& failure) { why = failure.what(); }
+    }
+    if (error.empty()) error = shortened(url) + ": " + why;
+  }
+  if (!node.url.empty())
+    world_.diagnostics.warn(node.source, "ImageCubeMapTexture: no picture: " + error);
+  return {};
+}
+
+CubeMap CubeMaps::decode(const std::string& path) {
+  const ImageRoom room = textures_.roomForPicture();
+  const std::vector<uint8_t> bytes = readPictureFile(path, room);
+  CubeMap map;
+  const auto add = [&](const auto& pictures) {
+    if (pictures.size() == 1) map.sphere = textures_.add(pictures[0]);
+    for (size_t i = 0; pictures.size() == cubeFaces && i < cubeFaces; ++i)
+      map.faces[i] = textures_.add(pictures[i]);
+  };
+  try {
+    const CubePictures pictures = decodeCube(bytes, room);
+    add(pictures.images);
+    add(pictures.radiance);
+  } catch (...) {
+    drop(map);
+    throw;
+  }
+  return map;
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,153 @@
+// layers.cpp: reads the modes, sources and functions of a MultiTexture. The numbers of the shader's
+// parameter `layers` are the places of the names in the tables below.
+#include "mapper/shading/layers.h"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+namespace xvrml::mapper {
+namespace {
+
+constexpr std::string_view modes[] = {"MODULATE",
+                                      "REPLACE",
+                                      "MODULATE2X",
+                                      "MODULATE4X",
+                                      "ADD",
+                                      "ADDSIGNED",
+                                      "ADDSIGNED2X",
+                                      "SUBTRACT",
+                                      "ADDSMOOTH",
+                                      "BLENDDIFFUSEALPHA",
+                                      "BLENDTEXTUREALPHA",
+                                      "BLENDFACTORALPHA",
+                                      "BLENDCURRENTALPHA",
+                                      "MODULATEALPHA_ADDCOLOR",
+                                      "MODULATEINVALPHA_ADDCOLOR",
+                                      "MODULATEINVCOLOR_ADDALPHA",
+                                      "OFF",
+                                      "SELECTARG1",
+                                      "SELECTARG2",
+                                      "DOTPRODUCT3"};
+constexpr std::string_view sources[] = {"", "DIFFUSE", "SPECULAR", "FACTOR"};
+constexpr std::string_view functions[] = {"", "COMPLEMENT", "ALPHAREPLICATE"};
+constexpr size_t mostLayers = 8;
+const char* const pictures[mostLayers] = {"texture",  "texture1", "texture2", "texture3",
+                                          "texture4", "texture5", "texture6", "texture7"};
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+class Reader {
+ public:
+  Reader(const nodes::MultiTexture& node, World& world) : node_(node), world_(world) {}
+
+  // Appends the four numbers of layer i.
+  void layer(size_t i, std::vector<float>& numbers) {
+    const std::string_view mode = at(node_.mode, i);
+    size_t split = mode.find_first_of(",/");
+    if (split == mode.npos) split = mode.size();
+    const std::string_view color = trimmed(mode.substr(0, split)),
+                           alpha = trimmed(mode.substr(std::min(split + 1, mode.size())));
+    const float first = color.empty() ? 0 : number(color, modes, "mode");
+    numbers.insert(numbers.end(), {first, alpha.empty() ? first : number(alpha, modes, "mode"),
+                                   number(at(node_.source, i), sources, "source"),
+                                   number(at(node_.function, i), functions, "function")});
+  }
+  void warn(const std::string& text) {
+    world_.diagnostics.warn(node_.Node::source, "MultiTexture: " + text);
+  }
+
+ private:
+  static std::string_view at(const MFString& list, size_t i) {
+    return i < list.size() ? trimmed(list[i]) : std::string_view();
+  }
+  template <size_t count>
+  float number(std::string_view name, const std::string_view (&table)[count], const char* field) {
+    for (size_t i = 0; i < count; ++i)
+      if (table[i] == name) return float(i);
+    warn(std::string(field) + " has \"" + std::string(name.substr(0, 40)) +
+         "\", which X3D does not have; expected " + std::string(table[count == 20 ? 0 : 1]) +
+         " or another name of ISO/IEC 19775-1 18.4.3; " +
+         (table[0].empty() ? "none is used" : "MODULATE is used"));
+    return 0;
+  }
+
+  const nodes::MultiTexture& node_;
+  World& world_;
+};
+
+Matrix matrixOf(const nodes::TextureTransform* t) {
+  return t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix();
+}
+
+// Appends the six numbers of layerTransforms for the picture i >= 1. A MultiTextureTransform with
+// too few parts has identities at its end, and so has a TextureTransform.
+void appendTransform(Node* textureTransform, size_t i, std::vector<float>& numbers) {
+  const auto* multi = nodeCast<nodes::MultiTextureTransform>(renderedNode(textureTransform));
+  const nodes::TextureTransform* t = nullptr;
+  if (multi && i < multi->textureTransform.size())
+    t = nodeCast<nodes::TextureTransform>(renderedNode(multi->textureTransform[i].get()));
+  const Matrix m = matrixOf(t);
+  std::array<float, 6> six = {float(m.x[0][0]), float(m.x[0][1]), float(m.x[1][0]),
+                              float(m.x[1][1]), float(m.x[3][0]), float(m.x[3][1])};
+  for (const float x : six)
+    if (!std::isfinite(x)) six = {1, 0, 0, 1, 0, 0};
+  numbers.insert(numbers.end(), six.begin(), six.end());
+}
+
+} // namespace
+
+const nodes::TextureTransform* firstTransform(Node* textureTransform, const std::string& mapping) {
+  Node* node = renderedNode(textureTransform);
+  const auto* multi = nodeCast<nodes::MultiTextureTransform>(node);
+  if (!multi) return nodeCast<nodes::TextureTransform>(node);
+  if (!mapping.empty())
+    for (const NodeRef& part : multi->textureTransform)
+      if (const auto* t = nodeCast<nodes::TextureTransform>(renderedNode(part.get()));
+          t && t->mapping == mapping)
+        return t;
+  if (multi->textureTransform.empty()) return nullptr;
+  return nodeCast<nodes::TextureTransform>(renderedNode(multi->textureTransform[0].get()));
+}
+
+void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform,
+               const std::string& mapping, bool multiplies, Textures& textures, World& world,
+               bool linear) {
+  Node* node = renderedNode(texture);
+  shader.matrix("textureTransform", matrixOf(firstTransform(textureTransform, mapping)));
+  std::array<RTid, mostLayers> ids{};
+  std::vector<float> layers, transforms;
+  if (const auto* multi = nodeCast<nodes::MultiTexture>(node)) {
+    Reader reader(*multi, world);
+    if (multi->texture.size() > mostLayers)
+      reader.warn("it has " + std::to_string(multi->texture.size()) +
+                  " textures, expected at most 8: the first 8 are used");
+    for (size_t i = 0; i < std::min(multi->texture.size(), mostLayers); ++i) {
+      Node* picture = renderedNode(multi->texture[i].get());
+      if (nodeCast<nodes::MultiTexture>(picture))
+        reader.warn("texture has another MultiTexture, which is left out");
+      else
+        ids[i] = textures.ofNode(picture);
+      reader.layer(i, layers);
+      if (i > 0) appendTransform(textureTransform, i, transforms);
+    }
+    const Color color = convert(multi->color, linear);
+    const float factor[4] = {std::clamp(color.r, 0.0f, 1.0f), std::clamp(color.g, 0.0f, 1.0f),
+                             std::clamp(color.b, 0.0f, 1.0f), std::clamp(multi->alpha, 0.0f, 1.0f)};
+    shader.floats("factor", factor);
+  } else {
+    ids[0] = textures.ofNode(node);
+    layers = {multiplies ? 0.0f : 1.0f, 0, 0, 0};
+  }
+  for (size_t i = 0; i < mostLayers; ++i)
+    if (ids[i] != 0 || !shader.fresh()) shader.texture(pictures[i], ids[i]);
+  shader.list("layers", layers);
+  shader.list("layerTransforms", transforms);
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,25 @@
+// layers.h: the pictures of a surface as layers of the shader class X3DMaterial: a MultiTexture
+// with its MultiTextureTransform (ISO/IEC 19775-1 18.4.3, 18.4.5), or one texture. [the mapper's
+// thread]
+#pragma once
+
+#include <string>
+
+#include "mapper/rt.h"
+#include "mapper/shading/textures.h"
+#include "xvrml/nodes.h"
+#include "xvrml/world.h"
+
+namespace xvrml::mapper {
+
+// Returns the TextureTransform for the first picture, or null: the node itself, or of the parts of
+// a MultiTextureTransform the one with this name, else the first.
+const nodes::TextureTransform* firstTransform(Node* textureTransform, const std::string& mapping);
+
+// Sets the parameters of all layers. A single texture multiplies the colour if `multiplies`, else
+// replaces it.
+void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform,
+               const std::string& mapping, bool multiplies, Textures& textures, World& world,
+               bool linear);
+
+} // namespace xvrml::mapper

@@ -1,0 +1,163 @@
+// x3d_material.cpp: Material with the slots of X3D 4 (ISO/IEC 19775-1:2023 12.4.5),
+// TwoSidedMaterial (ISO/IEC 19775-1 12.4.6) and Appearance.backMaterial as parameters.
+#include "mapper/shading/x3d_material.h"
+
+#include <string>
+
+#include "mapper/shading/layers.h"
+#include "mapper/shading/physical.h"
+
+namespace xvrml::mapper {
+namespace {
+
+// The names of the parameters of a side.
+struct SideNames {
+  const char *diffuse, *emissive, *specular, *ambient, *shininess, *transparency;
+  const char *ambientTexture, *emissiveTexture, *specularTexture, *shininessTexture, *normalTexture,
+      *normalScale;
+};
+constexpr SideNames front = {"diffuseColor",     "emissiveColor",   "specularColor",
+                             "ambientIntensity", "shininess",       "transparency",
+                             "ambientTexture",   "emissiveTexture", "specularTexture",
+                             "shininessTexture", "normalTexture",   "normalScale"};
+constexpr SideNames back = {"backDiffuseColor",     "backEmissiveColor",   "backSpecularColor",
+                            "backAmbientIntensity", "backShininess",       "backTransparency",
+                            "backAmbientTexture",   "backEmissiveTexture", "backSpecularTexture",
+                            "backShininessTexture", "backNormalTexture",   "backNormalScale"};
+
+struct Values {
+  Color diffuse, emissive, specular;
+  float ambient, shininess, transparency;
+};
+
+void setValues(ShaderSetup& shader, const SideNames& side, const Values& v, bool linear) {
+  shader.color(side.diffuse, convert(v.diffuse, linear));
+  shader.color(side.emissive, convert(v.emissive, linear));
+  shader.color(side.specular, convert(v.specular, linear));
+  shader.number(side.ambient, v.ambient, 0, 1);
+  shader.number(side.shininess, v.shininess, 0, 1);
+  shader.number(side.transparency, v.transparency, 0, 1);
+}
+
+void setMaterial(ShaderSetup& shader, const SideNames& side, const nodes::Material& m,
+                 Textures& textures, bool linear) {
+  setValues(shader, side,
+            {m.diffuseColor, m.emissiveColor, m.specularColor, m.ambientIntensity, m.shininess,
+             m.transparency},
+            linear);
+  const auto picture = [&](const char* name, const NodeRef& node, bool data = false) {
+    const RTid id = data ? textures.ofData(node.get()) : textures.ofNode(node.get());
+    if (id != 0 || !shader.fresh()) shader.texture(name, id);
+  };
+  picture(side.ambientTexture, m.ambientTexture);
+  picture(side.emissiveTexture, m.emissiveTexture);
+  picture(side.specularTexture, m.specularTexture);
+  picture(side.shininessTexture, m.shininessTexture, true);
+  picture(side.normalTexture, m.normalTexture, true);
+  shader.number(side.normalScale, m.normalScale, 0, 100);
+}
+
+void setNoPictures(ShaderSetup& shader, const SideNames& side) {
+  if (shader.fresh()) return;
+  for (const char* name : {side.ambientTexture, side.emissiveTexture, side.specularTexture,
+                           side.shininessTexture, side.normalTexture})
+    shader.texture(name, 0);
+}
+
+void warnOfMaterialMappings(const nodes::Material& m, World& world) {
+  warnOfMappings(m,
+                 {&m.ambientTextureMapping, &m.diffuseTextureMapping, &m.emissiveTextureMapping,
+                  &m.normalTextureMapping, &m.shininessTextureMapping, &m.specularTextureMapping},
+                 world);
+}
+
+// Returns the first name that a slot of the material refers to.
+const std::string& mappingOf(const nodes::Material& m) {
+  for (const std::string* mapping :
+       {&m.diffuseTextureMapping, &m.emissiveTextureMapping, &m.ambientTextureMapping,
+        &m.normalTextureMapping, &m.shininessTextureMapping, &m.specularTextureMapping})
+    if (!mapping->empty()) return *mapping;
+  return m.diffuseTextureMapping;
+}
+
+nodes::Material* backOf(const X3dParts& parts) {
+  if (!parts.appearance || !nodeCast<nodes::Material>(parts.material)) return nullptr;
+  return nodeCast<nodes::Material>(renderedNode(parts.appearance->backMaterial.get()));
+}
+
+// Sets the back of a surface whose appearance has a backMaterial.
+void setBack(ShaderSetup& shader, const nodes::Material& m, const X3dParts& parts,
+             Textures& textures, World& world, bool linear) {
+  shader.integer("twoSided", 1);
+  setMaterial(shader, back, m, textures, linear);
+  // The back without a diffuseTexture has the appearance's texture, which the layers are unless
+  // the front has a diffuseTexture.
+  Node* own = renderedNode(m.diffuseTexture.get());
+  const auto& frontMaterial = static_cast<const nodes::Material&>(*parts.material);
+  const bool differs = own != renderedNode(frontMaterial.diffuseTexture.get());
+  shader.integer("backPicture", differs ? 1 : 0);
+  if (differs) shader.texture("backTexture", textures.ofNode(own ? own : parts.texture));
+  if (shader.fresh()) warnOfMaterialMappings(m, world);
+}
+
+bool isTransparentMode(const nodes::Appearance* appearance) {
+  return !appearance || appearance->alphaMode == "AUTO" || appearance->alphaMode == "BLEND";
+}
+
+} // namespace
+
+bool isUnfilled(const nodes::Appearance* appearance) {
+  if (!appearance) return false;
+  const auto* fill =
+      nodeCast<nodes::FillProperties>(renderedNode(appearance->fillProperties.get()));
+  return fill && !fill->filled;
+}
+
+bool needsX3dMaterial(const X3dParts& parts) {
+  if (isUnfilled(parts.appearance)) return true;
+  if (isPhysical(parts.material)) return false;
+  if (nodeCast<nodes::MultiTexture>(parts.texture)) return true;
+  if (nodeCast<nodes::TwoSidedMaterial>(parts.material)) return true;
+  const auto* m = nodeCast<nodes::Material>(parts.material);
+  if (!m) return false;
+  return hasPictures(*parts.material) || backOf(parts) || !isTransparentMode(parts.appearance);
+}
+
+void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, Textures& textures, World& world,
+                    bool linear) {
+  shader.integer("filled", isUnfilled(parts.appearance) ? 0 : 1);
+  shader.integer("lit", parts.material ? 1 : 0);
+  shader.integer("alphaMode", alphaModeOf(parts.appearance, world));
+  shader.number("alphaCutoff", parts.appearance ? parts.appearance->alphaCutoff : 0.5f, 0, 1);
+  Node* texture = parts.texture;
+  std::string mapping;
+  bool twoSided = false;
+  setNoPictures(shader, front);
+  setNoPictures(shader, back);
+  if (const auto* m = nodeCast<nodes::Material>(parts.material)) {
+    setMaterial(shader, front, *m, textures, linear);
+    if (Node* own = renderedNode(m->diffuseTexture.get())) texture = own;
+    mapping = mappingOf(*m);
+    if (shader.fresh()) warnOfMaterialMappings(*m, world);
+    if (const nodes::Material* behind = backOf(parts)) {
+      setBack(shader, *behind, parts, textures, world, linear);
+      twoSided = true;
+    }
+  } else if (const auto* both = nodeCast<nodes::TwoSidedMaterial>(parts.material)) {
+    setValues(shader, front,
+              {both->diffuseColor, both->emissiveColor, both->specularColor, both->ambientIntensity,
+               both->shininess, both->transparency},
+              linear);
+    setValues(shader, back,
+              {both->backDiffuseColor, both->backEmissiveColor, both->backSpecularColor,
+               both->backAmbientIntensity, both->backShininess, both->backTransparency},
+              linear);
+    twoSided = both->separateBackColor;
+    shader.integer("backPicture", 0);
+  }
+  shader.integer("twoSided", twoSided ? 1 : 0);
+  setLayers(shader, texture, parts.textureTransform, mapping, parts.multiplies, textures, world,
+            linear);
+}
+
+} // namespace xvrml::mapper
