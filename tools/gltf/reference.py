@@ -53,7 +53,7 @@ class Layer:
         self.means = 1 - (albedo * mu * w).sum(axis=1)
 
     def row(self, alpha):
-        n = 192
+        n = 96
         x, phi = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n * np.pi)
         ch = np.sqrt((1 - x) / (1 + (alpha**2 - 1) * x))
         sh = np.sqrt(1 - ch**2)

@@ -194,6 +194,8 @@ Color Materials::emissionOf(const Item& material) {
   const Color factor = colorOf(material.numbers("emissiveFactor", 3), {0, 0, 0});
   const double strength =
       material.extension("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+  if (std::max({factor.r, factor.g, factor.b}) * strength > 1)
+    material.warn("an emission of more than 1 is not supported: 1 is used");
   const auto part = [&](float value) { return inUnit(double(value) * strength); };
   return {part(factor.r), part(factor.g), part(factor.b)};
 }
@@ -208,8 +210,11 @@ void Materials::writePhysical(const Item& material) {
                                  : inUnit(pbr.number("roughnessFactor", 1)));
   nodes_.set("emissiveColor", encoded(emissionOf(material)));
   nodes_.set("transparency", transparencyOf(material));
-  if (const Item normal = material.object("normalTexture"))
-    nodes_.set("normalScale", float(std::max(0.0, normal.number("scale", 1))));
+  if (const Item normal = material.object("normalTexture")) {
+    const double scale = normal.number("scale", 1);
+    if (scale < 0) normal.warn("a scale below 0 is not supported: 0 is used");
+    nodes_.set("normalScale", float(std::max(0.0, scale)));
+  }
   if (const Item occlusion = material.object("occlusionTexture"))
     nodes_.set("occlusionStrength", inUnit(occlusion.number("strength", 1)));
   writePictures(material, {"baseTexture", "metallicRoughnessTexture", "normalTexture",
@@ -287,13 +292,33 @@ std::string Materials::urlOf(const Item& texture) {
   return url;
 }
 
+// Filters are hints (3.8.4.1), of which magFilter is followed. Mirroring needs TextureProperties,
+// which then say all.
 void Materials::writeSampler(const Item& texture) {
-  constexpr uint64_t clampToEdge = 33071;
+  constexpr uint64_t nearest = 9728, clampToEdge = 33071, mirroredRepeat = 33648;
   const auto number = texture.index("sampler", samplers_.size());
   if (!number) return;
   const Item& sampler = samplers_[*number];
-  if (sampler.count("wrapS", 0) == clampToEdge) nodes_.set("repeatS", false);
-  if (sampler.count("wrapT", 0) == clampToEdge) nodes_.set("repeatT", false);
+  const uint64_t s = sampler.count("wrapS", 0), t = sampler.count("wrapT", 0);
+  const bool blocks = sampler.count("magFilter", 0) == nearest,
+             mirrored = s == mirroredRepeat || t == mirroredRepeat;
+  if (s == clampToEdge) nodes_.set("repeatS", false);
+  if (t == clampToEdge) nodes_.set("repeatT", false);
+  if (!blocks && !mirrored) return;
+  if (!nodes_.knows("ImageTexture", "textureProperties")) {
+    if (mirrored) sampler.warn("MIRRORED_REPEAT is not supported: the picture is repeated");
+    return;
+  }
+  const auto mode = [](uint64_t wrap) {
+    return std::string(wrap == clampToEdge      ? "CLAMP_TO_EDGE"
+                       : wrap == mirroredRepeat ? "MIRRORED_REPEAT"
+                                                : "REPEAT");
+  };
+  nodes_.openIn("textureProperties", "TextureProperties");
+  nodes_.set("boundaryModeS", mode(s));
+  nodes_.set("boundaryModeT", mode(t));
+  if (blocks) nodes_.set("magnificationFilter", std::string("NEAREST_PIXEL"));
+  nodes_.closeIn();
 }
 
 void Materials::warnOfExtensions(const Item& material) {
