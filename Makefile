@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -188,6 +188,10 @@ bench-rays: build
 test-rays: build
 	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/check_rays.py
 	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/check_rays.py --precision double --rays 1000000 --exact 50
+
+## make test-gltf   ten glTF models beside a path tracer with the BRDF of the specification, strips into build/gltf
+test-gltf: build
+	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/compare_gltf.py
 
 ## make bench-isa      how much pictures differ between the instruction sets of Embree's kernels (a table of docs/accuracy.md)
 bench-isa: build

@@ -195,7 +195,7 @@ struct Physical : rts::Surface<Physical> {
   }
   bool emits() const {
     return emissiveStrength > 0 &&
-           (emissiveColor->r > 0 || emissiveColor->g > 0 || emissiveColor->b > 0);
+           (!lit || emissiveColor->r > 0 || emissiveColor->g > 0 || emissiveColor->b > 0);
   }
   const char* prepare() {
     AlbedoTable::get();
@@ -207,18 +207,16 @@ struct Physical : rts::Surface<Physical> {
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 t = pattern(hit);
-    const rts::Color base{unit(baseColor->r * t.x * hit.color.x),
-                          unit(baseColor->g * t.y * hit.color.y),
-                          unit(baseColor->b * t.z * hit.color.z)};
+    const rts::Color own = ownColor(hit, *baseColor);
+    const rts::Color base{unit(own.r * t.x), unit(own.g * t.y), unit(own.b * t.z)};
     const float shown = opacity(hit, t);
-    out.albedo(lit ? base : *emissiveColor * rts::Color{t.x, t.y, t.z});
+    const rts::Color shine = lit ? *emissiveColor : ownColor(hit, *emissiveColor);
+    out.albedo(lit ? base : shine * rts::Color{t.x, t.y, t.z});
     if (shown < 1) out.transparent({1 - shown, 1 - shown, 1 - shown});
     if (!(shown > 0)) return;
     if (emits()) {
       const rts::Vec4 e = texel(hit, emissiveTexture);
-      const rts::Color own =
-          lit ? rts::Color{1, 1, 1} : rts::Color{hit.color.x, hit.color.y, hit.color.z};
-      out.emission(shown * *emissiveStrength * *emissiveColor * own * rts::Color{e.x, e.y, e.z});
+      out.emission(shown * *emissiveStrength * shine * rts::Color{e.x, e.y, e.z});
     }
     if (lit) addLobes(hit, base, shown, out);
   }
@@ -250,6 +248,11 @@ struct Physical : rts::Surface<Physical> {
   }
   rts::Vec4 texel(const rts::Hit& hit, rts::Texture from) const {
     return from.id && !hit.line() ? hit.sample(from, place(hit)) : rts::Vec4{1, 1, 1, 1};
+  }
+  // The colours of a geometry stand in place of the material's (ISO/IEC 19775-1:2023 11.4.2).
+  static rts::Color ownColor(const rts::Hit& hit, rts::Color ofMaterial) {
+    if ((hit.flags & RTS_HIT_COLOR) == 0) return ofMaterial;
+    return {hit.color.x, hit.color.y, hit.color.z};
   }
   // Colours of hits without RTS_HIT_COLOR are not set where the engine calls transmit().
   static float alphaOf(const rts::Hit& hit) {

@@ -50,6 +50,13 @@ float inUnit(double value) { return float(std::clamp(value, 0.0, 1.0)); }
 
 } // namespace
 
+Color encoded(const Color& linear) { // IEC 61966-2-1
+  const auto part = [](float v) {
+    return v <= 0.0031308f ? 12.92f * v : float(1.055 * std::pow(double(v), 1 / 2.4) - 0.055);
+  };
+  return {part(linear.r), part(linear.g), part(linear.b)};
+}
+
 Materials::Materials(const MeshFile& file, NodeStream& nodes, const Item& root,
                      Accessors& accessors)
     : file_(file), nodes_(nodes), accessors_(accessors), materials_(root.list("materials")),
@@ -150,14 +157,14 @@ void Materials::writeAppearance(const Item& material) {
 void Materials::writePhong(const Item& material) {
   if (!isUnlit(material)) {
     nodes_.openIn("material", "Material");
-    nodes_.set("diffuseColor", baseColor(material));
-    nodes_.set("emissiveColor", emissionOf(material));
+    nodes_.set("diffuseColor", encoded(baseColor(material)));
+    nodes_.set("emissiveColor", encoded(emissionOf(material)));
     nodes_.set("transparency", transparencyOf(material));
     nodes_.closeIn();
   } else if (!material.object("pbrMetallicRoughness").has("baseColorTexture")) {
     nodes_.openIn("material", "Material");
     nodes_.set("diffuseColor", Color{0, 0, 0});
-    nodes_.set("emissiveColor", baseColor(material));
+    nodes_.set("emissiveColor", encoded(baseColor(material)));
     nodes_.set("transparency", transparencyOf(material));
     nodes_.closeIn();
   }
@@ -168,7 +175,7 @@ void Materials::writePhong(const Item& material) {
 void Materials::writeUnlit(std::optional<size_t> material) {
   nodes_.openIn("appearance", "Appearance");
   nodes_.openIn("material", hasPhysical() ? "UnlitMaterial" : "Material");
-  nodes_.set("emissiveColor", baseColor(material));
+  nodes_.set("emissiveColor", encoded(baseColor(material)));
   if (material) nodes_.set("transparency", transparencyOf(materials_[*material]));
   nodes_.closeIn();
   nodes_.closeIn();
@@ -194,6 +201,8 @@ Color Materials::emissionOf(const Item& material) {
   const Color factor = colorOf(material.numbers("emissiveFactor", 3), {0, 0, 0});
   const double strength =
       material.extension("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+  if (std::max({factor.r, factor.g, factor.b}) * strength > 1)
+    material.warn("an emission of more than 1 is not supported: 1 is used");
   const auto part = [&](float value) { return inUnit(double(value) * strength); };
   return {part(factor.r), part(factor.g), part(factor.b)};
 }
@@ -201,15 +210,18 @@ Color Materials::emissionOf(const Item& material) {
 void Materials::writePhysical(const Item& material) {
   const Item pbr = material.object("pbrMetallicRoughness");
   nodes_.openIn("material", "PhysicalMaterial");
-  nodes_.set("baseColor", colorOf(baseFactor(material), {1, 1, 1}));
+  nodes_.set("baseColor", encoded(baseColor(material)));
   const bool glossy = usesGlossiness(material);
   nodes_.set("metallic", glossy ? 0.0f : inUnit(pbr.number("metallicFactor", 1)));
   nodes_.set("roughness", glossy ? inUnit(1 - glossiness(material).number("glossinessFactor", 1))
                                  : inUnit(pbr.number("roughnessFactor", 1)));
-  nodes_.set("emissiveColor", emissionOf(material));
+  nodes_.set("emissiveColor", encoded(emissionOf(material)));
   nodes_.set("transparency", transparencyOf(material));
-  if (const Item normal = material.object("normalTexture"))
-    nodes_.set("normalScale", float(std::max(0.0, normal.number("scale", 1))));
+  if (const Item normal = material.object("normalTexture")) {
+    const double scale = normal.number("scale", 1);
+    if (scale < 0) normal.warn("a scale below 0 is not supported: 0 is used");
+    nodes_.set("normalScale", float(std::max(0.0, scale)));
+  }
   if (const Item occlusion = material.object("occlusionTexture"))
     nodes_.set("occlusionStrength", inUnit(occlusion.number("strength", 1)));
   writePictures(material, {"baseTexture", "metallicRoughnessTexture", "normalTexture",
@@ -220,7 +232,7 @@ void Materials::writePhysical(const Item& material) {
 // KHR_materials_unlit: the base colour is what is seen.
 void Materials::writeFlat(const Item& material) {
   nodes_.openIn("material", "UnlitMaterial");
-  nodes_.set("emissiveColor", colorOf(baseFactor(material), {1, 1, 1}));
+  nodes_.set("emissiveColor", encoded(baseColor(material)));
   nodes_.set("transparency", transparencyOf(material));
   writePictures(material, {"baseTexture"});
   nodes_.closeIn();
@@ -287,13 +299,33 @@ std::string Materials::urlOf(const Item& texture) {
   return url;
 }
 
+// Filters are hints (3.8.4.1), of which magFilter is followed. Mirroring needs TextureProperties,
+// which then say all.
 void Materials::writeSampler(const Item& texture) {
-  constexpr uint64_t clampToEdge = 33071;
+  constexpr uint64_t nearest = 9728, clampToEdge = 33071, mirroredRepeat = 33648;
   const auto number = texture.index("sampler", samplers_.size());
   if (!number) return;
   const Item& sampler = samplers_[*number];
-  if (sampler.count("wrapS", 0) == clampToEdge) nodes_.set("repeatS", false);
-  if (sampler.count("wrapT", 0) == clampToEdge) nodes_.set("repeatT", false);
+  const uint64_t s = sampler.count("wrapS", 0), t = sampler.count("wrapT", 0);
+  const bool blocks = sampler.count("magFilter", 0) == nearest,
+             mirrored = s == mirroredRepeat || t == mirroredRepeat;
+  if (s == clampToEdge) nodes_.set("repeatS", false);
+  if (t == clampToEdge) nodes_.set("repeatT", false);
+  if (!blocks && !mirrored) return;
+  if (!nodes_.knows("ImageTexture", "textureProperties")) {
+    if (mirrored) sampler.warn("MIRRORED_REPEAT is not supported: the picture is repeated");
+    return;
+  }
+  const auto mode = [](uint64_t wrap) {
+    return std::string(wrap == clampToEdge      ? "CLAMP_TO_EDGE"
+                       : wrap == mirroredRepeat ? "MIRRORED_REPEAT"
+                                                : "REPEAT");
+  };
+  nodes_.openIn("textureProperties", "TextureProperties");
+  nodes_.set("boundaryModeS", mode(s));
+  nodes_.set("boundaryModeT", mode(t));
+  if (blocks) nodes_.set("magnificationFilter", std::string("NEAREST_PIXEL"));
+  nodes_.closeIn();
 }
 
 void Materials::warnOfExtensions(const Item& material) {

@@ -19,6 +19,10 @@ struct TexCoordUse {
   bool operator==(const TexCoordUse&) const = default;
 };
 
+// Returns the sRGB code of a linear colour, 0 to 1. Colours of glTF are linear numbers, those of
+// nodes are sRGB.
+Color encoded(const Color& linear);
+
 class Materials {
  public:
   Materials(const MeshFile& file, NodeStream& nodes, const Item& root, Accessors& accessors);

@@ -199,7 +199,7 @@ void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices, bool 
                                              : "IndexedLineSet");
   // A Color node stands for the base colour, which glTF multiplies.
   const Color base = materials_.baseColor(material);
-  for (Color& c : vertices.colors) c = {c.r * base.r, c.g * base.g, c.b * base.b};
+  for (Color& c : vertices.colors) c = encoded({c.r * base.r, c.g * base.g, c.b * base.b});
   // The opacities of a ColorRGBA stand in place of the material's.
   if (const auto alpha = materials_.baseAlpha(material))
     for (float& a : vertices.alphas) a *= *alpha;

@@ -2,6 +2,7 @@
 // by name. Whatever does not fit is left out here, or reported by the reader of version 2.
 #include "parse/mesh/gltf/version1.h"
 
+#include <cmath>
 #include <unordered_map>
 
 namespace xvrml::gltf {
@@ -140,6 +141,16 @@ class Converter {
     }
   }
 
+  // Colours of version 1 are shown as they are, those of version 2 are linear.
+  static Json decoded(Json color) {
+    for (size_t i = 0; i < 3 && i < color.size(); ++i)
+      if (color[i].is_number()) {
+        const double v = color[i].get<double>();
+        color[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+      }
+    return color;
+  }
+
   // The values of the usual techniques: a colour or the name of a texture each.
   void convertMaterial(Json& material) {
     Json values = Json::object();
@@ -153,11 +164,11 @@ class Converter {
       if (const size_t* texture = placeOf(*diffuse, "textures"))
         pbr["baseColorTexture"] = {{"index", *texture}};
       else if (diffuse->is_array())
-        pbr["baseColorFactor"] = *diffuse;
+        pbr["baseColorFactor"] = decoded(*diffuse);
     }
     if (const auto emission = values.find("emission");
         emission != values.end() && emission->is_array() && emission->size() >= 3)
-      material["emissiveFactor"] = {(*emission)[0], (*emission)[1], (*emission)[2]};
+      material["emissiveFactor"] = decoded({(*emission)[0], (*emission)[1], (*emission)[2]});
     material["pbrMetallicRoughness"] = std::move(pbr);
     material["doubleSided"] = true;
   }

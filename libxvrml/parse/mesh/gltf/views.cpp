@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "parse/mesh/gltf/materials.h"
 #include "parse/mesh/gltf/scene.h"
 
 namespace xvrml::gltf {
@@ -42,38 +43,27 @@ static Color lightColor(const Item& light) {
   const auto rgb = light.numbers("color", 3);
   if (rgb.empty()) return {1, 1, 1};
   const auto part = [&](size_t i) { return float(std::clamp(rgb[i], 0.0, 1.0)); };
-  return {part(0), part(1), part(2)};
+  return encoded({part(0), part(1), part(2)});
 }
 
 // glTF's matt surfaces reflect 1/pi of the light, those of VRML and X3D all of it; so candela and
-// lux are divided by pi. Where a lamp may not be as strong as it should, a placed one gets a
-// smaller attenuation: it is the same light from the distance on at which a white surface is white.
-static void writeIntensity(NodeStream& out, const Item& light, std::string_view type) {
-  const bool placed = type != "DirectionalLight";
-  const double intensity = std::max(0.0, light.number("intensity", 1)) / std::numbers::pi;
-  const double most = out.maximum(type, "intensity");
-  out.set("intensity", float(std::min(intensity, most)));
-  if (!placed) return;
-  const double falloff = intensity > most ? most / intensity : 1;
-  out.set("attenuation", Vec3f{0, 0, float(falloff)});
+// lux are divided by pi.
+static double intensityOf(const Item& light) {
+  return std::max(0.0, light.number("intensity", 1)) / std::numbers::pi;
 }
 
-// Light decreases with the square of the distance. `range` ends it; without one it never ends.
-void writeLight(NodeStream& out, const Item& light) {
-  if (!light) return;
-  const std::string type = light.text("type"), name = light.text("name");
-  const bool spot = type == "spot";
-  if (!spot && type != "point" && type != "directional")
-    return light.error("the light has no type that is known (directional, point, spot)");
-  const bool placed = type != "directional";
-  const std::string_view node = spot ? "SpotLight" : placed ? "PointLight" : "DirectionalLight";
-  out.open(node, out.define(name, "Light"));
+// Light decreases with the square of the distance. `range` ends it; without one it never ends. A
+// lamp that may not be as strong as it should gets a smaller attenuation: it is the same light from
+// the distance on at which a white surface is white.
+static void writePlacedLight(NodeStream& out, const Item& light, const char* node) {
+  const double intensity = intensityOf(light), most = out.maximum(node, "intensity");
+  out.open(node, out.define(light.text("name"), "Light"));
   out.set("color", lightColor(light));
-  writeIntensity(out, light, node);
-  if (placed)
-    out.set("radius", float(light.has("range") ? std::max(0.0, light.number("range", 1)) : 1e9));
+  out.set("intensity", float(std::min(intensity, most)));
+  out.set("attenuation", Vec3f{0, 0, float(intensity > most ? most / intensity : 1)});
+  out.set("radius", float(light.has("range") ? std::max(0.0, light.number("range", 1)) : 1e9));
   if (out.knows(node, "global")) out.set("global", true);
-  if (spot) {
+  if (light.text("type") == "spot") {
     const Item cone = light.object("spot");
     const double half = std::numbers::pi / 2;
     const double outer = std::clamp(cone.number("outerConeAngle", half / 2), 1e-3, half);
@@ -82,6 +72,32 @@ void writeLight(NodeStream& out, const Item& light) {
     out.set("beamWidth", float(inner));
   }
   out.close();
+}
+
+// Several nodes are as strong together as one of them may not be.
+static void writeDirectionalLight(NodeStream& out, const Item& light) {
+  constexpr const char* node = "DirectionalLight";
+  constexpr double mostNodes = 16;
+  const double intensity = intensityOf(light), most = out.maximum(node, "intensity");
+  const double count = std::clamp(std::ceil(intensity / most), 1.0, mostNodes);
+  if (intensity > count * most)
+    light.warn("a directional light of more than 50 lux is not supported: 50 is used");
+  for (double i = 0; i < count; ++i) {
+    out.open(node, out.define(light.text("name"), "Light"));
+    out.set("color", lightColor(light));
+    out.set("intensity", float(std::min(intensity / count, most)));
+    if (out.knows(node, "global")) out.set("global", true);
+    out.close();
+  }
+}
+
+void writeLight(NodeStream& out, const Item& light) {
+  if (!light) return;
+  const std::string type = light.text("type");
+  if (type == "directional") return writeDirectionalLight(out, light);
+  if (type != "point" && type != "spot")
+    return light.error("the light has no type that is known (directional, point, spot)");
+  writePlacedLight(out, light, type == "spot" ? "SpotLight" : "PointLight");
 }
 
 } // namespace xvrml::gltf
