@@ -203,7 +203,7 @@ const Addition additions[] = {
     {"CylinderSensor", "axisRotation", Access::exposedField, Rotation(0, 1, 0, 0)},
     {"CylinderSensor", "description", Access::exposedField, SFString("")},
     {"CylinderSensor", "isOver", Access::eventOut, {}},
-    {"PlaneSensor", "axisRotation", Access::exposedField, Rotation(0, 1, 0, 0)},
+    {"PlaneSensor", "axisRotation", Access::exposedField, Rotation(0, 0, 1, 0)},
     {"PlaneSensor", "description", Access::exposedField, SFString("")},
     {"PlaneSensor", "isOver", Access::eventOut, {}},
     {"ProximitySensor", "centerOfRotation_changed", Access::eventOut, {}},
