@@ -142,12 +142,29 @@ constexpr std::string_view nodes[] = {"AcousticProperties",
 struct Field {
   std::string_view type, field;
 };
-constexpr Field fields[] = {{"Appearance", "acousticProperties"},
+constexpr Field fields[] = {{"Anchor", "autoRefresh"},
+                            {"Anchor", "autoRefreshTimeLimit"},
+                            {"Anchor", "load"},
+                            {"Appearance", "acousticProperties"},
                             {"Appearance", "shaders"},
+                            {"AudioClip", "autoRefresh"},
+                            {"AudioClip", "autoRefreshTimeLimit"},
                             {"AudioClip", "bufferDuration"},
+                            {"AudioClip", "enabled"},
+                            {"AudioClip", "load"},
+                            {"Collision", "isActive"},
+                            {"ComposedCubeMapTexture", "description"},
                             {"ElevationGrid", "attrib"},
                             {"ElevationGrid", "fogCoord"},
                             {"Fog", "fogType_changed"},
+                            {"GeneratedCubeMapTexture", "description"},
+                            {"ImageCubeMapTexture", "autoRefresh"},
+                            {"ImageCubeMapTexture", "autoRefreshTimeLimit"},
+                            {"ImageCubeMapTexture", "description"},
+                            {"ImageCubeMapTexture", "load"},
+                            {"ImageTexture", "autoRefresh"},
+                            {"ImageTexture", "autoRefreshTimeLimit"},
+                            {"ImageTexture", "load"},
                             {"IndexedFaceSet", "attrib"},
                             {"IndexedFaceSet", "fogCoord"},
                             {"IndexedLineSet", "attrib"},
@@ -164,11 +181,24 @@ constexpr Field fields[] = {{"Appearance", "acousticProperties"},
                             {"LineSet", "attrib"},
                             {"LineSet", "fogCoord"},
                             {"LineSet", "normal"},
+                            {"LoadSensor", "children"},
+                            {"MovieTexture", "autoRefresh"},
+                            {"MovieTexture", "autoRefreshTimeLimit"},
+                            {"MovieTexture", "enabled"},
+                            {"MovieTexture", "gain"},
+                            {"MovieTexture", "load"},
+                            {"MovieTexture", "pitch"},
+                            {"MultiTexture", "description"},
                             {"PointSet", "attrib"},
                             {"PointSet", "fogCoord"},
                             {"PointSet", "normal"},
                             {"QuadSet", "attrib"},
                             {"QuadSet", "fogCoord"},
+                            {"Script", "autoRefresh"},
+                            {"Script", "autoRefreshTimeLimit"},
+                            {"Script", "load"},
+                            {"Sound", "description"},
+                            {"Sound", "enabled"},
                             {"TriangleFanSet", "attrib"},
                             {"TriangleFanSet", "fogCoord"},
                             {"TriangleSet", "attrib"},
@@ -197,9 +227,22 @@ constexpr Renamed renamed[] = {
     {"Switch", "children_changed", "choice_changed"},
 };
 
+// Names of X3D 4 for fields that X3D 3 has, too (ISO/IEC 19775-1:2023 34.4.1). They are read, and
+// written as in X3D 3.
+constexpr Renamed renamedSince4[] = {
+    {"ComposedCubeMapTexture", "backTexture", "back"},
+    {"ComposedCubeMapTexture", "bottomTexture", "bottom"},
+    {"ComposedCubeMapTexture", "frontTexture", "front"},
+    {"ComposedCubeMapTexture", "leftTexture", "left"},
+    {"ComposedCubeMapTexture", "rightTexture", "right"},
+    {"ComposedCubeMapTexture", "topTexture", "top"},
+};
+
 } // namespace
 
 std::string_view ownName(std::string_view type, std::string_view name) {
+  for (const Renamed& one : renamedSince4)
+    if (one.type == type && one.x3d == name) return one.own;
   for (const Renamed& one : renamed)
     if (one.type == type && one.x3d == name) return one.own;
   return name;
@@ -214,6 +257,16 @@ std::string_view x3dName(std::string_view type, std::string_view name, int versi
 const Value* x3dDefault(std::string_view type, std::string_view field) {
   static const Value navigation = MFString{"EXAMINE", "ANY"}; // ISO/IEC 19775-1 23.4.4
   return type == "NavigationInfo" && field == "type" ? &navigation : nullptr;
+}
+
+bool isAngleField(std::string_view type, std::string_view field) {
+  constexpr std::string_view names[] = {"beamWidth", "creaseAngle", "cutOffAngle", "diskAngle",
+                                        "endAngle",  "fieldOfView", "groundAngle", "maxAngle",
+                                        "minAngle",  "skyAngle",    "startAngle"};
+  if (field == "rotation") return type == "TextureTransform";
+  if (field == "offset") return type == "CylinderSensor";
+  if (field == "fieldOfView") return type != "OrthoViewpoint" && type != "TextureProjectorParallel";
+  return std::find(std::begin(names), std::end(names), field) != std::end(names);
 }
 
 bool isX3dNode(std::string_view type) {

@@ -29,6 +29,8 @@ std::string_view ownName(std::string_view type, std::string_view name);
 // version of X3D.
 std::string_view x3dName(std::string_view type, std::string_view name, int version);
 
+// Returns whether the numbers of a field of ours, which are no rotations, are angles.
+bool isAngleField(std::string_view type, std::string_view field);
 // Returns the default of a field of VRML97 where X3D gives it another one; null: they are the same.
 const Value* x3dDefault(std::string_view type, std::string_view field);
 

@@ -20,6 +20,7 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addTimeSensorBehaviours(add);
   addAudioClipBehaviours(add);
   addMovieTextureBehaviours(add);
+  addTextBehaviours(add);
 }
 
 } // namespace xvrml

@@ -31,5 +31,6 @@ void addLoadSensorBehaviours(const AddBehaviour& add);
 void addTimeSensorBehaviours(const AddBehaviour& add);
 void addAudioClipBehaviours(const AddBehaviour& add);
 void addMovieTextureBehaviours(const AddBehaviour& add);
+void addTextBehaviours(const AddBehaviour& add);
 
 } // namespace xvrml

@@ -32,6 +32,7 @@ bool loadInlineContent(Engine& engine, Node& node) {
   engine.contentUnloading(node);
   // The old content is destroyed here unless something else refers to it.
   const std::shared_ptr<const Scope> old = std::exchange(inlineNode->content, nullptr);
+  inlineNode->exchange = nullptr;
   inlineNode->share.clear();
   inlineNode->tried = false;
   const BudgetPtr budget = budgetOf(world);

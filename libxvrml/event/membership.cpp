@@ -9,10 +9,31 @@
 #include "event/engine.h"
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
+#include "graph/inline_node.h"
 #include "graph/node_kinds.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
+
+namespace {
+
+// Adds or deletes the routes between the file of an Inline and the nodes that it imports from the
+// content.
+template <class Edit>
+void eachImportedRoute(const Node& inlineNode, Diagnostics& diagnostics, const Edit& edit) {
+  const auto* node = dynamic_cast<const InlineNode*>(&inlineNode);
+  const std::shared_ptr<Exchange> importer = node ? node->importer.lock() : nullptr;
+  if (!importer || !node->content) return;
+  for (const ResolvedRoute& route : resolveImports(*importer, node, diagnostics)) edit(route);
+}
+
+void connectImports(Engine& engine, const Node& inlineNode) {
+  eachImportedRoute(inlineNode, engine.diagnostics(), [&](const ResolvedRoute& route) {
+    engine.addRoute(*route.from, route.out->name, *route.to, route.in->name);
+  });
+}
+
+} // namespace
 
 struct Engine::AdoptedNodes {
   std::vector<NodeRef> nodes; // in the order of the files
@@ -175,6 +196,8 @@ void Engine::complete(AdoptedNodes& adopted) {
   for (const Scope* scope : adopted.scopes)
     for (const Route& route : scope->routes)
       if (route.from && route.to) addRoute(*route.from, route.fromField, *route.to, route.toField);
+  for (const NodeRef& node : adopted.nodes)
+    if (node->type().index == nodes::Inline::typeIndex) connectImports(*this, *node);
   for (const NodeRef& node : adopted.nodes) {
     if (auto* script = node->type().index < 0 ? dynamic_cast<ScriptNode*>(node.get()) : nullptr) {
       if (!scripts) continue;
@@ -210,6 +233,7 @@ void Engine::contentLoaded(Node& inlineNode) {
   adoptScope(*content, false);
   for (const NodeRef& root : content->roots)
     if (root) linkChild(inlineNode, *root);
+  connectImports(*this, inlineNode);
 }
 
 // Routes hold their nodes, and those of the old content would keep it alive. An Inline that shares
@@ -217,6 +241,9 @@ void Engine::contentLoaded(Node& inlineNode) {
 void Engine::contentUnloading(Node& inlineNode) {
   const Scope* content = inlineScope(inlineNode);
   if (!content || !inlineNode.live) return;
+  eachImportedRoute(inlineNode, diagnostics_, [&](const ResolvedRoute& route) {
+    deleteRoute(*route.from, route.out->name, *route.to, route.in->name);
+  });
   for (const Route& route : content->routes)
     if (route.from && route.to) deleteRoute(*route.from, route.fromField, *route.to, route.toField);
   for (const NodeRef& root : content->roots)

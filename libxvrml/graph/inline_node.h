@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/budget.h"
+#include "graph/exchange.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
@@ -12,6 +13,8 @@ struct InlineNode : nodes::Inline {
   using nodes::Inline::Inline;
   std::shared_ptr<const Scope> content; // null until it is loaded
   bool tried = false;                   // its urls were tried; without content they cannot be read
+  std::shared_ptr<Exchange> exchange;   // what the file of the content shares; null: nothing
+  std::weak_ptr<Exchange> importer;     // what this node's own file imports from the content
   Share share; // reservation of the world's budget for content that a running world has loaded
 };
 

@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "base/budget.h"
+#include "graph/exchange.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -38,8 +39,9 @@ struct LoadState {
 struct ParsedFile {
   FileHead head;
   Scope scope;
-  std::vector<NodeRef> instances; // prototype instances to expand
-  std::vector<NodeRef> inlines;   // Inline nodes to load
+  std::vector<NodeRef> instances;     // prototype instances to expand
+  std::vector<NodeRef> inlines;       // Inline nodes to load
+  std::shared_ptr<Exchange> exchange; // null: the file neither imports nor exports
 };
 
 } // namespace xvrml

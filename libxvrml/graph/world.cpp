@@ -2,6 +2,7 @@
 #include "xvrml/world.h"
 
 #include "base/budget.h"
+#include "graph/exchange.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
 
@@ -26,6 +27,7 @@ Node* renderedNode(Node* node) {
 // contains the Script.
 World::~World() {
   forgetBudget(*this);
+  forgetExchange(*this);
   for (const NodeRef& node : cyclic) {
     for (const FieldInfo& field : node->type().fields) {
       if (!holdsNodes(field)) continue;

@@ -53,6 +53,7 @@ void write(const RTparameterInfo& parameter, int handle, std::span<const float> 
   switch (values.size()) {
   case 1: return rtParameter1f(handle, v[0]);
   case 3: return rtParameter3f(handle, v[0], v[1], v[2]);
+  case 4: return rtParameter4f(handle, v[0], v[1], v[2], v[3]);
   case 16: return rtParameter16f(handle, v);
   }
 }

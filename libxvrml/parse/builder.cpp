@@ -203,7 +203,11 @@ std::string_view Builder::fieldFor(std::string_view name, bool use) const {
   if (use ? !scopes_.back().scope->names.contains(name) : !typeNamed(name)) return {};
   const NodeType* const type = typeOf(name, use);
   const NodeType& parent = nodes_.back().node->type();
-  const std::string_view usual = type ? containerOf(*type) : "children";
+  std::string_view usual = type ? containerOf(*type) : "children";
+  // In X3D 4 the parts of a MetadataSet need not say that they are its value.
+  if (usual == "metadata" && file_.head.version.major >= 4 &&
+      parent.index == nodes::MetadataSet::typeIndex)
+    usual = "value";
   const auto takes = [&](const FieldInfo& field) {
     return holdsValue(field) && holdsNodes(field) &&
            (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type));
@@ -363,9 +367,15 @@ void Builder::closeField(bool good) {
   const FieldInfo& field = *frame.field;
   if (holdsNodes(field)) {
     nodeTargets_.pop_back();
-  } else if (!good) {
+    return;
+  }
+  if (!good) {
     frame.node->set(field, field.defaultValue);
-  } else if (hasNormalizedAxes(field)) {
+    return;
+  }
+  if (angle_ != 1 && isAngle(*frame.node, field))
+    convertAngles(field.type, frame.node->storage(field));
+  if (hasNormalizedAxes(field)) {
     Rotation first;
     const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);
     if (outside > 0)

@@ -15,7 +15,7 @@ namespace xvrml {
 class Builder : public ParseSink {
  public:
   Builder(Locator& locator, LoadState& state, ParsedFile& file);
-  void dropUnplacedNames(); // called at the end of the file or of a prototype's body
+  void finish(); // called at the end of the file
   bool openNode(const Name& type, const Name* def) override;
   void closeNode(bool good) override;
   SourcePosition openNodePlace() const override;
@@ -47,7 +47,8 @@ class Builder : public ParseSink {
   void component(const Name& name, int32_t level) override;
   void meta(const Name& keyword, std::string name, std::string content) override;
   void unit(const Name& category, const Name& name, double factor) override;
-  void importNode(const Name& keyword, const Name& local) override;
+  void importNode(const Name& keyword, const ImportNames& names) override;
+  void exportNode(const Name& node, const Name& exported) override;
 
  private:
   // Sizes of the lists that grow while a node is read. rollBack() restores them if the node is
@@ -106,6 +107,12 @@ class Builder : public ParseSink {
   bool inTemplate() const { return scopes_.size() > 1; }
   void pushScope(Scope* scope, ProtoPtr proto, std::shared_ptr<NodeType> type);
   void popScope();
+  void dropUnplacedNames();
+  Exchange& exchange();
+  bool isImported(std::string_view name) const;
+  bool isAngle(const Node& node, const FieldInfo& field) const;
+  void convertAngles(FieldType type, void* storage) const;
+  bool importedRoute(const Name& keyword, const RouteNames& names);
   bool reserveMemory(uint64_t bytes, const Name& at);
   bool makeNode(const Name& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
@@ -146,6 +153,9 @@ class Builder : public ParseSink {
   std::vector<NodeTarget> nodeTargets_;
   std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1 of named nodes
   std::unordered_set<std::string> reported_;           // nodes and fields of X3D that were reported
+  std::unordered_map<std::string_view, size_t> imports_; // numbers in Exchange::imports
+  std::vector<std::pair<Name, Name>> exports_;           // nodes, and the names they are given
+  double angle_ = 1;                                     // radians in the file's unit of angles
   const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 

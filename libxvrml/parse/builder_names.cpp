@@ -62,6 +62,21 @@ void Builder::keepNames(const Mark& mark) {
       names.emplace_back(scope().defined[i], found->second);
 }
 
+// Ends the file: its statements EXPORT may name nodes that were defined after them.
+void Builder::finish() {
+  dropUnplacedNames();
+  for (const auto& [name, exported] : exports_) {
+    if (isImported(name.text)) {
+      locator_.error(name.at, fmt::format("{} is imported: a file exports its own nodes only "
+                                          "(ISO/IEC 19775-1 4.4.6)",
+                                          describe(name)));
+    } else if (const NodeRef node = findName(name)) {
+      if (reserveMemory(bytesOfName + exported.text.size(), name))
+        exchange().exports.push_back({node, std::string(exported.text)});
+    }
+  }
+}
+
 // Drops the names of misplaced nodes that no USE and no ROUTE has put in a better place. Such nodes
 // belong to no world, and a written file could not contain them. The former owner of a name gets it
 // back.
@@ -108,6 +123,12 @@ NodeRef Builder::findName(const Name& name) {
   const auto& names = scope().scope->names;
   const auto found = names.find(name.text);
   if (found != names.end()) return found->second;
+  if (isImported(name.text)) {
+    locator_.error(name.at, fmt::format("{} is imported: only routes can refer to it (ISO/IEC "
+                                        "19775-1 4.4.6)",
+                                        describe(name)));
+    return {};
+  }
   if (scope().lost.contains(name.text)) {
     locator_.warn(name.at, fmt::format("{} was left out above", describe(name)));
     return {};
@@ -150,6 +171,7 @@ void Builder::useNode(const Name& name) {
 }
 
 void Builder::route(const Name& keyword, const RouteNames& names) {
+  if (importedRoute(keyword, names)) return;
   const NodeRef from = findName(names.from);
   const NodeRef to = findName(names.to);
   if (!from || !to) return;

@@ -142,6 +142,18 @@ void Builder::closeDeclaration(bool good) {
     std::vector<ProtoPtr>& outer = scopes_[scopes_.size() - 2].scope->prototypes;
     outer.insert(outer.end(), local.begin(), local.end());
   }
+  const bool rotation = declaration.field.type == FieldType::SFRotation ||
+                        declaration.field.type == FieldType::MFRotation;
+  if (angle_ != 1 && rotation && declaration.hasValue && good) {
+    NodeFrame* const script = isScript() ? &nodes_.back() : nullptr;
+    const FieldInfo* const own =
+        script ? script->node->type().find(declaration.field.name) : nullptr;
+    if (own && own->type == declaration.field.type && declaration.accepted)
+      convertAngles(own->type, script->node->storage(*own));
+    else if (!script)
+      convertAngles(declaration.field.type, std::visit([](auto& value) -> void* { return &value; },
+                                                       declaration.field.defaultValue));
+  }
   if (good && declaration.accepted && !isScript())
     addField(*scope().protoType, std::move(declaration.field));
 }
@@ -164,8 +176,17 @@ void Builder::openProtoBody() {}
 
 void Builder::closeProto(bool good) {
   const ProtoPtr proto = scope().proto;
+  const std::shared_ptr<NodeType> type = scope().protoType;
   popScope();
   if (!good) return;
+  if (angle_ != 1 && !proto->isExtern) {
+    const NodeRef instance(new ProtoInstance(type, proto));
+    for (FieldInfo& field : type->fields)
+      if ((field.type == FieldType::SFFloat || field.type == FieldType::MFFloat) &&
+          isAngle(*instance, field))
+        convertAngles(field.type,
+                      std::visit([](auto& value) -> void* { return &value; }, field.defaultValue));
+  }
   if (!proto->isExtern && proto->body.roots.empty()) {
     state_.diagnostics.warn(
         proto->source,

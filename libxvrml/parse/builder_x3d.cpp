@@ -1,8 +1,13 @@
 // builder_x3d.cpp: the statements of X3D, its spellings of names, and what it has and we lack
 // (ISO/IEC 19775-1).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "base/x3d.h"
+#include "graph/inline_node.h"
 #include "nearest.h"
 #include "parse/builder.h"
 #include "parse/source.h"
@@ -98,20 +103,154 @@ void Builder::meta(const Name& keyword, std::string name, std::string content) {
     file_.head.meta.push_back({std::move(name), std::move(content)});
 }
 
+// UNIT: angles are converted where they are read. The length counts where the file is the content
+// of an Inline (Loader::setContent); nothing that we have depends on mass and force.
 void Builder::unit(const Name& category, const Name& name, double factor) {
-  if (!reserveMemory(bytesOfName + category.text.size() + name.text.size(), category)) return;
-  const bool matters = category.text == "length" || category.text == "angle";
-  if (matters && factor != 1)
+  constexpr std::string_view categories[] = {"angle", "force", "length", "mass"};
+  const bool known = std::find(std::begin(categories), std::end(categories), category.text) !=
+                     std::end(categories);
+  const auto& units = file_.head.units;
+  const bool twice = std::any_of(units.begin(), units.end(), [&](const FileHead::Unit& one) {
+    return one.category == category.text;
+  });
+  if (!(factor >= 1e-15 && factor <= 1e15)) { // a quotient of two is a float, too
+    locator_.error(name.at,
+                   fmt::format("one {} is {} {}s: expected a number from 1e-15 to 1e15; the unit "
+                               "is left out",
+                               describe(name), factor, known ? category.text : "unit"));
+    return;
+  }
+  if (!known || twice) {
     locator_.warn(category.at,
-                  fmt::format("units are not applied: numbers in {} are taken as {}",
-                              describe(name), category.text == "length" ? "metres" : "radians"));
+                  fmt::format("{}: the unit is left out",
+                              known ? fmt::format("there is a unit of {} already", category.text)
+                                    : fmt::format("{} has no unit: expected angle, force, length "
+                                                  "or mass (ISO/IEC 19775-1 4.3.6)",
+                                                  describe(category))));
+    return;
+  }
+  if (!reserveMemory(bytesOfName + category.text.size() + name.text.size(), category)) return;
+  if (category.text == "angle") angle_ = factor;
+  if (category.text == "length") setLengthUnit(locator_.file(), factor);
   file_.head.units.push_back({std::string(category.text), std::string(name.text), factor});
 }
 
-void Builder::importNode(const Name& keyword, const Name& local) {
-  locator_.warn(keyword.at, fmt::format("IMPORT is not supported: what refers to {} is left out",
-                                        describe(local)));
-  lostName(local);
+// Returns whether the numbers of a field are angles. A field of a prototype's interface is what it
+// IS in the body.
+bool Builder::isAngle(const Node& node, const FieldInfo& field) const {
+  if (field.type == FieldType::SFRotation || field.type == FieldType::MFRotation) return true;
+  if (field.type != FieldType::SFFloat && field.type != FieldType::MFFloat) return false;
+  std::vector<std::pair<const Node*, std::string_view>> open{{&node, field.name}};
+  for (size_t i = 0; i < open.size() && i < 1000; ++i) {
+    const auto [one, name] = open[i];
+    if (one->type().index >= 0 && isAngleField(one->type().name, name)) return true;
+    if (const auto* instance = dynamic_cast<const ProtoInstance*>(one))
+      for (const IsConnection& connection : instance->declaration->is)
+        if (connection.interfaceName == name)
+          open.emplace_back(connection.node.get(), connection.field);
+  }
+  return false;
+}
+
+// Converts angles in the file's unit to radians.
+void Builder::convertAngles(FieldType type, void* storage) const {
+  constexpr double most = std::numeric_limits<float>::max();
+  const auto inRadians = [&](float angle) {
+    return std::clamp(double(angle) * angle_, -most, most); // a file's NaN stays one
+  };
+  const auto turn = [&](float& angle) { angle = float(inRadians(angle)); };
+  // 180 degrees must not become more than pi, where the range of a field ends.
+  const auto convert = [&](float& angle) {
+    const double exact = inRadians(angle);
+    angle = float(exact);
+    if (std::abs(double(angle)) > std::abs(exact)) angle = std::nextafter(angle, 0.0f);
+  };
+  if (type == FieldType::SFFloat) convert(*static_cast<SFFloat*>(storage));
+  if (type == FieldType::SFRotation) turn(static_cast<SFRotation*>(storage)->angle);
+  if (type == FieldType::MFFloat)
+    for (float& one : *static_cast<MFFloat*>(storage)) convert(one);
+  if (type == FieldType::MFRotation)
+    for (Rotation& one : *static_cast<MFRotation*>(storage)) turn(one.angle);
+}
+
+Exchange& Builder::exchange() {
+  if (!file_.exchange) file_.exchange = std::make_shared<Exchange>();
+  return *file_.exchange;
+}
+
+bool Builder::isImported(std::string_view name) const {
+  return !inTemplate() && imports_.contains(name);
+}
+
+// IMPORT: the name is for routes. They are connected when the Inline has its content.
+void Builder::importNode(const Name& keyword, const ImportNames& names) {
+  if (inTemplate()) {
+    locator_.warn(keyword.at, fmt::format("IMPORT in a prototype is not supported: what refers to "
+                                          "{} is left out",
+                                          describe(names.local)));
+    return lostName(names.local);
+  }
+  const NodeRef node = findName(names.inlineName);
+  auto* const inlineNode = node ? dynamic_cast<InlineNode*>(node.get()) : nullptr;
+  if (node && !inlineNode)
+    locator_.error(names.inlineName.at,
+                   fmt::format("IMPORT takes nodes from the file of an Inline, but {} is a node of "
+                               "type {}",
+                               describe(names.inlineName), node->type().name));
+  const bool taken =
+      scope().scope->names.contains(names.local.text) || imports_.contains(names.local.text);
+  if (inlineNode && taken)
+    locator_.error(names.local.at, fmt::format("the name {} of an imported node is taken already "
+                                               "(ISO/IEC 19775-1 4.4.6)",
+                                               describe(names.local)));
+  if (inlineNode && taken) return;
+  if (!inlineNode ||
+      !reserveMemory(bytesOfName + names.exported.text.size() + names.local.text.size(), keyword))
+    return lostName(names.local);
+  inlineNode->importer = (exchange(), file_.exchange);
+  imports_.emplace(names.local.text, exchange().imports.size());
+  exchange().imports.push_back({node, std::string(names.exported.text),
+                                std::string(names.local.text), locator_.place(keyword.at)});
+}
+
+void Builder::exportNode(const Name& node, const Name& exported) {
+  if (inTemplate()) {
+    locator_.error(node.at, "EXPORT cannot stand in a prototype (ISO/IEC 19775-1 4.4.6)");
+    return;
+  }
+  exports_.emplace_back(node, exported);
+}
+
+// Keeps a route with an imported end until the Inline has its content. Returns false if neither end
+// is imported.
+bool Builder::importedRoute(const Name& keyword, const RouteNames& names) {
+  if (!isImported(names.from.text) && !isImported(names.to.text)) return false;
+  const auto end = [&](const Name& name, const Name& field, bool out) {
+    Exchange::End result{{}, 0, std::string(field.text)};
+    if (isImported(name.text)) {
+      result.import = imports_.at(name.text);
+    } else if ((result.node = findName(name))) {
+      const NodeType& type = result.node->type();
+      const std::string_view own = spelled(type, field.text);
+      const bool has = out ? type.findEventOut(own) : type.findEventIn(own);
+      if (!has && !isMissingField(type, field))
+        locator_.error(field.at, fmt::format("{} has no {} {}", type.name,
+                                             word(out ? Access::eventOut : Access::eventIn),
+                                             describe(field)));
+      if (has)
+        scope().placed.insert(name.text);
+      else
+        result.node = {};
+    }
+    return result;
+  };
+  const Exchange::End from = end(names.from, names.fromField, true);
+  const Exchange::End to = end(names.to, names.toField, false);
+  const bool good =
+      (from.node || isImported(names.from.text)) && (to.node || isImported(names.to.text));
+  if (!good || !reserveMemory(bytesOfRoute, keyword)) return true;
+  exchange().routes.push_back({from, to, locator_.place(keyword.at)});
+  return true;
 }
 
 } // namespace xvrml

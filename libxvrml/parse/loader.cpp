@@ -62,6 +62,7 @@ void Loader::load(const Source& source, const std::string& name,
   complete(file, depth_);
   world_.scope = std::move(file.scope);
   world_.head = std::move(file.head);
+  setExchange(world_, std::move(file.exchange));
   if (composed_) checkSize(world_.scope);
   world_.times.load = secondsSince(start) - world_.times.parse;
 }
@@ -82,14 +83,14 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
     Builder builder(locator, state_, file);
     X3dElements elements(locator, limits, builder, budget_.get());
     readX3dXml(text, locator, elements);
-    return builder.dropUnplacedNames();
+    return builder.finish();
   }
   case Encoding::x3dJson: {
     Locator locator(source.text(), name, state_.diagnostics);
     Builder builder(locator, state_, file);
     X3dElements elements(locator, limits, builder, budget_.get());
     readX3dJson(locator, budget_, elements);
-    return builder.dropUnplacedNames();
+    return builder.finish();
   }
   case Encoding::vrml1: {
     Locator locator(source.text(), name, state_.diagnostics);
@@ -108,7 +109,7 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
     Lexer lexer(locator);
     Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();
   }
-  builder.dropUnplacedNames();
+  builder.finish();
 }
 
 void Loader::complete(ParsedFile& file, uint64_t depth) {
@@ -116,6 +117,24 @@ void Loader::complete(ParsedFile& file, uint64_t depth) {
   expander_.expand(file.instances, file.inlines);
   if (!state_.options.loadInlines) return;
   for (const NodeRef& node : file.inlines) loadInline(static_cast<InlineNode&>(*node), depth + 1);
+  if (file.exchange) resolveImports(*file.exchange, nullptr, state_.diagnostics); // reports
+}
+
+// Gives an Inline the content of a file. Where the file has another unit of lengths than that of
+// the Inline, a Transform around the content converts them (ISO/IEC 19775-1 4.3.6).
+void Loader::setContent(InlineNode& node, const InlinedFile& file) {
+  node.content = file.content;
+  node.exchange = file.exchange;
+  const auto scale = float(file.length / lengthUnit(node.source.file));
+  if (scale == 1 || file.content->roots.empty()) return;
+  auto* const transform = new nodes::Transform();
+  transform->source = file.content->roots[0] ? file.content->roots[0]->source : node.source;
+  transform->scale = {scale, scale, scale};
+  transform->children = file.content->roots;
+  ++world_.nodeCount;
+  auto scaled = std::make_shared<Scope>(*file.content);
+  scaled->roots = {NodeRef(transform)};
+  node.content = std::move(scaled);
 }
 
 void Loader::loadInline(InlineNode& node, uint64_t depth) {
@@ -155,7 +174,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     const bool copy =
         known.changing && copied_ + known.bytes <= std::min(maxCopiedBytes, budget_->left());
     if (!copy) {
-      node.content = known.content;
+      setContent(node, known);
       return true;
     }
     copied_ += known.bytes;
@@ -173,9 +192,12 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     InlinedFile& entry = inlined_[key];
     entry.reading = false;
     entry.bytes = budget_->used() - std::min(budget_->used(), before);
-    entry.changing = state_.routes > routes || state_.scripts > scripts;
+    entry.changing = state_.routes > routes || state_.scripts > scripts ||
+                     (file.exchange && !file.exchange->exports.empty());
     entry.content = std::make_shared<const Scope>(std::move(file.scope));
-    node.content = entry.content;
+    entry.exchange = std::move(file.exchange);
+    entry.length = lengthUnit(name);
+    setContent(node, entry);
     return true;
   } catch (const LoadError& error) {
     reason = error.diagnostic.text();

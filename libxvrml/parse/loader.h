@@ -29,8 +29,10 @@ class Loader {
   // Holds a file that Inlines load; `content` is null while it is read.
   struct InlinedFile {
     std::shared_ptr<const Scope> content;
+    std::shared_ptr<Exchange> exchange;
+    double length = 1;     // metres in its unit of lengths
     uint64_t bytes = 0;    // estimated size in memory
-    bool changing = false; // has routes or Scripts, so each Inline needs its own copy
+    bool changing = false; // has routes, Scripts or exports, so each Inline needs its own copy
     bool reading = false;
   };
 
@@ -40,6 +42,7 @@ class Loader {
   void loadInline(InlineNode& node, uint64_t depth);
   bool loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth,
                       std::string& reason);
+  void setContent(InlineNode& node, const InlinedFile& file);
   ProtoPtr resolveExtern(ProtoDeclaration& declaration);
   ProtoPtr findIn(const std::string& path, const std::string& name, std::string& reason);
   void checkInterface(const ProtoDeclaration& wanted, const ProtoDeclaration& found);

@@ -69,13 +69,14 @@ bool Parser::unitStatement() {
 
 // importStatement ::= IMPORT inlineNodeNameId . exportedNodeNameId [AS nodeNameId]
 bool Parser::importStatement(const Token& keyword) {
-  Token inlineName, local;
-  if (!routeEnd(inlineName, local)) return false;
+  Token inlineName, exported, local;
+  if (!routeEnd(inlineName, exported)) return false;
+  local = exported;
   if (lexer_.peek().is("AS")) {
     lexer_.next();
     if (!name(local, "a name after AS")) return false;
   }
-  sink_.importNode(keyword, local);
+  sink_.importNode(keyword, {inlineName, exported, local});
   return true;
 }
 
@@ -83,9 +84,13 @@ bool Parser::importStatement(const Token& keyword) {
 bool Parser::exportStatement() {
   Token node, exported;
   if (!name(node, "the name of a node")) return false;
-  if (!lexer_.peek().is("AS")) return true;
-  lexer_.next();
-  return name(exported, "a name after AS");
+  exported = node;
+  if (lexer_.peek().is("AS")) {
+    lexer_.next();
+    if (!name(exported, "a name after AS")) return false;
+  }
+  sink_.exportNode(node, exported);
+  return true;
 }
 
 } // namespace xvrml

@@ -16,6 +16,7 @@ void loadAgain(World& world, InlineNode& node) {
   if (!world.options.loadInlines) return;
   // Destroyed here if nothing else refers to it.
   const std::shared_ptr<const Scope> old = std::exchange(node.content, nullptr);
+  node.exchange = nullptr;
   node.share.clear();
   node.tried = false;
   const BudgetPtr budget = budgetOf(world);

@@ -82,14 +82,18 @@ class ParseSink {
   virtual void route(const Name& keyword, const RouteNames& names) = 0;
 
   // The statements of X3D (ISO/IEC 19775-1 7.2.5). A unit of a category is `factor` of the
-  // standard's. IMPORT inlineName.exported AS local. EXPORT is only checked by the reader: nothing
-  // can import from this file yet.
+  // standard's. IMPORT inlineName.exported AS local. EXPORT node AS exported; the node may be
+  // defined further down.
   virtual void version(int major, int minor) = 0; // of X3D, where the reader finds it
   virtual void profile(const Name& name) = 0;
   virtual void component(const Name& name, int32_t level) = 0;
   virtual void meta(const Name& keyword, std::string name, std::string content) = 0;
   virtual void unit(const Name& category, const Name& name, double factor) = 0;
-  virtual void importNode(const Name& keyword, const Name& local) = 0;
+  struct ImportNames {
+    Name inlineName, exported, local;
+  };
+  virtual void importNode(const Name& keyword, const ImportNames& names) = 0;
+  virtual void exportNode(const Name& node, const Name& exported) = 0;
 };
 
 } // namespace xvrml

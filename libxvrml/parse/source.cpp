@@ -385,19 +385,20 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
 
 namespace {
 
-// The deleter of a file's name. It stores the file's comments, depth and version, so that they live
-// as long as the name, which all nodes of the file share.
+// The deleter of a file's name. It stores the file's comments, depth, version and unit of lengths,
+// so that they live as long as the name, which all nodes of the file share.
 struct NameDeleter {
   std::string comments;
   uint64_t depth = 0;
   FileVersion version{};
+  double metres = 1;
   void operator()(const std::string* name) const { delete name; }
 };
 
 } // namespace
 
 std::shared_ptr<const std::string> fileName(const std::string& name, uint64_t depth) {
-  return {new std::string(name), NameDeleter{{}, depth, {}}};
+  return {new std::string(name), NameDeleter{{}, depth, {}, 1}};
 }
 
 uint64_t fileDepth(const std::shared_ptr<const std::string>& file) {
@@ -412,6 +413,15 @@ FileVersion fileVersion(const std::shared_ptr<const std::string>& file) {
 
 void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVersion& version) {
   if (NameDeleter* known = std::get_deleter<NameDeleter>(file)) known->version = version;
+}
+
+double lengthUnit(const std::shared_ptr<const std::string>& file) {
+  const NameDeleter* known = std::get_deleter<NameDeleter>(file);
+  return known ? known->metres : 1;
+}
+
+void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres) {
+  if (NameDeleter* known = std::get_deleter<NameDeleter>(file)) known->metres = metres;
 }
 
 FileVersion versionOf(const Node& node) { return fileVersion(node.source.file); }
@@ -450,7 +460,7 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
       comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   }
-  return {new std::string(name), NameDeleter{std::move(comments), depth, {}}};
+  return {new std::string(name), NameDeleter{std::move(comments), depth, {}, 1}};
 }
 
 std::string_view openingComments(const World& world) {

@@ -47,6 +47,9 @@ uint64_t fileDepth(const std::shared_ptr<const std::string>& file);
 // names and for null.
 FileVersion fileVersion(const std::shared_ptr<const std::string>& file);
 void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVersion& version);
+// Return and set the metres in the unit of lengths of the file of this name; 1 for other names.
+double lengthUnit(const std::shared_ptr<const std::string>& file);
+void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres);
 
 class Source {
  public:

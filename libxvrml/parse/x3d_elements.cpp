@@ -263,7 +263,7 @@ void X3dElements::openStatement(const Name& element, Attributes attributes) {
                                  {"ProtoDeclare", false, &X3dElements::openProto},
                                  {"ExternProtoDeclare", false, &X3dElements::openExternProto},
                                  {"IMPORT", false, &X3dElements::import},
-                                 {"EXPORT", false, nullptr},
+                                 {"EXPORT", false, &X3dElements::exportNode},
                                  {"fieldValue", true, &X3dElements::openFieldValue},
                                  {"field", true, &X3dElements::openDeclaration},
                                  {"IS", true, nullptr}};
@@ -295,12 +295,28 @@ void X3dElements::route(const Name& element, Attributes attributes) {
   push(Kind::leaf, element);
 }
 
+// IMPORT inlineDEF importedDEF AS. X3D 3.0 said exportedDEF.
 void X3dElements::import(const Name& element, Attributes attributes) {
-  Name local;
-  std::string_view which = "importedDEF"; // X3D 3.0 said exportedDEF
-  for (const std::string_view other : {"AS", "exportedDEF"})
-    if (which == "importedDEF" && findAttribute(attributes, other)) which = other;
-  if (nameOf(local, element, attributes, which)) sink_.importNode(element, local);
+  const bool old = !findAttribute(attributes, "importedDEF");
+  ParseSink::ImportNames names;
+  const bool good =
+      nameOf(names.inlineName, element, attributes, "inlineDEF") &&
+      nameOf(names.exported, element, attributes,
+             old && findAttribute(attributes, "exportedDEF") ? "exportedDEF" : "importedDEF");
+  names.local = names.exported;
+  if (good && (!findAttribute(attributes, "AS") || nameOf(names.local, element, attributes, "AS")))
+    sink_.importNode(element, names);
+  push(Kind::leaf, element);
+}
+
+// EXPORT localDEF AS
+void X3dElements::exportNode(const Name& element, Attributes attributes) {
+  Name node, exported;
+  if (nameOf(node, element, attributes, "localDEF")) {
+    exported = node;
+    if (!findAttribute(attributes, "AS") || nameOf(exported, element, attributes, "AS"))
+      sink_.exportNode(node, exported);
+  }
   push(Kind::leaf, element);
 }
 

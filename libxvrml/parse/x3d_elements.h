@@ -82,6 +82,7 @@ class X3dElements {
   void readComponent(const Name& element, Attributes attributes);
   void route(const Name& element, Attributes attributes);
   void import(const Name& element, Attributes attributes);
+  void exportNode(const Name& element, Attributes attributes);
   void openProto(const Name& element, Attributes attributes);
   void openExternProto(const Name& element, Attributes attributes);
   void openDeclaration(const Name& element, Attributes attributes);

@@ -27,6 +27,9 @@ class VrmlWriter : public Writer {
     text_ += fmt::format("PROFILE {}\n", profileOf(head));
     for (const FileHead::Component& one : head.components)
       text_ += fmt::format("COMPONENT {}:{}\n", nameText(one.name), one.level);
+    for (const FileHead::Unit& one : unitsOf(head))
+      text_ +=
+          fmt::format("UNIT {} {} {}\n", nameText(one.category), nameText(one.name), one.factor);
     for (const FileHead::Meta& one : head.meta) {
       text_ += "META ";
       writeString(text_, one.name);
@@ -106,6 +109,14 @@ class VrmlWriter : public Writer {
   void writeRoute(const RouteText& route) override {
     text_ +=
         fmt::format("ROUTE {}.{} TO {}.{}", route.from, route.fromField, route.to, route.toField);
+  }
+
+  void writeImport(const std::string& inlineName, const std::string& exported,
+                   const std::string& local) override {
+    text_ += fmt::format("IMPORT {}.{} AS {}", inlineName, exported, local);
+  }
+  void writeExport(const std::string& node, const std::string& exported) override {
+    text_ += fmt::format("EXPORT {} AS {}", node, exported);
   }
 
   void openPrototype(const std::string& name, const MFString* urls) override {

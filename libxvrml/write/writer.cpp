@@ -8,6 +8,7 @@
 #include "base/rotation.h"
 #include "base/x3d.h"
 #include "enough_stack.h"
+#include "graph/exchange.h"
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "graph/url.h"
@@ -113,7 +114,45 @@ void Writer::scope(const Scope& scope) {
   }
   for (; declared < scope.prototypes.size(); ++declared) prototype(*scope.prototypes[declared]);
   for (const Route* written : late) route(*written);
+  if (&scope == &world_.scope && isX3d()) exchange();
   names_ = outer;
+}
+
+// Writes what the world's file imports, the routes to it, and what it exports.
+void Writer::exchange() {
+  const std::shared_ptr<Exchange> all = exchangeOf(world_);
+  if (!all) return;
+  const auto nameOf = [&](const Node* node) {
+    return node && names_->isWritten(node) ? names_->find(node) : nullptr;
+  };
+  for (const Exchange::Import& one : all->imports) {
+    const std::string* const name = nameOf(one.inlineNode.get());
+    if (!name) continue;
+    line();
+    writeImport(*name, nameText(one.exported), nameText(one.local));
+  }
+  const auto end = [&](const Exchange::End& one, std::string& name, std::string& field) {
+    field = one.node && one.node->type().index >= 0
+                ? x3dName(one.node->type().name, ownName(one.node->type().name, one.field))
+                : one.field;
+    const Node* const node = one.node ? one.node.get() : all->imports[one.import].inlineNode.get();
+    const std::string* const own = nameOf(node);
+    if (own) name = one.node ? *own : nameText(all->imports[one.import].local);
+    return own != nullptr;
+  };
+  for (const Exchange::ImportedRoute& one : all->routes) {
+    RouteText route;
+    if (!end(one.from, route.from, route.fromField) || !end(one.to, route.to, route.toField))
+      continue;
+    line();
+    writeRoute(route);
+  }
+  for (const Exchange::Export& one : all->exports) {
+    const std::string* const name = nameOf(one.node.get());
+    if (!name) continue;
+    line();
+    writeExport(*name, nameText(one.exported));
+  }
 }
 
 // Writes a route. Returns false if one of its nodes has not been written yet.
@@ -245,6 +284,12 @@ std::vector<std::string> commentsOf(const World& world, std::string& header) {
   if (lines[0].starts_with(vrml)) header = lines[0].substr(vrml.size());
   lines.erase(lines.begin());
   return lines;
+}
+
+std::vector<FileHead::Unit> unitsOf(const FileHead& head) {
+  std::vector<FileHead::Unit> units = head.units;
+  std::erase_if(units, [](const FileHead::Unit& one) { return one.category == "angle"; });
+  return units;
 }
 
 std::string profileOf(const FileHead& head) {

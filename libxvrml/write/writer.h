@@ -54,6 +54,10 @@ class Writer {
     std::string from, fromField, to, toField;
   };
   virtual void writeRoute(const RouteText& route) = 0;
+  // The statements of X3D that share nodes with other files. Not called for VRML97.
+  virtual void writeImport(const std::string& inlineName, const std::string& exported,
+                           const std::string& local) = 0;
+  virtual void writeExport(const std::string& node, const std::string& exported) = 0;
   // The calls for a prototype: its interface, then for a PROTO (urls is null) the body, and the
   // end.
   virtual void openPrototype(const std::string& name, const MFString* urls) = 0;
@@ -78,6 +82,7 @@ class Writer {
 
   void scope(const Scope& scope);
   bool route(const Route& route);
+  void exchange();
   void prototype(const ProtoDeclaration& declaration);
   void declaration(const ProtoDeclaration& declaration, const FieldInfo& info);
   Field fieldOf(Node& node, const FieldInfo& info) const;
@@ -96,6 +101,9 @@ std::unique_ptr<Writer> makeVrmlWriter(const World& world, const std::string& ta
 std::unique_ptr<Writer> makeXmlWriter(const World& world, const std::string& target,
                                       const FileVersion& version);
 
+// Returns the units that a file of X3D names: those of the world's own file, but for angles, which
+// are written in radians.
+std::vector<FileHead::Unit> unitsOf(const FileHead& head);
 // Returns the profile that a file of X3D names; Immersive, which has most nodes of VRML97, if the
 // world has none.
 std::string profileOf(const FileHead& head);

@@ -84,7 +84,8 @@ class XmlWriter : public Writer {
     text_ += fmt::format("<X3D profile='{}' version='{}.{}'>", profileOf(head), version_.major,
                          version_.minor);
     indent_ = 2;
-    if (!head.components.empty() || !head.meta.empty()) writeStatements(head);
+    if (!head.components.empty() || !head.meta.empty() || !unitsOf(head).empty())
+      writeStatements(head);
     line();
     text_ += "<Scene>";
     indent_ = 4;
@@ -99,6 +100,14 @@ class XmlWriter : public Writer {
       text_ += "<component";
       attribute("name", one.name);
       attribute("level", std::to_string(one.level));
+      text_ += "/>";
+    }
+    for (const FileHead::Unit& one : unitsOf(head)) {
+      line();
+      text_ += "<unit";
+      attribute("category", one.category);
+      attribute("name", one.name);
+      attribute("conversionFactor", fmt::format("{}", one.factor));
       text_ += "/>";
     }
     for (const FileHead::Meta& one : head.meta) {
@@ -156,7 +165,9 @@ class XmlWriter : public Writer {
   void attributeOfPlace(const Node& node, std::string_view place) {
     const bool instance = dynamic_cast<const ProtoInstance*>(&node) != nullptr;
     const std::string_view usual = instance ? "children" : containerOf(node.type());
-    if (!place.empty() && place != usual) attribute("containerField", place);
+    // X3D 4 has another usual field for metadata in a MetadataSet.
+    const bool varies = version_.major >= 4 && usual == "metadata";
+    if (!place.empty() && (place != usual || varies)) attribute("containerField", place);
   }
 
   void writeNode(const Content& content, std::string_view place) override {
@@ -282,6 +293,21 @@ class XmlWriter : public Writer {
     attribute("fromField", route.fromField);
     attribute("toNode", route.to);
     attribute("toField", route.toField);
+    text_ += "/>";
+  }
+
+  void writeImport(const std::string& inlineName, const std::string& exported,
+                   const std::string& local) override {
+    text_ += "<IMPORT";
+    attribute("inlineDEF", inlineName);
+    attribute("importedDEF", exported);
+    attribute("AS", local);
+    text_ += "/>";
+  }
+  void writeExport(const std::string& node, const std::string& exported) override {
+    text_ += "<EXPORT";
+    attribute("localDEF", node);
+    attribute("AS", exported);
     text_ += "/>";
   }
 

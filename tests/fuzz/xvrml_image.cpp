@@ -5,14 +5,14 @@
 #include <stdexcept>
 #include <vector>
 
-#include "image/image.h"
+#include "image/cube_faces.h"
 #include "xvrml/radiance.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;
   static const char* const magic[] = {
-      "", "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a", "#?RGBE\n", "PF\n", "\x76\x2f\x31\x01",
-      ""};
+      "",     "\x89PNG\r\n\x1a\n", "\xff\xd8\xff", "GIF89a", "#?RGBE\n",
+      "PF\n", "\x76\x2f\x31\x01",  "DDS "};
   const char* start = magic[data[0] & 7];
   std::vector<uint8_t> bytes(start, start + std::strlen(start));
   bytes.insert(bytes.end(), data + 1, data + size);
@@ -20,6 +20,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   // states is found.
   if (size > 16384) return 0; // limits the unpacked size to 200 MB
   const xvrml::Limits limits{};
+  if (xvrml::looksLikeDds(bytes)) {
+    const xvrml::CubePictures cube = xvrml::decodeDds(bytes, xvrml::ImageRoom{limits});
+    if (cube.images.size() + cube.radiance.size() != xvrml::cubeFaces) __builtin_trap();
+    return 0;
+  }
   if (xvrml::looksLikeRadiance(bytes.data(), bytes.size())) {
     xvrml::Limits small;
     small.imagePixels = 1 << 20;

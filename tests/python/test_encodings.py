@@ -273,3 +273,85 @@ def test_python_loads_them(tmp_path, name):
     assert world["Left"].node_type == "Transform"
     assert [round(x, 3) for x in world["Left"].translation] == [-1.5, 0, 0]
     assert world["Box"].geometry.node_type == "Box"
+
+
+# What VRML 1.0 can say, too: no prototypes, and lights and cameras that are traversed.
+PLAIN = """
+Viewpoint { position 0 0 6 }
+Transform { translation -1.5 0 0 children Shape {
+  appearance Appearance { material Material { diffuseColor 0 .8 .2 } } geometry Sphere { } } }
+Transform { translation 1.5 0 0 children Shape {
+  appearance Appearance { material Material { diffuseColor 1 0 0 } }
+  geometry Box { size .5 3 .5 } } }
+"""
+FIVE = {
+    "b.wrl":
+        "#VRML V2.0 utf8\n" + PLAIN,
+    "b.x3dv":
+        "#X3D V3.3 utf8\nPROFILE Interchange\n" + PLAIN,
+    "b.x3d":
+        """<X3D version='3.3'><Scene><Viewpoint position='0 0 6'/>
+<Transform translation='-1.5 0 0'><Shape><Appearance><Material diffuseColor='0 .8 .2'/></Appearance>
+<Sphere/></Shape></Transform>
+<Transform translation='1.5 0 0'><Shape><Appearance><Material diffuseColor='1 0 0'/></Appearance>
+<Box size='.5 3 .5'/></Shape></Transform></Scene></X3D>""",
+    "b.x3dj":
+        """{"X3D":{"@version":"3.3","Scene":{"-children":[{"Viewpoint":{"@position":[0,0,6]}},
+{"Transform":{"@translation":[-1.5,0,0],"-children":[{"Shape":{"-geometry":{"Sphere":{}},
+"-appearance":{"Appearance":{"-material":{"Material":{"@diffuseColor":[0,0.8,0.2]}}}}}}]}},
+{"Transform":{"@translation":[1.5,0,0],"-children":[{"Shape":{"-geometry":{"Box":{"@size":[0.5,3,0.5]}},
+"-appearance":{"Appearance":{"-material":{"Material":{"@diffuseColor":[1,0,0]}}}}}}]}}]}}}""",
+    "b1.wrl":
+        """#VRML V1.0 ascii
+Separator {
+  PerspectiveCamera { position 0 0 6 }
+  Separator { Translation { translation -1.5 0 0 } Material { diffuseColor 0 .8 .2 } Sphere { } }
+  Separator { Translation { translation 1.5 0 0 } Material { diffuseColor 1 0 0 }
+    Cube { width .5 height 3 depth .5 } }
+}
+""",
+}
+
+
+def test_one_world_in_five_encodings_is_the_same_picture(vv):
+    for name, text in FIVE.items():
+        vv.write(name, text)
+    pictures = {name: picture(vv, name) for name in FIVE}
+    assert [name for name in FIVE if pictures[name] != pictures["b.wrl"]] == []
+    assert len(set(pictures["b.wrl"])) > 20
+
+
+@pytest.mark.parametrize("name", ["out.wrl", "out.x3dv", "out.x3d"])
+@pytest.mark.parametrize("source", WORLDS)
+def test_what_is_written_is_the_same_picture(vv, source, name):
+    vv.write(source, WORLDS[source].replace("Material { }", "Material { diffuseColor 1 1 1 }").replace(
+        "<Material/>", "<Material diffuseColor='1 1 1'/>").replace(
+            '"Material": {}', '"Material": {"@diffuseColor": [1, 1, 1]}'))
+    done = vv(source, "--write", name)
+    assert done.returncode == 0, done.talk
+    assert picture(vv, name) == picture(vv, source)
+
+
+def test_units_of_inlines(vv):
+    """A file in millimetres and degrees is right in a world in metres and radians."""
+    vv.write(
+        "mm.x3d", """<X3D version='3.3'><head>
+<unit category='length' name='mm' conversionFactor='0.001'/>
+<unit category='angle' name='degree' conversionFactor='0.017453292519943295'/></head><Scene>
+<Transform translation='250 0 0' rotation='0 0 1 90'><Shape><Appearance><Material diffuseColor='1 0 0'/>
+</Appearance><Box size='1000 250 500'/></Shape></Transform></Scene></X3D>""")
+    vv.write("m.x3dv", '#X3D V3.3 utf8\nPROFILE Immersive\nViewpoint { position 0 0 4 }\n'
+             'Inline { url "mm.x3d" }\n')
+    vv.write(
+        "plain.x3dv", "#X3D V3.3 utf8\nPROFILE Immersive\nViewpoint { position 0 0 4 }\n"
+        "Transform { scale .0009765625 .0009765625 .0009765625 children Transform { translation 256 0 0 "
+        "rotation 0 0 1 1.5707963 children Shape { appearance Appearance { material Material { "
+        "diffuseColor 1 0 0 } } geometry Box { size 1024 256 512 } } } }\n")
+    red = [pixels_in_red(picture(vv, name)) for name in ("m.x3dv", "plain.x3dv")]
+    assert red[0] == red[1] > 50
+
+
+def pixels_in_red(ppm):
+    """Returns how many pixels of a PPM picture are more red than green."""
+    pixels = ppm[-64 * 48 * 3:]
+    return sum(pixels[i] > pixels[i + 1] + 20 for i in range(0, len(pixels), 3))

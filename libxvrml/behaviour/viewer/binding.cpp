@@ -19,7 +19,7 @@ size_t Binding::typeOf(const Node& node) { return size_t(bindableStack(node.type
 
 void Binding::sendBindEvents(Node& node, bool bound) {
   engine_.send(node, "isBound", bound);
-  engine_.send(node, "bindTime", engine_.now()); // Viewpoints only
+  engine_.send(node, "bindTime", engine_.now());
   engine_.changed(node, *node.type().find("set_bind"));
   // The NavigationInfo of a viewpoint is bound and unbound with it (ISO/IEC 19775-1:2023 23.3.1).
   if (const auto viewpoint = viewpointFields(&node))

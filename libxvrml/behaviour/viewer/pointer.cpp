@@ -59,6 +59,12 @@ std::vector<Pointer::Candidate> Pointer::candidatesOf(const Hit& hit) const {
 
 bool Pointer::isOver(const Node& sensor) const { return holds(over_, sensor); }
 
+// Sends isOver, which all sensors have in X3D (ISO/IEC 19775-1 20.3.2); Anchors have no events.
+void Pointer::sendOver(Node& sensor, bool over) {
+  if (sensor.type().index != nodes::Anchor::typeIndex)
+    interaction_.engine.send(sensor, "isOver", over);
+}
+
 // While a sensor has grabbed the pointer, no other sensor sends events (4.6.7.3).
 void Pointer::setOver(const std::vector<Candidate>& candidates) {
   const auto mayChange = [&](const Node& sensor) {
@@ -72,13 +78,13 @@ void Pointer::setOver(const std::vector<Candidate>& candidates) {
   };
   std::erase_if(over_, [&](const NodeRef& sensor) {
     if (!mayChange(*sensor) || under(*sensor)) return false;
-    if (isTouch(*sensor)) interaction_.engine.send(*sensor, "isOver", false);
+    sendOver(*sensor, false);
     return true;
   });
   for (const Candidate& c : candidates) {
     if (!mayChange(*c.sensor) || isOver(*c.sensor)) continue;
     over_.push_back(c.sensor);
-    if (isTouch(*c.sensor)) interaction_.engine.send(*c.sensor, "isOver", true);
+    sendOver(*c.sensor, true);
   }
 }
 
@@ -173,7 +179,7 @@ void Pointer::enabledChanged(Node& sensor) {
   });
   std::erase_if(over_, [&](const NodeRef& o) {
     if (o.get() != &sensor) return false;
-    if (isTouch(sensor)) engine.send(sensor, "isOver", false);
+    sendOver(sensor, false);
     return true;
   });
 }
@@ -189,7 +195,7 @@ bool Pointer::dropAbsent() {
   });
   std::erase_if(over_, [&](const NodeRef& o) {
     if (isInScene(*o)) return false;
-    if (isTouch(*o)) engine.send(*o, "isOver", false);
+    sendOver(*o, false);
     return dropped = true;
   });
   return dropped;

@@ -38,13 +38,14 @@ class Pointer {
   };
   std::vector<Candidate> candidatesOf(const Hit& hit) const;
   bool isOver(const Node& sensor) const;
+  void sendOver(Node& sensor, bool over);
   void setOver(const std::vector<Candidate>& candidates);
   void touch(const Candidate& candidate, const Hit& hit);
   void press(const std::vector<Candidate>& candidates, const PickRay& ray, const Hit& hit);
   void release(bool click);
 
   Interaction& interaction_;
-  // TouchSensors with isOver TRUE; drag sensors and Anchors under the pointer
+  // Sensors with isOver TRUE, and Anchors under the pointer
   std::vector<NodeRef> over_;
   std::vector<Active> active_; // sensors that have grabbed the pointer
   std::vector<NodeRef> clicked_;

@@ -1,8 +1,10 @@
 // text.cpp: Text and FontStyle (clauses 6.20, 6.47): lines of glyphs in the plane z = 0.
 #include <algorithm>
+#include <limits>
 
 #include "geometry/builders.h"
 #include "geometry/text/fonts.h"
+#include "geometry/text/text_extent.h"
 #include "geometry/vector_math.h"
 #include "xvrml/world.h"
 
@@ -82,7 +84,33 @@ class Layout {
     return std::move(mesh_);
   }
 
+  TextExtent extent() {
+    shapeLines();
+    fitLengths();
+    placeAcross();
+    constexpr double most = std::numeric_limits<double>::max();
+    double left = most, right = -most, low = most, high = -most;
+    TextExtent extent;
+    for (size_t i = 0; i < lines_.size(); i++) {
+      const double across = offset_ + double(i) * step_, begin = lines_[i].start,
+                   end = begin + lines_[i].length * lines_[i].stretch;
+      const double x[] = {style_.horizontal ? begin : across, style_.horizontal ? end : across + 1};
+      const double y[] = {style_.horizontal ? across + font_.descender() : begin,
+                          style_.horizontal ? across + font_.ascender() : end};
+      extent.lines.push_back({scaled(x[1] - x[0]), scaled(y[1] - y[0])});
+      left = std::min(left, x[0]);
+      right = std::max(right, x[1]);
+      low = std::min(low, y[0]);
+      high = std::max(high, y[1]);
+    }
+    extent.text = {scaled(right - left), scaled(high - low)};
+    extent.origin = {scaled(left), scaled(high), 0};
+    return extent;
+  }
+
  private:
+  float scaled(double em) const { return float(em * style_.size); }
+
   void shapeLines() {
     for (const std::string& string : node_.string) {
       Line line;
@@ -202,25 +230,44 @@ class Layout {
 
 } // namespace
 
-Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faults) {
-  if (node.string.empty()) return {};
+// Calls use(style, font) if the text can be laid out.
+template <class Use> static void withFont(const nodes::Text& node, Faults& faults, const Use& use) {
+  if (node.string.empty()) return;
   Style style(nodeCast<nodes::FontStyle>(renderedNode(node.fontStyle.get())), faults);
   if (!(style.size > 0) || !(style.size < 1e30) || !(std::abs(style.spacing) < 1e30)) {
     faults.note("FontStyle.size must be positive and spacing finite; nothing is drawn");
-    return {};
+    return;
   }
   std::lock_guard lock(fontsMutex());
   Font* font = findFont(style.families, style.bold, style.italic, style.language);
   if (!font) {
     faults.note("no font is installed (fonts-dejavu-core on Debian); nothing is drawn");
-    return {};
+    return;
   }
-  Mesh mesh = Layout(node, style, *font, options, faults).run();
+  use(style, *font);
+}
+
+Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faults) {
+  Mesh mesh;
+  withFont(node, faults, [&](const Style& style, Font& font) {
+    mesh = Layout(node, style, font, options, faults).run();
+  });
   if (!allFinite(mesh.points) || !allFinite(mesh.texCoords)) {
     faults.note("text is too large; nothing is drawn");
     return {};
   }
   return mesh;
+}
+
+TextExtent extentOf(const nodes::Text& node) {
+  TextExtent extent;
+  Faults faults; // reported where the mesh is built
+  withFont(node, faults, [&](const Style& style, Font& font) {
+    extent = Layout(node, style, font, {}, faults).extent();
+  });
+  const bool finite = allFinite(std::span<const Vec2f>(extent.lines)) && isFinite(extent.text) &&
+                      isFinite(extent.origin);
+  return finite ? extent : TextExtent();
 }
 
 } // namespace xvrml

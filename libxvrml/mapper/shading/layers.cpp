@@ -142,7 +142,7 @@ void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform,
     shader.floats("factor", factor);
   } else {
     ids[0] = textures.ofNode(node);
-    layers = {multiplies ? 0.0f : 1.0f, 0, 0, 0};
+    if (multiplies) layers = {0, 0, 0, 0};
   }
   for (size_t i = 0; i < mostLayers; ++i)
     if (ids[i] != 0 || !shader.fresh()) shader.texture(pictures[i], ids[i]);

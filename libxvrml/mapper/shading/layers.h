@@ -16,8 +16,8 @@ namespace xvrml::mapper {
 // a MultiTextureTransform the one with this name, else the first.
 const nodes::TextureTransform* firstTransform(Node* textureTransform, const std::string& mapping);
 
-// Sets the parameters of all layers. A single texture multiplies the colour if `multiplies`, else
-// replaces it.
+// Sets the parameters of all layers. A single texture multiplies the colour if `multiplies`,
+// else it follows the rules of VRML97.
 void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform,
                const std::string& mapping, bool multiplies, Textures& textures, World& world,
                bool linear);

@@ -36,8 +36,8 @@ class Textures {
   RTid ofFace(Node* texture);
   // Makes a picture that the caller keeps, without repetition, and deletes it. Throws
   // std::runtime_error if the world's budget does not allow it.
-  RTid add(const Image& image) { return make(image, false, false); }
-  RTid add(const RadianceImage& image) { return make(image, false, false); }
+  RTid add(const Image& image) { return make(image, samplingOf(false, false)); }
+  RTid add(const RadianceImage& image) { return make(image, samplingOf(false, false)); }
   void drop(RTid texture);
   // Returns the memory that another picture from a file may take.
   ImageRoom roomForPicture() const;

@@ -55,8 +55,13 @@ template <class Enum> Enum enumOf(float number) {
 
 } // namespace
 
-Layer layerOf(const X3dParams& p, uint32_t index) {
+Layer layerOf(const X3dParams& p, uint32_t index, uint32_t components) {
   const uint32_t first = numbersPerLayer * index;
+  if (p.layers.count == 0 && index == 0) { // ISO/IEC 14772-1 table 4.6
+    const bool multiplies = components <= 2 || p.front.multiplyTexture != 0;
+    return {multiplies ? LayerMode::modulate : LayerMode::replace, LayerMode::replace,
+            LayerSource::current, LayerFunction::none};
+  }
   if (p.layers.count < first + numbersPerLayer) return {};
   const float* n = p.layers.data + first;
   return {enumOf<LayerMode>(n[0]), enumOf<LayerMode>(n[1]), enumOf<LayerSource>(n[2]),
@@ -76,10 +81,13 @@ Rgba combined(const Layer& layer, const Rgba& texel, bool hasAlpha, const LayerC
                       ? dot
                       : unit(combine(layer.color, texel.c[c], other.c[c], texel.a, colors));
   const LayerMode alpha = alphaModeOf(layer.alpha);
-  result.a = !hasAlpha ? colors.current.a
-             : alpha == LayerMode::dotProduct3
-                 ? dot
-                 : unit(combine(alpha, texel.a, other.a, texel.a, colors));
+  if (!hasAlpha)
+    result.a =
+        alpha == LayerMode::selectArg2 || alpha == LayerMode::modulate ? other.a : colors.current.a;
+  else
+    result.a = alpha == LayerMode::dotProduct3
+                   ? dot
+                   : unit(combine(alpha, texel.a, other.a, texel.a, colors));
   if (layer.function == LayerFunction::complement)
     for (float& c : result.c) c = 1 - c;
   if (layer.function == LayerFunction::alphaReplicate)

@@ -38,8 +38,9 @@ struct Layer {
   LayerSource source = LayerSource::current;
   LayerFunction function = LayerFunction::none;
 };
-// Returns a layer of the parameter `layers`. Numbers without a meaning count as 0.
-Layer layerOf(const X3dParams& p, uint32_t index);
+// Returns a layer of the parameter `layers`. Numbers without a meaning count as 0. Without `layers`
+// the first texture is that of VRML97, by its number of components.
+Layer layerOf(const X3dParams& p, uint32_t index, uint32_t components);
 
 struct Rgba {
   float c[3], a;
@@ -49,7 +50,7 @@ struct LayerColors {
   Rgba current, diffuse, specular, factor;
 };
 // Returns the colour after a layer with this texel. A texel without alpha (hasAlpha false) leaves
-// the alpha as it is.
+// the alpha as it is, except where the mode takes that of the other argument.
 Rgba combined(const Layer& layer, const Rgba& texel, bool hasAlpha, const LayerColors& colors);
 
 } // namespace vrml97

@@ -170,8 +170,8 @@ void combineLayers(const RtsHits* hits, uint32_t lanes, Pictures& pictures, cons
       colors.factor.a = p.factor[3];
       const Rgba texel = {{pictures.rgba[0][i], pictures.rgba[1][i], pictures.rgba[2][i]},
                           pictures.rgba[3][i]};
-      const Rgba result = combined(hasOwnPicture(lane) ? Layer() : layerOf(p, layer), texel,
-                                   hasAlpha(components), colors);
+      const Rgba result = combined(hasOwnPicture(lane) ? Layer() : layerOf(p, layer, components),
+                                   texel, hasAlpha(components), colors);
       for (int c = 0; c < 3; c++) base[c][i] = result.c[c];
       t.alpha[i] = result.a;
     }
@@ -309,6 +309,8 @@ bool maybeTransparent(const RtsHost* host, const X3dParams& p) {
   const auto alpha = [&](RtsTexture t) { return t != 0 && hasAlpha(host->components(host, t)); };
   clear |= alpha(p.front.texture) || (p.twoSided && alpha(p.backTexture));
   for (const RtsTexture t : p.further) clear |= alpha(t);
+  for (uint32_t k = 0; k < maxLayers; k++)
+    clear |= layerOf(p, k, 0).source == LayerSource::factor && p.factor[3] < 1;
   return clear;
 }
 

@@ -70,7 +70,7 @@ const RtsParam added[] = {
      0,
      "mode of colour, mode of alpha, source and function of each layer, in the order of X3D's "
      "tables "
-     "18.3 to 18.5, from 0; without them MODULATE"},
+     "18.3 to 18.5, from 0; without them the first is as in VRML97, others MODULATE"},
     {"layerTransforms",
      RTS_FLOATS,
      AT(layerTransforms),

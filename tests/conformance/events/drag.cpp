@@ -286,6 +286,19 @@ TEST(CylinderSensor, RaysAlongItsAxisDuringACylinderDragSayNothing) {
   EXPECT_EQ(r.take(), Log{});
 }
 
+// ISO/IEC 19775-1 20.3.2: in X3D isOver belongs to all sensors of the pointing device.
+TEST(DragSensors, TellWhetherThePointerIsOverThem) {
+  for (const char* sensor : {"PlaneSensor {}", "SphereSensor {}", "CylinderSensor {}"}) {
+    Running r(with(sensor));
+    r.log("S", "isOver");
+    to(r, 0, 0, false);
+    to(r, 1, 0, false);
+    EXPECT_EQ(r.take(), Log{"0 S.isOver TRUE"}) << sensor;
+    to(r, 100, 0, false);
+    EXPECT_EQ(r.take(), Log{"0 S.isOver FALSE"}) << sensor;
+  }
+}
+
 TEST(DragSensors, TwoSiblingsDragAtOnce) {
   Running r("Group { children [ DEF S SphereSensor {} DEF P PlaneSensor {} Shape { geometry Sphere "
             "{ radius 2 } } ] }");

@@ -224,6 +224,18 @@ TEST(MovieTexture, ShowsItsLastPictureBeforeItStartsBackwards) {
   EXPECT_EQ(m.at(1), pictures - 1);
 }
 
+// ISO/IEC 19775-1 8.2.4
+TEST(MovieTexture, StandsStillWhileItIsPaused) {
+  Movie m("startTime 1 pauseTime 1.21 resumeTime 2.21");
+  EXPECT_EQ(m.at(1), 0);
+  EXPECT_EQ(m.at(1.5), 5);
+  EXPECT_EQ(m.at(2), 5);
+  EXPECT_EQ(m.at(2.51), 12);
+  EXPECT_EQ(m.at(4), 29);
+  m.at(5);
+  EXPECT_EQ(m.events, (Log{"1 TRUE", "4 FALSE"}));
+}
+
 TEST(MovieTexture, PlaysOnceAndKeepsItsLastPicture) {
   Movie m("startTime 1");
   EXPECT_EQ(m.at(1), 0);

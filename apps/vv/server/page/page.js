@@ -267,7 +267,7 @@ class Keys {
     window.addEventListener("keydown", (event) => {
       const name = nameOf(event);
       if (this.isElsewhere(event) || event.metaKey || (event.ctrlKey && !arrows[event.key])) return;
-      const types = typed() && /^[ -~]+$/.test(name) && !/^(F1|F11|Escape)$/.test(name);
+      const types = typed() && /^[ -~]+$/.test(name) && !/^(F1|F11|Escape|Tab)$/.test(name);
       const action = types ? null : own[event.shiftKey ? `Shift+${name}` : name] || own[name];
       if (!types && !action && !taken(name)) return;
       event.preventDefault();

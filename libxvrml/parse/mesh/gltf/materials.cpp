@@ -104,6 +104,13 @@ Color Materials::baseColor(std::optional<size_t> material) const {
   return material ? baseColor(materials_[*material]) : Color{1, 1, 1};
 }
 
+std::optional<float> Materials::baseAlpha(std::optional<size_t> material) const {
+  if (!material) return {};
+  const std::string mode = materials_[*material].text("alphaMode");
+  if (mode != "BLEND" && mode != "MASK") return {};
+  return 1 - transparencyOf(materials_[*material]);
+}
+
 Color Materials::baseColor(const Item& material) const {
   return colorOf(baseFactor(material), {1, 1, 1});
 }

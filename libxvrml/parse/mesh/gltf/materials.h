@@ -30,6 +30,8 @@ class Materials {
   size_t size() const { return materials_.size(); }
   bool isDoubleSided(std::optional<size_t> material) const;
   Color baseColor(std::optional<size_t> material) const;
+  // Returns the alpha of the base colour, or nothing where the material ignores alpha.
+  std::optional<float> baseAlpha(std::optional<size_t> material) const;
   // Returns the texture coordinates that a material's pictures use, each once.
   std::vector<TexCoordUse> texCoords(std::optional<size_t> material) const;
   // Returns the name that joins a picture to its texture coordinates, if a material has several.

@@ -200,6 +200,11 @@ void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices, bool 
   // A Color node stands for the base colour, which glTF multiplies.
   const Color base = materials_.baseColor(material);
   for (Color& c : vertices.colors) c = encoded({c.r * base.r, c.g * base.g, c.b * base.b});
+  // The opacities of a ColorRGBA stand in place of the material's.
+  if (const auto alpha = materials_.baseAlpha(material))
+    for (float& a : vertices.alphas) a *= *alpha;
+  else
+    vertices.alphas.clear();
   const Item attributes = primitive.object("attributes");
   if (!faces) vertices.normals.clear();
   writeVertices(attributes, std::move(vertices), deformed || base != Color{1, 1, 1});
@@ -241,7 +246,15 @@ void Primitives::writeVertices(const Item& attributes, Vertices&& vertices, bool
   } else {
     writeShared("coord", "Coordinate", "point", keyOf("POSITION"), std::move(vertices.points));
   }
-  if (!vertices.colors.empty())
+  if (!vertices.alphas.empty()) {
+    MFColorRGBA colors;
+    colors.reserve(vertices.colors.size());
+    for (size_t i = 0; i < vertices.colors.size(); ++i) {
+      const Color& c = vertices.colors[i];
+      colors.push_back({c.r, c.g, c.b, vertices.alphas[i]});
+    }
+    writeShared("color", "ColorRGBA", "color", "", std::move(colors));
+  } else if (!vertices.colors.empty())
     writeShared("color", "Color", "color", keyOf("COLOR_0"), std::move(vertices.colors));
   if (!vertices.normals.empty())
     writeShared("normal", "Normal", "vector", keyOf("NORMAL"), std::move(vertices.normals));
