@@ -82,6 +82,17 @@ std::string triangle(const std::string& more) {
               more);
 }
 
+// A triangle with material 0, at a node that has light 0, too.
+std::string shown(const std::string& more) {
+  return gltf(R"("scene":0,"scenes":[{"nodes":[0]}],
+      "nodes":[{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":0}}}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+      "buffers":[{"byteLength":36,"uri":"data:;base64,)" +
+              std::string(48, 'A') + R"("}],"bufferViews":[{"buffer":0,"byteLength":36}],
+      "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],)" +
+              more);
+}
+
 TEST(Meshes, ContentDecidesBeforeTheSuffix) {
   const auto encoding = [](const std::string& bytes, const char* name) {
     return load(bytes, name)->head.version.encoding;
@@ -249,7 +260,12 @@ TEST(Meshes, GltfAccessorsAreInterleavedNormalizedAndSparse) {
   auto* fan = find<nodes::IndexedFaceSet>(*world);
   ASSERT_TRUE(fan);
   EXPECT_EQ(pointsOf(fan->coord), (MFVec3f{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
-  EXPECT_EQ(find<nodes::Color>(*world)->color, MFColor(4, Color{1, 0, 128 / 255.0f}));
+  // The byte 128 is a linear number, of which 0.7366 is the sRGB code.
+  const MFColor& colors = find<nodes::Color>(*world)->color;
+  ASSERT_EQ(colors.size(), 4u);
+  EXPECT_NEAR(colors[3].r, 1, 1e-6);
+  EXPECT_EQ(colors[3].g, 0);
+  EXPECT_NEAR(colors[3].b, 0.73663, 1e-5);
   EXPECT_EQ(pointsOf(find<nodes::PointSet>(*world)->coord),
             (MFVec3f{{0, 0, 0}, {0, 0, 0}, {5, 6, 7}, {0, 0, 0}}));
   auto* scenes = nodeCast<nodes::Switch>(world->scope.roots[0].get());
@@ -291,6 +307,58 @@ TEST(Meshes, GltfAnimationsViewsAndLights) {
   ASSERT_TRUE(image);
   EXPECT_TRUE(image->url[0].starts_with("data:image/png;base64,iVBOR"));
   EXPECT_FALSE(image->repeatS);
+}
+
+// glTF 2.0, 3.9.2: factors are linear. Nodes have sRGB codes.
+TEST(Meshes, GltfColoursAreLinear) {
+  const auto world = load(shown(R"("materials":[{"emissiveFactor":[0.5,0,0.001],
+      "pbrMetallicRoughness":{"baseColorFactor":[0.2140411,1,0,1]}}],
+      "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[0.2140411,0,1]}]}})"),
+                          "a.gltf");
+  auto* physical = find<nodes::PhysicalMaterial>(*world);
+  ASSERT_TRUE(physical);
+  EXPECT_NEAR(physical->baseColor.r, 0.5, 1e-6);
+  EXPECT_NEAR(physical->baseColor.g, 1, 1e-6);
+  EXPECT_EQ(physical->baseColor.b, 0);
+  EXPECT_NEAR(physical->emissiveColor.r, 0.735357, 1e-5);
+  EXPECT_NEAR(physical->emissiveColor.b, 0.01292, 1e-6); // the straight part of the curve
+  EXPECT_NEAR(find<nodes::PointLight>(*world)->color.r, 0.5, 1e-6);
+}
+
+// 10 lux are 10 / pi of VRML's; a node has 1 at most.
+TEST(Meshes, GltfStrongDirectionalLightsAreSeveralNodes) {
+  const auto lit = [](const char* lux) {
+    return load(gltf(std::string(R"("nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}],
+      "scenes":[{"nodes":[0]}],"extensions":{"KHR_lights_punctual":{"lights":[
+      {"type":"directional","intensity":)") +
+                     lux + "}]}}"),
+                "a.gltf");
+  };
+  const auto sum = [](const World& world) {
+    double out = 0;
+    auto* node = nodeCast<nodes::Transform>(world.scope.roots[0].get());
+    for (const NodeRef& child : node->children)
+      if (auto* light = nodeCast<nodes::DirectionalLight>(child.get())) out += light->intensity;
+    return out;
+  };
+  EXPECT_NEAR(sum(*lit("10")), 10 / std::acos(-1), 1e-6);
+  EXPECT_NEAR(sum(*lit("0.5")), 0.5 / std::acos(-1), 1e-6);
+  EXPECT_EQ(sum(*lit("0")), 0);
+  const auto blinding = lit("1e30");
+  EXPECT_EQ(sum(*blinding), 16);
+  EXPECT_NE(messages(*blinding).find("more than 50 lux"), std::string::npos);
+}
+
+TEST(Meshes, GltfSamplersThatNeedTextureProperties) {
+  const auto world = load(shown(R"("samplers":[{"wrapS":33648,"wrapT":33071,"magFilter":9728}],
+      "images":[{"uri":"a.png"}],"textures":[{"source":0,"sampler":0}],
+      "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])"),
+                          "a.gltf");
+  auto* properties = find<nodes::TextureProperties>(*world);
+  ASSERT_TRUE(properties);
+  EXPECT_EQ(properties->boundaryModeS, "MIRRORED_REPEAT");
+  EXPECT_EQ(properties->boundaryModeT, "CLAMP_TO_EDGE");
+  EXPECT_EQ(properties->magnificationFilter, "NEAREST_PIXEL");
 }
 
 // One bone, turned by a quarter about z, moves the vertex 1 0 0 to 0 1 0; the node's own

@@ -10,7 +10,7 @@ import struct
 import numpy as np
 from PIL import Image
 
-LINEAR = 9729
+NEAREST, LINEAR = 9728, 9729
 REPEAT, CLAMP, MIRRORED = 10497, 33071, 33648
 
 
@@ -44,12 +44,12 @@ class Builder:
             item.update(min=array.min(axis=0).tolist(), max=array.max(axis=0).tolist())
         return self.add("accessors", item)
 
-    def texture(self, pixels, wrap=(REPEAT, REPEAT)):
+    def texture(self, pixels, wrap=(REPEAT, REPEAT), magnified=LINEAR):
         """pixels: uint8 (height, width, 3 or 4), first row at the top."""
         file = io.BytesIO()
         Image.fromarray(pixels).save(file, "PNG")
         image = self.add("images", {"bufferView": self.view(file.getvalue()), "mimeType": "image/png"})
-        sampler = self.add("samplers", {"magFilter": LINEAR, "minFilter": LINEAR, "wrapS": wrap[0], "wrapT": wrap[1]})
+        sampler = self.add("samplers", {"magFilter": magnified, "minFilter": LINEAR, "wrapS": wrap[0], "wrapT": wrap[1]})
         return self.add("textures", {"source": image, "sampler": sampler})
 
     def use(self, *names):
@@ -219,20 +219,20 @@ def base_textures():
     """Base colours from pictures: wrapping, KHR_texture_transform, a second set of coordinates."""
     b = Builder()
     room(b, colors=((0.9, 0.9, 0.9), (0.9, 0.9, 0.9)))
-    pixels = noise(1, (5, 7, 3), 20)
-    transforms = [(REPEAT, {}), (CLAMP, {}), (REPEAT, {"rotation": 0.5}),
+    pixels = noise(1, (4, 5, 3), 20)
+    transforms = [(REPEAT, {}), (CLAMP, {}), (MIRRORED, {}), (REPEAT, {}), (REPEAT, {"rotation": 0.5}),
                   (REPEAT, {"offset": [0.3, 0.1], "rotation": -0.4, "scale": [0.7, 0.4]}), (CLAMP, {"offset": [0.5, 0.7], "scale": [1, -1]}),
-                  (REPEAT, {"texCoord": 1})]
+                  (MIRRORED, {"texCoord": 1})]
     for i, (wrap, transform) in enumerate(transforms):
-        info = {"index": b.texture(pixels, (wrap, REPEAT if i % 2 == 0 else wrap))}
+        info = {"index": b.texture(pixels, (wrap, CLAMP if i in (0, 2) else wrap), NEAREST if i == 3 else LINEAR)}
         if transform:
             info["extensions"] = {"KHR_texture_transform": transform}
             b.use("KHR_texture_transform")
-        shape = square(0.75, 1.6)
-        shape["TEXCOORD_0"] = shape["TEXCOORD_0"] - np.float32(0.3)
-        shape["TEXCOORD_1"] = (shape["TEXCOORD_0"][:, ::-1] * 0.5).copy()
+        shape = square(0.58, 2)
+        shape["TEXCOORD_0"] = shape["TEXCOORD_0"] - np.float32(0.7)
+        shape["TEXCOORD_1"] = (shape["TEXCOORD_0"][:, ::-1] * 0.8).copy()
         mesh = b.mesh(shape, b.material((1, 0.8, 0.6, 1), 0, 0.7, pbr={"baseColorTexture": info}))
-        b.node(mesh=mesh, translation=[1.7 * (i % 3 - 1), 0.85 - 1.7 * (i // 3), 0], rotation=[0.1, 0.15, 0.0, math.sqrt(1 - 0.0325)])
+        b.node(mesh=mesh, translation=[1.25 * (i % 4 - 1.5), 0.7 - 1.4 * (i // 4), 0], rotation=[0.1, 0.15, 0.0, math.sqrt(1 - 0.0325)])
     b.camera((0, 0, 5.4), (0, 0, 0))
     return b
 

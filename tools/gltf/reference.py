@@ -113,8 +113,8 @@ class Surface:
         material = scene.material[triangle]
         for number in np.unique(material):
             self.fill(scene.materials[number], np.flatnonzero(material == number))
-        culled = self.back & ~scene.double[triangle]
-        self.opacity[culled] = 0
+        self.alpha_alone = self.opacity.copy()
+        self.opacity[self.back & ~scene.double[triangle]] = 0  # back faces are culled
 
     def corners(self, values, at=slice(None)):
         return np.einsum("ij,ijk->ik", self.weights[at], values[self.triangle[at]])
@@ -246,11 +246,8 @@ class Tracer:
             if not len(alive):
                 break
             at = Surface(self.scene, triangle, to[alive], start[alive])
-            culled = at.back & ~self.scene.double[triangle]
-            at.opacity[culled] = [1 if self.scene.materials[m].mode == "OPAQUE" else o
-                                  for m, o in zip(self.scene.material[triangle[culled]], at.opacity[culled])]
             before = dot(at.position - origin[alive], to[alive]) < distance[alive]
-            through[alive[before]] *= 1 - at.opacity[before]
+            through[alive[before]] *= 1 - at.alpha_alone[before]
             start[alive] = at.position + STEP * to[alive]
             alive = alive[before & (through[alive] > 0)]
         return through

@@ -23,13 +23,14 @@ def from_srgb(c):
 
 
 class Texture:
-    """A picture with its sampler (3.8.4): linear between texels, whose centres are at halves."""
+    """A picture with its sampler (3.8.4), as far as it is enlarged. Centres of texels are at halves."""
 
     def __init__(self, pixels, sampler, srgb):
         self.values = pixels / 255.0
         if srgb:
             self.values[..., :3] = from_srgb(self.values[..., :3])
         self.wrap = sampler.get("wrapS", 10497), sampler.get("wrapT", 10497)
+        self.nearest = sampler.get("magFilter") == 9728
 
     def place(self, x, axis):
         size, mode = self.values.shape[1 - axis], self.wrap[axis]
@@ -45,6 +46,8 @@ class Texture:
         i, j = np.floor(x).astype(int), np.floor(y).astype(int)
         fx, fy = (x - i)[:, None], (y - j)[:, None]
         v = self.values
+        if self.nearest:
+            return v[self.place(np.floor(y + 0.5).astype(int), 1), self.place(np.floor(x + 0.5).astype(int), 0)]
         left, right = self.place(i, 0), self.place(i + 1, 0)
         top, bottom = self.place(j, 1), self.place(j + 1, 1)
         return (v[top, left] * (1 - fx) + v[top, right] * fx) * (1 - fy) + (v[bottom, left] * (1 - fx) + v[bottom, right] * fx) * fy
