@@ -53,15 +53,22 @@ template <class T> const std::string& nameOf(const T& item) {
     return item.name;
 }
 
+// A file may declare many names, and use as many that are wrong.
+constexpr size_t mostMeasured = 1000;
+
 // Returns the first of the nearest names, or null if none is near. known: strings, or things with a
 // `name`.
 template <class Range>
 const std::string* find(std::string_view name, const Range& known, const Limits& limits) {
   if (name.size() > limits.maxLetters) return nullptr;
   const std::string* best = nullptr;
-  size_t least = limits.most + 1;
+  size_t least = limits.most + 1, measured = 0;
   for (const auto& item : known) {
     const std::string& candidate = nearest::nameOf(item);
+    const size_t longer = std::max(name.size(), candidate.size());
+    const size_t shorter = std::min(name.size(), candidate.size());
+    if (longer - shorter >= (least + 1) / 2) continue; // an insertion for each
+    if (measured++ == mostMeasured) break;
     const size_t now = distance(name, candidate, limits.caseCost);
     if (now >= least) continue;
     least = now;

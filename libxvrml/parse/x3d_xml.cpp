@@ -26,6 +26,8 @@ class Reader {
     XML_SetElementHandler(parser_.get(), openElement, closeElement);
     XML_SetCharacterDataHandler(parser_.get(), readCharacters);
     XML_SetSkippedEntityHandler(parser_.get(), skipEntity);
+    XML_SetExternalEntityRefHandler(parser_.get(), leaveEntityOut);
+    XML_SetExternalEntityRefHandlerArg(parser_.get(), this);
   }
 
   void read() {
@@ -80,6 +82,17 @@ class Reader {
                                                        "left out",
                                                        shortened(name)));
     });
+  }
+
+  // An entity in another file. Returning OK without a parser for it leaves it out.
+  static int XMLCALL leaveEntityOut(XML_Parser data, const XML_Char*, const XML_Char*,
+                                    const XML_Char* file, const XML_Char*) {
+    guarded(data, [&](Reader& reader) {
+      reader.locator_.warn(reader.place(), fmt::format("an entity in the file '{}' is left out: "
+                                                       "other files are not opened for XML",
+                                                       shortened(file ? file : "")));
+    });
+    return XML_STATUS_OK;
   }
 
   size_t offset() const {

@@ -11,6 +11,12 @@ namespace {
 
 constexpr size_t longRun = 4096; // shorter runs cost expat little
 
+// The characters from 0x80 to 0x9f, in which windows-1252 differs from ISO-8859-1.
+constexpr uint16_t windows1252[32] = {
+    0x20ac, 0x81,   0x201a, 0x192,  0x201e, 0x2026, 0x2020, 0x2021, 0x2c6,  0x2030, 0x160,
+    0x2039, 0x152,  0x8d,   0x17d,  0x8f,   0x90,   0x2018, 0x2019, 0x201c, 0x201d, 0x2022,
+    0x2013, 0x2014, 0x2dc,  0x2122, 0x161,  0x203a, 0x153,  0x9d,   0x17e,  0x178};
+
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 // Whether a character may stand in a list of numbers. XML gives none of them a meaning inside of
@@ -125,9 +131,14 @@ void XmlText::convert(std::string_view bytes, const std::string& name) {
   if (bigEndian || littleEndian) return;
   const std::string encoding = declaredEncoding(text_);
   if (encoding == "ISO-8859-1" || encoding == "WINDOWS-1252") {
-    char* out = room(text_.size() * 2 + 4);
+    char* out = room(text_.size() * 3 + 4);
     const char* const start = out;
-    for (const char c : text_) out = writeUtf8(out, static_cast<unsigned char>(c));
+    const bool windows = encoding == "WINDOWS-1252";
+    for (const char c : text_) {
+      const auto byte = static_cast<unsigned char>(c);
+      const bool differs = windows && byte >= 0x80 && byte < 0xa0;
+      out = writeUtf8(out, differs ? windows1252[byte - 0x80] : byte);
+    }
     converted_.keep(static_cast<size_t>(out - start));
     converted_.fit();
     text_ = converted_.text();

@@ -1,5 +1,6 @@
 // control_line.cpp: Tests the reader of the control channel's lines: what is accepted, what the
 // messages say, and what hostile lines cost.
+#include <chrono>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -26,6 +27,15 @@ void bad(const std::string& text, const std::string& code, const std::string& wo
   EXPECT_FALSE(line.command) << text.substr(0, 200);
   EXPECT_EQ(line.code, code) << text.substr(0, 200) << ": " << line.message;
   EXPECT_NE(line.message.find(words), std::string::npos) << line.message;
+}
+
+TEST(ControlLine, LongListsTakeLinearTime) {
+  std::string values;
+  for (int i = 0; i < 300'000; ++i) values += R"(,{"node":"A","field":"x","value":1})";
+  const auto start = std::chrono::steady_clock::now();
+  const Line line = good(R"({"command":"set","values":[)" + values.substr(1) + "]}");
+  EXPECT_EQ(std::get<Set>(line.command->action).values.size(), 300'000u);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
 }
 
 TEST(ControlLine, CommandsAreRead) {

@@ -9,33 +9,57 @@ namespace vv::control {
 
 namespace {
 
-// Counts what the parser finds, so that a line cannot take much more memory than its own size.
-class Watch {
+// Counts what the parser finds, so that a line cannot take much more memory than its own size. It
+// goes before the parser that makes values, because that one searches the whole list behind each
+// object if it has to ask somebody.
+class Watch : public nlohmann::json_sax<Json> {
  public:
   explicit Watch(const Limits& limits) : limits_(limits) {}
 
-  bool see(int depth, Json::parse_event_t event, const Json& parsed) {
-    using Event = Json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      if (size_t(depth) >= limits_.lineDepth)
-        throw CommandError("limit", fmt::format("the line has more than lineDepth={} arrays and "
-                                                "objects within each other",
-                                                limits_.lineDepth));
-      if (event == Event::object_start) names_.emplace_back();
-    }
-    if (event == Event::object_end) names_.pop_back();
-    if (event == Event::key && !names_.back().insert(parsed.get_ref<const std::string&>()).second)
-      throw CommandError("syntax", fmt::format("the member {} is there twice", shownJson(parsed)));
-    if (event != Event::object_end && event != Event::array_end && ++values_ > limits_.lineValues)
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return false; } // JSON has none
+  bool start_object(size_t) override { return open(); }
+  bool start_array(size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    if (!names_.back().insert(name).second)
+      throw CommandError("syntax",
+                         fmt::format("the member {} is there twice", shownJson(Json(name))));
+    return count();
+  }
+  bool parse_error(size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false; // the other parser says it
+  }
+
+ private:
+  bool count() {
+    if (++values_ > limits_.lineValues)
       throw CommandError(
           "limit", fmt::format("the line has more than lineValues={} values", limits_.lineValues));
     return true;
   }
+  bool open() {
+    if (names_.size() >= limits_.lineDepth)
+      throw CommandError("limit", fmt::format("the line has more than lineDepth={} arrays and "
+                                              "objects within each other",
+                                              limits_.lineDepth));
+    names_.emplace_back();
+    return count();
+  }
+  bool close() {
+    names_.pop_back();
+    return true;
+  }
 
- private:
   const Limits& limits_;
   size_t values_ = 0;
-  std::vector<std::set<std::string>> names_; // of the objects that are open
+  std::vector<std::set<std::string>> names_; // of the arrays, which have none, and objects around
 };
 
 } // namespace
@@ -47,9 +71,8 @@ Json readJsonLine(std::string_view line, const Limits& allowed) {
   Watch watch(allowed);
   Json json;
   try {
-    json = Json::parse(line, [&](int depth, Json::parse_event_t event, Json& parsed) {
-      return watch.see(depth, event, parsed);
-    });
+    Json::sax_parse(line, &watch);
+    json = Json::parse(line);
   } catch (const nlohmann::detail::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ..."
     std::string_view why = error.what();

@@ -163,12 +163,19 @@ class MtlReader {
   FaultCount bad_, maps_;
 };
 
+// Names of files may hold '#', which begins a fragment in a URL.
+std::string urlOfName(std::string_view name) {
+  std::string url;
+  for (const char c : name) c == '#' ? url += "%23" : url += c;
+  return url;
+}
+
 // Returns the URLs under which a picture is looked for: the file's own, and the bare name, because
 // many programs write the folders of their own machine.
 MFString urlsOf(const ObjTexture& texture, const MeshFile& file, const std::string& library) {
-  MFString urls{texture.file};
-  std::string bare = texture.file.substr(texture.file.find_last_of("/\\") + 1);
-  if (!bare.empty() && bare != texture.file) urls.push_back(std::move(bare));
+  MFString urls{urlOfName(texture.file)};
+  std::string bare = urls[0].substr(urls[0].find_last_of("/\\") + 1);
+  if (!bare.empty() && bare != urls[0]) urls.push_back(std::move(bare));
   rebaseUrls(urls, library, file.path);
   return urls;
 }
@@ -185,12 +192,16 @@ void writeTexture(NodeStream& nodes, std::string_view field, const ObjTexture& t
   nodes.closeIn();
 }
 
+// Programs scale texture coordinates first and then add the offset; a TextureTransform adds its
+// translation first (ISO/IEC 14772-1 6.48).
 void writeTextureTransform(NodeStream& nodes, const ObjTexture& texture) {
   const bool plain = texture.scale == Vec2f{1, 1} && texture.offset == Vec2f{0, 0};
   if (texture.file.empty() || plain) return;
   nodes.openIn("textureTransform", "TextureTransform");
+  const auto before = [](float offset, float scale) { return scale == 0 ? 0 : offset / scale; };
   nodes.set("scale", texture.scale);
-  nodes.set("translation", texture.offset);
+  nodes.set("translation", Vec2f{before(texture.offset.x, texture.scale.x),
+                                 before(texture.offset.y, texture.scale.y)});
   nodes.closeIn();
 }
 
@@ -243,7 +254,7 @@ void writeUnlit(NodeStream& nodes, const ObjMaterial* m) {
 } // namespace
 
 void readMtl(const MeshFile& file, std::string_view name, const char* at, ObjMaterials& materials) {
-  const ResolvedUrl resolved = resolveUrl(name, file.path, file.options);
+  const ResolvedUrl resolved = resolveUrl(urlOfName(name), file.path, file.options);
   if (!resolved.error.empty()) throw MeshFault{at, resolved.error};
   try {
     const Source source = Source::open(resolved.path, file.options.limits, file.budget);

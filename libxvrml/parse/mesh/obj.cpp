@@ -14,7 +14,7 @@
 namespace xvrml {
 namespace {
 
-constexpr size_t mostParts = 1'000'000;
+constexpr size_t mostParts = 1'000'000, mostLibraries = 1000;
 
 // Faces, lines or points that become one Shape. Indices count from 0 in the file's lists.
 struct Part {
@@ -136,7 +136,11 @@ class ObjReader {
     text_.skipBlanks();
     const char* at = text_.at();
     const std::string_view whole = text_.rest();
-    if (whole.empty()) return;
+    if (whole.empty() || !libraries_.emplace(whole).second) return;
+    if (libraries_.size() > mostLibraries)
+      throw MeshFault{at_, fmt::format("more than {} material libraries; the rest of the file is "
+                                       "left out",
+                                       mostLibraries)};
     try {
       readMtl(file_, whole, at, materials_);
       return;
@@ -361,6 +365,7 @@ class ObjReader {
   std::vector<Corner> corners_;
   std::vector<int32_t> places_;
   std::set<std::string> unknown_;
+  std::set<std::string, std::less<>> libraries_; // the lines that name them
   FaultCount badValues_, badFaces_, freeForm_;
 };
 

@@ -118,6 +118,7 @@ class PlyReader {
 
   void startVertices(const PlyElement& element, uint64_t count) {
     if (count > INT32_MAX / 4) throw MeshFault{nullptr, "too many vertices in a PLY file"};
+    hasVertices_ = true;
     const auto has = [&](PlyUse use) {
       return std::any_of(element.properties.begin(), element.properties.end(),
                          [use](const PlyProperty& p) { return p.use == use; });
@@ -183,8 +184,10 @@ class PlyReader {
     if (hasTexCoords_) shape_.texCoords.push_back({value(PlyUse::s), value(PlyUse::t)});
   }
 
+  // Faces may stand before the vertices that they name.
   bool isVertex(double index) const {
-    return index >= 0 && index < double(shape_.points.size()) && std::trunc(index) == index;
+    const uint64_t present = hasVertices_ ? shape_.points.size() : header_.vertices;
+    return index >= 0 && index < double(present) && std::trunc(index) == index;
   }
   void reserveCorners(size_t count) {
     MFInt32& index = shape_.coordIndex;
@@ -272,7 +275,7 @@ class PlyReader {
   BareShape shape_;
   MFColor faceColors_;
   MFInt32 edges_;
-  bool hasNormals_ = false, hasColors_ = false, hasTexCoords_ = false;
+  bool hasVertices_ = false, hasNormals_ = false, hasColors_ = false, hasTexCoords_ = false;
   double values_[size_t(PlyUse::count)] = {};
   std::vector<double> list_, corners_; // of the face that is being read
   const char* row_ = nullptr;          // where it begins in a text

@@ -84,12 +84,15 @@ class HeaderReader {
     text_.nextLine();
     if (!formatted) fail(file_.bytes.data(), "a line 'format ascii 1.0' in the PLY header");
     header_.bytes = size_t(text_.at() - file_.bytes.data());
-    for (const PlyElement& element : header_.elements)
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex")
+        header_.vertices = std::min<uint64_t>(element.count, INT32_MAX / 4);
       for (const PlyProperty& property : element.properties) {
         if (element.name != "face") continue;
         header_.faceColors |= property.use == PlyUse::red;
         header_.cornerTexCoords |= property.use == PlyUse::texCoords;
       }
+    }
     return std::move(header_);
   }
 

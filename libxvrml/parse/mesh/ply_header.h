@@ -54,7 +54,8 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
   std::string texture; // "comment TextureFile NAME"; empty: none
   bool faceColors = false, cornerTexCoords = false;
-  size_t bytes = 0; // length of the header
+  size_t bytes = 0;      // length of the header
+  uint64_t vertices = 0; // announced
 };
 
 // Reads the header. Throws MeshFault if the file cannot be read.

@@ -2,6 +2,7 @@
 // 1989). Each solid becomes a Shape with an IndexedFaceSet, whose equal vertices are welded. The
 // normals of facets follow from their vertices. Colours of facets are those of VisCAM and
 // SolidView, or of Materialise Magics, which use the attribute bytes.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -23,6 +24,13 @@ struct Solid {
   std::vector<Vec3f> corners; // three for each facet
   std::vector<Color> colors;  // one for each facet; empty: none
 };
+
+// Whether a word is a keyword, in any case of letters.
+bool is(std::string_view word, std::string_view keyword) {
+  return word.size() == keyword.size() &&
+         std::equal(word.begin(), word.end(), keyword.begin(),
+                    [](char a, char b) { return a == b || (a >= 'A' && a <= 'Z' && a + 32 == b); });
+}
 
 bool isFinite(const Vec3f& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -70,13 +78,6 @@ class TextReader {
   }
 
  private:
-  static bool is(std::string_view word, std::string_view keyword) {
-    return word.size() == keyword.size() &&
-           std::equal(word.begin(), word.end(), keyword.begin(), [](char a, char b) {
-             return a == b || (a >= 'A' && a <= 'Z' && a + 32 == b);
-           });
-  }
-
   void statement() {
     const char* at = text_.at();
     const std::string_view word = text_.word();
@@ -211,12 +212,11 @@ bool isBinaryStl(std::string_view bytes) {
 bool isAsciiStl(std::string_view bytes) {
   TextCursor text(bytes.substr(0, 4096));
   text.skipSpace();
-  const std::string_view first = text.word();
-  if (first != "solid" && first != "SOLID") return false;
+  if (!is(text.word(), "solid")) return false;
   text.nextLine();
   text.skipSpace();
   const std::string_view second = text.word();
-  return second == "facet" || second == "FACET" || second == "endsolid" || second == "ENDSOLID";
+  return is(second, "facet") || is(second, "endsolid");
 }
 
 void readStl(const MeshFile& file) {

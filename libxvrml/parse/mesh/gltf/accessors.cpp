@@ -14,6 +14,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
+constexpr uint64_t timesRead = 100; // how often a file may use its arrays
+
 enum ComponentType : uint32_t {
   signedByte = 5120,
   unsignedByte = 5121,
@@ -91,7 +93,7 @@ bool isIndexType(uint32_t type) {
 Accessors::Accessors(const MeshFile& file, const Item& root, std::string_view binary)
     : file_(file), scratch_(file.budget), bufferItems_(root.list("buffers")),
       views_(root.list("bufferViews")), accessors_(root.list("accessors")),
-      buffers_(bufferItems_.size()) {
+      buffers_(bufferItems_.size()), present_(file.bytes.size()) {
   if (!buffers_.empty() && !bufferItems_[0].has("uri") && !binary.empty())
     buffers_[0] = {true, {}, binary};
 }
@@ -117,6 +119,17 @@ void Accessors::loadBuffer(size_t number) {
     return;
   }
   buffer.bytes = buffer.own;
+  present_ += buffer.own.size();
+}
+
+void Accessors::spend(uint64_t numbers) {
+  const uint64_t limit = file_.options.limits.arrayElements;
+  spent_ += numbers;
+  if (spent_ > limit && spent_ / timesRead > present_)
+    throw MeshFault{nullptr, fmt::format("the arrays that are used have more numbers than limit "
+                                         "arrayElements={} and than {} times the bytes of the "
+                                         "file; the rest of it is left out",
+                                         limit, timesRead)};
 }
 
 bool Accessors::readFile(const Item& item, const std::string& uri, Buffer& buffer) {
@@ -198,6 +211,7 @@ bool Accessors::locate(const Item& item, Elements& elements) {
                            limits.arrayElements));
     return false;
   }
+  spend(elements.count * elements.components);
   const auto view = item.index("bufferView", views_.size());
   if (!view) return !item.has("bufferView");
   return place(item, *view, item.count("byteOffset", 0), elements);
@@ -237,6 +251,7 @@ bool Accessors::applySparse(const Item& item, const Elements& elements,
   if (!place(indexItem, *indexView, indexItem.count("byteOffset", 0), index) ||
       !place(valueItem, *valueView, valueItem.count("byteOffset", 0), values))
     return false;
+  spend(index.count * values.components);
   for (uint64_t i = 0; i < index.count; ++i) {
     const uint64_t to = loadIndex(index.bytes + i * index.stride, index.componentType);
     if (to >= elements.count) {

@@ -31,6 +31,9 @@ class Accessors {
   // Returns the bytes of a buffer view; empty, after a message, if there are none.
   std::string_view viewBytes(size_t view);
   size_t viewCount() const { return views_.size(); }
+  // Counts what is converted. A document of a few bytes may name one array any number of times;
+  // throws MeshFault where this adds up to far more than the file holds.
+  void spend(uint64_t numbers);
 
  private:
   struct Buffer {
@@ -58,6 +61,8 @@ class Accessors {
   Scratch scratch_; // of the buffers
   std::vector<Item> bufferItems_, views_, accessors_;
   std::vector<Buffer> buffers_;
+  uint64_t present_; // bytes of the file and its buffers
+  uint64_t spent_ = 0;
 };
 
 } // namespace xvrml::gltf

@@ -55,7 +55,7 @@ void Primitives::morph(const Item& primitive, const std::vector<double>& weights
   if (keepMorphs_) morphs_.push_back(std::move(kept));
 }
 
-void Primitives::skin(const Item& attributes, const std::vector<M44d>& joints, Vertices& vertices) {
+void Primitives::skin(const Item& attributes, std::span<const M44d> joints, Vertices& vertices) {
   const size_t count = vertices.points.size();
   scratch_.take(count * (sizeof(M44d) + sizeof(double)));
   std::vector<M44d> blended(count, M44d(0.0));

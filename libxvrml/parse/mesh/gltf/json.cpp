@@ -12,8 +12,7 @@ namespace {
 constexpr uint64_t bytesOfValue = 100;
 
 // "[json.exception.parse_error.101] parse error at line 1, column 3: syntax error while parsing..."
-std::string reasonOf(const Json::parse_error& error) {
-  const std::string_view text = error.what();
+std::string reasonOf(std::string_view text) {
   const size_t at = text.find("column ");
   const size_t colon = at == text.npos ? at : text.find(": ", at);
   return shortened(colon == text.npos ? text : text.substr(colon + 2));
@@ -37,25 +36,86 @@ bool isWhole(const Json& value, uint64_t& out) {
   return true;
 }
 
+// Builds the document from the events of nlohmann's parser. Its own builder with a callback
+// searches the whole list behind each object, so that long lists would take quadratic time.
+class Document : public nlohmann::json_sax<Json> {
+ public:
+  Document(std::string_view text, const Limits& limits, Scratch& scratch)
+      : text_(text), limits_(limits), scratch_(scratch) {}
+
+  Json take() { return std::move(root_); }
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override {
+    scratch_.take(2 * value.size());
+    return add(std::move(value));
+  }
+  bool binary(binary_t&) override { return false; } // JSON has none
+  bool start_object(size_t) override { return open(Json::object()); }
+  bool start_array(size_t) override { return open(Json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& value) override {
+    scratch_.take(bytesOfValue + 2 * value.size());
+    key_ = std::move(value);
+    return true;
+  }
+  bool parse_error(size_t position, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    const size_t byte = std::min(position ? position - 1 : 0, text_.size());
+    throw MeshFault{text_.data() + byte,
+                    fmt::format("this is not valid JSON: {}", reasonOf(error.what()))};
+  }
+
+ private:
+  bool add(Json value) {
+    scratch_.take(bytesOfValue);
+    if (open_.empty())
+      root_ = std::move(value);
+    else if (open_.back()->is_array())
+      open_.back()->push_back(std::move(value));
+    else
+      (*open_.back())[key_] = std::move(value);
+    return true;
+  }
+
+  bool open(Json value) {
+    if (open_.size() >= limits_.nesting)
+      throw MeshFault{nullptr,
+                      fmt::format("JSON nested deeper than limit nesting={}", limits_.nesting)};
+    add(std::move(value));
+    if (open_.empty())
+      open_.push_back(&root_);
+    else if (open_.back()->is_array())
+      open_.push_back(&open_.back()->back());
+    else
+      open_.push_back(&(*open_.back())[key_]);
+    return true;
+  }
+
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  const std::string_view text_;
+  const Limits& limits_;
+  Scratch& scratch_;
+  Json root_;
+  std::vector<Json*> open_; // the objects and lists around the next value
+  std::string key_;         // of the next value in an object
+};
+
 } // namespace
 
 Json parseJson(std::string_view text, const Limits& limits, Scratch& scratch) {
-  const auto check = [&](int depth, Json::parse_event_t, Json& value) {
-    if (uint64_t(depth) > limits.nesting)
-      throw MeshFault{nullptr,
-                      fmt::format("JSON nested deeper than limit nesting={}", limits.nesting)};
-    scratch.take(bytesOfValue +
-                 (value.is_string() ? 2 * value.get_ref<const std::string&>().size() : 0));
-    return true;
-  };
-  try {
-    return Json::parse(text.begin(), text.end(), check);
-  } catch (const Json::parse_error& error) {
-    const size_t byte = std::min<size_t>(error.byte ? error.byte - 1 : 0, text.size());
-    throw MeshFault{text.data() + byte, fmt::format("this is not valid JSON: {}", reasonOf(error))};
-  } catch (const Json::exception& error) { // a number that no double can hold
-    throw MeshFault{nullptr, fmt::format("this is not valid JSON: {}", shortened(error.what()))};
-  }
+  Document document(text, limits, scratch);
+  Json::sax_parse(text.begin(), text.end(), &document);
+  return document.take();
 }
 
 void Item::error(std::string_view message) const {

@@ -295,6 +295,7 @@ std::string Materials::urlOf(const Item& texture) {
   std::string url = "data:" + image.text("mimeType") + ";base64,";
   Scratch scratch(file_.budget);
   scratch.take(bytes.size() / 3 * 4 + 4);
+  accessors_.spend(bytes.size());
   appendBase64(bytes, url);
   return url;
 }

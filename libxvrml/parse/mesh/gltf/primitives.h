@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace xvrml::gltf {
 // matrix of each joint (joint times inverse bind matrix).
 struct Deformation {
   std::vector<double> weights;
-  std::vector<Imath::M44d> joints; // empty: no skin
+  std::span<const Imath::M44d> joints; // empty: no skin
 };
 
 class Primitives {
@@ -51,7 +52,7 @@ class Primitives {
   bool readVertices(const Item& primitive, Vertices& vertices);
   void readColors(const Item& attributes, Vertices& vertices);
   void morph(const Item& primitive, const std::vector<double>& weights, Vertices& vertices);
-  void skin(const Item& attributes, const std::vector<Imath::M44d>& joints, Vertices& vertices);
+  void skin(const Item& attributes, std::span<const Imath::M44d> joints, Vertices& vertices);
   MFInt32 faceIndex(const std::vector<uint32_t>& index, uint64_t mode, uint64_t& bad,
                     size_t points) const;
   void writeGeometry(const Item& primitive, Vertices&& vertices, bool deformed);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include <Imath/ImathMatrixAlgo.h>
 #include <fmt/format.h>
@@ -87,7 +88,8 @@ Rotation rotationOf(double x, double y, double z, double w) {
 }
 
 Scene::Scene(const MeshFile& file, NodeStream& nodes, const Item& root, Accessors& accessors)
-    : file_(file), out_(nodes), accessors_(accessors), materials_(file, nodes, root, accessors),
+    : file_(file), out_(nodes), accessors_(accessors), scratch_(file.budget),
+      materials_(file, nodes, root, accessors),
       primitives_(file, nodes, root, accessors, materials_), nodes_(root.list("nodes")),
       scenes_(root.list("scenes")), cameras_(root.list("cameras")),
       lights_(root.extension("KHR_lights_punctual").list("lights")), skins_(root.list("skins")),
@@ -100,18 +102,21 @@ Scene::Scene(const MeshFile& file, NodeStream& nodes, const Item& root, Accessor
 
 // Nodes form trees (3.5.2). A second parent, or one of its own descendants, is refused.
 void Scene::findParents() {
+  std::vector<size_t> above(nodes_.size()); // an ancestor of each node; the root itself
+  std::iota(above.begin(), above.end(), size_t(0));
+  const auto rootOf = [&](size_t node) {
+    for (; above[node] != node; node = above[node]) above[node] = above[above[node]];
+    return node;
+  };
   for (size_t i = 0; i < nodes_.size(); ++i) {
     for (const size_t child : nodes_[i].indices("children", nodes_.size())) {
-      bool refused = parents_[child] != nodes_.size();
-      for (size_t above = i; above != nodes_.size() && !refused; above = parents_[above])
-        refused = above == child;
-      if (refused) {
+      if (parents_[child] != nodes_.size() || rootOf(i) == child) {
         nodes_[i].error(fmt::format("node {} has a parent already, or is its own ancestor; it is "
                                     "left out here",
                                     child));
         continue;
       }
-      parents_[child] = i;
+      parents_[child] = above[child] = i;
       children_[i].push_back(child);
     }
   }
@@ -231,13 +236,17 @@ void Scene::writeSkinned() {
   }
 }
 
-std::vector<M44d> Scene::jointsOf(size_t number) {
+// Returns the matrices of a skin, which are computed once.
+const std::vector<M44d>& Scene::jointsOf(size_t number) {
+  const auto [known, fresh] = joints_.try_emplace(number);
+  std::vector<M44d>& matrices = known->second;
+  if (!fresh) return matrices;
   const Item& skin = skins_[number];
   const std::vector<size_t> joints = skin.indices("joints", nodes_.size());
   Values inverse(file_.budget);
   if (const auto accessor = skin.index("inverseBindMatrices", accessors_.size()))
     inverse = accessors_.read(*accessor);
-  std::vector<M44d> matrices;
+  scratch_.take(joints.size() * sizeof(M44d));
   for (size_t i = 0; i < joints.size(); ++i) {
     M44d bind;
     if (inverse.components == 16 && i < inverse.size()) {
@@ -262,10 +271,20 @@ M44d Scene::matrixOf(const Item& node) const {
   return scale * turn * move;
 }
 
-M44d Scene::worldMatrix(size_t node) const {
-  M44d world;
-  for (; node != nodes_.size(); node = parents_[node]) world = world * matrixOf(nodes_[node]);
-  return world;
+// Keeps the matrices of all nodes above, because joints share most of them.
+const M44d& Scene::worldMatrix(size_t node) {
+  std::vector<size_t> path;
+  for (size_t above = node; above != nodes_.size() && !worlds_.contains(above);
+       above = parents_[above])
+    path.push_back(above);
+  scratch_.take(path.size() * 2 * sizeof(M44d));
+  for (; !path.empty(); path.pop_back()) {
+    const size_t next = path.back();
+    const auto parent = worlds_.find(parents_[next]);
+    const M44d own = matrixOf(nodes_[next]);
+    worlds_.emplace(next, parent == worlds_.end() ? own : own * parent->second);
+  }
+  return worlds_.at(node);
 }
 
 } // namespace xvrml::gltf

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "parse/mesh/gltf/primitives.h"
@@ -34,13 +35,14 @@ class Scene {
   void writeMesh(size_t node);
   void writeSkinned();
   std::vector<double> weightsOf(const Item& node) const;
-  std::vector<Imath::M44d> jointsOf(size_t skin);
+  const std::vector<Imath::M44d>& jointsOf(size_t skin);
   Imath::M44d matrixOf(const Item& node) const;
-  Imath::M44d worldMatrix(size_t node) const;
+  const Imath::M44d& worldMatrix(size_t node);
 
   const MeshFile& file_;
   NodeStream& out_;
   Accessors& accessors_;
+  Scratch scratch_;
   Materials materials_;
   Primitives primitives_;
   std::vector<Item> nodes_, scenes_, cameras_, lights_, skins_;
@@ -51,6 +53,8 @@ class Scene {
   std::vector<bool> isJoint_, hasMorphAnimation_, inThisScene_;
   std::vector<size_t> skinned_; // nodes of this scene whose mesh has a skin
   std::map<size_t, std::vector<Primitives::Morph>> morphs_;
+  std::map<size_t, std::vector<Imath::M44d>> joints_; // of skins
+  std::unordered_map<size_t, Imath::M44d> worlds_;    // of joints and the nodes above
 };
 
 // The lights of KHR_lights_punctual and the cameras, into the open list of nodes. They look along

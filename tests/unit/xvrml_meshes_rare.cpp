@@ -1,0 +1,145 @@
+// xvrml_meshes_rare.cpp: meshes and X3D that are legal but rare, and files that would make a reader
+// do far more work than they have bytes. The values follow from the formats' own documents.
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "xvrml/world.h"
+
+namespace {
+
+using namespace xvrml;
+
+std::string messages(const World& world) {
+  std::string text;
+  for (const Diagnostic& one : world.diagnostics.list()) text += one.text() + '\n';
+  return text;
+}
+
+bool holds(const World& world, const std::string& text) {
+  return writeWorld(world).find(text) != std::string::npos;
+}
+
+std::string gltf(const std::string& members) {
+  return R"({"asset":{"version":"2.0"},)" + members + "}";
+}
+
+// Returns a list of elements that a function writes.
+template <class Function> std::string listOf(int count, Function element) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i ? "," : "") + std::string(element(i));
+  return "[" + text + "]";
+}
+
+std::string fileWith(const std::string& name, const std::string& text) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "xvrml_meshes_rare";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / name) << text;
+  return (folder / name).string();
+}
+
+const std::string triangleObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+
+TEST(RareMeshes, PlyFacesMayStandBeforeTheirVertices) {
+  const auto world = loadWorldFromMemory("ply\nformat ascii 1.0\nelement face 2\n"
+                                         "property list uchar int vertex_indices\n"
+                                         "element vertex 3\nproperty float x\nproperty float y\n"
+                                         "property float z\nend_header\n3 0 1 2\n3 0 1 3\n"
+                                         "0 0 0 1 0 0 0 1 0\n",
+                                         "a.ply");
+  EXPECT_TRUE(holds(*world, "coordIndex [ 0 1 2 -1 ]")) << writeWorld(*world);
+  EXPECT_NE(messages(*world).find("1 faces or edges name a vertex"), std::string::npos);
+}
+
+TEST(RareMeshes, KeywordsOfStlInAnyCase) {
+  const auto world = loadWorldFromMemory("Solid x\nFacet Normal 0 0 1\nOuter Loop\nVertex 0 0 0\n"
+                                         "Vertex 1 0 0\nVertex 0 1 0\nEndLoop\nEndFacet\n"
+                                         "EndSolid x\n",
+                                         "a.stl");
+  EXPECT_EQ(messages(*world), "");
+  EXPECT_TRUE(holds(*world, "IndexedFaceSet"));
+}
+
+TEST(RareMeshes, MtlScalesBeforeItMoves) {
+  fileWith("move.mtl", "newmtl a\nmap_Kd -s 2 4 1 -o 0.5 1 0 p.png\n");
+  const auto world = loadWorld(fileWith("move.obj", "mtllib move.mtl\n" + triangleObj));
+  EXPECT_TRUE(holds(*world, "scale 2 4")) << writeWorld(*world);
+  EXPECT_TRUE(holds(*world, "translation 0.25 0.25")) << writeWorld(*world);
+}
+
+TEST(RareMeshes, NamesOfFilesInObjAreNoUrls) {
+  fileWith("a#1.mtl", "newmtl a\nKd 0.5 0 0\nmap_Kd p#1.png\n");
+  const auto world = loadWorld(fileWith("names.obj", "mtllib a#1.mtl\n" + triangleObj));
+  EXPECT_EQ(messages(*world), "");
+  EXPECT_TRUE(holds(*world, "diffuseColor 0.5 0 0")) << writeWorld(*world);
+  EXPECT_TRUE(holds(*world, "p%231.png")) << writeWorld(*world);
+}
+
+TEST(RareMeshes, AMaterialLibraryIsReadOnce) {
+  const auto world = loadWorld(
+      fileWith("twice.obj", "mtllib none.mtl\nmtllib none.mtl\nmtllib none.mtl\n" + triangleObj));
+  const std::string text = messages(*world);
+  const size_t first = text.find("materials are not read");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(text.find("materials are not read", first + 1), std::string::npos) << text;
+}
+
+TEST(RareMeshes, LongListsOfGltfTakeLinearTime) {
+  constexpr int count = 300'000; // nodes, each within the one before
+  const std::string nodes = listOf(count, [](int i) {
+    return i + 1 < count ? R"({"children":[)" + std::to_string(i + 1) + "]}" : std::string("{}");
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const auto world =
+      loadWorldFromMemory(gltf(R"("scenes":[{"nodes":[0]}],"nodes":)" + nodes), "a.gltf");
+  EXPECT_NE(messages(*world).find("limit nesting"), std::string::npos);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+}
+
+TEST(RareMeshes, NodesOfGltfThatHoldThemselvesAreRefused) {
+  const auto world = loadWorldFromMemory(
+      gltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[2]},)"
+           R"({"children":[0,1,2]}])"),
+      "a.gltf");
+  const std::string text = messages(*world);
+  for (const char* node : {"node 0 has", "node 1 has", "node 2 has"})
+    EXPECT_NE(text.find(node), std::string::npos) << text;
+}
+
+TEST(RareMeshes, ArraysThatAreUsedManyTimesAreBounded) {
+  LoadOptions options;
+  options.limits.arrayElements = 100'000;
+  const std::string primitives =
+      listOf(100, [](int) { return R"({"attributes":{"POSITION":0},"mode":0})"; });
+  const std::string text =
+      gltf(R"("accessors":[{"componentType":5126,"type":"VEC3","count":30000}],)"
+           R"("nodes":[{"mesh":0}],"meshes":[{"primitives":)" +
+           primitives + "}]");
+  const auto world = loadWorldFromMemory(text, "a.gltf", options);
+  EXPECT_NE(messages(*world).find("100 times the bytes of the file"), std::string::npos)
+      << messages(*world);
+}
+
+TEST(RareMeshes, XmlInWindows1252) {
+  const auto world =
+      loadWorldFromMemory("<?xml version=\"1.0\" encoding=\"windows-1252\"?><X3D version=\"3.3\">"
+                          "<Scene><WorldInfo title=\"\x93\xe9\x80\x94\"/></Scene></X3D>",
+                          "a.x3d");
+  EXPECT_EQ(messages(*world), "");
+  EXPECT_TRUE(holds(*world, "\u201c\u00e9\u20ac\u201d")) << writeWorld(*world);
+}
+
+TEST(RareMeshes, EntitiesInOtherFilesAreReported) {
+  const auto world =
+      loadWorldFromMemory("<!DOCTYPE X3D [<!ENTITY e SYSTEM \"other.xml\">]><X3D version=\"3.3\">"
+                          "<Scene>&e;<Group DEF=\"g\"/></Scene></X3D>",
+                          "a.x3d");
+  EXPECT_NE(messages(*world).find("an entity in the file 'other.xml' is left out"),
+            std::string::npos)
+      << messages(*world);
+  EXPECT_TRUE(holds(*world, "DEF g Group"));
+}
+
+} // namespace
