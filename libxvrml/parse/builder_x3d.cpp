@@ -32,9 +32,10 @@ bool Builder::lacksField(const NodeType& type, std::string_view name) const {
 // Reports once for a file that shaders are not run.
 void Builder::reportGpuProgram(const Name& name) {
   if (isFirst("shaders"))
-    locator_.warn(name.at, fmt::format("{} is a part of a program for graphics processors: such "
-                                       "programs are not run, and shapes look as their materials say",
-                                       describe(name)));
+    locator_.warn(name.at,
+                  fmt::format("{} is a part of a program for graphics processors: such "
+                              "programs are not run, and shapes look as their materials say",
+                              describe(name)));
 }
 
 // Reports such a field or event, once for each name. Returns false for other names and in files of

@@ -18,6 +18,7 @@
 #include "base/lexer.h"
 #include "parse/mesh/mesh_file.h"
 #include "parse/other_formats.h"
+#include "parse/utf16.h"
 #include "xvrml/comments.h"
 
 namespace xvrml {
@@ -228,12 +229,19 @@ void Source::unpack(const std::string& name, const Limits& limits, const BudgetP
     text_ = buffer_.text();
   }
   if ((byteOrderMark_ = text_.starts_with("\xef\xbb\xbf"))) text_.remove_prefix(3);
+  if ((utf16_ = isUtf16Vrml(text_))) {
+    TextBuffer converted(budget);
+    if (!convertUtf16(text_, converted))
+      refuse(name, "its text in UTF-8 " + converted.overLimitText());
+    buffer_ = std::move(converted);
+    text_ = buffer_.text();
+  }
 }
 
 Source::Source(Source&& other) noexcept
     : text_(other.text_), buffer_(std::move(other.buffer_)), damage_(std::move(other.damage_)),
       mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
-      byteOrderMark_(other.byteOrderMark_) {}
+      byteOrderMark_(other.byteOrderMark_), utf16_(other.utf16_) {}
 
 Source::~Source() {
   if (mapping_) munmap(mapping_, mappedBytes_);
@@ -325,6 +333,7 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
   const auto warn = [&](std::string message) {
     diagnostics.warn({file, 1, 1}, std::move(message));
   };
+  if (utf16_) warn("this file is in UTF-16; it was read, but its standard asks for UTF-8");
   // XML says that it may begin with a byte-order mark. The version stands in the X3D element.
   if (isX3dXml(text_, *file)) return {Encoding::x3dXml, 3, 3};
   if (isX3dJson(text_, *file)) return {Encoding::x3dJson, 3, 3};

@@ -89,6 +89,7 @@ class Source {
   void* mapping_ = nullptr;
   size_t mappedBytes_ = 0;
   bool byteOrderMark_ = false; // the text began with a byte-order mark, which text_ leaves out
+  bool utf16_ = false;         // the bytes were in UTF-16, and text_ is their UTF-8
 };
 
 } // namespace xvrml

@@ -133,7 +133,8 @@ void Writer::exchange() {
   }
   const auto end = [&](const Exchange::End& one, std::string& name, std::string& field) {
     field = one.node && one.node->type().index >= 0
-                ? x3dName(one.node->type().name, ownName(one.node->type().name, one.field))
+                ? x3dName(one.node->type().name, ownName(one.node->type().name, one.field),
+                          version_.major)
                 : one.field;
     const Node* const node = one.node ? one.node.get() : all->imports[one.import].inlineNode.get();
     const std::string* const own = nameOf(node);

@@ -34,6 +34,26 @@ TEST(ParserSource, HeadersThatAreNearlyRight) {
   }
 }
 
+// Texts that were saved in UTF-16, in both orders, are read with a warning. Half of a surrogate
+// pair is the replacement character.
+TEST(ParserSource, TextsInUtf16) {
+  const std::u16string text =
+      u"#VRML V2.0 utf8\nWorldInfo { title \"\u00e9\u6f22\U0001f600\xd800!\" }";
+  for (const bool big : {false, true}) {
+    std::string bytes = big ? "\xfe\xff" : "\xff\xfe";
+    for (const char16_t unit : text)
+      for (const int shift : {big ? 8 : 0, big ? 0 : 8}) bytes += char(unit >> shift & 0xff);
+    const auto world = loadWorldFromMemory(bytes, "f.wrl");
+    EXPECT_EQ(messages(*world),
+              "f.wrl:1:1: warning: this file is in UTF-16; it was read, but its standard asks for "
+              "UTF-8\n");
+    ASSERT_EQ(world->scope.roots.size(), 1u);
+    EXPECT_EQ(nodeCast<nodes::WorldInfo>(world->scope.roots[0])->title,
+              "\u00e9\u6f22\U0001f600\ufffd!");
+    EXPECT_EQ(messages(*loadWorldFromMemory(bytes + "x", "f.wrl")), messages(*world));
+  }
+}
+
 // Files of a known other format are named in the message. For all others the message says what was
 // expected.
 TEST(ParserSource, WhatIsNoWorldIsRefused) {

@@ -62,7 +62,7 @@ constexpr Interface interfaces[] = {
     {"19.4.13", "SquadOrientationInterpolator", 1, 3, 0, 1},
     {"21.4.1", "KeySensor", 0, 1, 0, 8},
     {"21.4.2", "StringSensor", 0, 2, 0, 3},
-    {"23.4.5", "OrthoViewpoint", 1, 7, 0, 2},
+    {"23.4.5", "OrthoViewpoint", 1, 11, 0, 2},
     {"23.4.7", "ViewpointGroup", 0, 6, 0, 0},
     {"24.4.5", "TextureBackground", 1, 11, 0, 2},
     {"30.4.1", "BooleanFilter", 1, 0, 0, 3},
