@@ -45,7 +45,7 @@ def draw_with_package(path, size, spp, seeds):
         yield picture.array[..., :3].astype(float)
 
 
-def compare(path, size=(64, 48), spp=64, reference_spp=32, repeats=16, vv=None):
+def compare(path, size=(64, 48), spp=64, reference_spp=32, repeats=8, vv=None):
     """Returns a dict of the pictures and the numbers of a table's line."""
     from xvrml import rt
     seeds = range(1, repeats + 1)

@@ -1,5 +1,6 @@
 """models.py: ten small glTF models that hold every feature of the shader Physical, made by a program
-so that they are the same everywhere. Each is a function that returns a Builder."""
+so that they are the same everywhere. Each is a function that returns a Builder. Left out is
+MIRRORED_REPEAT, which libopenrt does not have."""
 
 import base64
 import io
@@ -11,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 NEAREST, LINEAR = 9728, 9729
-REPEAT, CLAMP, MIRRORED = 10497, 33071, 33648
+REPEAT, CLAMP = 10497, 33071
 
 
 class Builder:
@@ -220,9 +221,9 @@ def base_textures():
     b = Builder()
     room(b, colors=((0.9, 0.9, 0.9), (0.9, 0.9, 0.9)))
     pixels = noise(1, (4, 5, 3), 20)
-    transforms = [(REPEAT, {}), (CLAMP, {}), (MIRRORED, {}), (REPEAT, {}), (REPEAT, {"rotation": 0.5}),
+    transforms = [(REPEAT, {}), (CLAMP, {}), (REPEAT, {}), (REPEAT, {}), (REPEAT, {"rotation": 0.5}),
                   (REPEAT, {"offset": [0.3, 0.1], "rotation": -0.4, "scale": [0.7, 0.4]}), (CLAMP, {"offset": [0.5, 0.7], "scale": [1, -1]}),
-                  (MIRRORED, {"texCoord": 1})]
+                  (REPEAT, {"texCoord": 1})]
     for i, (wrap, transform) in enumerate(transforms):
         info = {"index": b.texture(pixels, (wrap, CLAMP if i in (0, 2) else wrap), NEAREST if i == 3 else LINEAR)}
         if transform:

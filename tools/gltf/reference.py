@@ -40,7 +40,7 @@ class Layer:
     """Directional albedo of the layer over a dielectric, F0 = 0.04, by quadrature over half vectors
     that are spread as D NH."""
 
-    COSINES, WIDTHS = 96, 49
+    COSINES, WIDTHS = 64, 33
 
     def __init__(self):
         self.mu = np.linspace(0, 1, self.COSINES)**2
@@ -53,7 +53,7 @@ class Layer:
         self.means = 1 - (albedo * mu * w).sum(axis=1)
 
     def row(self, alpha):
-        n = 96
+        n = 64
         x, phi = np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(n) + 0.5) / n * np.pi)
         ch = np.sqrt((1 - x) / (1 + (alpha**2 - 1) * x))
         sh = np.sqrt(1 - ch**2)

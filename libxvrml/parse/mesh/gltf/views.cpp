@@ -46,58 +46,66 @@ static Color lightColor(const Item& light) {
   return encoded({part(0), part(1), part(2)});
 }
 
-// glTF's matt surfaces reflect 1/pi of the light, those of VRML and X3D all of it; so candela and
-// lux are divided by pi.
-static double intensityOf(const Item& light) {
-  return std::max(0.0, light.number("intensity", 1)) / std::numbers::pi;
-}
+namespace {
 
-// Light decreases with the square of the distance. `range` ends it; without one it never ends. A
-// lamp that may not be as strong as it should gets a smaller attenuation: it is the same light from
-// the distance on at which a white surface is white.
-static void writePlacedLight(NodeStream& out, const Item& light, const char* node) {
-  const double intensity = intensityOf(light), most = out.maximum(node, "intensity");
-  out.open(node, out.define(light.text("name"), "Light"));
-  out.set("color", lightColor(light));
-  out.set("intensity", float(std::min(intensity, most)));
-  out.set("attenuation", Vec3f{0, 0, float(intensity > most ? most / intensity : 1)});
+// The nodes that stand for a light. glTF's matt surfaces reflect 1/pi of the light, those of VRML
+// and X3D all of it; so candela and lux are divided by pi. Several nodes are as strong together as
+// one of them may not be.
+struct Nodes {
+  const char* type;
+  int count;
+  double each, missing; // intensity of a node; what a node would need more
+
+  static Nodes of(const NodeStream& out, const Item& light, const char* type) {
+    constexpr double mostNodes = 16;
+    const double intensity = std::max(0.0, light.number("intensity", 1)) / std::numbers::pi,
+                 most = out.maximum(type, "intensity"),
+                 count = std::clamp(std::ceil(intensity / most), 1.0, mostNodes),
+                 each = std::min(intensity / count, most);
+    return {type, int(count), each, intensity / count - each};
+  }
+};
+
+// Light decreases with the square of the distance. `range` ends it; without one it never ends. What
+// is too strong even for several nodes gets a smaller attenuation: it is the same light from some
+// distance on.
+void setPlaced(NodeStream& out, const Item& light, const Nodes& nodes) {
+  const double falloff = nodes.missing > 0 ? nodes.each / (nodes.each + nodes.missing) : 1;
+  out.set("attenuation", Vec3f{0, 0, float(falloff)});
   out.set("radius", float(light.has("range") ? std::max(0.0, light.number("range", 1)) : 1e9));
-  if (out.knows(node, "global")) out.set("global", true);
-  if (light.text("type") == "spot") {
-    const Item cone = light.object("spot");
-    const double half = std::numbers::pi / 2;
-    const double outer = std::clamp(cone.number("outerConeAngle", half / 2), 1e-3, half);
-    const double inner = std::clamp(cone.number("innerConeAngle", 0), 1e-3, outer);
-    out.set("cutOffAngle", float(outer));
-    out.set("beamWidth", float(inner));
-  }
-  out.close();
 }
 
-// Several nodes are as strong together as one of them may not be.
-static void writeDirectionalLight(NodeStream& out, const Item& light) {
-  constexpr const char* node = "DirectionalLight";
-  constexpr double mostNodes = 16;
-  const double intensity = intensityOf(light), most = out.maximum(node, "intensity");
-  const double count = std::clamp(std::ceil(intensity / most), 1.0, mostNodes);
-  if (intensity > count * most)
-    light.warn("a directional light of more than 50 lux is not supported: 50 is used");
-  for (double i = 0; i < count; ++i) {
-    out.open(node, out.define(light.text("name"), "Light"));
-    out.set("color", lightColor(light));
-    out.set("intensity", float(std::min(intensity / count, most)));
-    if (out.knows(node, "global")) out.set("global", true);
-    out.close();
-  }
+void setCone(NodeStream& out, const Item& cone) {
+  const double half = std::numbers::pi / 2;
+  const double outer = std::clamp(cone.number("outerConeAngle", half / 2), 1e-3, half);
+  const double inner = std::clamp(cone.number("innerConeAngle", 0), 1e-3, outer);
+  out.set("cutOffAngle", float(outer));
+  out.set("beamWidth", float(inner));
 }
+
+} // namespace
 
 void writeLight(NodeStream& out, const Item& light) {
   if (!light) return;
   const std::string type = light.text("type");
-  if (type == "directional") return writeDirectionalLight(out, light);
-  if (type != "point" && type != "spot")
+  const bool spot = type == "spot", placed = spot || type == "point";
+  if (!placed && type != "directional")
     return light.error("the light has no type that is known (directional, point, spot)");
-  writePlacedLight(out, light, type == "spot" ? "SpotLight" : "PointLight");
+  const Nodes nodes = Nodes::of(out, light,
+                                spot     ? "SpotLight"
+                                : placed ? "PointLight"
+                                         : "DirectionalLight");
+  if (!placed && nodes.missing > 0)
+    light.warn("a directional light of more than 50 lux is not supported: 50 is used");
+  for (int i = 0; i < nodes.count; ++i) {
+    out.open(nodes.type, out.define(light.text("name"), "Light"));
+    out.set("color", lightColor(light));
+    out.set("intensity", float(nodes.each));
+    if (placed) setPlaced(out, light, nodes);
+    if (out.knows(nodes.type, "global")) out.set("global", true);
+    if (spot) setCone(out, light.object("spot"));
+    out.close();
+  }
 }
 
 } // namespace xvrml::gltf
