@@ -91,8 +91,8 @@ def main():
     parser.add_argument("--vv", help="draw with this program instead of the package")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("build/gltf"))
     parser.add_argument("--only", nargs="*", choices=list(models.MODELS), default=list(models.MODELS))
-    parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--reference-spp", type=int, default=32)
+    parser.add_argument("--spp", type=int, default=32)
+    parser.add_argument("--reference-spp", type=int, default=24)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     lines = ["| model | mean difference | relMSE (of noise) | pixels beyond 4 standard errors | |", "| --- | --- | --- | --- | --- |"]

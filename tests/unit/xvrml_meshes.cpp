@@ -265,7 +265,7 @@ TEST(Meshes, GltfAccessorsAreInterleavedNormalizedAndSparse) {
   ASSERT_EQ(colors.size(), 4u);
   EXPECT_NEAR(colors[3].r, 1, 1e-6);
   EXPECT_EQ(colors[3].g, 0);
-  EXPECT_NEAR(colors[3].b, 0.73663, 1e-5);
+  EXPECT_NEAR(colors[3].b, 0.736647, 1e-5);
   EXPECT_EQ(pointsOf(find<nodes::PointSet>(*world)->coord),
             (MFVec3f{{0, 0, 0}, {0, 0, 0}, {5, 6, 7}, {0, 0, 0}}));
   auto* scenes = nodeCast<nodes::Switch>(world->scope.roots[0].get());
