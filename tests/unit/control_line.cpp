@@ -31,10 +31,10 @@ void bad(const std::string& text, const std::string& code, const std::string& wo
 
 TEST(ControlLine, LongListsTakeLinearTime) {
   std::string values;
-  for (int i = 0; i < 300'000; ++i) values += R"(,{"node":"A","field":"x","value":1})";
+  for (int i = 0; i < 250'000; ++i) values += R"(,{"node":"A","field":"x","value":1})";
   const auto start = std::chrono::steady_clock::now();
   const Line line = good(R"({"command":"set","values":[)" + values.substr(1) + "]}");
-  EXPECT_EQ(std::get<Set>(line.command->action).values.size(), 300'000u);
+  EXPECT_EQ(std::get<Set>(line.command->action).values.size(), 250'000u);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
 }
 
