@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refused{"missing_symbol", "exports no rtsPlugin"}, Refused{"small_symbol", "has 4 bytes"},
         Refused{"wrong_magic", "wrong magic number"},
-        Refused{"other_major", "made for shader ABI 2.4; this library has 1.5"},
+        Refused{"other_major", "made for shader ABI 2.5; this library has 1.5"},
         Refused{"newer_minor", "made for shader ABI 1.6; this library has 1.5"},
         Refused{"plugin_size", "claims a plug-in structure of"},
         Refused{"no_classes", "claims 0 shader classes"},
@@ -126,7 +126,8 @@ TEST(Abi, StructuresGrowAtTheirEndsAlone) {
   EXPECT_EQ(sizeof(RtsPlugin), 24u);
   EXPECT_EQ(offsetof(RtsHost, lobe), 64u);
   EXPECT_EQ(offsetof(RtsHost, customLobe), 72u);
-  EXPECT_EQ(sizeof(RtsHost), 152u);
+  EXPECT_EQ(offsetof(RtsHost, backdrop), 152u); // the end of 1.4
+  EXPECT_EQ(sizeof(RtsHost), 160u);             // 1.5
   EXPECT_EQ(offsetof(RtsHits, segment) + sizeof(void*), sizeof(RtsHits));
 }
 
