@@ -176,6 +176,16 @@ Node* firstTextureCoordinate(const NodeRef& texCoord) {
   return multi->texCoord.empty() ? nullptr : renderedNode(multi->texCoord[0].get());
 }
 
+bool looksUpByNormal(Node& geometry) {
+  Node* node = renderedNode(&geometry);
+  const NodeRef* texCoord = node ? texCoordOf(*node) : nullptr;
+  if (!texCoord || !*texCoord) return false;
+  const auto* generator =
+      nodeCast<nodes::TextureCoordinateGenerator>(firstTextureCoordinate(*texCoord));
+  return generator &&
+         (generator->mode == "CAMERASPACENORMAL" || generator->mode == "WORLDSPACENORMAL");
+}
+
 void generateTextureCoordinates(Node& geometry, const MeshOptions& options, Mesh& mesh) {
   if (!options.needTexCoords || mesh.kind != Mesh::Kind::triangles) return;
   const NodeRef* texCoord = texCoordOf(geometry);

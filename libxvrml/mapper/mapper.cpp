@@ -15,7 +15,7 @@ using namespace mapper;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
     : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), cubes(w, textures),
-      custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, custom),
+      custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, cubes, custom),
       objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes, custom),
       environment(w, o.linearColor, classes, textures, cubes, custom),
       camera(cameraOf(nullptr, Matrix(), o.aspect)) {

@@ -155,6 +155,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   entry.extent.reach = reachOf(*entry.mesh);
   entry.extent.kind = entry.mesh->kind;
   entry.extent.alpha = !entry.mesh->alphas.empty();
+  entry.extent.byNormal = looksUpByNormal(*entry.geometry);
   switch (entry.mesh->kind) {
   case Mesh::Kind::empty: entry.extent.primitives = 0; break;
   case Mesh::Kind::triangles: entry.extent.primitives = corners / 3; break;

@@ -8,6 +8,7 @@
 
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
+#include "geometry/texture_generator.h"
 #include "mapper/ration.h"
 #include "xvrml/mapper.h"
 #include "xvrml/node_map.h"
@@ -30,11 +31,13 @@ class Meshes {
   // Requires texture coordinates from now on. Returns true if an already built mesh has to be
   // rebuilt.
   bool needTexture(int32_t mesh);
-  // Returns whether events have put a ColorRGBA in place of a Color, or a Color in place of a
-  // ColorRGBA, since the mesh was built.
-  bool switchedAlpha(int32_t mesh) const {
+  // Returns whether shapes need another surface, because since the mesh was built events have put a
+  // ColorRGBA in place of a Color, or a Color in place of a ColorRGBA, or have changed how cube
+  // maps are looked up.
+  bool switchedSurface(int32_t mesh) const {
     const Entry& entry = entries_[size_t(mesh)];
-    return entry.known && entry.extent.alpha != hasVertexAlpha(*entry.geometry);
+    return entry.known && (entry.extent.alpha != hasVertexAlpha(*entry.geometry) ||
+                           entry.extent.byNormal != looksUpByNormal(*entry.geometry));
   }
   // Invalidates the mesh because fields of the node have changed.
   void changed(int32_t mesh);
@@ -48,8 +51,9 @@ class Meshes {
   struct Extent {
     Mesh::Kind kind = Mesh::Kind::empty;
     uint64_t primitives = 0;
-    double reach = 0;   // largest absolute coordinate
-    bool alpha = false; // it has opacities
+    double reach = 0;      // largest absolute coordinate
+    bool alpha = false;    // it has opacities
+    bool byNormal = false; // looksUpByNormal
   };
   Extent extent(int32_t mesh);
   // Returns the mesh whose object also draws this one: a mesh with equal content, perhaps itself.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/texture_generator.h"
 #include "mapper/graph/objects.h"
 #include "xvrml/nodes.h"
 
@@ -132,7 +133,8 @@ void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
 }
 
 SurfaceUse Objects::useOf(const Item& item) const {
-  return {item.lines && !item.viaMesh, hasVertexAlpha(graph_.meshes.geometry(item.mesh))};
+  Node& geometry = graph_.meshes.geometry(item.mesh);
+  return {item.lines && !item.viaMesh, hasVertexAlpha(geometry), looksUpByNormal(geometry)};
 }
 
 // Writes a shape. Its number is the name of everything it draws, so that the id channel tells

@@ -116,7 +116,7 @@ void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
     const int32_t mesh = graph.meshes.find(&node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
-    const bool otherAlpha = graph.meshes.switchedAlpha(mesh);
+    const bool otherSurface = graph.meshes.switchedSurface(mesh);
     graph.meshes.changed(mesh);
     work.meshes.push_back(mesh);
     boundsStale = countsStale = true;
@@ -124,7 +124,7 @@ void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
       const Item& item = graph.items[shape];
       if (!expected && !item.merged) work.regroup = true;
       if (!expected || item.merged || item.objectReason != ObjectReason::none || !item.viaMesh ||
-          otherAlpha)
+          otherSurface)
         work.rewrite.push_back(shape);
     });
     return false;

@@ -229,3 +229,52 @@ def test_transparency_of_the_sky_is_in_alpha(node, transparency):
         full, clear = (picture(HEAD + f"{node} {{ {sky} transparency {t} }}", size=(4, 3))
                        for t in (0, transparency))
         np.testing.assert_allclose(clear, full * (1 - transparency), atol=1e-6)
+
+
+POLISHED = "appearance Appearance { texture %s }"
+AROUND = HEAD4 + "Viewpoint { position 0 0 4 } Background { skyColor .25 .25 .25 } "
+
+
+def ball(appearance, more=""):
+    return AROUND + more + "Shape { " + appearance + " geometry Sphere { } }"
+
+
+def test_a_cube_map_on_a_sphere_is_what_a_mirror_sees():
+    """The six colours lie where a mirror shows the same cube map as an EnvironmentLight."""
+    mapped = picture(ball(POLISHED % composed()), size=(80, 80), spp=64)
+    mirror = picture(ball(MIRROR, f"EnvironmentLight {{ specularTexture {composed()} }} "),
+                     size=(80, 80), spp=64)
+    inside = np.hypot(*(np.indices((80, 80)) - 39.5)) < 17
+    assert mapped[40, 40, :3] == pytest.approx(FACES["back"][1])
+    for x, face in ((40 - 12, "left"), (40 + 12, "right")):
+        assert mapped[40, x, :3] == pytest.approx(FACES[face][1]), face
+    # Rows go up in pictures that are arrays with the upper row first.
+    for y, face in ((40 - 12, "top"), (40 + 12, "bottom")):
+        assert mapped[y, 40, :3] == pytest.approx(FACES[face][1]), face
+    difference = np.abs(mapped - mirror)[inside][:, :3].max(axis=1)
+    assert np.mean(difference > .02) < .15  # only edges between colours are noisy
+    assert difference.mean() < .02
+
+
+def test_a_cube_map_has_the_same_bytes_for_any_number_of_threads():
+    text = ball(POLISHED % composed())
+    one, many = (np.asarray(xvrml.loads(text).render(size=(64, 48), spp=4, threads=n))
+                 for n in (1, 4))
+    np.testing.assert_array_equal(one, many)
+
+
+@pytest.mark.parametrize("transport", ("whitted", "path"))
+def test_a_generated_cube_map_is_a_mirror_of_the_world(transport):
+    """Equal to the stock shader Mirror of the same reflectance."""
+    world = """Transform { translation 3 0 3 children Shape { appearance Appearance { material
+      Material { diffuseColor 0 0 0 emissiveColor 1 .5 0 } } geometry Box { } } } """
+    generated = """appearance Appearance { material Material { diffuseColor .5 1 .25 }
+      texture GeneratedCubeMapTexture { } }"""
+    stock = """appearance ORTAppearance { shader ORTShader { name "Mirror" file "mirror"
+      options "color reflectance %f %f %f" } }"""
+    a = picture(ball(generated, world), size=(60, 60), spp=64, transport=transport)
+    # sRGB .5 1 .25 as linear numbers
+    linear = [((c + .055) / 1.055) ** 2.4 for c in (.5, 1, .25)]
+    b = picture(ball(stock % tuple(linear), world), size=(60, 60), spp=64, transport=transport)
+    assert a[30, 30, :3] == pytest.approx(b[30, 30, :3], abs=2e-3)
+    assert np.abs(a - b).mean() < 5e-3

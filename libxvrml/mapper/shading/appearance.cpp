@@ -56,7 +56,7 @@ X3dParts x3dPartsOf(const Parts& parts) {
 
 bool isTextured(Node* appearance) {
   const Parts parts = partsOf(appearance);
-  if (parts.texture || parts.shader) return true;
+  if (parts.shader || (parts.texture && !isCubeMap(parts.texture))) return true;
   if (parts.anyMaterial && hasPictures(*parts.anyMaterial)) return true;
   Node* back = parts.plain ? renderedNode(parts.plain->backMaterial.get()) : nullptr;
   return back && hasPictures(*back);
@@ -110,7 +110,7 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply, 
 // appearances, and no events reach this one.
 bool Surfaces::mayShare(const Entry& entry) const {
   Node* node = entry.appearance.get();
-  if (!node || surfaces_[entry.vertexAlpha].size() <= smallWorld) return false;
+  if (!node || entries_[placeOf(entry.use)].size() <= smallWorld) return false;
   const Parts parts = partsOf(node);
   if (parts.shader || isPhysical(parts.anyMaterial)) return false;
   for (const Node* part :
@@ -147,12 +147,14 @@ void Surfaces::leaveShared(Entry& entry) {
 
 Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
   Node* node = renderedNode(appearance);
-  const auto [it, fresh] = (use.lines ? lines_ : surfaces_)[use.vertexAlpha].try_emplace(node);
+  // Lines have no cube maps.
+  if (use.lines) use.byNormal = false;
+  const auto [it, fresh] = entries_[placeOf(use)].try_emplace(node);
   Entry& entry = it->second;
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
   entry.textured = isTextured(node);
-  entry.vertexAlpha = use.vertexAlpha;
+  entry.use = use;
   const uint64_t bytes = partsOf(node).shader ? bytesOfSurface : bytesOfSharedSurface;
   if (!take(entry, bytes)) return entry.surface;
   entry.bytes = uint32_t(bytes);
@@ -172,7 +174,7 @@ Surface Surfaces::makeLines(const Entry& entry) {
   ShaderSetup shader(classes_.get("VRML97", ""));
   surface.shader = shader.id();
   shader.integer("lit", 0);
-  if (entry.vertexAlpha) shader.integer("vertexAlpha", 1);
+  if (entry.use.vertexAlpha) shader.integer("vertexAlpha", 1);
   if (Node* material = partsOf(appearance).anyMaterial)
     surface.lineColor = convert(emissionOf(*material), linear_);
   const LineSizes sizes = lineSizes(partsOf(appearance).plain);
@@ -248,7 +250,7 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool multiplied = multiplies(entry);
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
-    const std::string key = keyOf(parts, texture, linear_, multiplied, entry.vertexAlpha);
+    const std::string key = keyOf(parts, texture, linear_, multiplied, entry.use.vertexAlpha);
     if (entry.shared && *entry.shared->key == key) {
       entry.surface.shader = entry.shared->shader;
       return;
@@ -276,7 +278,7 @@ void Surfaces::makeSurface(Entry& entry) {
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
-  if (entry.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);
+  if (entry.use.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
     shader.matrix("textureTransform",
                   textureMatrix(t->center, t->rotation, t->scale, t->translation));
@@ -303,7 +305,7 @@ void Surfaces::makePhysical(Entry& entry) {
   entry.surface.shader = entry.physical = setup->id();
   setPhysical(*setup, *parts.anyMaterial, {parts.plain, parts.texture, parts.textureTransform},
               textures_, world_, linear_);
-  if (entry.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
+  if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, parts.anyMaterial->type().name);
 }
 
@@ -311,6 +313,7 @@ void Surfaces::makePhysical(Entry& entry) {
 void Surfaces::makeX3d(Entry& entry) {
   X3dParts parts = x3dPartsOf(partsOf(entry.appearance.get()));
   parts.multiplies = multiplies(entry);
+  parts.byNormal = entry.use.byNormal;
   if (entry.shared) leaveShared(entry);
   if (entry.x3d == 0 && !take(entry, bytesOfShader)) {
     entry.surface = Surface();
@@ -323,24 +326,24 @@ void Surfaces::makeX3d(Entry& entry) {
   else
     setup.emplace(shaderClass, entry.x3d, sets_);
   entry.surface.shader = entry.x3d = setup->id();
-  setX3dMaterial(*setup, parts, textures_, world_, linear_);
-  if (entry.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
+  setX3dMaterial(*setup, parts, {textures_, cubes_}, world_, linear_);
+  if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, "appearance");
 }
 
 Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
-  for (Entries& surfaces : surfaces_)
-    if (const auto it = surfaces.find(&appearance); it != surfaces.end()) {
+  for (Entries& entries : entries_) {
+    const auto it = entries.find(&appearance);
+    if (it == entries.end()) continue;
+    if (!it->second.use.lines) {
       const RTid before = it->second.surface.shader;
       if (it->second.bytes > 0) makeSurface(it->second);
       effect.other |= it->second.surface.shader != before;
       const bool textured = isTextured(&appearance);
       effect.textured |= textured && !it->second.textured;
       it->second.textured = textured;
-    }
-  for (Entries& lines : lines_)
-    if (const auto it = lines.find(&appearance); it != lines.end()) {
+    } else {
       Node* material = partsOf(&appearance).anyMaterial;
       const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
       const LineSizes sizes = lineSizes(partsOf(&appearance).plain);
@@ -351,12 +354,13 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
       surface.lineWidth = sizes.line;
       surface.pointSize = sizes.point;
     }
+  }
   return effect;
 }
 
 void Surfaces::clear() {
-  for (Entries* entries : {&surfaces_[0], &surfaces_[1], &lines_[0], &lines_[1]})
-    for (auto& [node, entry] : *entries) forget(entry);
+  for (Entries& entries : entries_)
+    for (auto& [node, entry] : entries) forget(entry);
 }
 
 void Surfaces::forget(Entry& entry) {

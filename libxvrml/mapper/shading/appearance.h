@@ -8,6 +8,7 @@
 
 #include "mapper/ration.h"
 #include "mapper/rt.h"
+#include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/world.h"
@@ -31,13 +32,15 @@ struct SurfaceUse {
   // The geometry's colours are those of a ColorRGBA, whose opacities stand in place of the
   // material's transparency (ISO/IEC 19775-1 11.4.3).
   bool vertexAlpha = false;
+  // Cube maps are looked up by the normal (TextureCoordinateGenerator).
+  bool byNormal = false;
 };
 
 class Surfaces {
  public:
   Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
-           CustomShaders& custom)
-      : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
+           CubeMaps& cubes, CustomShaders& custom)
+      : world_(world), linear_(linearColor), classes_(classes), textures_(textures), cubes_(cubes),
         custom_(custom), quota_(world, "appearances") {}
 
   // Returns the surface of a Shape's appearance, which may be null or a prototype instance.
@@ -57,7 +60,9 @@ class Surfaces {
   template <class Uses> void forgetUnless(const Uses& uses);
   void clear(); // deletes everything
   size_t count() const {
-    return surfaces_[0].size() + surfaces_[1].size() + lines_[0].size() + lines_[1].size();
+    size_t n = 0;
+    for (const Entries& entries : entries_) n += entries.size();
+    return n;
   }
   uint64_t parametersSet() const { return sets_; }
   bool multiplyTextures = false; // OpenRTMapper::setMultiplyTextures
@@ -79,9 +84,13 @@ class Surfaces {
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
     bool textured = false;
-    bool vertexAlpha = false;
+    SurfaceUse use;
   };
   using Entries = std::unordered_map<const Node*, Entry>;
+  // Returns the place in entries_ of surfaces for a use.
+  static size_t placeOf(SurfaceUse use) {
+    return size_t(use.lines) * 4 + size_t(use.byNormal) * 2 + size_t(use.vertexAlpha);
+  }
   Surface makeLines(const Entry& entry);
   void makeSurface(Entry& entry);
   void makePhysical(Entry& entry);
@@ -98,22 +107,23 @@ class Surfaces {
   bool linear_;
   ShaderClasses& classes_;
   Textures& textures_;
+  CubeMaps& cubes_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries surfaces_[2], lines_[2];                 // without and with vertexAlpha
+  Entries entries_[8];                             // by placeOf()
   std::unordered_map<std::string, Shared> shared_; // by the values, see keyOf()
   uint64_t sets_ = 0;
 };
 
 template <class Uses> void Surfaces::forgetUnless(const Uses& uses) {
-  for (Entries* entries : {&surfaces_[0], &surfaces_[1], &lines_[0], &lines_[1]})
-    for (auto it = entries->begin(); it != entries->end();) {
+  for (Entries& entries : entries_)
+    for (auto it = entries.begin(); it != entries.end();) {
       if (!it->first || uses(it->first)) {
         ++it;
         continue;
       }
       forget(it->second);
-      it = entries->erase(it);
+      it = entries.erase(it);
     }
 }
 

@@ -8,6 +8,34 @@
 #include "xvrml/radiance.h"
 
 namespace xvrml::mapper {
+namespace {
+
+constexpr const char* pictures[cubeFaces] = {"cubeFront", "cubeBack", "cubeLeft",
+                                             "cubeRight", "cubeTop",  "cubeBottom"};
+enum Lookup { none, byReflection, byTheNormal }; // values of cubeLookup
+
+} // namespace
+
+bool isCubeMap(Node* texture) {
+  Node* node = renderedNode(texture);
+  return node && node->type().is("environmentTexture");
+}
+
+bool setCubeLayer(ShaderSetup& shader, Node* texture, CubeMaps& cubes, bool byNormal) {
+  const bool cube = isCubeMap(texture);
+  const bool mirror = nodeCast<nodes::GeneratedCubeMapTexture>(renderedNode(texture));
+  const CubeMap map = cube && !mirror ? cubes.of(texture) : CubeMap();
+  bool any = map.sphere != 0;
+  for (size_t i = 0; i < cubeFaces; ++i) {
+    any |= map.faces[i] != 0;
+    if (map.faces[i] != 0 || !shader.fresh()) shader.texture(pictures[i], map.faces[i]);
+  }
+  if (map.sphere != 0 || !shader.fresh()) shader.texture("cubeMap", map.sphere);
+  if (any || !shader.fresh())
+    shader.integer("cubeLookup", !any ? none : byNormal ? byTheNormal : byReflection);
+  if (mirror || !shader.fresh()) shader.integer("mirror", mirror ? 1 : 0);
+  return cube;
+}
 
 CubeMap CubeMaps::of(Node* node) {
   Node* cube = renderedNode(node);

@@ -16,6 +16,9 @@ struct CubeMap {
   RTid sphere = 0;            // a picture of all longitudes and latitudes instead
 };
 
+// Returns whether a texture (or null) is a cube map.
+bool isCubeMap(Node* texture);
+
 class CubeMaps {
  public:
   CubeMaps(World& world, Textures& textures) : world_(world), textures_(textures) {}
@@ -42,5 +45,10 @@ class CubeMaps {
   std::unordered_map<const Node*, Entry> files_; // nodes that own their pictures
   std::unordered_set<const Node*> refused_;      // other nodes, which have been reported
 };
+
+// Sets the parameters of the class X3DMaterial for the first layer of a surface: a cube map that is
+// looked up by a direction, or for a GeneratedCubeMapTexture a mirror. Returns whether the texture
+// (or null) is a cube map. byNormal: the direction is the normal, not the reflected ray.
+bool setCubeLayer(ShaderSetup& shader, Node* texture, CubeMaps& cubes, bool byNormal);
 
 } // namespace xvrml::mapper

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "mapper/shading/cube_maps.h"
+
 namespace xvrml::mapper {
 namespace {
 
@@ -91,8 +93,8 @@ Color emissionOf(Node& material) {
 
 bool hasPictures(Node& material) {
   if (const auto* m = nodeCast<nodes::Material>(&material))
-    return m->ambientTexture || m->diffuseTexture || m->emissiveTexture || m->normalTexture ||
-           m->shininessTexture || m->specularTexture;
+    return m->ambientTexture || m->emissiveTexture || m->normalTexture || m->shininessTexture ||
+           m->specularTexture || (m->diffuseTexture && !isCubeMap(m->diffuseTexture.get()));
   if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material))
     return m->baseTexture || m->emissiveTexture || m->metallicRoughnessTexture || m->normalTexture;
   if (const auto* m = nodeCast<nodes::UnlitMaterial>(&material)) return bool(m->emissiveTexture);

@@ -22,7 +22,7 @@ int alphaModeOf(const nodes::Appearance* appearance, World& world);
 // Warns if the names of mappings differ.
 void warnOfMappings(const Node& material, std::initializer_list<const std::string*> mappings,
                     World& world);
-// Returns whether a material has a picture of its own.
+// Returns whether a material has a picture of its own other than a cube map.
 bool hasPictures(Node& material);
 
 // The parts of an appearance beside its material; null where it has none.

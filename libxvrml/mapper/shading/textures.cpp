@@ -112,6 +112,11 @@ RTid Textures::makeNode(Node& node, bool data, bool face) {
           node.source,
           "MovieTexture: films play in a running world; the surface is drawn without it");
     report(world_.diagnostics, node.source, node.type().name);
+  } else if (node.type().is("environmentTexture")) {
+    world_.diagnostics.warn(node.source,
+                            node.type().name +
+                                ": a cube map is drawn as the texture of an Appearance with a "
+                                "Material, or as diffuseTexture of that; here it is left out");
   } else {
     world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
   }

@@ -116,15 +116,17 @@ bool isUnfilled(const nodes::Appearance* appearance) {
 bool needsX3dMaterial(const X3dParts& parts) {
   if (isUnfilled(parts.appearance)) return true;
   if (isPhysical(parts.material)) return false;
-  if (nodeCast<nodes::MultiTexture>(parts.texture)) return true;
+  if (nodeCast<nodes::MultiTexture>(parts.texture) || isCubeMap(parts.texture)) return true;
   if (nodeCast<nodes::TwoSidedMaterial>(parts.material)) return true;
   const auto* m = nodeCast<nodes::Material>(parts.material);
   if (!m) return false;
-  return hasPictures(*parts.material) || backOf(parts) || !isTransparentMode(parts.appearance);
+  return m->diffuseTexture || hasPictures(*parts.material) || backOf(parts) ||
+         !isTransparentMode(parts.appearance);
 }
 
-void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, Textures& textures, World& world,
-                    bool linear) {
+void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, const X3dPictures& pictures,
+                    World& world, bool linear) {
+  Textures& textures = pictures.textures;
   shader.integer("filled", isUnfilled(parts.appearance) ? 0 : 1);
   shader.integer("lit", parts.material ? 1 : 0);
   shader.integer("alphaMode", alphaModeOf(parts.appearance, world));
@@ -156,6 +158,7 @@ void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, Textures& textur
     shader.integer("backPicture", 0);
   }
   shader.integer("twoSided", twoSided ? 1 : 0);
+  if (setCubeLayer(shader, texture, pictures.cubes, parts.byNormal)) texture = nullptr;
   setLayers(shader, texture, parts.textureTransform, mapping, parts.multiplies, textures, world,
             linear);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "mapper/rt.h"
+#include "mapper/shading/cube_maps.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
@@ -16,15 +17,20 @@ struct X3dParts {
   Node* texture = nullptr;
   Node* textureTransform = nullptr;
   bool multiplies = false; // a texture multiplies diffuseColor
+  bool byNormal = false;   // a cube map is looked up by the normal
+};
+struct X3dPictures {
+  Textures& textures;
+  CubeMaps& cubes;
 };
 
-// Returns whether a surface has a MultiTexture, a back of its own, pictures in its Material,
-// an alphaMode, or is not filled.
+// Returns whether a surface has a MultiTexture, a cube map, a back of its own, pictures in its
+// Material, an alphaMode, or is not filled.
 bool needsX3dMaterial(const X3dParts& parts);
 // Returns whether faces are to be left out (FillProperties).
 bool isUnfilled(const nodes::Appearance* appearance);
 // Sets all parameters of a shader of the class X3DMaterial.
-void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, Textures& textures, World& world,
-                    bool linear);
+void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, const X3dPictures& pictures,
+                    World& world, bool linear);
 
 } // namespace xvrml::mapper

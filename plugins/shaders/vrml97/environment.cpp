@@ -7,6 +7,7 @@
 
 #include "vrml97/batch.h"
 #include "vrml97/classes.h"
+#include "vrml97/cube_lookup.h"
 #include "vrml97/texture_groups.h"
 
 namespace vrml97 {
@@ -213,25 +214,6 @@ void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint3
   }
 }
 
-struct FaceCoords {
-  uint32_t face;
-  float s, t;
-};
-
-// Returns the face of the panorama's cube in a direction, and the texture coordinates there. Seen
-// from inside, each picture is upright after turning from the front by 90 degrees left, right, up
-// or down.
-FaceCoords faceCoordsOf(float x, float y, float z) {
-  const float ax = larger(x, -x), ay = larger(y, -y), az = larger(z, -z);
-  const auto place = [](uint32_t face, float right, float up, float depth) {
-    const float scale = 0.5f / larger(depth, 1e-37f);
-    return FaceCoords{face, 0.5f + right * scale, 0.5f + up * scale};
-  };
-  if (az >= ax && az >= ay) return z <= 0 ? place(0, x, y, az) : place(1, -x, y, az);
-  if (ax >= ay) return x <= 0 ? place(2, -z, y, ax) : place(3, z, y, ax);
-  return y >= 0 ? place(4, x, z, ay) : place(5, x, -z, ay);
-}
-
 // Composites the pictures on the six faces over the colours by their alpha.
 void panorama(const RtsHost* host, RtsBatch* batch, const RtsTexture (&faces)[6], uint32_t n,
               const float* const d[3], float* const rgba[4]) {
@@ -270,16 +252,6 @@ void background(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p
 
 bool lights(const EnvironmentParams& p) {
   return p.lightColor[0] > 0.0f || p.lightColor[1] > 0.0f || p.lightColor[2] > 0.0f;
-}
-
-VRML97_CLONES void mapPlaces(uint32_t n, const float* __restrict x, const float* __restrict y,
-                             const float* __restrict z, float* __restrict u, float* __restrict v) {
-  constexpr float pi = 3.14159265358979f;
-  for (uint32_t i = 0; i < n; i++) {
-    const float turn = angleOf(-z[i], x[i] < 0.0f ? -x[i] : x[i]); // from -z
-    u[i] = 0.5f + (x[i] < 0.0f ? -turn : turn) * (0.5f / pi);
-    v[i] = 1.0f - angleOf(y[i], squareRoot(x[i] * x[i] + z[i] * z[i])) * (1.0f / pi);
-  }
 }
 
 // Writes the radiance of an EnvironmentLight (ISO/IEC 19775-1:2023 17.4.2). Without pictures it is

@@ -17,7 +17,7 @@ namespace vrml97 {
 namespace {
 
 struct Lobes {
-  RtsLobe *diffuse, *highlight, *behind; // null if no hit of the batch has the lobe
+  RtsLobe *diffuse, *mirror, *highlight, *behind; // null if no hit of the batch has the lobe
 };
 
 float atLeast0(float x) { return larger(x, 0.0f); }
@@ -26,19 +26,20 @@ void fill(const RtsHits* hits, const Summary& summary, const Terms& t, const Lob
   for (uint32_t i = 0; i < hits->count; i++) {
     const float alpha = smaller(atLeast0(t.alpha[i]), 1.0f),
                 exponent = smaller(atLeast0(t.exponent[i]), blinn_phong::sharpest);
+    RtsLobe* base = t.mirror && t.mirror[i] ? lobes.mirror : lobes.diffuse;
     const float peakReflectance = lobes.highlight ? blinn_phong::reflectance(exponent) : 0.0f;
     for (int c = 0; c < 3; c++) {
       const float diffuse = atLeast0(t.diffuse[c][i]),
                   highlight = peakReflectance * atLeast0(t.specular[c][i]),
                   both = diffuse + highlight;
       const float scale = alpha * (both > 1.0f ? 1.0f / both : 1.0f);
-      if (lobes.diffuse) lobes.diffuse->weight[c][i] = scale * diffuse;
+      if (base) base->weight[c][i] = scale * diffuse;
       if (lobes.highlight) lobes.highlight->weight[c][i] = scale * highlight;
       if (lobes.behind) lobes.behind->weight[c][i] = 1.0f - alpha;
     }
     if (lobes.highlight) lobes.highlight->data[0][i] = exponent;
     if (summary.bent)
-      for (RtsLobe* lobe : {lobes.diffuse, lobes.highlight})
+      for (RtsLobe* lobe : {lobes.diffuse, lobes.mirror, lobes.highlight})
         for (int c = 0; c < 3 && lobe; c++) lobe->normal[c][i] = t.normal[c][i];
   }
 }
@@ -94,6 +95,7 @@ void scatterTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, con
   }
   Lobes lobes{};
   if (summary.lit) lobes.diffuse = host->lobe(batch, RTS_LOBE_DIFFUSE);
+  if (t.mirror) lobes.mirror = host->lobe(batch, RTS_LOBE_REFLECTION);
   if (summary.specular) {
     lobes.highlight = host->customLobe(batch, rts::lobeFunctions<blinn_phong::Lobe>(), 1);
     if (lobes.highlight) lobes.highlight->coat = 1;

@@ -42,6 +42,8 @@ struct Terms {
   float* exponent;        // 128 * shininess
   float* alpha;           // A
   const float* normal[3]; // unit shading normal
+  // Not 0 where the diffuse term is the reflectance of a mirror; null: nowhere.
+  const uint32_t* mirror = nullptr;
 };
 
 // Properties of a whole batch: whether any lane is lit, has a specular colour or a texture, needs

@@ -12,6 +12,7 @@
 #include "vrml97/global.h"
 #include "vrml97/layers.h"
 #include "vrml97/texture_groups.h"
+#include "vrml97/x3d_cube.h"
 #include "vrml97/x3d_params.h"
 
 namespace vrml97 {
@@ -81,7 +82,9 @@ class Pictures {
     texture_ = reinterpret_cast<RtsTexture*>(host->scratch(batch, lanes));
     for (float*& c : uv_) c = host->scratch(batch, lanes);
   }
-  template <class Choose> bool sample(uint32_t layer, const Choose& choose) {
+  // cubeNormal: unless null, lanes whose layer is a cube map are looked up with this normal.
+  template <class Choose>
+  bool sample(uint32_t layer, const Choose& choose, const float* const* cubeNormal = nullptr) {
     RtsTexture any = 0;
     for (uint32_t i = 0; i < lanes_; i++) {
       const Lane lane = laneOf(hits_, i);
@@ -91,6 +94,14 @@ class Pictures {
       const float u = hits_->uv[0][lane.from], v = hits_->uv[1][lane.from];
       uv_[0][i] = m[0] * u + m[2] * v + m[4];
       uv_[1][i] = m[1] * u + m[3] * v + m[5];
+    }
+    if (cubeNormal) {
+      placeInCubes(host_, batch_, hits_, cubeNormal, texture_, uv_);
+      for (uint32_t i = 0; i < hits_->count; i++) any |= texture_[i];
+      for (uint32_t i = hits_->count; i < lanes_; i++) { // the padding repeats the last lane
+        texture_[i] = texture_[hits_->count - 1];
+        for (float* c : uv_) c[i] = c[hits_->count - 1];
+      }
     }
     if (any == 0) return false;
     std::fill_n(components, lanes_, 0u);
@@ -125,26 +136,36 @@ RtsTexture layerTexture(const Lane& lane, uint32_t layer) {
   return layer == 0 ? lane.p.front.texture : lane.p.further[layer - 1];
 }
 
-// Returns the number of layers of which any lane may have a picture.
-uint32_t layerCount(const RtsHits* hits) {
+// The number of layers of which any lane may have a picture, and whether the first of any lane is a
+// cube map.
+struct LayerUse {
   uint32_t count = 0;
+  bool cubes = false;
+};
+LayerUse layerUse(const RtsHits* hits) {
+  LayerUse use;
+  uint32_t& count = use.count;
   const X3dParams* last = nullptr;
   for (uint32_t i = 0; i < hits->count; i++) {
     const X3dParams& p = x3dParamsOf(hits, i);
     if (&p == last) continue;
     last = &p;
+    use.cubes |= p.cubeLookup != noCube;
     for (uint32_t k = maxLayers; k > count; k--)
       if ((k == 1 ? p.front.texture | p.backTexture : p.further[k - 2]) != 0) count = k;
   }
-  return count;
+  if (use.cubes) count = std::max(count, 1u);
+  return use;
 }
 
 // Combines the layers. The result is in t.diffuse or, for unlit lanes, t.glow, and in t.alpha.
 void combineLayers(const RtsHits* hits, uint32_t lanes, Pictures& pictures, const Terms& t) {
-  const uint32_t count = layerCount(hits);
-  if (count == 0) return;
-  for (uint32_t layer = 0; layer < count; layer++) {
-    if (!pictures.sample(layer, [layer](const Lane& lane) { return layerTexture(lane, layer); }))
+  const LayerUse use = layerUse(hits);
+  if (use.count == 0) return;
+  for (uint32_t layer = 0; layer < use.count; layer++) {
+    if (!pictures.sample(
+            layer, [layer](const Lane& lane) { return layerTexture(lane, layer); },
+            use.cubes && layer == 0 ? t.normal : nullptr))
       continue;
     for (uint32_t i = 0; i < hits->count; i++) {
       const uint32_t components = pictures.components[i];
@@ -280,6 +301,7 @@ Summary makeX3dTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, 
   t = allocate(host, batch, hits, lanes);
   Summary summary = materials(hits, lanes, t);
   Pictures pictures(host, batch, hits, lanes);
+  if (summary.lit) bendNormals(host, batch, hits, lanes, pictures, t, summary);
   combineLayers(hits, lanes, pictures, t);
   const auto byColor = [&](float* const* term) {
     return [&pictures, term](uint32_t i) {
@@ -292,9 +314,9 @@ Summary makeX3dTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, 
     multiply(hits, pictures, &TermPictures::specular, byColor(t.specular));
     multiply(hits, pictures, &TermPictures::shininess,
              [&](uint32_t i) { t.exponent[i] *= pictures.rgba[3][i]; });
-    bendNormals(host, batch, hits, lanes, pictures, t, summary);
   }
   finishAlpha(hits, lanes, t);
+  findMirrors(host, batch, hits, t);
   return summary;
 }
 
@@ -309,6 +331,10 @@ bool maybeTransparent(const RtsHost* host, const X3dParams& p) {
   const auto alpha = [&](RtsTexture t) { return t != 0 && hasAlpha(host->components(host, t)); };
   clear |= alpha(p.front.texture) || (p.twoSided && alpha(p.backTexture));
   for (const RtsTexture t : p.further) clear |= alpha(t);
+  if (p.cubeLookup != noCube) {
+    clear |= alpha(p.cubeMap);
+    for (const RtsTexture t : p.cube) clear |= alpha(t);
+  }
   for (uint32_t k = 0; k < maxLayers; k++)
     clear |= layerOf(p, k, 0).source == LayerSource::factor && p.factor[3] < 1;
   return clear;
@@ -321,14 +347,28 @@ uint32_t traits(const RtsHost* host, const void* params) {
              glows = any(p.front.emissiveColor) || (p.twoSided && any(p.backEmissiveColor));
   return (maybeTransparent(host, p) ? uint32_t(RTS_TRANSPARENT) : 0u) |
          (lit ? 0u : uint32_t(RTS_UNLIT) | uint32_t(RTS_NO_SCATTER)) |
-         (lit && shiny ? uint32_t(RTS_GLOSSY) : 0u) | (!lit || glows ? uint32_t(RTS_EMISSIVE) : 0u);
+         (lit && shiny ? uint32_t(RTS_GLOSSY) : 0u) |
+         ((!lit && !p.mirror) || glows ? uint32_t(RTS_EMISSIVE) : 0u) |
+         (p.mirror ? uint32_t(RTS_SPECULAR) : 0u);
+}
+
+// Writes the albedo of mirrors, which is their reflectance.
+void showMirrors(const RtsHits* hits, const Terms& t, const float* const reflectance[3],
+                 float* const albedo[3]) {
+  if (!albedo[0]) return;
+  for (uint32_t i = 0; i < hits->count; i++)
+    for (int c = 0; c < 3 && t.mirror[i]; c++) albedo[c][i] = reflectance[c][i];
 }
 
 void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   if (hits->count == 0) return;
   Terms t;
   const Summary summary = makeX3dTerms(host, batch, hits, t);
+  const MirrorColors mirrored = takeMirrors(host, batch, hits, t);
   shadeTerms(host, batch, hits, summary, t, out);
+  if (!t.mirror) return;
+  addMirrored(host, batch, hits, t, mirrored, out->radiance);
+  showMirrors(hits, t, mirrored.c, out->albedo);
 }
 
 void scatterX3d(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
@@ -336,6 +376,7 @@ void scatterX3d(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSu
   Terms t;
   const Summary summary = makeX3dTerms(host, batch, hits, t);
   scatterTerms(host, batch, hits, summary, t, out);
+  if (t.mirror) showMirrors(hits, t, t.diffuse, out->albedo);
 }
 
 void transmitX3d(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,

@@ -15,6 +15,10 @@ inline constexpr uint32_t maxLayers = 8;       // `texture` and the following pi
 inline constexpr uint32_t numbersPerLayer = 4; // in `layers`
 inline constexpr uint32_t numbersPerPlace = 6; // in `layerTransforms`
 
+// The values of cubeLookup: by which direction the first layer is looked up in a cube map.
+enum CubeLookup : int32_t { noCube, byReflection, byNormal };
+inline constexpr uint32_t cubeFaces = 6; // front, back, left, right, top, bottom
+
 // The values of alphaMode.
 enum AlphaMode : int32_t { alphaOpaque, alphaMask, alphaBlend };
 
@@ -33,6 +37,9 @@ struct X3dParams {
   int32_t alphaMode;
   float alphaCutoff;
   int32_t filled;
+  int32_t cubeLookup;
+  RtsTexture cube[cubeFaces], cubeMap;
+  int32_t mirror;
 };
 
 struct ParamList {
