@@ -278,3 +278,23 @@ def test_a_generated_cube_map_is_a_mirror_of_the_world(transport):
     b = picture(ball(stock % tuple(linear), world), size=(60, 60), spp=64, transport=transport)
     assert a[30, 30, :3] == pytest.approx(b[30, 30, :3], abs=2e-3)
     assert np.abs(a - b).mean() < 5e-3
+
+
+def test_image_cube_maps_on_a_sphere(tmp_path):
+    """Files of six faces and of the whole sphere lie where a mirror sees them in the surroundings."""
+    from PIL import Image
+    order = ("right", "left", "top", "bottom", "back", "front")
+    (tmp_path / "sky.dds").write_bytes(dds([FACES[name][1] for name in order]))
+    x, y = np.meshgrid(np.arange(64), np.arange(32))
+    smooth = np.stack([np.cos(x * np.pi / 32) * 100 + 128, y * 8, np.sin(x * np.pi / 32) * 99 + 99],
+                      axis=-1)
+    Image.fromarray(smooth.astype(np.uint8), "RGB").save(tmp_path / "sky.png")
+    inside = np.hypot(*(np.indices((40, 40)) - 19.5)) < 7
+    for file in ("sky.dds", "sky.png"):
+        cube = f'ImageCubeMapTexture {{ url "{file}" }}'
+        one, other = (picture_of_file(tmp_path, text, size=(40, 40)) for text in (
+            ball(POLISHED % cube),
+            ball(MIRROR, f"EnvironmentLight {{ specularTexture {cube} }} ")))
+        difference = np.abs(one - other)[inside][:, :3]
+        assert difference.mean() < .02, file
+        assert one[inside][:, :3].std() > .05, file
