@@ -170,7 +170,9 @@ void Engine::deliverToStatic(Node& node, const FieldInfo& in, const Value& value
         field && field->type == in.type)
       store(node, *field, value);
   }
-  if (behaviour && behaviour->receive) behaviour->receive(*this, node, in, value);
+  // Metadata has no effect on its node (ISO/IEC 19775-1 7.3.3).
+  const bool isMetadata = in.type == FieldType::SFNode && in.name == "metadata";
+  if (behaviour && behaviour->receive && !isMetadata) behaviour->receive(*this, node, in, value);
 }
 
 // Forwards an event into the body. An exposedField stores its value itself, unless an exposedField

@@ -308,12 +308,18 @@ template <class F> void callCustom(const RtsBatch* batch, const F& f) {
 }
 
 // Replaces negative values and values that are not finite in the output of a plug-in's lobe, and
-// counts the latter.
-void checkCustom(const RtsBatch* batch, std::initializer_list<float*> arrays, uint32_t n) {
+// counts the latter. Hits that do not have the lobe, which other hits of the batch have, do not
+// count: there its numbers are all 0.
+void checkCustom(const RtsBatch* batch, const RtsLobe& lobe, const uint32_t* hit,
+                 std::initializer_list<float*> arrays, uint32_t n) {
+  const auto has = [&](uint32_t i) {
+    return lobe.weight[0][hit[i]] != 0 || lobe.weight[1][hit[i]] != 0 ||
+           lobe.weight[2][hit[i]] != 0;
+  };
   uint64_t bad = 0;
   for (float* a : arrays)
     for (uint32_t i = 0; i < n; i++) {
-      bad += !std::isfinite(a[i]);
+      bad += !std::isfinite(a[i]) && has(i);
       a[i] = checked(a[i]);
     }
   const RtsClass* shaderClass = bad ? classOf(batch) : nullptr;
@@ -333,7 +339,7 @@ void LobeValues::evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, 
     return nonSpecularFunctions(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, pdf);
   callCustom(batch_,
              [&] { lobe.functions->evaluate(&lobe, &hits, n, hit, directions, value, pdf); });
-  checkCustom(batch_, {value[0], value[1], value[2], pdf}, n);
+  checkCustom(batch_, lobe, hit, {value[0], value[1], value[2], pdf}, n);
 }
 
 LobeSamples::LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch)
@@ -347,7 +353,7 @@ void LobeSamples::sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, c
     return nonSpecularFunctions(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, pdf);
   callCustom(batch_,
              [&] { lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, pdf); });
-  checkCustom(batch_, {value[0], value[1], value[2], pdf}, n);
+  checkCustom(batch_, lobe, hit, {value[0], value[1], value[2], pdf}, n);
   for (uint32_t i = 0; i < n; i++) { // a direction that is not normalised counts as no sample
     const Vec3f d = load(direction, i);
     if (!(std::fabs(dot(d, d) - 1) < 1e-3f)) pdf[i] = 0;

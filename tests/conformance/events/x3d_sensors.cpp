@@ -402,5 +402,18 @@ TEST(Cad, LayersShowTheirChildrenOneByOne) {
   EXPECT_FALSE(r.browser.pick(right, direction, {}, hit));
 }
 
+// 7.3.3: an event to the field metadata has no effect on the node, whatever its behaviour is.
+TEST(Metadata, EventsOfItReachNoBehaviour) {
+  Running r(head +
+            "DEF M MetadataSet { }\nDEF F BooleanFilter { }\nDEF I IntegerTrigger { }\n"
+            "DEF D PositionDamper { }\nDEF Q BooleanSequencer { key [ 0 ] keyValue [ TRUE ] }");
+  for (const char* out : {"inputTrue", "inputFalse"}) r.log("F", out);
+  r.log("I", "triggerValue");
+  r.log("D", "value_changed");
+  r.log("Q", "value_changed");
+  for (const char* name : {"F", "I", "D", "Q"}) r.set(name, "metadata", NodeRef(&r.node("M")));
+  EXPECT_EQ(r.take(), Log{});
+}
+
 } // namespace
 } // namespace xvrml
