@@ -5,7 +5,8 @@ corpus_x3d.py --vv build/release/bin/vv --corpus FOLDER --out build/corpus-x3d  
 
 The folder (default $OPENRT_CORPUS_X3D or ../shared/corpus-x3d) holds MANIFEST.tsv with the columns
 folder (the origin), path and bytes. Writes table.md (counts by encoding and origin, and what is
-missing most often), files.tsv (a row for each file) and, with --sheets, contact sheets of the
+missing most often), files.tsv (a row for each file; what was understood of single files is in
+notes_x3d.tsv beside this program) and, with --sheets, contact sheets of the
 pictures, beside those of another browser where --beside FOLDER has ORIGIN__PATH.png (slashes are
 __). Exit code 0: no file crashes vv or takes longer than 30 s; 77: there is no such folder."""
 import argparse
