@@ -36,8 +36,8 @@ struct TimeStep {
   double elapsed = 0; // seconds that it has been active in the world, without pauses
 };
 
-// Which events of two states can be sent. Each can be sent only once per cascade; a second change
-// of its state waits for the next tick.
+// Says which events of two states can be sent. Each can be sent only once per cascade; a second
+// change of its state waits for the next tick.
 struct MaySend {
   bool active = true, paused = true;
 };

@@ -70,8 +70,8 @@ void expectToBeRead(const std::vector<std::string>& files, size_t wanted) {
   EXPECT_GE(withoutErrors * 100, files.size() * wanted);
 }
 
-// What a file says in one encoding of X3D it says in the others: every seventh file, written as
-// ClassicVRML, as XML and as VRML97, is the same graph again. XML has no NULL, so a list with NULL
+// A file says the same in all encodings of X3D: every seventh file, written as ClassicVRML, as XML
+// and as VRML97, is the same graph again. XML has no NULL, so a list with NULL
 // is compared with what XML makes of it. OPENRT_CORPUS_STEP=1 takes every file.
 TEST(CorpusX3d, FilesAreTheSameGraphInEveryEncoding) {
   const auto files = filesWith({".x3dv", ".x3d", ".x3dj"});

@@ -275,7 +275,7 @@ def test_python_loads_them(tmp_path, name):
     assert world["Box"].geometry.node_type == "Box"
 
 
-# What VRML 1.0 can say, too: no prototypes, and lights and cameras that are traversed.
+# VRML 1.0 can say this world, too: it has no prototypes, and its lights and cameras are traversed.
 PLAIN = """
 Viewpoint { position 0 0 6 }
 Transform { translation -1.5 0 0 children Shape {

@@ -116,7 +116,10 @@ TEST(CubeFaces, HalvesAndFloatsAreRadiance) {
   b = header(1, {4, 116});
   for (int i = 0; i < 24; i++) word(b, 0x42c80000); // 100
   EXPECT_EQ(decode(b).radiance[5].rgb, (std::vector<float>{100, 100, 100}));
-  b[128] = 0x00, b[129] = 0x00, b[130] = 0x80, b[131] = 0x7f; // infinite
+  b[128] = 0x00; // the first number becomes infinite
+  b[129] = 0x00;
+  b[130] = 0x80;
+  b[131] = 0x7f;
   EXPECT_NE(whyNot(b).find("not finite"), std::string::npos);
 }
 

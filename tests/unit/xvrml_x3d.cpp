@@ -102,7 +102,7 @@ TEST(X3d, ProgramsForGraphicsProcessorsAreSaidOnce) {
   EXPECT_NE(world->scope.names.find("M"), world->scope.names.end());
 }
 
-// What they do is tested in conformance/events/imports.cpp.
+// The reader knows imported names. conformance/events/imports.cpp tests the routes to them.
 TEST(X3d, ImportedNamesAreNamesForRoutes) {
   const auto world =
       load("#X3D V3.3 utf8\nDEF I Inline { }\nIMPORT I.Arm AS A\nDEF T Transform { }\n"

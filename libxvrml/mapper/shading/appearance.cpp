@@ -288,21 +288,28 @@ void Surfaces::makeSurface(Entry& entry) {
          "appearance");
 }
 
+// Gives the entry a shader of a class other than VRML97, and starts to set its parameters. Returns
+// false, and leaves the appearance out, if the world's budget does not allow the shader.
+bool Surfaces::setUp(Entry& entry, RTid Entry::*own, RTid shaderClass,
+                     std::optional<ShaderSetup>& setup) {
+  if (entry.shared) leaveShared(entry);
+  if (entry.*own == 0 && !take(entry, bytesOfShader)) {
+    entry.surface = Surface();
+    return false;
+  }
+  if (entry.*own == 0)
+    setup.emplace(shaderClass);
+  else
+    setup.emplace(shaderClass, entry.*own, sets_);
+  entry.surface.shader = entry.*own = setup->id();
+  return true;
+}
+
 // Makes the surface of a PhysicalMaterial or UnlitMaterial, or sets new parameters.
 void Surfaces::makePhysical(Entry& entry) {
   const Parts parts = partsOf(entry.appearance.get());
-  if (entry.shared) leaveShared(entry);
-  if (entry.physical == 0 && !take(entry, bytesOfShader)) {
-    entry.surface = Surface();
-    return;
-  }
   std::optional<ShaderSetup> setup;
-  const RTid shaderClass = classes_.get("Physical", "physical");
-  if (entry.physical == 0)
-    setup.emplace(shaderClass);
-  else
-    setup.emplace(shaderClass, entry.physical, sets_);
-  entry.surface.shader = entry.physical = setup->id();
+  if (!setUp(entry, &Entry::physical, classes_.get("Physical", "physical"), setup)) return;
   setPhysical(*setup, *parts.anyMaterial, {parts.plain, parts.texture, parts.textureTransform},
               textures_, world_, linear_);
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
@@ -314,18 +321,8 @@ void Surfaces::makeX3d(Entry& entry) {
   X3dParts parts = x3dPartsOf(partsOf(entry.appearance.get()));
   parts.multiplies = multiplies(entry);
   parts.byNormal = entry.use.byNormal;
-  if (entry.shared) leaveShared(entry);
-  if (entry.x3d == 0 && !take(entry, bytesOfShader)) {
-    entry.surface = Surface();
-    return;
-  }
   std::optional<ShaderSetup> setup;
-  const RTid shaderClass = classes_.get("X3DMaterial", "");
-  if (entry.x3d == 0)
-    setup.emplace(shaderClass);
-  else
-    setup.emplace(shaderClass, entry.x3d, sets_);
-  entry.surface.shader = entry.x3d = setup->id();
+  if (!setUp(entry, &Entry::x3d, classes_.get("X3DMaterial", ""), setup)) return;
   setX3dMaterial(*setup, parts, {textures_, cubes_}, world_, linear_);
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, "appearance");

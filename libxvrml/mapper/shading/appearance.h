@@ -3,6 +3,7 @@
 // an appearance a shader of its own. [the mapper's thread]
 #pragma once
 
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -25,7 +26,7 @@ struct Surface {
   float lineWidth = 1, pointSize = 1; // in pixels
 };
 
-// What a surface is for.
+// Says what a surface is used for.
 struct SurfaceUse {
   // Lines or points, which are neither lit nor textured (clauses 6.24, 6.36).
   bool lines = false;
@@ -93,6 +94,7 @@ class Surfaces {
   }
   Surface makeLines(const Entry& entry);
   void makeSurface(Entry& entry);
+  bool setUp(Entry& entry, RTid Entry::*own, RTid shaderClass, std::optional<ShaderSetup>& setup);
   void makePhysical(Entry& entry);
   void makeX3d(Entry& entry);
   bool multiplies(const Entry& entry) const;

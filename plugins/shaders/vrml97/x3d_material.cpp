@@ -18,7 +18,7 @@
 namespace vrml97 {
 namespace {
 
-// What a lane's hit is: its parameters, its side, and what it is made of.
+// Describes the hit of a lane: its parameters, its side, and what it is made of.
 struct Lane {
   const X3dParams& p;
   uint32_t from, side;
