@@ -19,7 +19,6 @@ constexpr std::string_view nodes[] = {"AcousticProperties",
                                       "ChannelMerger",
                                       "ChannelSelector",
                                       "ChannelSplitter",
-                                      "ClipPlane",
                                       "CollidableOffset",
                                       "CollidableShape",
                                       "CollisionCollection",
@@ -274,9 +273,14 @@ bool isX3dNode(std::string_view type) {
 }
 
 bool isGpuNode(std::string_view type) {
-  constexpr std::string_view programs[] = {
-      "ComposedShader", "FloatVertexAttribute", "Matrix3VertexAttribute", "Matrix4VertexAttribute",
-      "PackagedShader", "ProgramShader",        "ShaderPart",             "ShaderProgram"};
+  constexpr std::string_view programs[] = {"ComposedShader",
+                                           "FloatVertexAttribute",
+                                           "Matrix3VertexAttribute",
+                                           "Matrix4VertexAttribute",
+                                           "PackagedShader",
+                                           "ProgramShader",
+                                           "ShaderPart",
+                                           "ShaderProgram"};
   return std::find(std::begin(programs), std::end(programs), type) != std::end(programs);
 }
 
