@@ -52,8 +52,6 @@ const Signature signatures[] = {
       "save it as text (#Inventor V2.1 ascii), or as VRML97 (.wrl)"}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); },
      {"a COLLADA document", exportIt}},
-    {[](std::string_view b) { return b.starts_with("OFF\n") || b.starts_with("OFF\r"); },
-     {"an OFF mesh", exportIt}},
     {is3ds, {"a 3D Studio mesh", exportIt}},
     {[](std::string_view b) { return b.starts_with("Kaydara FBX Binary"); },
      {"an FBX scene", exportIt}},

@@ -20,7 +20,7 @@ std::vector<std::string> filesOf(const std::string& folder) {
     const auto suffix = entry.path().extension();
     if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj" ||
         suffix == ".stl" || suffix == ".ply" || suffix == ".obj" || suffix == ".gltf" ||
-        suffix == ".glb")
+        suffix == ".glb" || suffix == ".off")
       paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());

@@ -63,7 +63,6 @@ def test_usage(vv, arguments, word):
 
 
 @pytest.mark.parametrize("content, name", [
-    (b"OFF\n8 6 12\n", "OFF mesh"),
     (b"ISO-10303-21;\n", "STEP model"),
     (b"(kicad_pcb (version 20221018)", "KiCad board"),
     (b"\x89PNG\r\n\x1a\n", "a picture"),

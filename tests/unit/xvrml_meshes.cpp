@@ -1,5 +1,5 @@
-// xvrml_meshes.cpp: STL, PLY, OBJ and glTF as worlds: how they are found out, the nodes that they
-// become, and what a hostile file may cost. The values follow from the bytes by hand.
+// xvrml_meshes.cpp: STL, PLY, OBJ, glTF and OFF as worlds: how they are found out, the nodes that
+// they become, and what a hostile file may cost. The values follow from the bytes by hand.
 #include <cmath>
 #include <cstring>
 
@@ -103,6 +103,9 @@ TEST(Meshes, ContentDecidesBeforeTheSuffix) {
   EXPECT_EQ(encoding("# VRML 1.0 export\nv 1 2 3\n", "a.wrl"), Encoding::obj);
   EXPECT_EQ(encoding(gltf(R"("nodes":[])"), "a.x3dj"), Encoding::gltf);
   EXPECT_EQ(encoding("#VRML V2.0 utf8\nGroup { }", "a.stl"), Encoding::vrml97);
+  EXPECT_EQ(encoding("OFF\n8 6 12\n", "a.wrl"), Encoding::off);
+  EXPECT_EQ(encoding("# made by x\nCOFF 3 1\n", "a.ply"), Encoding::off);
+  EXPECT_EQ(encoding("OFF490 518 0\n", "a"), Encoding::off);
   // The suffix decides where the content says nothing.
   EXPECT_EQ(encoding(binaryStl(1, 1) + "tail", "part.STL"), Encoding::stl);
   EXPECT_EQ(encoding("f 1 2 3\n", "a.obj"), Encoding::obj);
@@ -112,10 +115,11 @@ TEST(Meshes, ContentDecidesBeforeTheSuffix) {
 
 TEST(Meshes, TheMessageForOtherFormatsNamesThoseThatCanBeRead) {
   try {
-    load("OFF\n8 6 12\n", "a.off");
+    load("BLENDER-v300", "a.off");
     FAIL();
   } catch (const LoadError& error) {
-    for (const char* name : {"VRML97", "X3D ClassicVRML", "STL", "PLY", "Wavefront OBJ", "glTF"})
+    for (const char* name :
+         {"VRML97", "X3D ClassicVRML", "STL", "PLY", "Wavefront OBJ", "glTF", "OFF"})
       EXPECT_NE(error.diagnostic.message.find(name), std::string::npos) << name;
   }
 }

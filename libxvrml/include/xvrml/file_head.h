@@ -9,19 +9,30 @@
 
 namespace xvrml {
 
-enum class Encoding : uint8_t { vrml97, x3dClassic, x3dXml, x3dJson, vrml1, stl, ply, obj, gltf };
-inline constexpr int encodingCount = 9;
+enum class Encoding : uint8_t {
+  vrml97,
+  x3dClassic,
+  x3dXml,
+  x3dJson,
+  vrml1,
+  stl,
+  ply,
+  obj,
+  gltf,
+  off
+};
+inline constexpr int encodingCount = 10;
 // Returns the name of an encoding as users call it.
 constexpr std::string_view encodingName(Encoding encoding) {
-  constexpr std::string_view names[encodingCount] = {"VRML97",   "X3D ClassicVRML", "X3D XML",
-                                                     "X3D JSON", "VRML 1.0",        "STL",
-                                                     "PLY",      "Wavefront OBJ",   "glTF"};
+  constexpr std::string_view names[encodingCount] = {
+      "VRML97", "X3D ClassicVRML", "X3D XML", "X3D JSON", "VRML 1.0", "STL",
+      "PLY",    "Wavefront OBJ",   "glTF",    "OFF"};
   return names[static_cast<size_t>(encoding)];
 }
 // Returns whether a file is a mesh. Its nodes follow X3D 4.0.
 constexpr bool isMesh(Encoding encoding) {
   return encoding == Encoding::stl || encoding == Encoding::ply || encoding == Encoding::obj ||
-         encoding == Encoding::gltf;
+         encoding == Encoding::gltf || encoding == Encoding::off;
 }
 
 // The encoding and the version of the standard that a file follows. VRML 1.0 is version 1.0, VRML97

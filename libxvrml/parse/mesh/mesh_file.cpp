@@ -25,11 +25,9 @@ bool findMeshEncoding(std::string_view bytes, Encoding& encoding) {
     bool (*matches)(std::string_view bytes);
     Encoding encoding;
   };
-  constexpr Row rows[] = {{isGltf, Encoding::gltf},
-                          {isPly, Encoding::ply},
-                          {isBinaryStl, Encoding::stl},
-                          {isAsciiStl, Encoding::stl},
-                          {isObj, Encoding::obj}};
+  constexpr Row rows[] = {{isGltf, Encoding::gltf},     {isPly, Encoding::ply},
+                          {isBinaryStl, Encoding::stl}, {isAsciiStl, Encoding::stl},
+                          {isOff, Encoding::off},       {isObj, Encoding::obj}};
   for (const Row& row : rows) {
     if (!row.matches(bytes)) continue;
     encoding = row.encoding;
@@ -39,11 +37,9 @@ bool findMeshEncoding(std::string_view bytes, Encoding& encoding) {
 }
 
 bool findMeshSuffix(std::string_view path, Encoding& encoding) {
-  constexpr std::pair<std::string_view, Encoding> rows[] = {{".stl", Encoding::stl},
-                                                            {".ply", Encoding::ply},
-                                                            {".obj", Encoding::obj},
-                                                            {".gltf", Encoding::gltf},
-                                                            {".glb", Encoding::gltf}};
+  constexpr std::pair<std::string_view, Encoding> rows[] = {
+      {".stl", Encoding::stl},   {".ply", Encoding::ply},  {".obj", Encoding::obj},
+      {".gltf", Encoding::gltf}, {".glb", Encoding::gltf}, {".off", Encoding::off}};
   std::string lower(path);
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
   if (lower.ends_with(".gz")) lower.resize(lower.size() - 3);
@@ -61,6 +57,7 @@ void readMesh(Encoding encoding, const MeshFile& file) {
     case Encoding::stl: return readStl(file);
     case Encoding::ply: return readPly(file);
     case Encoding::obj: return readObj(file);
+    case Encoding::off: return readOff(file);
     default: return readGltf(file);
     }
   } catch (const MeshFault& fault) { file.locator.error(fault.at, fault.message); }

@@ -1,6 +1,6 @@
-// mesh_file.h: the readers of meshes (STL, PLY, OBJ, glTF) and what they share. A reader turns the
-// bytes of a file into calls of a ParseSink, as the parser of VRML97 does, so that names, limits
-// and messages are those of any world. [the thread that loads]
+// mesh_file.h: the readers of meshes (STL, PLY, OBJ, glTF, OFF) and what they share. A reader turns
+// the bytes of a file into calls of a ParseSink, as the parser of VRML97 does, so that names,
+// limits and messages are those of any world. [the thread that loads]
 #pragma once
 
 #include <deque>
@@ -65,6 +65,7 @@ bool isAsciiStl(std::string_view bytes);
 bool isPly(std::string_view bytes);
 bool isObj(std::string_view bytes);
 bool isGltf(std::string_view bytes); // also binary (.glb)
+bool isOff(std::string_view bytes);
 // Finds the encoding of a mesh by its content or by the suffix of its name (also before .gz).
 // Return false if it is no mesh's.
 bool findMeshEncoding(std::string_view bytes, Encoding& encoding);
@@ -78,5 +79,6 @@ void readStl(const MeshFile& file);
 void readPly(const MeshFile& file);
 void readObj(const MeshFile& file);
 void readGltf(const MeshFile& file);
+void readOff(const MeshFile& file);
 
 } // namespace xvrml
