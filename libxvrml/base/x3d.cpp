@@ -273,14 +273,9 @@ bool isX3dNode(std::string_view type) {
 }
 
 bool isGpuNode(std::string_view type) {
-  constexpr std::string_view programs[] = {"ComposedShader",
-                                           "FloatVertexAttribute",
-                                           "Matrix3VertexAttribute",
-                                           "Matrix4VertexAttribute",
-                                           "PackagedShader",
-                                           "ProgramShader",
-                                           "ShaderPart",
-                                           "ShaderProgram"};
+  constexpr std::string_view programs[] = {
+      "ComposedShader", "FloatVertexAttribute", "Matrix3VertexAttribute", "Matrix4VertexAttribute",
+      "PackagedShader", "ProgramShader",        "ShaderPart",             "ShaderProgram"};
   return std::find(std::begin(programs), std::end(programs), type) != std::end(programs);
 }
 

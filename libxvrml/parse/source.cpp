@@ -31,10 +31,10 @@ namespace {
 // Returns "VRML97, X3D ClassicVRML, ... and glTF".
 std::string readableFormats() {
   std::string text;
-  for (int i = 0; i < encodingCount; ++i)
+  for (int i = 0; i < encodingCount(); ++i)
     text += fmt::format("{}{}",
                         i == 0                  ? ""
-                        : i + 1 < encodingCount ? ", "
+                        : i + 1 < encodingCount() ? ", "
                                                 : " and ",
                         encodingName(static_cast<Encoding>(i)));
   return text;

@@ -21,19 +21,12 @@ enum class Encoding : uint8_t {
   gltf,
   off
 };
-inline constexpr int encodingCount = 10;
-// Returns the name of an encoding as users call it.
-constexpr std::string_view encodingName(Encoding encoding) {
-  constexpr std::string_view names[encodingCount] = {
-      "VRML97", "X3D ClassicVRML", "X3D XML", "X3D JSON", "VRML 1.0", "STL",
-      "PLY",    "Wavefront OBJ",   "glTF",    "OFF"};
-  return names[static_cast<size_t>(encoding)];
-}
-// Returns whether a file is a mesh. Its nodes follow X3D 4.0.
-constexpr bool isMesh(Encoding encoding) {
-  return encoding == Encoding::stl || encoding == Encoding::ply || encoding == Encoding::obj ||
-         encoding == Encoding::gltf || encoding == Encoding::off;
-}
+// How many encodings there are, in the library that is loaded. [any thread]
+int encodingCount();
+// Returns the name of an encoding as users call it. [any thread]
+std::string_view encodingName(Encoding encoding);
+// Returns whether a file is a mesh. Its nodes follow X3D 4.0. [any thread]
+bool isMesh(Encoding encoding);
 
 // The encoding and the version of the standard that a file follows. VRML 1.0 is version 1.0, VRML97
 // is 2.0, X3D begins with 3.0.
