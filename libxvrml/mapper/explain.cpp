@@ -70,6 +70,7 @@ std::string itemReason(const Graph& graph, const Item& item, const Part& part) {
   case ObjectReason::shared: return used(graph, part, item.primitives);
   case ObjectReason::wanted: return "split: ORTInstance";
   case ObjectReason::merged: return "merged: ORTStatic";
+  case ObjectReason::clipped: return "merged: ClipPlanes cut it";
   case ObjectReason::transform: return reasonOf(*item.node, Change::transform);
   case ObjectReason::children:
     return item.awaited ? "split: it is still to be loaded"

@@ -12,7 +12,9 @@ struct Step { // an item that is being measured
   ItemId item;
   int32_t place;
   Matrix matrix;
-  size_t next = 0; // child to visit
+  size_t next = 0;    // child to visit
+  int32_t cut = none; // the nearest place at or above it that ClipPlanes cut
+  Matrix toCut;       // matrix to the coordinates of that place's object
 };
 
 class Measure {
@@ -47,10 +49,12 @@ class Measure {
   Bounds below(const Step& first) {
     Bounds bounds;
     std::vector<Step> open{first};
+    if (first.place != none && !places_.all[size_t(first.place)].kept.empty())
+      open[0].cut = first.place;
     while (!open.empty()) {
       Step& step = open.back();
       const Item& item = graph_.items[step.item];
-      if (item.kind == Kind::shape) measureShape(bounds, item, step.matrix);
+      if (item.kind == Kind::shape) measureShape(bounds, item, step);
       const size_t count =
           item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
       if (step.next >= count) {
@@ -63,22 +67,35 @@ class Measure {
       const int32_t at = step.place == none
                              ? none
                              : places_.children[places_.all[size_t(step.place)].firstChild + c];
-      const Matrix inside = Graph::below(step.matrix, graph_.items[child]);
-      if (at == none && shared(child))
-        growBy(bounds, boxes_[child], inside);
-      else
-        open.push_back(
-            {child, at,
-             at == none ? inside : compose(inside, places_.billboardRotations[size_t(at)])});
+      if (at == none && shared(child)) {
+        growBy(bounds, boxes_[child], Graph::below(step.matrix, graph_.items[child]));
+        continue;
+      }
+      const auto under = [&](const Matrix& outside) {
+        const Matrix inner = Graph::below(outside, graph_.items[child]);
+        return at == none ? inner : compose(inner, places_.billboardRotations[size_t(at)]);
+      };
+      Step below{child, at, under(step.matrix)};
+      if (at != none && !places_.all[size_t(at)].kept.empty()) {
+        below.cut = at;
+      } else if (step.cut != none) {
+        below.cut = step.cut;
+        below.toCut = under(step.toCut);
+      }
+      open.push_back(below);
     }
     return bounds;
   }
 
-  void measureShape(Bounds& bounds, const Item& shape, const Matrix& matrix) {
+  void measureShape(Bounds& bounds, const Item& shape, const Step& step) {
+    HalfSpaces kept;
+    if (step.cut != none)
+      for (const HalfSpace& halfSpace : places_.all[size_t(step.cut)].kept)
+        kept.push_back(inside(halfSpace, step.toCut));
     if (center_)
-      reach_ = std::max(reach_, graph_.meshes.reach(shape.mesh, matrix, *center_));
+      reach_ = std::max(reach_, graph_.meshes.reach(shape.mesh, step.matrix, *center_, kept));
     else
-      graph_.meshes.grow(bounds, shape.mesh, matrix);
+      graph_.meshes.grow(bounds, shape.mesh, step.matrix, kept);
   }
 
   void growBy(Bounds& bounds, const Bounds& box, const Matrix& matrix) {

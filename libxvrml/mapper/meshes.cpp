@@ -151,19 +151,11 @@ const Mesh& Meshes::get(int32_t mesh) {
   built_.push_back(mesh);
   if (entry.known) return *entry.mesh;
   entry.known = true;
-  const size_t corners = entry.mesh->indices.size();
   entry.extent.reach = reachOf(*entry.mesh);
   entry.extent.kind = entry.mesh->kind;
   entry.extent.alpha = !entry.mesh->alphas.empty();
   entry.extent.byNormal = looksUpByNormal(*entry.geometry);
-  switch (entry.mesh->kind) {
-  case Mesh::Kind::empty: entry.extent.primitives = 0; break;
-  case Mesh::Kind::triangles: entry.extent.primitives = corners / 3; break;
-  case Mesh::Kind::lines: entry.extent.primitives = corners / 2; break;
-  case Mesh::Kind::points: entry.extent.primitives = corners; break;
-  case Mesh::Kind::sphere: entry.extent.primitives = 1; break;
-  }
-  if (!entry.mesh->exact.empty()) entry.extent.primitives = entry.mesh->exact.size();
+  entry.extent.primitives = primitivesOf(*entry.mesh);
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
       entry.extent.primitives >= minimumComparedPrimitives)
     join(mesh);
@@ -267,9 +259,20 @@ void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
   }
 }
 
-void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
+template <class Visit>
+void Meshes::eachCorner(int32_t mesh, const HalfSpaces& kept, const Visit& visit) {
+  if (kept.empty()) {
+    for (const Vec3f& corner : corners(mesh)) visit(vector(corner));
+    return;
+  }
+  Mesh rest;
+  cut(get(mesh), kept, quota_.budget().left() / bytesWhileCut, rest);
+  for (const Vec3f& corner : rest.points) visit(vector(corner));
+}
+
+void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept) {
   const Mesh& m = get(mesh);
-  if (m.kind == Mesh::Kind::sphere) {
+  if (m.kind == Mesh::Kind::sphere && kept.empty()) {
     // The extent of an ellipsoid along a world axis is the length of that row of the linear part.
     const Vector center = transformPoint(matrix, Vector(0));
     Vector reach;
@@ -279,8 +282,8 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
     growByPoint(bounds, center + reach);
     return;
   }
-  for (const Vec3f& corner : corners(mesh))
-    growByPoint(bounds, transformPoint(matrix, vector(corner)));
+  eachCorner(mesh, kept,
+             [&](const Vector& corner) { growByPoint(bounds, transformPoint(matrix, corner)); });
 }
 
 // Returns the points that the mesh uses. Those of the last mesh are kept: worlds of many equal
@@ -315,18 +318,31 @@ const std::vector<Vec3f>& Meshes::corners(int32_t mesh) {
   return corners_;
 }
 
-double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
+double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from,
+                     const HalfSpaces& kept) {
   const Mesh& m = get(mesh);
   double far = 0;
-  if (m.kind == Mesh::Kind::sphere) {
+  if (m.kind == Mesh::Kind::sphere && kept.empty()) {
     far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * largestStretch(matrix);
     return std::isfinite(far) ? far : 0;
   }
-  for (const Vec3f& corner : corners(mesh)) {
-    const double length = (transformPoint(matrix, vector(corner)) - from).length();
+  eachCorner(mesh, kept, [&](const Vector& corner) {
+    const double length = (transformPoint(matrix, corner) - from).length();
     if (length > far && std::isfinite(length)) far = length;
-  }
+  });
   return far;
+}
+
+uint64_t primitivesOf(const Mesh& mesh) {
+  if (!mesh.exact.empty()) return mesh.exact.size();
+  switch (mesh.kind) {
+  case Mesh::Kind::empty: return 0;
+  case Mesh::Kind::triangles: return mesh.indices.size() / 3;
+  case Mesh::Kind::lines: return mesh.indices.size() / 2;
+  case Mesh::Kind::points: return mesh.indices.size();
+  case Mesh::Kind::sphere: return 1;
+  }
+  return 0;
 }
 
 void compact(const Mesh& mesh, Mesh& out) {

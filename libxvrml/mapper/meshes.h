@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "geometry/half_space.h"
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
 #include "geometry/texture_generator.h"
@@ -60,11 +61,11 @@ class Meshes {
   int32_t equal(int32_t mesh) const;
   // Returns the number of shapes that use this mesh or one of equal content.
   uint32_t users(int32_t mesh) const;
-  // Grows bounds by the mesh, transformed by `matrix`.
-  void grow(Bounds& bounds, int32_t mesh, const Matrix& matrix);
+  // Grows bounds by the mesh, transformed by `matrix`. kept: what ClipPlanes leave of it.
+  void grow(Bounds& bounds, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept);
   // Returns the largest distance of the transformed mesh from a point. For a sphere scaled
   // non-uniformly, or sheared, this is an upper bound.
-  double reach(int32_t mesh, const Matrix& matrix, const Vector& from);
+  double reach(int32_t mesh, const Matrix& matrix, const Vector& from, const HalfSpaces& kept);
   // Frees the arrays; get() builds them again.
   void release();
 
@@ -90,6 +91,8 @@ class Meshes {
   void join(int32_t mesh); // joins the group of equal content
   void leave(int32_t mesh);
   const std::vector<Vec3f>& corners(int32_t mesh);
+  // Visits the points that bound what is left of a mesh.
+  template <class Visit> void eachCorner(int32_t mesh, const HalfSpaces& kept, const Visit& visit);
   void forgetCorners() {
     cornersOf_ = none_;
     std::vector<Vec3f>().swap(corners_);
@@ -109,6 +112,9 @@ class Meshes {
   int32_t cornersOf_ = none_;                       // the mesh that corners_ belongs to
   std::vector<Vec3f> corners_;
 };
+
+// Returns the number of triangles, line segments, points, spheres or exact surfaces of a mesh.
+uint64_t primitivesOf(const Mesh& mesh);
 
 // Copies a mesh with only the vertices that its indices use, in their order.
 void compact(const Mesh& mesh, Mesh& out);

@@ -156,24 +156,33 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
     const Surface surface = surfaces_.surfaceFor(appearance, useOf(item));
     rtLoadName(item.number);
     load(matrix);
-    if (!draw(item.mesh, surface, isTextured(appearance))) return;
+    HalfSpaces kept;
+    for (const HalfSpace& halfSpace : kept_) kept.push_back(inside(halfSpace, matrix));
+    if (!draw(item.mesh, surface, isTextured(appearance), kept)) return;
   }
   ++parts_[size_t(writing_)].shapes;
   report(world_.diagnostics, item.node->source, "Shape");
 }
 
 // Draws a mesh. Returns false if the world's budget does not allow it.
-bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
-  const Meshes::Extent extent = graph_.meshes.extent(mesh);
-  if (extent.primitives == 0) return true;
+bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const HalfSpaces& kept) {
+  uint64_t primitives = graph_.meshes.extent(mesh).primitives;
+  if (primitives == 0) return true;
+  Mesh rest;
+  if (!kept.empty()) {
+    if (!cut(graph_.meshes.get(mesh), kept, quota_.budget().left() / bytesWhileCut, rest))
+      return quota_.take(std::numeric_limits<uint64_t>::max(), graph_.meshes.geometry(mesh).source);
+    primitives = primitivesOf(rest);
+    if (primitives == 0) return true;
+  }
   const uint64_t bytes =
-      addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
+      addSaturating(multiplySaturating(primitives, bytesOfPrimitive), bytesOfShape);
   if (!quota_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
-  const Mesh& m = graph_.meshes.get(mesh);
+  const Mesh& m = kept.empty() ? graph_.meshes.get(mesh) : rest;
   Part& part = parts_[size_t(writing_)];
   part.bytes += bytes;
-  part.primitives += extent.primitives;
-  if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += extent.primitives;
+  part.primitives += primitives;
+  if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
   rtLineWidth(surface.lineWidth);

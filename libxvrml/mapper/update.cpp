@@ -93,7 +93,8 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
   if (id == 0) return;
   viewsStale |= graph.items[id].placeDependent;
   boundsStale = true;
-  if (graph.items[id].kind == Kind::billboard) return; // updated with every frame
+  const Kind kind = graph.items[id].kind;
+  if (kind == Kind::billboard || kind == Kind::clipPlane) return; // updated with every frame
   if (!hasMatrix(node)) {
     graph.plan(id);
     work.regroup = true;

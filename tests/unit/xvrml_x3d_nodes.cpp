@@ -25,6 +25,7 @@ constexpr Interface interfaces[] = {
     {"7.4.6", "MetadataString", 0, 3, 0, 0},
     {"9.4.3", "LoadSensor", 0, 3, 0, 4},
     {"10.4.2", "StaticGroup", 0, 2, 3, 0},
+    {"11.4.1", "ClipPlane", 0, 2, 0, 0},
     {"11.4.3", "ColorRGBA", 0, 1, 0, 0},
     {"11.4.6", "IndexedTriangleFanSet", 1, 4, 5, 0},
     {"11.4.7", "IndexedTriangleSet", 1, 4, 5, 0},

@@ -7,6 +7,7 @@
 
 #include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
+#include "geometry/half_space.h"
 #include "geometry/node_matrix.h"
 #include "nodes/visible.h"
 #include "xvrml/browser.h"
@@ -44,6 +45,32 @@ void appendHitCandidates(Node& node, const PickRules& rules, const Matrix& toWor
     for (const NodeRef& child : collision->children) parts.push_back(child.get());
   } else {
     partsOf(node, parts);
+  }
+}
+
+// What a ray may still hit: the part of it that ClipPlanes leave (ISO/IEC 19775-1 11.4.1).
+struct Interval {
+  double nearest, farthest;
+};
+
+// Shortens the interval to what the ClipPlanes among the children leave. toWorld: matrix of the
+// children.
+void shorten(Interval& interval, const std::vector<Node*>& children, const PickRay& ray,
+             const Matrix& toWorld) {
+  size_t planes = 0;
+  for (Node* child : children) {
+    const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
+    const auto kept = plane ? halfSpaceOf(*plane) : std::nullopt;
+    Matrix toLocal;
+    if (!kept || ++planes > maximumClipPlanes || !invert(toWorld, toLocal)) continue;
+    const double distance = kept->distance(transformPoint(toLocal, ray.origin));
+    const double approach = kept->normal.dot(transformDirection(toLocal, ray.direction));
+    if (approach > 0)
+      interval.nearest = std::max(interval.nearest, -distance / approach);
+    else if (approach < 0)
+      interval.farthest = std::min(interval.farthest, -distance / approach);
+    else if (distance < 0)
+      interval.farthest = -1;
   }
 }
 
@@ -151,11 +178,15 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
   PickRay ray = whole;
   std::vector<Visit> open;
   std::vector<Hit::Step> ancestors; // from a root down to the current node
+  std::vector<Interval> intervals;  // what is left of the ray below each of them
   std::vector<Node*> parts;
   bool found = false;
   MeshHit best{};
   for (size_t i = roots.size(); i-- > 0;)
     if (roots[i]) open.push_back({roots[i].get(), none});
+  for (const NodeRef& root : roots) parts.push_back(root.get());
+  Interval ofRoots{whole.nearest, whole.farthest};
+  shorten(ofRoots, parts, whole, Matrix());
   // A ray is transformed into a parent's coordinate system once, not once per child.
   uint32_t movedFor = stale;
   PickRay moved = ray;
@@ -164,6 +195,8 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     const Visit visit = open.back();
     open.pop_back();
     ancestors.resize(visit.parent + 1); // drops the finished subtrees; none + 1 is 0
+    intervals.resize(visit.parent + 1);
+    const Interval interval = visit.parent == none ? ofRoots : intervals[visit.parent];
     const Matrix outside = visit.parent == none ? Matrix() : ancestors[visit.parent].toWorld;
     if (visit.parent != movedFor) {
       Matrix toLocal;
@@ -173,7 +206,9 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
       movedFor = visit.parent;
     }
     if (!movable) continue;
-    moved.farthest = ray.farthest;
+    moved.nearest = interval.nearest;
+    moved.farthest = std::min(ray.farthest, interval.farthest);
+    if (!(moved.nearest <= moved.farthest)) continue;
     if (!moved.intersects(boundsOf(*visit.node))) continue;
     if (visit.node->type().index == nodes::Shape::typeIndex) {
       MeshHit meshHit;
@@ -194,6 +229,8 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     appendHitCandidates(*visit.node, rules, outside, view, parts);
     const uint32_t index = uint32_t(ancestors.size());
     ancestors.push_back({visit.node, inner});
+    intervals.push_back(interval);
+    shorten(intervals.back(), parts, whole, inner);
     if (movedFor == index) movedFor = stale; // another node now has this index
     for (size_t i = parts.size(); i-- > 0;)
       if (parts[i]) open.push_back({parts[i], index});

@@ -51,6 +51,9 @@ inline constexpr uint64_t bytesOfOption = 200;
 inline constexpr uint64_t copiesOfOption = 2;
 // A triangle in a mesh, with the data that it is built from.
 inline constexpr uint64_t bytesWhileBuilt = 150;
+// A triangle that ClipPlanes have cut: its new vertices with all that is interpolated, and what it
+// takes when it is drawn.
+inline constexpr uint64_t bytesWhileCut = 400;
 
 // An instance must replace this many times its own memory and save minimumSaving bytes in all. A
 // saving of largeSaving is enough in any case.

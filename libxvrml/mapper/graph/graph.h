@@ -35,7 +35,8 @@ enum class Kind : uint8_t {
   background,
   fog,
   navigationInfo,
-  sensor
+  sensor,
+  clipPlane
 };
 constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint && k <= Kind::navigationInfo; }
 constexpr bool isLight(Kind k) {
@@ -51,6 +52,7 @@ enum class ObjectReason : uint8_t {
   shared,     // the item is shared, and instances save memory
   wanted,     // the author asks for instances (ORTInstance)
   merged,     // the author merges the content (ORTStatic), which changes together
+  clipped,    // ClipPlanes cut its content, which changes together
   transform,  // events move it
   children,   // events change its content
   appearance, // lines whose colour events change
@@ -108,9 +110,12 @@ struct Item {
 
   // Contains something that depends on its place: a light, bindable node, Billboard or LOD.
   bool placeDependent = false;
-  bool lines = false;       // contains lines or points; their width depends on the place
-  bool draws = false;       // contains, or may later contain, something to draw
-  bool merged = false;      // below an ORTStatic: events on it cause no split
+  bool lines = false; // contains lines or points; their width depends on the place
+  bool draws = false; // contains, or may later contain, something to draw
+  // Below an ORTStatic, or something above it has ClipPlanes: events on it cause no split.
+  bool merged = false;
+  bool clips = false;       // has ClipPlanes among its children
+  bool clipped = false;     // below an item that clips, on some path: nothing of it is shared
   bool scopesLight = false; // a light below it shines only on what is below it
   bool holdsLights = false; // contains lights that shine beyond their parent group
   bool moves = false;       // events reach its matrix
@@ -186,6 +191,7 @@ class Graph {
   std::vector<ItemId> parents;    // ranges of it are given by Item::firstParent and parentCount
   std::vector<std::string> names; // [0] is ""
   std::vector<ItemId> shapes; // by number; [0] is none; 0: the shape is gone and its number is free
+  bool clips = false;         // some item clips; computed by summarise
   static constexpr ItemId root = 1;
   Meshes meshes;
 

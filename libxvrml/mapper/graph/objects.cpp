@@ -17,6 +17,7 @@ void Objects::updateForFrame() {
   for (size_t i = places_.all.size(); i-- > 0;) {
     Place& place = places_.all[i];
     if (!place.split || !place.active) continue;
+    if (std::exchange(place.recut, false)) touch(place.part);
     const Kind kind = graph_.items[place.item].kind;
     if (kind == Kind::lod && graph_.items[place.item].placeDependent)
       chooseLevel(i);
@@ -68,8 +69,10 @@ void Objects::definePlace(size_t index) {
   const bool pure = !item.placeDependent; // the place is a level of an LOD
   defineBelow(place.item, pure ? none : int32_t(index));
   open(part, item.changes && item.objectReason != ObjectReason::merged);
+  kept_ = place.kept;
   expand({place.item, pure ? none : int32_t(index), Matrix()});
   drain();
+  kept_.clear();
   close();
 }
 

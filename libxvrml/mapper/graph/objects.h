@@ -109,7 +109,8 @@ class Objects {
   void drain();
   SurfaceUse useOf(const Item& shape) const;
   void writeShape(ItemId item, const Matrix& matrix);
-  bool draw(int32_t mesh, const Surface& surface, bool textured);
+  // kept: what ClipPlanes leave of the mesh, in its coordinates.
+  bool draw(int32_t mesh, const Surface& surface, bool textured, const HalfSpaces& kept = {});
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
   void measure(const Matrix& matrix, double reach, const SourcePosition& where,
                const std::string& what);
@@ -131,6 +132,7 @@ class Objects {
   std::vector<uint32_t> seen_; // by item: number of the last upward walk that visited it
   uint32_t walk_ = 0;
   int32_t writing_ = none;    // the open part
+  HalfSpaces kept_;           // what ClipPlanes leave of its content, in its coordinates
   bool live_ = false;         // the world is running, so dynamic hints are given
   std::vector<float> colors_; // scratch storage for colours
   uint64_t objects_ = 0, instances_ = 0, definitions_ = 0, moves_ = 0;

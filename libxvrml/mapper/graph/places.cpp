@@ -80,6 +80,8 @@ void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& chi
     to.part = from.part;
     to.instance = from.instance;
     to.base = from.base;
+    to.kept = from.kept;
+    to.recut = from.recut;
     to.light = from.light;
     to.lightScope = from.lightScope;
     to.lightMatrix = from.lightMatrix;
@@ -163,6 +165,37 @@ void Places::updateForFrame(const Graph& graph, const CameraSettings& camera) {
                          ? none
                          : int32_t(levelOfDetail(lod.range, distance, item.children.size()));
     }
+  }
+  updateHalfSpaces(graph);
+}
+
+// Comparing what is left with what was left before finds every cause of a new cut: events to a
+// ClipPlane or to a Transform between it and the object, and Billboards that turn.
+void Places::updateHalfSpaces(const Graph& graph) {
+  const bool clipped = std::exchange(clips_, graph.clips);
+  if (!clipped && !clips_) return;
+  // By place: the matrix to the coordinates of the nearest object at or above it.
+  std::vector<Matrix> toObject(all.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    Place& place = all[i];
+    const Item& item = graph.items[place.item];
+    if (place.parent != none)
+      toObject[i] = compose(toObject[size_t(place.parent)],
+                            compose(graph.below(Matrix(), item), billboardRotations[i]));
+    if (!place.split) continue;
+    HalfSpaces kept;
+    for (const ItemId child : item.children) {
+      if (!item.clips || graph.items[child].kind != Kind::clipPlane) continue;
+      const auto left = halfSpaceOf(static_cast<nodes::ClipPlane&>(*graph.items[child].node));
+      if (left && kept.size() < maximumClipPlanes) kept.push_back(*left);
+    }
+    if (place.parent != none)
+      for (const HalfSpace& outside : all[splitAbove(place.parent)].kept)
+        kept.push_back(inside(outside, toObject[i]));
+    toObject[i] = Matrix();
+    if (kept == place.kept) continue;
+    place.kept = std::move(kept);
+    place.recut = true;
   }
 }
 

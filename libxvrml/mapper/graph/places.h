@@ -1,12 +1,13 @@
 // places.h: the place-dependent part of the render graph, expanded: one Place for every path to a
-// light, a bindable node, a Billboard, an LOD or a group that events change. Everything else hangs
-// below it unexpanded. It is rebuilt when a place-dependent item is regrouped; places that still
-// exist keep their objects and lights. World matrices, billboards and levels are updated for the
-// camera.
+// light, a bindable node, a ClipPlane, a Billboard, an LOD or a group that events change.
+// Everything else hangs below it unexpanded. It is rebuilt when a place-dependent item is
+// regrouped; places that still exist keep their objects and lights. World matrices, billboards and
+// levels are updated for the camera.
 #pragma once
 
 #include <vector>
 
+#include "geometry/half_space.h"
 #include "mapper/graph/graph.h"
 #include "openrt/openrt.h"
 #include "xvrml/mapper.h"
@@ -24,13 +25,17 @@ struct Place {
   // The place at or above this one that limits lights (Item::limitsLights).
   int32_t limit = none;
   // Has an object of its own: the root, billboards, LODs, LOD levels, groups that events reach,
-  // groups that scope a light.
+  // groups that scope a light, groups with ClipPlanes.
   bool split = false;
   bool active = true;    // not in an unselected level of an LOD
   int32_t chosen = none; // for an LOD: the level in use
   Matrix world;          // world matrix of the item's children
   // For a split place: the matrix of the item in the parent object, without the item's own matrix.
   Matrix base;
+  // For a split place below ClipPlanes, or with some: what they leave, in coordinates of its
+  // object.
+  HalfSpaces kept;
+  bool recut = false; // `kept` has changed since the object was written
 
   // Objects and lights created for the place. A rebuild keeps them.
   int32_t drawn = none; // for an LOD: the level that its object now holds
@@ -46,7 +51,7 @@ class Places {
   // Builds the places, keeping what exists of the previous ones. gone: previous places that no
   // longer exist, with what was created for them.
   void build(const Graph& graph, std::vector<Place>& gone);
-  // Updates world matrices, billboard rotations and LOD levels for a camera.
+  // Updates world matrices, billboard rotations, LOD levels and what ClipPlanes leave for a camera.
   void updateForFrame(const Graph& graph, const CameraSettings& camera);
   // Returns the nearest place at or above `place` that has an object of its own.
   size_t splitAbove(int32_t place) const;
@@ -68,7 +73,9 @@ class Places {
   void inherit(std::vector<Place>& before, const std::vector<int32_t>& childrenBefore,
                std::vector<Place>& gone);
   void index(size_t items);
+  void updateHalfSpaces(const Graph& graph);
 
+  bool clips_ = false;                    // some item clips, or did before the last update
   std::vector<int32_t> firstOf_, nextOf_; // linked lists: the places of each item
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "geometry/half_space.h"
 #include "mapper/graph/graph.h"
 #include "nodes/bindable.h"
 #include "nodes/visible.h"
@@ -130,6 +131,11 @@ void planViewpointGroup(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::ViewpointGroup&>(node).children);
 }
 void planSensor(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::sensor; }
+void planClipPlane(PlanContext& context, Node& node, Plan& plan) {
+  plan.kind = Kind::clipPlane;
+  const std::string fault = faultOf(static_cast<nodes::ClipPlane&>(node));
+  if (!fault.empty()) context.world.diagnostics.warn(node.source, "ClipPlane: " + fault);
+}
 void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
 void planFog(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::fog; }
@@ -167,6 +173,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::EnvironmentLight::typeIndex, planEnvironmentLight);
     set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::ORTSensor::typeIndex, planSensor);
+    set(nodes::ClipPlane::typeIndex, planClipPlane);
     set(nodes::ViewpointGroup::typeIndex, planViewpointGroup);
     for (const NodeType* type : nodeTypes())
       if (const BindableStack stack = bindableStack(*type); stack != BindableStack::none)

@@ -4,6 +4,7 @@
 // An item has an object of its own in these cases:
 // * events reach it (xvrml/change.h), or it is an Inline that is still to be loaded;
 // * the author wants it (ORTInstance, ORTStatic);
+// * it has ClipPlanes: everything below it is written into its object, cut;
 // * it is shared.
 //
 // An item is shared if it is reached several times and all of these hold:
@@ -65,7 +66,8 @@ class Summary {
     countUpwards(false);
     if (graph_.items[Graph::root].places > placeLimit) {
       diagnostics.warn({},
-                       "lights, viewpoints, billboards and levels of detail appear at more than " +
+                       "lights, viewpoints, billboards, clip planes and levels of detail appear at "
+                       "more than " +
                            std::to_string(placeLimit) +
                            " places: those in groups that are used several times are left out");
       countUpwards(true);
@@ -84,27 +86,40 @@ class Summary {
  private:
   // Packs everything that an object's content or placement depends on.
   uint64_t decisionsOf(const Item& item) const {
-    const bool flags[] = {item.placeDependent, item.scopesLight, item.moves,
-                          item.changes,        item.recolored,   item.viaMesh};
+    const bool flags[] = {item.placeDependent, item.scopesLight, item.moves,  item.changes,
+                          item.recolored,      item.viaMesh,     item.clipped};
     uint64_t bits = uint64_t(item.objectReason);
     for (const bool flag : flags) bits = bits << 1 | uint64_t(flag);
     const int32_t mesh = item.viaMesh ? graph_.meshes.equal(item.mesh) : none;
     return bits << 33 | uint64_t(mesh + 1) << 1 | 1; // the last bit is set: a new item has 0
   }
 
-  // Counts the paths to each item and computes whether an ORTStatic lies on all of them.
+  // Counts the paths to each item and computes whether an ORTStatic lies on all of them, or an item
+  // that clips on any of them.
   void countPaths() {
-    for (const ItemId id : graph_.order) graph_.items[id].merged = id != Graph::root;
+    graph_.clips = false;
+    for (const ItemId id : graph_.order) {
+      Item& item = graph_.items[id];
+      item.merged = id != Graph::root;
+      item.clipped = false;
+      item.clips = (item.kind == Kind::group || item.kind == Kind::billboard) &&
+                   std::any_of(item.children.begin(), item.children.end(), [&](ItemId child) {
+                     return graph_.items[child].kind == Kind::clipPlane;
+                   });
+      graph_.clips |= item.clips;
+    }
     paths_[Graph::root] = 1;
     for (size_t i = graph_.order.size(); i-- > 0;) {
-      const Item& item = graph_.items[graph_.order[i]];
+      Item& item = graph_.items[graph_.order[i]];
+      item.merged |= item.clipped;
       const bool merges = item.hint == Hint::merge || (item.hint == Hint::none && item.merged);
       for (const ItemId child : item.children) {
         paths_[child] = addSaturating(paths_[child], paths_[graph_.order[i]]);
         graph_.items[child].merged &= merges;
+        graph_.items[child].clipped |= item.clips || item.clipped;
       }
     }
-    graph_.items[0].merged = false;
+    graph_.items[0].merged = graph_.items[0].clipped = false;
   }
 
   void summariseShape(Item& item) {
@@ -135,8 +150,9 @@ class Summary {
     if (!item.draws) return;
     if (changes) item.objectReason = ObjectReason::children;
     if (item.moves) item.objectReason = ObjectReason::transform;
-    if (item.hint == Hint::instantiate) item.objectReason = ObjectReason::wanted;
+    if (item.hint == Hint::instantiate && !item.clipped) item.objectReason = ObjectReason::wanted;
     if (item.hint == Hint::merge && !item.merged) item.objectReason = ObjectReason::merged;
+    if (item.clips) item.objectReason = ObjectReason::clipped;
   }
 
   static bool shines(const Item& item) {
@@ -145,7 +161,8 @@ class Summary {
 
   static bool isPlaceDependent(const Item& item) {
     if (item.kind == Kind::billboard || item.kind == Kind::lod) return item.draws;
-    return isBindable(item.kind) || item.kind == Kind::sensor || shines(item);
+    return isBindable(item.kind) || item.kind == Kind::sensor || item.kind == Kind::clipPlane ||
+           shines(item);
   }
 
   // Counts bottom-up in one pass: children come before parents. strip: items with several paths
@@ -209,13 +226,15 @@ class Summary {
       const ItemId id = graph_.order[i];
       Item& item = graph_.items[id];
       const uint64_t times = written[id];
-      if (item.objectReason == ObjectReason::none && !item.placeDependent && item.parentCount > 1) {
+      if (item.objectReason == ObjectReason::none && !item.placeDependent && !item.clipped &&
+          item.parentCount > 1) {
         const bool linesAllow =
             !item.lines || multiplySaturating(item.primitives, times) > manyLines;
         if (linesAllow && worthInstances(item.primitives, times, item.merged))
           item.objectReason = ObjectReason::shared;
       }
-      if (item.kind == Kind::shape && !item.lines && !item.viaMesh) item.viaMesh = sharesMesh(item);
+      if (item.kind == Kind::shape && !item.lines && !item.viaMesh && !item.clipped)
+        item.viaMesh = sharesMesh(item);
       const uint64_t childTimes =
           item.objectReason != ObjectReason::none && !item.placeDependent ? 1 : times;
       for (const ItemId child : item.children)

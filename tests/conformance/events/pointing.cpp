@@ -56,6 +56,31 @@ TEST(Picking, SpheresAreExactAndTexturesBeginAtTheirBack) {
   EXPECT_FLOAT_EQ(hit.texCoord.y, 0.5f);
 }
 
+// ISO/IEC 19775-1 11.4.1.
+TEST(Picking, WhatClipPlanesCutAwayIsNotThere) {
+  Running r(
+      "#X3D V3.3 utf8\nTransform { rotation 0 0 1 1.5707963 children [ DEF C ClipPlane { plane 0 0 "
+      "-1 0.5 } "
+      "ClipPlane { plane 0 1 0 0 } DEF Front Transform { children Shape { geometry Box { size 2 "
+      "2 4 } } } ] } DEF Behind Transform { translation 0 0 -9 children " +
+      box + "}");
+  const auto name = [&](double x) {
+    PickHit hit;
+    return pickAt(r, x, 0, hit, {.bothSides = true})
+               ? hit.path.back().node->type().name + " " + text(hit.point)
+               : "nothing";
+  };
+  // The plane z = 0.5 opens the box: its far side is hit from within. The world's -x is the group's
+  // y.
+  EXPECT_EQ(name(-0.5), "Shape -0.5 0 -2");
+  EXPECT_EQ(name(0.5), "Shape 0.5 0 -8") << "the other half of the front box is gone";
+  r.set("C", "enabled", false);
+  EXPECT_EQ(name(-0.5), "Shape -0.5 0 2");
+  r.set("C", "plane", Vec4f{0, 0, 1, -5});
+  r.set("C", "enabled", true);
+  EXPECT_EQ(name(-0.5), "Shape -0.5 0 -8") << "nothing is left of the front box";
+}
+
 TEST(Picking, BacksOfSolidGeometryAreNotThere) {
   const std::string points =
       "coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 ] ";

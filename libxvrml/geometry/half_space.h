@@ -1,0 +1,43 @@
+// half_space.h: half-spaces and what of a mesh lies in them (X3D's ClipPlane). Pure functions, any
+// thread.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/matrix.h"
+#include "geometry/mesh.h"
+#include "xvrml/nodes.h"
+
+namespace xvrml {
+
+// The points p with normal.dot(p) + offset >= 0.
+struct HalfSpace {
+  Vector normal{0, 1, 0}; // of any length but 0
+  double offset = 0;
+
+  double distance(const Vector& p) const { return normal.dot(p) + offset; } // in lengths of normal
+  bool operator==(const HalfSpace&) const = default;
+};
+using HalfSpaces = std::vector<HalfSpace>;
+
+// What one group may cut away; further ClipPlanes have no effect (docs/limits.md).
+inline constexpr size_t maximumClipPlanes = 16;
+
+// Returns what a ClipPlane leaves, in coordinates of its parent group. Nothing if it is off, or if
+// its numbers are not finite or make no plane.
+std::optional<HalfSpace> halfSpaceOf(const nodes::ClipPlane& node);
+// Returns the message about numbers of a ClipPlane that make no plane; "" if they do.
+std::string faultOf(const nodes::ClipPlane& node);
+
+// Returns a half-space in the coordinates that `toOutside` maps to those of `outside`.
+HalfSpace inside(const HalfSpace& outside, const Matrix& toOutside);
+
+// Gives what of a mesh lies in all of the half-spaces. Triangles and lines are cut at the planes,
+// with all that is interpolated along their edges; triangles that share an edge still do. Spheres
+// and exact surfaces are cut as facets. Returns false, and gives nothing, if the result would have
+// more than `most` triangles, lines or points.
+bool cut(const Mesh& mesh, std::span<const HalfSpace> halfSpaces, uint64_t most, Mesh& result);
+
+} // namespace xvrml
