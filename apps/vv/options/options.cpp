@@ -381,7 +381,7 @@ std::string wrapped(std::string_view text, size_t indent, size_t width) {
 std::string helpText() {
   constexpr size_t indent = 26, width = 100;
   std::string out =
-      "vv: renders VRML97 worlds.\n"
+      "vv: renders worlds in VRML and X3D, and meshes.\n"
       "\n"
       "  vv world.wrl                    opens the world in a window; F1 lists the keys\n"
       "  vv world.wrl -o picture.png     writes a picture from the first viewpoint, or of the "
@@ -390,7 +390,8 @@ std::string helpText() {
       "  vv serve world.wrl              shows the world on a page for browsers; prints its "
       "address\n"
       "\n"
-      "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";
+      "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), STL, PLY, OBJ, OFF or "
+      "glTF\n(.gltf, .glb), packed with gzip or not; - is standard input.\n";
   const char* group = "";
   for (const OptionInfo& option : optionTable()) {
     if (std::string_view(group) != option.group) out += fmt::format("\n{}\n", group = option.group);
