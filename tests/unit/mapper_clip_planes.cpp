@@ -221,6 +221,13 @@ TEST_F(MapClipPlanes, WarnOfMoreThanSixteen) {
               "ClipPlane { plane 1 0 0 -0.9 } " + box + " ] }\n",
           1);
   EXPECT_EQ(extent(), "-0.9..1 -1..1 -1..1");
+  // Also in groups within each other: memory does not grow with the square of the depth.
+  std::string text = box;
+  for (int i = 0; i < 200; ++i)
+    text = "Group { children [ ClipPlane { plane 1 0 0 0." + std::to_string(100 + i) + " } " +
+           text + " ] }";
+  loadX3d(text + "\n", 1);
+  EXPECT_EQ(extent(), "-0.284..1 -1..1 -1..1"); // the outermost planes count: 0.299 to 0.284
 }
 
 } // namespace

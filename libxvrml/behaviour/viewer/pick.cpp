@@ -51,18 +51,18 @@ void appendHitCandidates(Node& node, const PickRules& rules, const Matrix& toWor
 // What a ray may still hit: the part of it that ClipPlanes leave (ISO/IEC 19775-1 11.4.1).
 struct Interval {
   double nearest, farthest;
+  size_t planes = 0; // that have shortened it
 };
 
 // Shortens the interval to what the ClipPlanes among the children leave. toWorld: matrix of the
 // children.
 void shorten(Interval& interval, const std::vector<Node*>& children, const PickRay& ray,
              const Matrix& toWorld) {
-  size_t planes = 0;
   for (Node* child : children) {
     const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
     const auto kept = plane ? halfSpaceOf(*plane) : std::nullopt;
     Matrix toLocal;
-    if (!kept || ++planes > maximumClipPlanes || !invert(toWorld, toLocal)) continue;
+    if (!kept || ++interval.planes > maximumClipPlanes || !invert(toWorld, toLocal)) continue;
     const double distance = kept->distance(transformPoint(toLocal, ray.origin));
     const double approach = kept->normal.dot(transformDirection(toLocal, ray.direction));
     if (approach > 0)

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <functional>
 
-#include <fmt/format.h>
-
-#include "geometry/half_space.h"
 #include "geometry/node_matrix.h"
 #include "mapper/shading/appearance.h"
 #include "nodes/visible.h"
@@ -101,14 +98,6 @@ void Graph::planItem(ItemId id) {
     if (const ItemId child = itemFor(written); child != 0 || plan.keepEmpty)
       children.push_back(child); // this may reallocate `items`
   Item& item = items[id];
-  const auto planes = std::count_if(children.begin(), children.end(), [&](ItemId child) {
-    return child != 0 && nodeCast<nodes::ClipPlane>(items[child].node) != nullptr;
-  });
-  if (size_t(planes) > maximumClipPlanes)
-    context_.world.diagnostics.warn(
-        item.node ? item.node->source : SourcePosition(),
-        fmt::format("a group has {} ClipPlanes: those after the first {} cut nothing away", planes,
-                    maximumClipPlanes));
   item.planned = true;
   item.kind = plan.kind;
   item.hint = plan.hint;

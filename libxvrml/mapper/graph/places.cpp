@@ -184,14 +184,14 @@ void Places::updateHalfSpaces(const Graph& graph) {
                             compose(graph.below(Matrix(), item), billboardRotations[i]));
     if (!place.split) continue;
     HalfSpaces kept;
+    if (place.parent != none)
+      for (const HalfSpace& outside : all[splitAbove(place.parent)].kept)
+        kept.push_back(inside(outside, toObject[i]));
     for (const ItemId child : item.children) {
       if (!item.clips || graph.items[child].kind != Kind::clipPlane) continue;
       const auto left = halfSpaceOf(static_cast<nodes::ClipPlane&>(*graph.items[child].node));
       if (left && kept.size() < maximumClipPlanes) kept.push_back(*left);
     }
-    if (place.parent != none)
-      for (const HalfSpace& outside : all[splitAbove(place.parent)].kept)
-        kept.push_back(inside(outside, toObject[i]));
     toObject[i] = Matrix();
     if (kept == place.kept) continue;
     place.kept = std::move(kept);

@@ -19,6 +19,7 @@
 // mapped before.
 #include <algorithm>
 
+#include "geometry/half_space.h"
 #include "mapper/graph/graph.h"
 #include "xvrml/change.h"
 #include "xvrml/nodes.h"
@@ -73,6 +74,7 @@ class Summary {
       countUpwards(true);
     }
     decideSharing();
+    if (graph_.clips) warnOfManyClipPlanes(diagnostics);
     std::vector<ItemId> changed;
     for (const ItemId id : graph_.order) {
       Item& item = graph_.items[id];
@@ -120,6 +122,25 @@ class Summary {
       }
     }
     graph_.items[0].merged = graph_.items[0].clipped = false;
+  }
+
+  // Warns if more ClipPlanes apply to something than cut it.
+  void warnOfManyClipPlanes(Diagnostics& diagnostics) const {
+    std::vector<uint8_t> above(graph_.items.size(), 0); // by item: the most on any path
+    for (size_t i = graph_.order.size(); i-- > 0;) {
+      const Item& item = graph_.items[graph_.order[i]];
+      size_t planes = above[graph_.order[i]];
+      for (const ItemId child : item.children)
+        if (item.clips && graph_.items[child].kind == Kind::clipPlane)
+          planes += static_cast<nodes::ClipPlane&>(*graph_.items[child].node).enabled;
+      if (planes > maximumClipPlanes)
+        return diagnostics.warn(item.node ? item.node->source : SourcePosition(),
+                                "more than " + std::to_string(maximumClipPlanes) +
+                                    " ClipPlanes apply to what is here: those after the first " +
+                                    std::to_string(maximumClipPlanes) + " cut nothing away");
+      for (const ItemId child : item.children)
+        above[child] = std::max(above[child], uint8_t(planes));
+    }
   }
 
   void summariseShape(Item& item) {
