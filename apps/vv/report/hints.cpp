@@ -66,6 +66,9 @@ std::string hintFor(const Options& options, const picture::View& view,
   if (bounds.empty) return empty("no shape to draw");
   if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum))
     return empty("all shapes are scaled down to a point");
+  // The mapper has warned of a camera that stands too far away (OpenRTMapper::Impl::useCamera).
+  const double* place = result.camera.matrix + 12;
+  if (!(std::hypot(place[0], place[1], place[2]) <= 1e17)) return {};
   if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
     const size_t viewpoints = renderer.viewpoints().size();
     return fmt::format(
