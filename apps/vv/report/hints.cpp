@@ -64,7 +64,9 @@ std::string hintFor(const Options& options, const picture::View& view,
                        why);
   };
   if (bounds.empty) return empty("no shape to draw");
-  if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum))
+  // Triangles and spheres without a size cannot be drawn; a point of a PointSet can.
+  if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum) &&
+      (result.map.triangles > 0 || result.stats.rejectedInstances > 0))
     return empty("all shapes are scaled down to a point");
   // The mapper has warned of a camera that stands too far away (OpenRTMapper::Impl::useCamera).
   const double* place = result.camera.matrix + 12;
