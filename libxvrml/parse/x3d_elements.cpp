@@ -212,7 +212,9 @@ void X3dElements::openX3d(const Name& element, Attributes attributes) {
 }
 
 void X3dElements::openInX3d(const Name& element, Attributes attributes) {
-  if (element.text == "head") return push(Kind::head, element);
+  if (element.text == "Header") // its name in drafts of the standard
+    locator_.warn(element.at, "X3D has no Header: read as head");
+  if (element.text == "head" || element.text == "Header") return push(Kind::head, element);
   if (element.text != "Scene") return refuse(element, "head or Scene", attributes);
   sawScene_ = true;
   push(Kind::statements, element);

@@ -222,6 +222,16 @@ TEST(X3dXml, TheBudgetBoundsCopiesOfTheText) {
   EXPECT_NE(messages(*world).find("limit worldBytes=30000"), std::string::npos);
 }
 
+// Drafts of X3D, and files of their time, say Header.
+TEST(X3dXml, AHeaderIsAHead) {
+  const auto world = load("<X3D version='3.0' profile='Full'><Header><meta name='a' content='b'/>"
+                          "</Header><Scene><Group DEF='G'/></Scene></X3D>");
+  EXPECT_NE(messages(*world).find("warning: X3D has no Header: read as head"), std::string::npos);
+  EXPECT_EQ(world->diagnostics.list().size(), 1u) << messages(*world);
+  EXPECT_EQ(world->head.meta.size(), 1u);
+  EXPECT_TRUE(world->scope.names.contains("G"));
+}
+
 // Files of Xj3D have values between the tags, which the standard does not know.
 TEST(X3dXml, AFieldValueMayBeText) {
   const auto world = load(
