@@ -64,7 +64,8 @@ class VrmlWriter : public Writer {
   // Returns whether the node is a Cone or Cylinder of VRML 1.0 that lacks a part, whose inside is
   // seen. VRML97 draws only the outside of its own, so that their faces are written instead.
   bool isOpenShape(Node& node) const {
-    if (isX3d() || versionOf(node).encoding != Encoding::vrml1) return false;
+    if (isX3d() || versionOf(node).encoding != Encoding::vrml1 || shapesOfFaces_ >= mostOfFaces)
+      return false;
     const auto* cone = nodeCast<nodes::Cone>(&node);
     const auto* cylinder = nodeCast<nodes::Cylinder>(&node);
     return (cone && !cone->solid) || (cylinder && !cylinder->solid);
@@ -78,6 +79,7 @@ class VrmlWriter : public Writer {
     options.needTexCoords = true;
     options.diagnostics = &silent;
     const Mesh mesh = buildMesh(node, options);
+    ++shapesOfFaces_;
     auto& faces = make<nodes::IndexedFaceSet>("IndexedFaceSet");
     faces.solid = false;
     auto& coord = make<nodes::Coordinate>("Coordinate");
@@ -197,6 +199,9 @@ class VrmlWriter : public Writer {
     text_ += '}';
   }
 
+  // Faces take about 20 KB of text. Further shapes keep the field `solid` of X3D, which is read.
+  static constexpr size_t mostOfFaces = 5000;
+  size_t shapesOfFaces_ = 0;
   std::vector<NodeRef> made_; // nodes that stand for others
   size_t interface_ = 0;      // where the interface of the open prototype begins in the text
 };

@@ -256,6 +256,16 @@ TEST(Vrml1Shapes, WrittenAsVrml97HasNoFieldsOfX3d) {
   }
 }
 
+TEST(Vrml1Shapes, ManyOpenShapesDoNotFillTheMemory) {
+  std::string many;
+  for (int i = 0; i < 5010; i++)
+    many += "Cone { parts SIDES height " + std::to_string(i + 1) + " }\n";
+  const std::string text = writeWorld(*load(many));
+  size_t cones = 0;
+  for (size_t at = 0; (at = text.find("geometry Cone", at)) != text.npos; at++) cones++;
+  EXPECT_EQ(cones, 10u);
+}
+
 TEST(Vrml1Shapes, Cameras) {
   const auto world = load("DEF Cameras Switch { whichChild 1\n"
                           "  DEF Front PerspectiveCamera { position 0 0 9 heightAngle 1 }\n"
