@@ -205,15 +205,23 @@ constexpr Field fields[] = {{"Anchor", "autoRefresh"},
                             {"TriangleStripSet", "attrib"},
                             {"TriangleStripSet", "fogCoord"}};
 
-// What X3D calls a field or event of VRML97 otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3).
+// What X3D calls a field or event of ours otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3, :2023
+// 34.4.1).
+constexpr int neverWritten = 99;
 struct Renamed {
   std::string_view type, x3d, own;
-  int since = 3; // the first major version of X3D that says so
+  int since = 3; // the first major version of X3D in which the name is written
 };
 constexpr Renamed renamed[] = {
     {"Collision", "enabled", "collide"},
     {"Collision", "set_enabled", "set_collide"},
     {"Collision", "enabled_changed", "collide_changed"},
+    {"ComposedCubeMapTexture", "backTexture", "back", neverWritten},
+    {"ComposedCubeMapTexture", "bottomTexture", "bottom", neverWritten},
+    {"ComposedCubeMapTexture", "frontTexture", "front", neverWritten},
+    {"ComposedCubeMapTexture", "leftTexture", "left", neverWritten},
+    {"ComposedCubeMapTexture", "rightTexture", "right", neverWritten},
+    {"ComposedCubeMapTexture", "topTexture", "top", neverWritten},
     {"LOD", "children", "level"},
     {"LOD", "set_children", "set_level"},
     {"LOD", "children_changed", "level_changed"},
@@ -226,22 +234,9 @@ constexpr Renamed renamed[] = {
     {"Switch", "children_changed", "choice_changed"},
 };
 
-// Names of X3D 4 for fields that X3D 3 has, too (ISO/IEC 19775-1:2023 34.4.1). They are read, and
-// written as in X3D 3.
-constexpr Renamed renamedSince4[] = {
-    {"ComposedCubeMapTexture", "backTexture", "back"},
-    {"ComposedCubeMapTexture", "bottomTexture", "bottom"},
-    {"ComposedCubeMapTexture", "frontTexture", "front"},
-    {"ComposedCubeMapTexture", "leftTexture", "left"},
-    {"ComposedCubeMapTexture", "rightTexture", "right"},
-    {"ComposedCubeMapTexture", "topTexture", "top"},
-};
-
 } // namespace
 
 std::string_view ownName(std::string_view type, std::string_view name) {
-  for (const Renamed& one : renamedSince4)
-    if (one.type == type && one.x3d == name) return one.own;
   for (const Renamed& one : renamed)
     if (one.type == type && one.x3d == name) return one.own;
   return name;
@@ -273,9 +268,14 @@ bool isX3dNode(std::string_view type) {
 }
 
 bool isGpuNode(std::string_view type) {
-  constexpr std::string_view programs[] = {
-      "ComposedShader", "FloatVertexAttribute", "Matrix3VertexAttribute", "Matrix4VertexAttribute",
-      "PackagedShader", "ProgramShader",        "ShaderPart",             "ShaderProgram"};
+  constexpr std::string_view programs[] = {"ComposedShader",
+                                           "FloatVertexAttribute",
+                                           "Matrix3VertexAttribute",
+                                           "Matrix4VertexAttribute",
+                                           "PackagedShader",
+                                           "ProgramShader",
+                                           "ShaderPart",
+                                           "ShaderProgram"};
   return std::find(std::begin(programs), std::end(programs), type) != std::end(programs);
 }
 

@@ -91,6 +91,13 @@ template <Ranged T> bool enforce(T& value, const FieldRange& range) {
   return false;
 }
 
+// Returns whether a list says how many vertices each line, fan or strip has. Another count would
+// move the vertices of all that follow, so wrong ones stay, and the geometry leaves out their lines
+// with a warning, as it does after events.
+bool isCounts(const FieldInfo& field) {
+  return field.type == FieldType::MFInt32 && field.range.minimum > 0;
+}
+
 // Returns the numbers of a value as a file shows them.
 template <Ranged T> std::string textOf(T value) {
   std::string text;
@@ -134,6 +141,7 @@ bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
       tell(given, value, 0);
       return false;
     } else if constexpr (isList<T> && Ranged<ElementOf<T>>) {
+      if (isCounts(field)) return true;
       bool good = true;
       for (size_t i = 0; i < value.size(); ++i) {
         const auto given = value[i];

@@ -15,6 +15,7 @@ namespace xvrml {
 // - A number beyond a closed end becomes that end.
 // - A single number beyond an open end becomes the default.
 // - Other values beyond an open end stay, and the renderer handles them.
+// - Counts of vertices stay (vertexCount of LineSet), and the geometry leaves their parts out.
 // - A number that is a bound, rounded as files do it, is not outside.
 struct RangeFault {
   uint64_t count = 0;      // number of values that were outside

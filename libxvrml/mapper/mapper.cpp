@@ -1,6 +1,7 @@
 // mapper.cpp: OpenRTMapper: the steps from a world to rt* calls, frame by frame. The interface is
 // in xvrml/openrt.h.
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <numbers>
 
@@ -194,6 +195,14 @@ void OpenRTMapper::map(const CameraSettings& camera) {
 
 void OpenRTMapper::Impl::useCamera(const CameraSettings& settings) {
   const double degrees = settings.fovy * 180 / std::numbers::pi;
+  constexpr double farthest = 1e17; // for the renderer
+  const double* place = settings.matrix + 12;
+  if (!(std::hypot(place[0], place[1], place[2]) <= farthest) && !farCameraTold) {
+    farCameraTold = true;
+    world.diagnostics.warn(bound.viewpoint ? bound.viewpoint->source : SourcePosition(),
+                           "the camera stands farther than 1e17 from the origin; nothing is drawn "
+                           "from there");
+  }
   rtLoadMatrixd(settings.matrix);
   RTid shader = 0;
   if (auto* node = nodeCast<nodes::ORTShader>(

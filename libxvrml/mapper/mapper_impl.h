@@ -49,6 +49,7 @@ struct OpenRTMapper::Impl {
   const BoundingSphere& sphere();
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
   bool sphereStale = true, lightStale = true;
+  bool farCameraTold = false;
   bool modelLight = false, background = true; // set by setModelLight() and setBackground()
   std::vector<std::string> names;             // shape names by number
 

@@ -11,6 +11,9 @@
 namespace xvrml::mapper {
 
 namespace {
+constexpr double farthestFloat = 1e38;
+constexpr double farthestDrawn = 1e20; // by the renderer (decision 62)
+
 RTenum modeOf(Mesh::Kind kind) {
   return kind == Mesh::Kind::lines    ? RT_LINES
          : kind == Mesh::Kind::points ? RT_POINTS
@@ -70,26 +73,33 @@ void Objects::drain() {
   }
 }
 
-// Notes how far something of this extent reaches under this matrix, and warns if that is beyond the
-// float range. Whether it is drawn does not depend on that: instances move later, when what is
-// around them is not measured again. The renderer leaves out what is too large or too far away.
-void Objects::measure(const Matrix& matrix, double reach, const SourcePosition& where,
-                      const std::string& what) {
-  constexpr double most = 1e38;
+// Notes how far something of this extent reaches under this matrix, and warns once for each node if
+// that is beyond what the renderer draws. Whether it is drawn does not depend on that: instances
+// move later, when what is around them is not measured again. The renderer leaves out what is too
+// large or too far away. node: null for the world. isShape: nothing below has been told of.
+void Objects::measure(const Matrix& matrix, double reach, const Node* node, bool isShape) {
   double far = 0;
   for (int i = 0; i < 3; ++i) {
     const double turned =
         std::abs(matrix.x[0][i]) + std::abs(matrix.x[1][i]) + std::abs(matrix.x[2][i]);
     far = std::max(far, std::abs(matrix.x[3][i]) + turned * reach);
-    if (!(far <= most)) far = std::numeric_limits<double>::infinity(); // also for NaN
+    if (!(far <= farthestFloat)) far = std::numeric_limits<double>::infinity(); // also for NaN
   }
-  if (far <= most) {
+  const bool isFloat = far <= farthestFloat;
+  if (isFloat) {
     Part& part = parts_[size_t(writing_)];
     part.reach = std::max(part.reach, far);
-    return;
   }
-  world_.diagnostics.warn(where, what + " is larger than 1e38, or further away, by the Transforms "
-                                        "around it; what is there is left out");
+  if (far <= farthestDrawn || (isFloat && reach > farthestDrawn && !isShape) ||
+      !toldFar_.insert(node).second)
+    return;
+  const std::string what = node ? node->type().name : "the world";
+  world_.diagnostics.warn(
+      node ? node->source : SourcePosition(),
+      isFloat ? what + " reaches beyond 1e20, by its coordinates or the Transforms around it; what "
+                       "is there may be missing in pictures"
+              : what + " is larger than 1e38, or further away, by the Transforms around it; what "
+                       "is there is left out");
 }
 
 // dynamic: events or the camera will move the instance.
@@ -98,7 +108,7 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
   const NodeRef node = used.kind == Part::Kind::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh))
                                                      : graph_.items[used.item].node;
   const SourcePosition where = node ? node->source : SourcePosition();
-  measure(matrix, used.reach, where, node ? node->type().name : "the world");
+  measure(matrix, used.reach, node.get(), used.kind == Part::Kind::mesh);
   if (!finite(matrix) && !dynamic) return 0;
   const uint64_t flattenedInstances =
       std::max<uint64_t>(used.flattenedInstances + (used.drawCalls > 0), 1);
@@ -151,7 +161,7 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
   } else {
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
     if (extent.primitives == 0) return;
-    measure(matrix, extent.reach, item.node->source, "Shape");
+    measure(matrix, extent.reach, item.node.get(), true);
     if (!finite(matrix)) return;
     const Surface surface = surfaces_.surfaceFor(appearance, useOf(item));
     rtLoadName(item.number);

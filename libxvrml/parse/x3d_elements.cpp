@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -72,6 +73,7 @@ void X3dElements::open(const Name& written, Attributes attributes) {
   case Kind::connections:
     if (element.text == "connect") return connect(element, attributes);
     return refuse(element, "connect", attributes);
+  case Kind::text:
   case Kind::leaf: return refuse(element, "no element", attributes);
   case Kind::statements:
   case Kind::node:
@@ -83,7 +85,8 @@ void X3dElements::open(const Name& written, Attributes attributes) {
 void X3dElements::characters(std::string_view text, const char* at) {
   if (skipped_ > 0) return;
   Frame& frame = top();
-  if (frame.isScript) {
+  const bool isValue = frame.kind == Kind::text;
+  if (frame.isScript || isValue) {
     const std::string_view rest = trimmed(text);
     if (frame.sourceAt == nullptr && rest.empty()) return;
     if (frame.sourceAt == nullptr) {
@@ -91,7 +94,7 @@ void X3dElements::characters(std::string_view text, const char* at) {
       frame.sourceAt = at + blanks;
       text.remove_prefix(blanks);
     }
-    if (frame.good && frame.source.size() + text.size() <= limits_.stringBytes) {
+    if (frame.good && (isValue || frame.source.size() + text.size() <= limits_.stringBytes)) {
       frame.good = values_.reserve(at, text.size());
       if (frame.good) frame.source += text;
     } else if (frame.good) {
@@ -209,7 +212,9 @@ void X3dElements::openX3d(const Name& element, Attributes attributes) {
 }
 
 void X3dElements::openInX3d(const Name& element, Attributes attributes) {
-  if (element.text == "head") return push(Kind::head, element);
+  if (element.text == "Header") // its name in drafts of the standard
+    locator_.warn(element.at, "X3D has no Header: read as head");
+  if (element.text == "head" || element.text == "Header") return push(Kind::head, element);
   if (element.text != "Scene") return refuse(element, "head or Scene", attributes);
   sawScene_ = true;
   push(Kind::statements, element);
@@ -425,9 +430,24 @@ void X3dElements::openFieldValue(const Name& element, Attributes attributes) {
     top().isList = target.type == FieldType::MFNode;
     return;
   }
-  if (!value) locator_.error(element.at, fmt::format("fieldValue {} has no value", describe(name)));
-  sink_.closeField(value && values_.read(target, *value));
-  push(Kind::leaf, element);
+  push(value ? Kind::leaf : Kind::text, element);
+  if (value) return sink_.closeField(values_.read(target, *value));
+  top().field = name;
+  top().target = target;
+}
+
+// Some files have the value as text between the tags, which ISO/IEC 19776-1 does not know.
+void X3dElements::closeText(Frame& frame) {
+  const std::string_view text = trimmed(frame.source);
+  if (!frame.sourceAt)
+    locator_.error(frame.element.at,
+                   fmt::format("fieldValue {} has no value", describe(frame.field)));
+  else if (!std::exchange(saidValueText_, true))
+    locator_.warn(frame.sourceAt,
+                  "the value of a fieldValue stands in its attribute 'value'; this text is read as "
+                  "the value");
+  const bool good = frame.sourceAt && frame.good;
+  sink_.closeField(good && values_.read(frame.target, {frame.field, text, frame.sourceAt, false}));
 }
 
 void X3dElements::connect(const Name& element, Attributes attributes) {
@@ -448,6 +468,7 @@ void X3dElements::close() {
   case Kind::node: closeNode(frame); break;
   case Kind::declaration: sink_.closeDeclaration(true); break;
   case Kind::value: sink_.closeField(true); break;
+  case Kind::text: closeText(frame); break;
   case Kind::proto:
     sink_.closeProto(true);
     --depth_;

@@ -37,6 +37,7 @@ class X3dElements {
     externProto,
     declaration, // field
     value,       // fieldValue with nodes
+    text,        // fieldValue whose value is the text between its tags
     connections, // IS
     leaf
   };
@@ -54,8 +55,10 @@ class X3dElements {
     bool isList = false;
     bool filled = false; // declaration, value: a node stands in it
     std::vector<Connection> connections;
-    std::string source; // Script: the text between its tags
+    std::string source; // Script, text: what stands between its tags
     const char* sourceAt = nullptr;
+    Name field; // text: the field and where its value goes
+    FieldTarget target;
   };
   using Handler = void (X3dElements::*)(const Name& element, Attributes attributes);
 
@@ -88,6 +91,7 @@ class X3dElements {
   void openDeclaration(const Name& element, Attributes attributes);
   bool readAccess(const Attribute& attribute, Access& access);
   void openFieldValue(const Name& element, Attributes attributes);
+  void closeText(Frame& frame);
   void connect(const Name& element, Attributes attributes);
 
   void openNode(const Name& element, Attributes attributes);
@@ -106,7 +110,7 @@ class X3dElements {
   std::vector<Frame> frames_;
   // Elements that are open within one that is left out, with it.
   uint64_t skipped_ = 0;
-  bool sawScene_ = false, saidText_ = false;
+  bool sawScene_ = false, saidText_ = false, saidValueText_ = false;
   std::unordered_set<std::string> kept_; // names that are not bytes of the file
   std::unordered_map<std::string, std::string_view> lowerCase_; // names of elements
 };

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include "base/x3d.h"
+#include "geometry/mesh.h"
 #include "write/value_writer.h"
 #include "write/writer.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
@@ -41,7 +43,10 @@ class VrmlWriter : public Writer {
 
   void writeEnd() override { text_ += '\n'; }
 
-  void writeNode(const Content& content, std::string_view) override {
+  void writeNode(const Content& given, std::string_view) override {
+    Content faces;
+    if (isOpenShape(*given.node)) faces = facesOf(*given.node, given.name);
+    const Content& content = faces.node ? faces : given;
     if (content.name) text_ += "DEF " + *content.name + " ";
     text_ += content.node->type().name + " {";
     const size_t before = text_.size();
@@ -54,6 +59,48 @@ class VrmlWriter : public Writer {
     indent_ -= 2;
     if (text_.size() > before) line();
     text_ += text_.size() > before ? "}" : " }";
+  }
+
+  // Returns whether the node is a Cone or Cylinder of VRML 1.0 that lacks a part, whose inside is
+  // seen. VRML97 draws only the outside of its own, so that their faces are written instead.
+  bool isOpenShape(Node& node) const {
+    if (isX3d() || versionOf(node).encoding != Encoding::vrml1 || shapesOfFaces_ >= mostOfFaces)
+      return false;
+    const auto* cone = nodeCast<nodes::Cone>(&node);
+    const auto* cylinder = nodeCast<nodes::Cylinder>(&node);
+    return (cone && !cone->solid) || (cylinder && !cylinder->solid);
+  }
+
+  // Returns the faces of the node. They live as long as the writer, which remembers what it has
+  // written by address.
+  Content facesOf(Node& node, const std::string* name) {
+    Diagnostics silent; // what is wrong with the node is said where it is drawn
+    MeshOptions options;
+    options.needTexCoords = true;
+    options.diagnostics = &silent;
+    const Mesh mesh = buildMesh(node, options);
+    ++shapesOfFaces_;
+    auto& faces = make<nodes::IndexedFaceSet>("IndexedFaceSet");
+    faces.solid = false;
+    auto& coord = make<nodes::Coordinate>("Coordinate");
+    coord.point.assign(mesh.points.begin(), mesh.points.end());
+    faces.coord = NodeRef(&coord);
+    auto& normal = make<nodes::Normal>("Normal");
+    normal.vector.assign(mesh.normals.begin(), mesh.normals.end());
+    if (!normal.vector.empty()) faces.normal = NodeRef(&normal);
+    auto& texCoord = make<nodes::TextureCoordinate>("TextureCoordinate");
+    texCoord.point.assign(mesh.texCoords.begin(), mesh.texCoords.end());
+    if (!texCoord.point.empty()) faces.texCoord = NodeRef(&texCoord);
+    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+      faces.coordIndex.insert(faces.coordIndex.end(),
+                              {int32_t(mesh.indices[i]), int32_t(mesh.indices[i + 1]),
+                               int32_t(mesh.indices[i + 2]), -1});
+    return contentOf(faces, name);
+  }
+  template <class T> T& make(const char* type) {
+    const NodeType& found = *findNodeType(type);
+    made_.emplace_back(found.create(found));
+    return static_cast<T&>(*made_.back());
   }
 
   void writeField(const NodeType& type, const Field& field) {
@@ -152,7 +199,11 @@ class VrmlWriter : public Writer {
     text_ += '}';
   }
 
-  size_t interface_ = 0; // where the interface of the open prototype begins in the text
+  // Faces take about 20 KB of text. Further shapes keep the field `solid` of X3D, which is read.
+  static constexpr size_t mostOfFaces = 5000;
+  size_t shapesOfFaces_ = 0;
+  std::vector<NodeRef> made_; // nodes that stand for others
+  size_t interface_ = 0;      // where the interface of the open prototype begins in the text
 };
 
 } // namespace

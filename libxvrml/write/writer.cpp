@@ -180,18 +180,23 @@ void Writer::node(Node* node, std::string_view place) {
     throw std::length_error(fmt::format("the world cannot be written: nodes are nested more than "
                                         "{} deep, and no program could read the file",
                                         deepestNode));
-  Content content{node, name, {}, {}};
-  for (const FieldInfo& info : node->type().fields) {
-    Field field = fieldOf(*node, info);
-    if (field.value || field.declared || !field.interfaces.empty())
-      content.fields.push_back(std::move(field));
-  }
+  Content content = contentOf(*node, name);
   for (const IsConnection* connection : connectionsOf(*node))
     if (!node->type().find(connection->field))
       content.events.emplace_back(spelled(node->type(), connection->field),
                                   connection->interfaceName);
   writeNode(content, place);
   --depth_;
+}
+
+Writer::Content Writer::contentOf(Node& node, const std::string* name) const {
+  Content content{&node, name, {}, {}};
+  for (const FieldInfo& info : node.type().fields) {
+    Field field = fieldOf(node, info);
+    if (field.value || field.declared || !field.interfaces.empty())
+      content.fields.push_back(std::move(field));
+  }
+  return content;
 }
 
 Writer::Field Writer::fieldOf(Node& node, const FieldInfo& info) const {

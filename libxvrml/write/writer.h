@@ -38,7 +38,7 @@ class Writer {
   // A node that is written in full. `events` are connections such as "set_x IS y" that do not use
   // a field's own name.
   struct Content {
-    const Node* node = nullptr;
+    Node* node = nullptr;
     const std::string* name = nullptr; // DEF name or null
     std::vector<Field> fields;
     std::vector<std::pair<std::string, std::string>> events;
@@ -65,6 +65,8 @@ class Writer {
   virtual void openBody() = 0;
   virtual void closePrototype(const MFString* urls) = 0;
 
+  // Returns what is written of a node, but for the events of a prototype.
+  Content contentOf(Node& node, const std::string* name) const;
   // Writes a node at its place: in full, as a USE, or as NULL.
   void node(Node* node, std::string_view place);
   // Returns the name of a field or event in the encoding.

@@ -86,7 +86,7 @@ TABLE = [
     part("xvrml-parse", "libxvrml/parse/", "reads worlds: parser, builder, loader",
          "xvrml-h xvrml-base xvrml-graph xvrml-vrml1 common"),
     part("xvrml-write", "libxvrml/write/", "writes worlds and values as VRML97 text",
-         "xvrml-h xvrml-base xvrml-graph common"),
+         "xvrml-h xvrml-base xvrml-graph xvrml-geometry common"),
     part("xvrml-geometry", "libxvrml/geometry/",
          "geometry nodes as triangles, lines and points: pure functions",
          "xvrml-h xvrml-base common"),

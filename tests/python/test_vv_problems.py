@@ -125,6 +125,19 @@ def test_what_comes_again_in_a_sequence_is_counted(vv):
                      ) == 1 and "vv: 5 more like those above came later; -v shows all" in talk
 
 
+def test_hints_for_worlds_of_one_point_and_too_far_away(vv):
+    point = ("Viewpoint {{ {} }} Shape {{ geometry PointSet {{ coord Coordinate {{ point [ 0 0 0 ] "
+             "}} }} }}")
+    vv.write("seen.wrl", HEADER + point.format(""))
+    assert vv("seen.wrl", "-o", "a.png", "--size", "31x31").talk == ""
+    vv.write("aside.wrl", HEADER + point.format("position 9 9 0"))
+    assert vv("aside.wrl", "-o", "a.png", *SMALL).talk == (
+        "vv: all of the world is at one point, and nothing of it is in view from here\n")
+    vv.write("far.wrl", HEADER + "Shape { geometry Box { size 1e18 1e18 1e18 } }")
+    talk = vv("far.wrl", "--fit", "-o", "a.png", *SMALL).talk
+    assert "camera stands farther than 1e17" in talk and "--fit shows" not in talk
+
+
 def test_hints_are_given_only_if_they_help(vv):
     black = "Shape {{ appearance Appearance {{ material Material {{ diffuseColor 0 0 0 }} }} geometry Box {{ size 99 99 1 }} }}{}"
     vv.write("black.wrl", HEADER + "Viewpoint { }\n" + black.format(""))

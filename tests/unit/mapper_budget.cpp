@@ -284,8 +284,32 @@ TEST_F(MapBudget, WhatIsTooFarIsTold) {
        "1e30 1e30 children Shape { geometry " +
        grid(3) + " } } } }");
   EXPECT_GE(count(messages(*world_), "larger than 1e38"), 1u) << messages(*world_);
-  // Far, but within.
+  // Far, but within what floats can hold.
   draw("Transform { translation 1e37 0 0 children Shape { geometry Box { } } }");
+  EXPECT_EQ(count(messages(*world_), "beyond 1e20"), 1u) << messages(*world_);
+  draw("Transform { translation 9e19 0 0 children Shape { geometry Box { } } }");
+  EXPECT_EQ(messages(*world_), "");
+  // By its own coordinates. Each node is told of once, by itself or as the geometry of two shapes.
+  const std::string large =
+      "IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1e21 0 0, 0 1e21 0, "
+      "1e21 1e21 0, 0 2e21 0, 1e21 2e21 0, 0 3e21 0 ] } coordIndex [ 0 1 2 -1 "
+      "1 2 3 -1 2 3 4 -1 3 4 5 -1 4 5 6 -1 ] }";
+  draw("Group { children Shape { geometry " + large + " } }");
+  EXPECT_EQ(count(messages(*world_), "beyond 1e20"), 1u) << messages(*world_);
+  EXPECT_EQ(world_->diagnostics.warnings(), 1u) << messages(*world_);
+  draw("Shape { geometry DEF G " + large +
+       " } Transform { translation 1 0 0 children Shape { geometry USE G } }");
+  EXPECT_GE(count(messages(*world_), "beyond 1e20"), 1u) << messages(*world_);
+  EXPECT_LE(world_->diagnostics.warnings(), 2u) << messages(*world_);
+}
+
+TEST_F(MapBudget, ACameraThatIsTooFarIsTold) {
+  draw("Viewpoint { position 0 0 2e17 } Shape { geometry Sphere { radius 1e17 } }");
+  EXPECT_EQ(count(messages(*world_), "the camera stands farther than 1e17"), 1u)
+      << messages(*world_);
+  mapper_->map(mapper_->viewpointCamera(0));
+  EXPECT_EQ(world_->diagnostics.warnings(), 1u);
+  draw("Viewpoint { position 0 0 9e16 } Shape { geometry Sphere { radius 1e16 } }");
   EXPECT_EQ(messages(*world_), "");
 }
 

@@ -123,6 +123,76 @@ TEST(CubeFaces, HalvesAndFloatsAreRadiance) {
   EXPECT_NE(whyNot(b).find("not finite"), std::string::npos);
 }
 
+// The extended header: DXGI_FORMAT, dimension, flags (4: a cube), number of cubes, alpha mode.
+Bytes extended(uint32_t side, uint32_t format, uint32_t flags = 4, uint32_t cubes = 1,
+               uint32_t caps2 = 0) {
+  Bytes b = header(side, {4, 0x30315844}, 0, caps2); // DX10
+  for (const uint32_t v : {format, 3u, flags, cubes, 0u}) word(b, v);
+  return b;
+}
+
+TEST(CubeFaces, ExtendedHeadersAreRead) {
+  for (const uint32_t format : {28u, 29u, 87u, 91u, 88u, 93u}) { // RGBA, BGRA, BGRX; also sRGB
+    SCOPED_TRACE(format);
+    Bytes b = extended(1, format);
+    for (int f = 0; f < 6; f++) word(b, format < 80 ? 0x40302010u : 0x40102030u);
+    const CubePictures cube = decode(b);
+    ASSERT_EQ(cube.images.size(), cubeFaces);
+    const Image& image = face(cube, CubeFace::back);
+    EXPECT_EQ(image.components, format == 88 || format == 93 ? 3 : 4);
+    const std::vector<uint8_t> rgba{0x10, 0x20, 0x30, 0x40};
+    EXPECT_EQ(image.pixels, std::vector<uint8_t>(rgba.begin(), rgba.begin() + image.components));
+  }
+  for (const auto& [format, numbers] : {std::pair{2u, 4}, {6u, 3}}) { // floats
+    Bytes b = extended(1, format);
+    for (int i = 0; i < 6 * numbers; i++) word(b, 0x42c80000); // 100
+    EXPECT_EQ(decode(b).radiance.at(5).rgb, (std::vector<float>{100, 100, 100})) << format;
+  }
+  Bytes halves = extended(1, 10);
+  for (int i = 0; i < 24; i++) word(halves, 0x3800, 2);
+  EXPECT_EQ(decode(halves).radiance.at(0).rgb, (std::vector<float>{.5f, .5f, .5f}));
+  for (const auto& [format, bytes] :
+       {std::pair{71u, 8}, {72u, 8}, {74u, 16}, {75u, 16}, {77u, 16}, {78u, 16}}) { // BC1 to BC3
+    Bytes b = extended(3, format);
+    for (int f = 0; f < 6; f++) {
+      for (int i = 8; i < bytes; i++) b.push_back(0xff); // of alpha
+      word(b, 0xf800 | 0x001f << 16);
+      word(b, 0);
+    }
+    const CubePictures cube = decode(b);
+    EXPECT_EQ(red(cube, CubeFace::left, 2, 2), 255) << format;
+    EXPECT_EQ(face(cube, CubeFace::left).pixels.size(), 36u) << format;
+  }
+  Bytes old = extended(1, 28, 0, 1, 0xfe00); // only the old part says that it is a cube
+  for (int f = 0; f < 6; f++) word(old, 0);
+  EXPECT_EQ(whyNot(old), "");
+}
+
+TEST(CubeFaces, DamagedExtendedHeadersAreRefused) {
+  Bytes b = extended(2, 28);
+  const size_t whole = b.size() + 96;
+  b.resize(whole);
+  EXPECT_EQ(whyNot(b), "");
+  for (size_t size = 4; size < whole; size++)
+    EXPECT_NE(whyNot(Bytes(b.begin(), b.begin() + ptrdiff_t(size))), "") << size;
+  for (const uint32_t format : {0u, 1u, 98u, 1000u, ~0u}) {
+    Bytes other = extended(2, format);
+    other.resize(whole);
+    EXPECT_NE(whyNot(other).find("DXGI format"), std::string::npos) << format;
+  }
+  for (const uint32_t cubes : {2u, ~0u}) {
+    Bytes list = extended(2, 28, 4, cubes);
+    list.resize(6 * whole);
+    EXPECT_NE(whyNot(list).find("list"), std::string::npos) << cubes;
+  }
+  Bytes flat = extended(2, 28, 0);
+  flat.resize(whole);
+  EXPECT_NE(whyNot(flat).find("six faces"), std::string::npos);
+  EXPECT_NE(whyNot(extended(~0u, 71)), "");
+  EXPECT_NE(whyNot(extended(0, 71)), "");
+  EXPECT_NE(whyNot(b, 10), "");
+}
+
 TEST(CubeFaces, DamagedFilesAreRefused) {
   Bytes b = header(2, rgb);
   b.resize(128 + 72);

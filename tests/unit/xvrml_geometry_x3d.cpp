@@ -1,6 +1,9 @@
 // xvrml_geometry_x3d.cpp: Tests the sets of triangles, strips, fans and quadrilaterals of X3D,
 // LineSet and the opacities of ColorRGBA (ISO/IEC 19775-1 clauses 11.4, 32.4).
+#include <tuple>
+
 #include "unit/mesh_checks.h"
+#include "xvrml/world.h"
 
 namespace xvrml::test {
 namespace {
@@ -228,6 +231,29 @@ TEST(GeometryX3d, LinesOfCounts) {
   EXPECT_EQ(built.diagnostics.list().size(), 0u);
 }
 
+// Clause 11.4.12: counts are 2 or more. A smaller one in a file does what it does after an event.
+TEST(GeometryX3d, CountsOfAFileStayAsTheyAre) {
+  for (const auto& [node, field, counts, kept] :
+       {std::tuple{"LineSet", "vertexCount", "1 2", MFInt32{1, 2}},
+        {"LineSet", "vertexCount", "-7 0 2", MFInt32{-7, 0, 2}},
+        {"TriangleFanSet", "fanCount", "2 3", MFInt32{2, 3}},
+        {"TriangleStripSet", "stripCount", "1 3", MFInt32{1, 3}}}) {
+    SCOPED_TRACE(testing::Message() << node << " " << counts);
+    const auto world = loadWorldFromMemory(
+        std::string("#X3D V3.3 utf8\nPROFILE Full\nShape { geometry DEF G ") + node + " { " +
+            field + " [ " + counts +
+            " ] coord Coordinate { point [ 0 0 0, 1 0 0, 2 1 0, 7 8 0, 9 0 0 ] } } }",
+        "counts.x3dv");
+    EXPECT_EQ(world->diagnostics.list().size(), 0u);
+    Node& geometry = *world->scope.names.at("G");
+    EXPECT_EQ(*static_cast<MFInt32*>(geometry.storage(*geometry.type().find(field))), kept);
+    MeshOptions options;
+    options.diagnostics = &world->diagnostics;
+    expectSound(buildMesh(geometry, options));
+    EXPECT_EQ(world->diagnostics.warnings(), 1u);
+  }
+}
+
 TEST(GeometryX3d, OpacitiesFollowTheirColours) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const MFColorRGBA values{{.1f, 0, 0, .1f}, {.2f, 0, 0, .2f}, {.3f, 0, 0, .3f}, {nan, 0, 0, nan}};
@@ -278,9 +304,7 @@ TEST(GeometryX3d, OpacitiesAreMixedWhereAFaceCrossesItself) {
   expectSound(built.mesh);
   ASSERT_EQ(built.mesh.alphas.size(), built.mesh.points.size());
   for (size_t i = 0; i < built.mesh.points.size(); i++)
-    if (built.mesh.points[i].x == .5f) {
-      EXPECT_NEAR(built.mesh.alphas[i], .5, 1e-6);
-    }
+    if (built.mesh.points[i].x == .5f) { EXPECT_NEAR(built.mesh.alphas[i], .5, 1e-6); }
 }
 
 } // namespace

@@ -429,6 +429,26 @@ TEST(Meshes, GltfMatricesWithShearAreTheSameTransform) {
   EXPECT_NEAR(p.z, 0, 1e-5);
 }
 
+// A size of 0 along one axis is allowed, and makes a figure flat.
+TEST(Meshes, GltfFiguresMayBeFlat) {
+  for (const char* place :
+       {R"("scale":[2,3,0])", R"("matrix":[2,0,0,0, 0,3,0,0, 0,0,0,0, 0,0,0,1])",
+        R"("matrix":[0,2,0,0, -3,0,0,0, 0,0,0,0, 0,0,0,1])"}) {
+    SCOPED_TRACE(place);
+    const auto world = load(
+        gltf(std::string(R"("nodes":[{)") + place + R"(}],"scenes":[{"nodes":[0]}])"), "a.gltf");
+    EXPECT_EQ(world->diagnostics.list().size(), 0u);
+    auto* node = find<nodes::Transform>(*world);
+    ASSERT_TRUE(node);
+    EXPECT_NEAR(node->scale.x, 2, 1e-6);
+    EXPECT_NEAR(node->scale.y, 3, 1e-6);
+    EXPECT_NEAR(node->scale.z, 3e-6, 1e-9);
+  }
+  const auto world =
+      load(gltf(R"("nodes":[{"scale":[0,0,1]}],"scenes":[{"nodes":[0]}])"), "a.gltf");
+  EXPECT_EQ(world->diagnostics.warnings(), 1u); // nothing of it has an area
+}
+
 TEST(Meshes, HostileFilesCostLittle) {
   LoadOptions small;
   small.limits.worldBytes = 1 << 20;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/mesh.h"
 #include "parse/vrml1/shapes.h"
 #include "unit/xvrml_vrml1_support.h"
 
@@ -219,6 +220,50 @@ TEST(Vrml1Shapes, SpotsFallToOneHalfAtTheSameAngle) {
   const auto* light = only<nodes::SpotLight>(*world);
   const double half = (double(light->beamWidth) + double(light->cutOffAngle)) / 2;
   EXPECT_NEAR(std::pow(std::cos(half), 8), 0.5, 1e-3);
+}
+
+// VRML97 has no `solid` for Cone and Cylinder, and draws only their outside.
+TEST(Vrml1Shapes, WrittenAsVrml97HasNoFieldsOfX3d) {
+  // Parts that are Shapes of their own close the body together.
+  const std::string three = "Material { diffuseColor [ 1 0 0, 0 1 0, 0 0 1 ] }\n"
+                            "MaterialBinding { value PER_PART }\n";
+  for (const char* closed : {"Cone { }", "Cylinder { }", "Cone { parts ( SIDES | BOTTOM ) }"}) {
+    const std::string text = writeWorld(*load(three + closed));
+    EXPECT_EQ(text.find("solid"), std::string::npos) << text;
+    EXPECT_EQ(messagesOf(*loadWorldFromMemory(text, "new.wrl")), Messages());
+  }
+  for (const char* open : {"DEF A Cone { parts SIDES } USE A", "Cylinder { parts SIDES }",
+                           "Cylinder { parts ( SIDES | BOTTOM ) }", "Cone { parts BOTTOM }"}) {
+    const auto old = load(open);
+    const auto world = loadWorldFromMemory(writeWorld(*old), "new.wrl");
+    EXPECT_EQ(messagesOf(*world), Messages()) << open;
+    const auto shapes = every<nodes::Shape>(*world), before = every<nodes::Shape>(*old);
+    ASSERT_EQ(shapes.size(), before.size());
+    MeshOptions options;
+    options.needTexCoords = true;
+    const Mesh was = buildMesh(*before[0]->geometry, options);
+    const Mesh is = buildMesh(*shapes[0]->geometry, options);
+    EXPECT_FALSE(is.solid);
+    EXPECT_EQ(is.indices.size(), was.indices.size()) << open;
+    ASSERT_EQ(is.points.size(), was.points.size()) << open;
+    for (size_t i = 0; i < is.indices.size(); i++) {
+      EXPECT_EQ(is.points[is.indices[i]], was.points[was.indices[i]]) << open;
+      EXPECT_EQ(is.texCoords[is.indices[i]], was.texCoords[was.indices[i]]) << open;
+      EXPECT_NEAR(is.normals[is.indices[i]].y, was.normals[was.indices[i]].y, 1e-6) << open;
+    }
+    // X3D has the field.
+    EXPECT_NE(writeWorld(*old, "", Encoding::x3dClassic).find("solid FALSE"), std::string::npos);
+  }
+}
+
+TEST(Vrml1Shapes, ManyOpenShapesDoNotFillTheMemory) {
+  std::string many;
+  for (int i = 0; i < 5010; i++)
+    many += "Cone { parts SIDES height " + std::to_string(i + 1) + " }\n";
+  const std::string text = writeWorld(*load(many));
+  size_t cones = 0;
+  for (size_t at = 0; (at = text.find("geometry Cone", at)) != text.npos; at++) cones++;
+  EXPECT_EQ(cones, 10u);
 }
 
 TEST(Vrml1Shapes, Cameras) {

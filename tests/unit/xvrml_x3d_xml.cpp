@@ -222,6 +222,40 @@ TEST(X3dXml, TheBudgetBoundsCopiesOfTheText) {
   EXPECT_NE(messages(*world).find("limit worldBytes=30000"), std::string::npos);
 }
 
+// Drafts of X3D, and files of their time, say Header.
+TEST(X3dXml, AHeaderIsAHead) {
+  const auto world = load("<X3D version='3.0' profile='Full'><Header><meta name='a' content='b'/>"
+                          "</Header><Scene><Group DEF='G'/></Scene></X3D>");
+  EXPECT_NE(messages(*world).find("warning: X3D has no Header: read as head"), std::string::npos);
+  EXPECT_EQ(world->diagnostics.list().size(), 1u) << messages(*world);
+  EXPECT_EQ(world->head.meta.size(), 1u);
+  EXPECT_TRUE(world->scope.names.contains("G"));
+}
+
+// Files of Xj3D have values between the tags, which the standard does not know.
+TEST(X3dXml, AFieldValueMayBeText) {
+  const auto world = load(
+      scene("<Shape><IndexedFaceSet DEF='F'><fieldValue count='3' name='coordIndex'>\n 0 1\n 2 "
+            "</fieldValue>"
+            "<Coordinate DEF='C'><fieldValue name='point'>\n 0 0 0, 1 0 0, 0 1 "
+            "0\n</fieldValue></Coordinate>"
+            "</IndexedFaceSet></Shape><Shape><Text DEF='T'><fieldValue name='string'>&quot;a&quot; "
+            "&quot;b c&quot;</fieldValue></Text></Shape>"));
+  EXPECT_EQ(world->diagnostics.list().size(), 1u) << messages(*world);
+  EXPECT_EQ(world->diagnostics.warnings(), 1u);
+  const auto& names = world->scope.names;
+  EXPECT_EQ(nodeCast<nodes::IndexedFaceSet>(names.at("F"))->coordIndex, (MFInt32{0, 1, 2}));
+  EXPECT_EQ(nodeCast<nodes::Coordinate>(names.at("C"))->point.size(), 3u);
+  EXPECT_EQ(nodeCast<nodes::Text>(names.at("T"))->string, (MFString{"a", "b c"}));
+  for (const char* wrong : {"", " \n ", "1 x 2", "<Group/>"}) {
+    const auto other = load(scene(std::string("<Shape><IndexedFaceSet DEF='F'><fieldValue "
+                                              "name='coordIndex'>") +
+                                  wrong + "</fieldValue></IndexedFaceSet></Shape>"));
+    EXPECT_GE(other->diagnostics.errors(), 1u) << wrong;
+    EXPECT_TRUE(nodeCast<nodes::IndexedFaceSet>(other->scope.names.at("F"))->coordIndex.empty());
+  }
+}
+
 TEST(X3dXml, AFileThatEndsEarlyKeepsWhatItHas) {
   const std::string whole =
       scene("<Group DEF='A'><Shape><Box size='1 2 3'/></Shape></Group><Transform DEF='B'/>"

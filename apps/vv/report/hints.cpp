@@ -64,9 +64,14 @@ std::string hintFor(const Options& options, const picture::View& view,
                        why);
   };
   if (bounds.empty) return empty("no shape to draw");
-  if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum))
-    return empty("all shapes are scaled down to a point");
+  const bool isPoint = std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum);
+  if (isPoint && result.map.triangles > 0) return empty("all shapes are scaled down to a point");
+  // The mapper has warned of a camera that stands too far away (OpenRTMapper::Impl::useCamera).
+  const double* place = result.camera.matrix + 12;
+  if (!(std::hypot(place[0], place[1], place[2]) <= 1e17)) return {};
   if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
+    if (isPoint) // a point of a PointSet, or spheres without a size
+      return "all of the world is at one point, and nothing of it is in view from here";
     const size_t viewpoints = renderer.viewpoints().size();
     return fmt::format(
         "nothing is in view from here: --fit shows all of the world{}",

@@ -61,8 +61,8 @@ PickMesh::PickMesh(Node& geometry, const Limits* limits)
   if (mesh_.kind == Mesh::Kind::sphere) {
     bounds_.extend(Vector(mesh_.radius));
     bounds_.extend(Vector(-double(mesh_.radius)));
-  } else if (mesh_.kind == Mesh::Kind::triangles) {
-    const size_t triangles = mesh_.indices.size() / 3;
+  } else if (mesh_.kind !=
+             Mesh::Kind::empty) { // no ray hits lines and points, but viewAll shows them
     for (const uint32_t i : mesh_.indices) {
       if (i >= mesh_.points.size()) { // impossible: builders check
         mesh_.kind = Mesh::Kind::empty;
@@ -71,7 +71,7 @@ PickMesh::PickMesh(Node& geometry, const Limits* limits)
       const Vector p = vector(mesh_.points[i]);
       if (std::isfinite(p.x + p.y + p.z)) bounds_.extend(p);
     }
-    if (triangles > 64) split();
+    if (mesh_.kind == Mesh::Kind::triangles && mesh_.indices.size() / 3 > 64) split();
   }
   bounds_.pad();
 }

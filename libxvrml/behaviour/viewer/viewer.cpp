@@ -106,9 +106,11 @@ bool Viewer::seeAll(const Node* viewpoint) {
   const PickBox box = interaction.picker.bounds(interaction.scope->roots);
   const Vector middle = (box.low + box.high) / 2;
   const double radius = (box.high - box.low).length() / 2;
-  if (box.empty() || !(radius > 0) || !(radius < 1e30)) return false;
+  if (box.empty() || !(radius < 1e30)) return false;
   double distance = 2 * radius;
-  if (fields->fieldOfView)
+  if (radius <= 1e-7 * middle.length() + 1e-20)
+    distance = 1; // a single point, whose box is as large as its rounding: any distance will do
+  else if (fields->fieldOfView)
     distance = radius / std::sin(std::clamp(double(*fields->fieldOfView), 1e-3, 3.0) / 2);
   else
     shownRadius_ = radius;

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "mapper/graph/places.h"
@@ -112,8 +113,7 @@ class Objects {
   // kept: what ClipPlanes leave of the mesh, in its coordinates.
   bool draw(int32_t mesh, const Surface& surface, bool textured, const HalfSpaces& kept = {});
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
-  void measure(const Matrix& matrix, double reach, const SourcePosition& where,
-               const std::string& what);
+  void measure(const Matrix& matrix, double reach, const Node* node, bool isShape);
   // number: the number of the shape that the instance draws; 0 if the shapes below have their own.
   RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);
   void keep(ItemId item, RTid instance, const Matrix& base);
@@ -131,10 +131,11 @@ class Objects {
   std::vector<Step> stack_;
   std::vector<uint32_t> seen_; // by item: number of the last upward walk that visited it
   uint32_t walk_ = 0;
-  int32_t writing_ = none;    // the open part
-  HalfSpaces kept_;           // what ClipPlanes leave of its content, in its coordinates
-  bool live_ = false;         // the world is running, so dynamic hints are given
-  std::vector<float> colors_; // scratch storage for colours
+  int32_t writing_ = none;                  // the open part
+  HalfSpaces kept_;                         // what ClipPlanes leave of it, in its coordinates
+  bool live_ = false;                       // the world is running, so dynamic hints are given
+  std::unordered_set<const Node*> toldFar_; // nodes that were warned of
+  std::vector<float> colors_;               // scratch storage for colours
   uint64_t objects_ = 0, instances_ = 0, definitions_ = 0, moves_ = 0;
 };
 

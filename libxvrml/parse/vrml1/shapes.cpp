@@ -93,8 +93,8 @@ MFNode Shapes::parts(const TreeNode& node, State& state) {
       made->bottom = withBottom;
       geometry = NodeRef(made);
     }
-    // Nothing closes a shape without some of its parts: its inside is seen, too.
-    if (!withSide || !withBottom || !(withTop || cone)) setIfThere(*geometry, "solid", false);
+    // Nothing closes a shape that lacks a part, also in other Shapes: its inside is seen, too.
+    if (!side || !bottom || !(top || cone)) setIfThere(*geometry, "solid", false);
     return shape(node, looks_.appearance(node, state, material, Use::surface),
                  graph_.finish(geometry));
   };

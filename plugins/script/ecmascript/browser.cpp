@@ -170,6 +170,28 @@ duk_ret_t print(duk_context* ctx) { // any number of values
   return 0;
 }
 
+// Options and properties of browsers (ISO/IEC 19775-2 6.3.13 and 6.3.14, and functions of other
+// browsers): this one has none that a world may ask for or change.
+duk_ret_t noOption(duk_context* ctx) {
+  duk_push_null(ctx);
+  return 1;
+}
+duk_ret_t setOption(duk_context* ctx) {
+  constexpr const char* said = DUK_HIDDEN_SYMBOL("optionSaid");
+  Interpreter& self = begin(ctx);
+  duk_push_global_stash(ctx);
+  if (!duk_has_prop_string(ctx, -1, said)) {
+    duk_push_true(ctx);
+    duk_put_prop_string(ctx, -2, said);
+    duk_safe_to_string(ctx, 0);
+    const std::string text = std::string("Browser.setBrowserOption does nothing: there are no "
+                                         "options that a world may change ('") +
+                             std::string(duk_get_string(ctx, 0)).substr(0, 40) + "')";
+    logText(self, 2, 0, text.data(), text.size());
+  }
+  return 0;
+}
+
 void putConstant(duk_context* ctx, const char* name, bool value) {
   duk_push_boolean(ctx, value);
   duk_put_global_string(ctx, name);
@@ -192,6 +214,10 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
                                        {"createX3DFromURL", createVrmlFromUrl, 3},
                                        {"addRoute", addRoute, 4},
                                        {"deleteRoute", deleteRoute, 4},
+                                       {"getBrowserOption", noOption, 1},
+                                       {"getBrowserProperty", noOption, 1},
+                                       {"getRenderingProperty", noOption, 1},
+                                       {"setBrowserOption", setOption, 2},
                                        {"print", print, DUK_VARARGS},
                                        {"println", print, DUK_VARARGS}};
   // Functions of other browsers that worlds use.

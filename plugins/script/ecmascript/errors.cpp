@@ -35,7 +35,12 @@ void reportError(Interpreter& self, const char* during) {
     duk_pop(ctx);
   }
   duk_dup(ctx, error);
-  duk_safe_to_string(ctx, -1);
+  // Duktape says "error in error handling" where not even the error about memory found any.
+  const char* given = duk_safe_to_string(ctx, -1);
+  if (std::strncmp(given, "DoubleError", 11) == 0) {
+    duk_push_string(ctx, "DoubleError: alloc failed, also for the error about it");
+    duk_replace(ctx, -2);
+  }
   duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? " (in " : "");
   duk_push_string(ctx, *function                                         ? function
                        : std::strcmp(during, "running the program") != 0 ? during

@@ -198,6 +198,23 @@ TEST_F(EcmaScript, BrowserHasPropertiesOfX3d) {
   EXPECT_EQ(r.browser.description(), "said");
 }
 
+// Worlds of other browsers set options that this one does not have, and go on.
+TEST_F(EcmaScript, OptionsOfBrowsersDoNothing) {
+  EcmaWorld r(
+      header +
+      EcmaWorld::script("inputOnly SFBool go",
+                        "function go() { Browser.setBrowserOption('PrimitiveQuality', 'HIGH');"
+                        "Browser.setBrowserOption('Shading', 'PHONG'); Browser.setBrowserOption();"
+                        "print(Browser.getBrowserOption('Shading'), "
+                        "Browser.getBrowserProperty('x'), Browser.getRenderingProperty('y')); }"));
+  r.set("S", "go", true);
+  r.set("S", "go", true);
+  const std::string output = r.takeOutput(), warning = "setBrowserOption does nothing";
+  EXPECT_EQ(output.find("null null null\nnull null null"), 0u) << output;
+  EXPECT_NE(output.find(warning), output.npos) << output;
+  EXPECT_EQ(output.find(warning), output.rfind(warning)) << output;
+}
+
 TEST_F(EcmaScript, BrowserHasTheSceneInAProcess) {
   BrowserOptions options;
   options.scriptPath = XVRML_SCRIPTS;

@@ -337,6 +337,20 @@ TEST(ViewAll, OfAParallelViewShowsTheWorld) {
   EXPECT_NEAR(r.browser.camera(0.5).height, 2 * std::sqrt(108.0), 1e-5);
 }
 
+TEST(ViewAll, OfPointsAndLinesLooksAtThem) {
+  Running r(head + "Viewpoint { viewAll TRUE }\nTransform { translation 30 1 0 children Shape { "
+                   "geometry PointSet { coord Coordinate { point [ 0 0 -5 ] } } } }\n");
+  EXPECT_EQ(eyeOf(r.browser), "30 1 -4"); // any distance will do
+  Running s(head + "Viewpoint { viewAll TRUE }\nShape { geometry LineSet { vertexCount 2 coord "
+                   "Coordinate { point [ 8 0 0, 12 0 0 ] } } }\n");
+  EXPECT_EQ(eyeOf(s.browser), fmt::format("10 0 {:g}", tidy(2 / std::sin(0.785398 / 2))));
+  Running t(head +
+            "OrthoViewpoint { viewAll TRUE }\nShape { geometry PointSet { coord Coordinate { "
+            "point [ 7 7 7 ] } } }\n");
+  EXPECT_EQ(eyeOf(t.browser), "7 7 8");
+  EXPECT_GT(t.browser.camera(1).height, 0.1);
+}
+
 TEST(ViewAll, OfNothingStaysWhereItIs) {
   for (const char* world : {"", "Shape { geometry Box { size 1e38 1e38 1e38 } }",
                             "Transform { scale 0 0 0 children Shape { geometry Box { } } }"}) {

@@ -37,6 +37,25 @@ Rotation rotationOf(const M33d& m) {
   return gltf::rotationOf(q.v.x, q.v.y, q.v.z, q.r);
 }
 
+// A size of 0 along one axis makes a figure flat. A Transform has no such scale (6.52), so one that
+// is this part of the largest size stands for it.
+constexpr double flatness = 1e-6;
+
+// Returns the axis along which a scale is 0, or -1 if there is none or more than one.
+int flatAxis(const double (&scale)[3]) {
+  int axis = -1, zeros = 0;
+  for (int i = 0; i < 3; ++i)
+    if (scale[i] == 0) {
+      axis = i;
+      ++zeros;
+    }
+  return zeros == 1 ? axis : -1;
+}
+
+double flatSize(const double (&scale)[3]) {
+  return flatness * std::max({std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2])});
+}
+
 // Writes the fields of a Transform for any matrix. A matrix without shear has its columns' lengths
 // as scale. Any other is a rotation times a symmetric matrix (polar decomposition), whose
 // eigenvectors are scaleOrientation.
@@ -47,6 +66,11 @@ void writeMatrix(NodeStream& out, const M44d& m) {
   for (int i = 0; i < 3; ++i) {
     rows[i] = {m[i][0], m[i][1], m[i][2]};
     lengths[i] = rows[i].length();
+  }
+  if (const int axis = flatAxis(lengths); axis >= 0) {
+    const V3d across = rows[(axis + 1) % 3].cross(rows[(axis + 2) % 3]).normalized();
+    rows[axis] = across * flatSize(lengths);
+    lengths[axis] = rows[axis].length();
   }
   const bool flipped = rows[0].dot(rows[1].cross(rows[2])) < 0;
   if (flipped) lengths[0] = -lengths[0];
@@ -199,7 +223,11 @@ void Scene::writePlace(const Item& node) {
              s = node.numbers("scale", 3);
   if (!t.empty()) out_.set("translation", vec3f(vectorOf(t, {})));
   if (!r.empty()) out_.set("rotation", gltf::rotationOf(r[0], r[1], r[2], r[3]));
-  if (!s.empty()) out_.set("scale", vec3f(vectorOf(s, {})));
+  if (s.empty()) return;
+  const V3d given = vectorOf(s, {});
+  double scale[3] = {given.x, given.y, given.z};
+  if (const int axis = flatAxis(scale); axis >= 0) scale[axis] = flatSize(scale);
+  out_.set("scale", vec3f({scale[0], scale[1], scale[2]}));
 }
 
 std::vector<double> Scene::weightsOf(const Item& node) const {
