@@ -63,8 +63,8 @@ void describe(Context& c, TextureState& state, const edit::TextureT& changed) {
 
 void setBorder(Context& c, RTenum name, const float* rgba) {
   TextureState& state = bound(c);
-  require(name == RT_TEXTURE_BORDER_COLOR, RT_INVALID_ENUM,
-          "unknown texture parameter");
+  if (name != RT_TEXTURE_BORDER_COLOR)
+    fail(RT_INVALID_ENUM, "unknown texture parameter " + std::to_string(name) + " of floats");
   require(rgba != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
   for (int i = 0; i < 4; i++)
     require(rgba[i] >= 0 && rgba[i] <= 1, RT_INVALID_VALUE, "a colour has numbers of 0 to 1");
@@ -88,7 +88,7 @@ void setParameter(Context& c, RTenum name, int value) {
     require(value == 0 || value == 1, RT_INVALID_VALUE, "the value must be 0 or 1");
     changed.srgb = value == 1;
     break;
-  default: fail(RT_INVALID_ENUM, "unknown texture parameter");
+  default: fail(RT_INVALID_ENUM, "unknown texture parameter " + std::to_string(name));
   }
   describe(c, state, changed);
 }

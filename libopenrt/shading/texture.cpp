@@ -44,10 +44,10 @@ struct TexelLookup {
 void place(uint32_t n, const float* u, const Texture::Axis& axis, float* out) {
   const auto size = static_cast<float>(axis.size);
   if (axis.mirror) {
-    for (uint32_t i = 0; i < n; i++) {
-      const float half = std::fabs(u[i]) < 8388608.0f ? 0.5f * u[i] : 0.0f; // false for NaN
-      const float fraction = half - static_cast<float>(static_cast<int32_t>(half));
-      const float period = 2.0f * (fraction < 0.0f ? fraction + 1.0f : fraction); // 0..2
+    for (uint32_t i = 0; i < n; i++) {  // all steps up to the last product are exact
+      const float u0 = std::fabs(u[i]); // what is at -u is at u
+      const float half = u0 < 8388608.0f ? 0.5f * u0 : 0.0f; // false for NaN
+      const float period = 2.0f * (half - static_cast<float>(static_cast<int32_t>(half))); // 0..2
       out[i] = (period > 1.0f ? 2.0f - period : period) * size;
     }
     return;

@@ -148,15 +148,16 @@ RT_API void rtBindTexture(RTid texture);
  *  - pixels: rows from the bottom (t = 0) up, tightly packed. */
 RT_API void rtTexImage2D(int components, int width, int height, RTenum type, const void* pixels);
 /* Sets a property of the bound texture. [context-thread]
- *  - RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T: RT_REPEAT (default), RT_MIRRORED_REPEAT (every other copy
- *    is mirrored), RT_CLAMP_TO_EDGE (the edge goes on) or RT_CLAMP_TO_BORDER (the border's colour).
+ *  - RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T: RT_REPEAT (default), RT_MIRRORED_REPEAT (every other
+ *    copy is mirrored), RT_CLAMP_TO_EDGE (the edge goes on) or RT_CLAMP_TO_BORDER (beyond the edges
+ *    is the border).
  *  - RT_TEXTURE_MAG_FILTER: RT_LINEAR (default) or RT_NEAREST.
  *  - RT_TEXTURE_SRGB: 1 if bytes are sRGB-encoded (colours are decoded, alpha is not); 0 (default)
  *    if they are linear. */
 RT_API void rtTexParameteri(RTenum name, int value);
 /* Sets a property of the bound texture that is a colour. [context-thread]
- *  - RT_TEXTURE_BORDER_COLOR: linear rgba of 0 to 1, which RT_CLAMP_TO_BORDER shows; default 0 0 0 0.
- *    A texture of fewer components has the grey that the red is, or the alpha of 1. */
+ *  - RT_TEXTURE_BORDER_COLOR: linear rgba of 0 to 1, which RT_CLAMP_TO_BORDER shows; default
+ *    0 0 0 0. Of the border of a grey texture red counts; without alpha the border is opaque. */
 RT_API void rtTexParameterfv(RTenum name, const float rgba[4]);
 
 #ifdef __cplusplus
