@@ -11,7 +11,7 @@
 namespace xvrml::mapper {
 namespace {
 
-// CLAMP is as CLAMP_TO_EDGE, because pictures have no border of their own.
+// CLAMP is as CLAMP_TO_EDGE: OpenGL has dropped the mode that blends edges with the border.
 RTenum wrapOf(const std::string& mode, const char* field, const Node& node, World& world) {
   if (mode == "REPEAT") return RT_REPEAT;
   if (mode == "CLAMP" || mode == "CLAMP_TO_EDGE") return RT_CLAMP_TO_EDGE;
@@ -76,33 +76,31 @@ void Textures::setSampling(const Sampling& sampling, bool data) {
 
 // Colours of borders are many. So a bordered picture of a file follows an event, where others are
 // made anew and kept for nodes to come.
-Textures::Files::iterator Textures::borderedFile(RTid texture, ptrdiff_t nodes) {
-  ptrdiff_t showing = 0;
+bool Textures::showBordered(ptrdiff_t nodes, RTid texture) const {
+  if (!bordered_.contains(texture)) return false;
   for (const Entries* entries : {&nodes_, &faces_})
-    showing += std::count_if(entries->begin(), entries->end(),
-                             [&](const auto& entry) { return entry.second.id == texture; });
-  if (texture == 0 || showing != nodes) return files_.end();
-  return std::find_if(files_.begin(), files_.end(), [&](const auto& file) {
-    return file.second.first == texture && std::get<Sampling>(file.first).bordered();
-  });
+    nodes -= std::count_if(entries->begin(), entries->end(),
+                           [&](const auto& entry) { return entry.second.id == texture; });
+  return nodes == 0;
 }
 
 void Textures::resample(RTid texture, const Sampling& sampling) {
-  const auto found = borderedFile(texture, 1);
-  if (found == files_.end()) return;
+  if (!showBordered(1, texture)) return;
+  const Files::iterator found = bordered_[texture];
   const auto [path, before, data] = found->first;
   if (files_.contains({path, sampling, data})) return;
   auto file = files_.extract(found);
   std::get<Sampling>(file.key()) = sampling;
-  files_.insert(std::move(file));
+  bordered_[texture] = files_.insert(std::move(file)).position;
+  if (!sampling.bordered()) bordered_.erase(texture);
   rtBindTexture(texture);
   setSampling(sampling, data);
 }
 
 void Textures::dropUnused(RTid texture) {
-  const auto found = borderedFile(texture, 0);
-  if (found == files_.end()) return;
-  files_.erase(found);
+  if (!showBordered(0, texture)) return;
+  files_.erase(bordered_[texture]);
+  bordered_.erase(texture);
   drop(texture);
 }
 

@@ -217,6 +217,7 @@ RTid Textures::ofFile(const std::string& path, const Sampling& sampling, std::st
                ? make(decodeRadiance(bytes.data(), bytes.size(), limits), sampling)
                : make(decodeImage(bytes.data(), bytes.size(), room), sampling);
       if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
+      if (id != 0 && sampling.bordered()) bordered_.emplace(id, it);
     } catch (const std::exception& failure) { why = failure.what(); }
   }
   error = why;

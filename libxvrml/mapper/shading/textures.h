@@ -101,8 +101,9 @@ class Textures {
   // is none.
   using Files = std::map<std::tuple<std::string, Sampling, bool>, std::pair<RTid, std::string>>;
   Files files_;
-  // Returns the file of a bordered picture that so many nodes show, or the end.
-  Files::iterator borderedFile(RTid texture, ptrdiff_t nodes);
+  std::unordered_map<RTid, Files::iterator> bordered_; // the files of bordered pictures
+  // Returns whether so many nodes show a bordered picture of a file.
+  bool showBordered(ptrdiff_t nodes, RTid texture) const;
 };
 
 } // namespace xvrml::mapper
