@@ -147,7 +147,7 @@ bool Textures::changedIn(Entries& entries, Node& node, bool face) {
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
-    if (!face)
+    if (own.properties && !face)
       setSampling(samplingOf(own.repeatS, own.repeatT, own.properties), found->second.data);
     try {
       upload(before, *own.image);
