@@ -422,7 +422,8 @@ py::dict parameters(const RtShader& self) {
 }
 
 RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
-                  const std::string& wrap, const std::string& filter) {
+                  const std::string& wrap, const std::string& filter,
+                  const std::array<float, 4>& border) {
   const py::array any =
       numberArray(pixels, "pixels", "an array of shape (height, width, components)");
   if (any.ndim() != 2 && any.ndim() != 3)
@@ -432,9 +433,14 @@ RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
   if (components < 1 || components > 4 || any.shape(0) < 1 || any.shape(1) < 1 ||
       any.shape(0) > 65536 || any.shape(1) > 65536)
     throw py::value_error("texture: pixels of shape (height, width, 1 to 4) expected");
-  if ((wrap != "repeat" && wrap != "clamp") || (filter != "linear" && filter != "nearest"))
-    throw py::value_error(
-        "texture: wrap 'repeat' or 'clamp', filter 'linear' or 'nearest' expected");
+  const std::map<std::string, int> wraps = {{"repeat", RT_REPEAT},
+                                            {"mirror", RT_MIRRORED_REPEAT},
+                                            {"clamp", RT_CLAMP_TO_EDGE},
+                                            {"border", RT_CLAMP_TO_BORDER}};
+  const auto mode = wraps.find(wrap);
+  if (mode == wraps.end() || (filter != "linear" && filter != "nearest"))
+    throw py::value_error("texture: wrap 'repeat', 'mirror', 'clamp' or 'border', filter 'linear' "
+                          "or 'nearest' expected");
   // Python stores rows from the top, OpenRT from the bottom.
   const py::object turned = any[py::make_tuple(py::slice(py::none(), py::none(), py::int_(-1)))];
   Dense<uint8_t> small;
@@ -452,7 +458,8 @@ RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
                bytes ? static_cast<const void*>(small.data()) : large.data());
   rtTexParameteri(RT_TEXTURE_SRGB, srgb);
   for (const RTenum side : {RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T})
-    rtTexParameteri(side, wrap == "repeat" ? RT_REPEAT : RT_CLAMP_TO_EDGE);
+    rtTexParameteri(side, mode->second);
+  rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, border.data());
   rtTexParameteri(RT_TEXTURE_MAG_FILTER, filter == "linear" ? RT_LINEAR : RT_NEAREST);
   rtBindTexture(0);
   use.check();
@@ -623,7 +630,10 @@ void defineRtScene(py::module_& module) {
            "Creates a shader. name: a class of the stock shaders, or of the plug-in library. "
            "Keyword arguments are its parameters.")
       .def("texture", texture, "pixels"_a, py::kw_only(), "srgb"_a = false, "wrap"_a = "repeat",
-           "filter"_a = "linear", "Creates a texture from bytes or floats, first row at the top.")
+           "filter"_a = "linear", "border"_a = std::array<float, 4>{},
+           "Creates a texture from bytes or floats, first row at the top. wrap: 'repeat', 'mirror' "
+           "(every other copy is mirrored), 'clamp' (the edge goes on) or 'border' (beyond the "
+           "edges is the linear rgba of border).")
       .def("light", light, "shader"_a, "matrix"_a = none, py::kw_only(), "scope"_a = none,
            "Adds a light to the scene. scope: the only instance that it illuminates.")
       .def("camera", camera, "eye"_a, "at"_a, "up"_a = std::array<double, 3>{0, 1, 0},

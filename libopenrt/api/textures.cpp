@@ -42,10 +42,35 @@ void setImage(Context& c, int components, int width, int height, RTenum type, co
 }
 
 edit::Wrap wrapOf(int value) {
-  if (value == RT_REPEAT) return edit::Wrap::Repeat;
-  require(value == RT_CLAMP_TO_EDGE, RT_INVALID_ENUM,
-          "the wrap must be RT_REPEAT or RT_CLAMP_TO_EDGE");
-  return edit::Wrap::Clamp;
+  switch (value) {
+  case RT_REPEAT: return edit::Wrap::Repeat;
+  case RT_CLAMP_TO_EDGE: return edit::Wrap::Clamp;
+  case RT_MIRRORED_REPEAT: return edit::Wrap::Mirror;
+  case RT_CLAMP_TO_BORDER: return edit::Wrap::Border;
+  default:
+    fail(RT_INVALID_ENUM, "the wrap must be RT_REPEAT, RT_MIRRORED_REPEAT, RT_CLAMP_TO_EDGE or "
+                          "RT_CLAMP_TO_BORDER");
+  }
+}
+
+// Replaces the description of the bound texture.
+void describe(Context& c, TextureState& state, const edit::TextureT& changed) {
+  const bool hasImage =
+      state.texels || changed.texels != 0; // without an image there is nothing to send
+  if (hasImage) c.scene.textures.markDirty(c.boundTexture, state);
+  state.description = changed;
+}
+
+void setBorder(Context& c, RTenum name, const float* rgba) {
+  TextureState& state = bound(c);
+  if (name != RT_TEXTURE_BORDER_COLOR)
+    fail(RT_INVALID_ENUM, "unknown texture parameter " + std::to_string(name) + " of floats");
+  require(rgba != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
+  for (int i = 0; i < 4; i++)
+    require(rgba[i] >= 0 && rgba[i] <= 1, RT_INVALID_VALUE, "a colour has numbers of 0 to 1");
+  edit::TextureT changed = state.description;
+  changed.border.assign(rgba, rgba + 4);
+  describe(c, state, changed);
 }
 
 void setParameter(Context& c, RTenum name, int value) {
@@ -65,10 +90,7 @@ void setParameter(Context& c, RTenum name, int value) {
     break;
   default: fail(RT_INVALID_ENUM, "unknown texture parameter " + std::to_string(name));
   }
-  const bool hasImage =
-      state.texels || changed.texels != 0; // without an image there is nothing to send
-  if (hasImage) c.scene.textures.markDirty(c.boundTexture, state);
-  state.description = changed;
+  describe(c, state, changed);
 }
 
 } // namespace
@@ -101,4 +123,8 @@ void rtTexImage2D(int components, int width, int height, RTenum type, const void
 
 void rtTexParameteri(RTenum name, int value) {
   guarded("rtTexParameteri", [&](Context& c) { setParameter(c, name, value); });
+}
+
+void rtTexParameterfv(RTenum name, const float rgba[4]) {
+  guarded("rtTexParameterfv", [&](Context& c) { setBorder(c, name, rgba); });
 }

@@ -43,6 +43,15 @@ struct TexelLookup {
 // 2^23 a float has no fraction.
 void place(uint32_t n, const float* u, const Texture::Axis& axis, float* out) {
   const auto size = static_cast<float>(axis.size);
+  if (axis.mirror) {
+    for (uint32_t i = 0; i < n; i++) {  // all steps up to the last product are exact
+      const float u0 = std::fabs(u[i]); // what is at -u is at u
+      const float half = u0 < 8388608.0f ? 0.5f * u0 : 0.0f; // false for NaN
+      const float period = 2.0f * (half - static_cast<float>(static_cast<int32_t>(half))); // 0..2
+      out[i] = (period > 1.0f ? 2.0f - period : period) * size;
+    }
+    return;
+  }
   if (axis.clamp) {
     for (uint32_t i = 0; i < n; i++) {
       const float finite = std::fabs(u[i]) <= std::numeric_limits<float>::max() ? u[i] : 0.0f;
@@ -152,7 +161,74 @@ void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv
   }
 }
 
+namespace {
+
+// The two neighbouring texels of one coordinate, -1 for the border, and the weight of the second.
+struct Neighbours {
+  int32_t first, second;
+  float weight;
+};
+
+Neighbours neighbours(float u, const Texture::Axis& axis, bool single) {
+  if (!axis.border) {
+    TexelLookup p;
+    if (single) p.weight[0] = 0;
+    (single ? nearest : lookUpLinear)(1, &u, axis, p);
+    return {p.first[0], single ? p.first[0] : p.second[0], p.weight[0]};
+  }
+  const auto size = static_cast<float>(axis.size);
+  const float finite = std::fabs(u) <= std::numeric_limits<float>::max() ? u : 0.0f;
+  const float x = std::fmin(std::fmax(finite * size, -2.0f), size + 2.0f) - (single ? 0.0f : 0.5f);
+  const float whole = std::floor(x);
+  const auto inside = [&](float i) {
+    return i >= 0 && i < size ? static_cast<int32_t>(i) : int32_t(-1);
+  };
+  return {inside(whole), inside(single ? whole : whole + 1), single ? 0.0f : x - whole};
+}
+
+} // namespace
+
+// Samples a texture with a border, which few have.
+template <class Texel, int components, bool single>
+void Texture::sampleBordered(const Texture& texture, uint32_t n, const float* const uv[2],
+                             float* const rgba[4]) {
+  const Texel* texels = texture.texels_->as<Texel>();
+  const float* alpha = decoding(false).data();
+  const auto width = static_cast<size_t>(texture.axis_[0].size);
+  const auto at = [&](int32_t x, int32_t y, int c) -> float {
+    if (x < 0 || y < 0) return texture.border_[c];
+    const Texel texel =
+        texels[(static_cast<size_t>(y) * width + static_cast<size_t>(x)) * components + size_t(c)];
+    if constexpr (std::is_same_v<Texel, float>)
+      return texel;
+    else
+      return (isAlpha(c, components) ? alpha : texture.decode_)[static_cast<size_t>(texel)];
+  };
+  for (uint32_t i = 0; i < n; i++) {
+    const Neighbours s = neighbours(uv[0][i], texture.axis_[0], single),
+                     t = neighbours(uv[1][i], texture.axis_[1], single);
+    float value[components];
+    for (int c = 0; c < components; c++) {
+      const float below =
+          at(s.first, t.first, c) * (1 - s.weight) + at(s.second, t.first, c) * s.weight;
+      const float above =
+          at(s.first, t.second, c) * (1 - s.weight) + at(s.second, t.second, c) * s.weight;
+      value[c] = below * (1 - t.weight) + above * t.weight;
+    }
+    spread<components>(value, i, rgba);
+  }
+}
+
 template <class Texel> void Texture::choose(bool nearest) {
+  if (axis_[0].border || axis_[1].border) {
+    static constexpr Sampler bordered[4][2] = {
+        {sampleBordered<Texel, 1, false>, sampleBordered<Texel, 1, true>},
+        {sampleBordered<Texel, 2, false>, sampleBordered<Texel, 2, true>},
+        {sampleBordered<Texel, 3, false>, sampleBordered<Texel, 3, true>},
+        {sampleBordered<Texel, 4, false>, sampleBordered<Texel, 4, true>}};
+    sample_ = bordered[components_ - 1][nearest];
+    return;
+  }
   static constexpr Sampler samplers[4][2] = {{sampleAs<Texel, 1, false>, sampleAs<Texel, 1, true>},
                                              {sampleAs<Texel, 2, false>, sampleAs<Texel, 2, true>},
                                              {sampleAs<Texel, 3, false>, sampleAs<Texel, 3, true>},
@@ -164,8 +240,15 @@ Texture::Texture(const edit::TextureT& d, ArrayPtr texels)
     : texels_(std::move(texels)), decode_(decoding(d.srgb).data()), sample_(sampleNothing) {
   if (!fits(d, texels_)) return;
   components_ = d.components;
-  axis_[0] = {static_cast<int32_t>(d.width), d.wrapS == edit::Wrap::Clamp};
-  axis_[1] = {static_cast<int32_t>(d.height), d.wrapT == edit::Wrap::Clamp};
+  const auto axis = [](uint32_t size, edit::Wrap wrap) {
+    return Axis{static_cast<int32_t>(size), wrap == edit::Wrap::Clamp || wrap == edit::Wrap::Mirror,
+                wrap == edit::Wrap::Mirror, wrap == edit::Wrap::Border};
+  };
+  axis_[0] = axis(d.width, d.wrapS);
+  axis_[1] = axis(d.height, d.wrapT);
+  if (d.border.size() == 4)
+    for (uint32_t c = 0; c < components_; c++)
+      border_[c] = d.border[isAlpha(int(c), int(components_)) ? 3 : c];
   if (d.isFloat)
     choose<float>(d.nearest);
   else

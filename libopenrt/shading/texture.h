@@ -25,20 +25,25 @@ class Texture {
     sample_(*this, n, uv, rgba);
   }
 
-  // One axis of the image. Texel centres are at (i + 1/2) / size; coordinates repeat or clamp.
+  // One axis of the image. Texel centres are at (i + 1/2) / size. Coordinates repeat, clamp (also
+  // after they were mirrored into the image), or lead to the border.
   struct Axis {
     int32_t size = 1;
-    bool clamp = false;
+    bool clamp = false, mirror = false, border = false;
   };
 
  private:
   template <class Texel, int components, bool single> static void
   sampleAs(const Texture& texture, uint32_t n, const float* const uv[2], float* const rgba[4]);
+  template <class Texel, int components, bool single>
+  static void sampleBordered(const Texture& texture, uint32_t n, const float* const uv[2],
+                             float* const rgba[4]);
   template <class Texel> void choose(bool nearest);
   using Sampler = void (*)(const Texture&, uint32_t, const float* const[2], float* const[4]);
 
   ArrayPtr texels_;
   Axis axis_[2];
+  float border_[4] = {}; // as the components of a texel
   uint32_t components_ = 0;
   const float* decode_; // table of 256: colour byte to linear value
   Sampler sample_;

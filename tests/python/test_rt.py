@@ -53,6 +53,27 @@ def test_textures_have_their_first_row_at_the_top():
         assert array[10, 16, 0] > array[10, 16, 2] and array[22, 16, 2] > array[22, 16, 0]
 
 
+def test_textures_are_mirrored_or_end_at_a_border():
+    pixels = np.array([[[255, 0, 0], [0, 0, 255]]], np.uint8)
+    # What is seen beyond the left edge of the picture, whose first pixel is red.
+    for wrap, expected in (("repeat", (0, 0, 1)), ("clamp", (1, 0, 0)), ("mirror", (1, 0, 0)),
+                           ("border", (0, 1, 0))):
+        with rt.Context(threads=1) as context:
+            texture = context.texture(pixels, filter="nearest", wrap=wrap, border=(0, 1, 0, 1))
+            shader = context.shader("VRML97", texture=texture, lit=0)
+            context.instance(
+                context.mesh(SQUARE, FACES, texcoords=[[-0.25, 0.5]] * 4, shader=shader))
+            context.camera(eye=(0, 0, 3), at=(0, 0, 0))
+            array = context.render(size=(8, 8), spp=1).array
+            assert array[4, 4, :3] == pytest.approx(expected, abs=1e-3), wrap
+    with rt.Context(threads=1) as context:
+        with pytest.raises(ValueError, match="'mirror'"):
+            context.texture(pixels, wrap="mirrored")
+        for wrong in ((0, 0, 0, 2), (0, 0, float("nan"), 0)):
+            with pytest.raises((ValueError, RuntimeError), match="0 to 1"):
+                context.texture(pixels, wrap="border", border=wrong)
+
+
 def test_what_is_wrong_is_said():
     context = rt.Context(threads=1)
     other = rt.Context(threads=1)

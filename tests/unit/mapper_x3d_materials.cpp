@@ -3,6 +3,8 @@
 // generated coordinates, and events that change them.
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "unit/mapper_fixture.h"
 
@@ -11,14 +13,14 @@ namespace {
 
 class MapX3dMaterials : public MapRunning {
  protected:
-  void loadX3d(const std::string& body) {
+  void loadX3d(const std::string& body, bool linearColor = false) {
     mapper_.reset();
     engine_.reset();
     world_ = loadWorldFromMemory("#X3D V4.0 utf8\nPROFILE Full\n" + body, "test.x3dv");
     engine_ = std::make_unique<Engine>(world_->diagnostics, makeInteraction);
     engine_->adoptScope(world_->scope, true);
     MapOptions options;
-    options.linearColor = false; // numbers as written
+    options.linearColor = linearColor; // false: numbers as written
     mapper_ = std::make_unique<OpenRTMapper>(*world_, options);
   }
   std::array<float, 4> seen() {
@@ -51,6 +53,11 @@ class MapX3dMaterials : public MapRunning {
            " } geometry DEF G IndexedFaceSet { coord Coordinate { point [ -9 -9 0, 9 -9 0, 9 9 0, "
            "-9 9 0 ] } coordIndex [ 0 1 2 3 -1 ] " +
            more + " } }\n";
+  }
+  // Coordinates by which one place of a picture is seen everywhere.
+  static std::string seenAt(float s, float t) {
+    const std::string place = std::to_string(s) + " " + std::to_string(t) + ", ";
+    return "texCoord TextureCoordinate { point [ " + repeat(place, 4) + " ] }";
   }
   // A picture of one pixel.
   static std::string texel(const std::string& hex, int components = 3) {
@@ -262,6 +269,117 @@ TEST_F(MapX3dMaterials, TexturePropertiesChangeSampling) {
   loadX3d(world("boundaryModeS \"FOO\" magnificationFilter \"BAR\"", "-.25"));
   expectSeen(0, 0, 1, "wrong names");
   EXPECT_EQ(messages(), 2u);
+}
+
+// Returns a picture of a red and a blue pixel with these properties, seen at one place.
+std::string redAndBlue(const std::string& properties, const std::string& picture) {
+  return picture + " textureProperties DEF P TextureProperties { " + properties + " } }";
+}
+const std::string pixels = "texture PixelTexture { image 2 1 3 0xFF0000 0x0000FF",
+                  file = "texture ImageTexture { url "
+                         "\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAA"
+                         "DUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg==\"";
+
+TEST_F(MapX3dMaterials, PicturesAreMirrored) {
+  for (const std::string& picture : {pixels, file})
+    for (const auto& [s, red] : {std::pair(-.25f, true),
+                                 {.25f, true},
+                                 {.75f, false},
+                                 {1.25f, false},
+                                 {1.75f, true},
+                                 {2.25f, true},
+                                 {-1.75f, true},
+                                 {-1.25f, false}}) {
+      loadX3d(dark +
+              square(redAndBlue("boundaryModeS \"MIRRORED_REPEAT\"", picture), seenAt(s, 0)));
+      expectSeen(red ? 1 : 0, 0, red ? 0 : 1, std::to_string(s));
+      silent();
+    }
+  const std::string column = "texture PixelTexture { image 1 2 3 0xFF0000 0x0000FF";
+  loadX3d(dark + square(redAndBlue("boundaryModeT \"MIRRORED_REPEAT\"", column), seenAt(0, -.25f)));
+  expectSeen(1, 0, 0, "t");
+  silent();
+}
+
+TEST_F(MapX3dMaterials, ABorderHasItsColor) {
+  const std::string border = "borderColor .25 .5 .75 .2 boundaryModeS \"CLAMP_TO_BOUNDARY\" ";
+  for (const std::string& picture : {pixels, file}) {
+    loadX3d(dark + square(redAndBlue(border, picture), seenAt(-.5f, 7)));
+    expectSeen(.25f, .5f, .75f, "beyond the edge");
+    loadX3d(dark + square(redAndBlue(border, picture), seenAt(0, 7)));
+    expectSeen(.625f, .25f, .375f, "at the edge: half of both");
+    loadX3d(dark + square(redAndBlue(border + "magnificationFilter \"NEAREST_PIXEL\"", picture),
+                          seenAt(1.001f, 7)));
+    expectSeen(.25f, .5f, .75f, "not filtered");
+    // As all colours of a world: (.5 + .055) / 1.055 to the power of 2.4, and so on.
+    loadX3d(dark + square(redAndBlue(border, picture), seenAt(-.5f, 7)), true);
+    expectSeen(.0509f, .2140f, .5225f, "linear");
+    silent();
+  }
+  loadX3d(dark +
+          square(redAndBlue("boundaryModeT \"CLAMP_TO_BOUNDARY\"", pixels), seenAt(.25f, 2)));
+  expectSeen(0, 0, 0, "the default");
+  loadX3d(dark +
+          square(redAndBlue("boundaryModeT \"CLAMP_TO_EDGE\" " + border, pixels), seenAt(.25f, 2)));
+  expectSeen(1, 0, 0, "each axis has its mode");
+  silent();
+}
+
+TEST_F(MapX3dMaterials, ABorderIsAsTransparentAsItSays) {
+  const std::string sky = dark + std::string("Background { skyColor 0 1 0 }\n"),
+                    border = "boundaryModeS \"CLAMP_TO_BOUNDARY\" borderColor 1 0 0 ";
+  const auto with = [](const std::string& image) {
+    return "texture PixelTexture { image " + image;
+  };
+  loadX3d(sky + square(redAndBlue(border + ".25", with("1 1 4 0xFFFFFFFF")), seenAt(3, 0)));
+  expectSeen(.25f, .75f, 0, "four components");
+  loadX3d(sky + square(redAndBlue(border + "0", with("1 1 2 0xFFFF")), seenAt(3, 0)));
+  expectSeen(0, 1, 0, "grey and alpha");
+  loadX3d(sky + square(redAndBlue(border + "0", with("1 1 3 0xFFFFFF")), seenAt(3, 0)));
+  expectSeen(1, 0, 0, "pictures without alpha are opaque");
+  silent();
+}
+
+TEST_F(MapX3dMaterials, EventsChangeABorder) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::string& picture : {pixels, file}) {
+    loadX3d(dark +
+            square(redAndBlue("boundaryModeS \"CLAMP_TO_BOUNDARY\"", picture), seenAt(-.25f, 0)));
+    expectSeen(0, 0, 0, "the default");
+    for (int i = 0; i < 20; ++i) {
+      send("P", "borderColor", ColorRGBA{.25f, .5f, float(i) / 20, 1});
+      const uint64_t loaded = cost().textures;
+      EXPECT_EQ(loaded, picture == file ? 0u : 1u) << "files are not read again";
+      expectSeen(.25f, .5f, float(i) / 20, "borderColor");
+    }
+    send("P", "borderColor", ColorRGBA{2, nan, -1, 0});
+    expectSeen(1, 0, 0, "numbers that are none or out of range");
+    send("P", "boundaryModeS", std::string("REPEAT"));
+    expectSeen(0, 0, 1, "REPEAT");
+    send("P", "boundaryModeS", std::string("MIRRORED_REPEAT"));
+    expectSeen(1, 0, 0, "MIRRORED_REPEAT");
+    send("P", "borderColor", ColorRGBA{0, 1, 0, 1});
+    expectSeen(1, 0, 0, "a colour that is not shown");
+    send("P", "boundaryModeS", std::string("CLAMP_TO_BOUNDARY"));
+    expectSeen(0, 1, 0, "CLAMP_TO_BOUNDARY");
+  }
+}
+
+TEST_F(MapX3dMaterials, OneFileHasABorderForEachNode) {
+  const std::string border = "boundaryModeS \"CLAMP_TO_BOUNDARY\" borderColor 0 0 0 1";
+  loadX3d(dark + square(redAndBlue(border, file), seenAt(-.5f, 0)) +
+          "Transform { translation 99 0 0 children Shape { appearance Appearance { texture DEF U " +
+          file.substr(file.find("ImageTexture")) + " textureProperties DEF Q TextureProperties { " +
+          border + " } } } geometry Box { } } }");
+  expectSeen(0, 0, 0, "as loaded");
+  send("Q", "borderColor", ColorRGBA{1, 1, 1, 1});
+  expectSeen(0, 0, 0, "that of the other node");
+  send("P", "borderColor", ColorRGBA{1, 1, 1, 1});
+  expectSeen(1, 1, 1, "both have it");
+  send("Q", "borderColor", ColorRGBA{1, 0, 0, 1});
+  send("P", "borderColor", ColorRGBA{0, 1, 0, 1});
+  expectSeen(0, 1, 0, "each has its own");
+  silent();
 }
 
 TEST_F(MapX3dMaterials, CoordinatesAreGenerated) {

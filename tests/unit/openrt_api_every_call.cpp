@@ -36,6 +36,7 @@ const double projective[16] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const float identityF[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const float notFiniteF[16] = {1, 0, 0, 0, 0, NAN, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const float three[4] = {1, 2, 3, 4}, badThree[4] = {1, nan, 3, 4};
+const float colour[4] = {0, 0.5f, 1, 1};
 const double threeD[3] = {1, 2, 3}, badThreeD[3] = {1, HUGE_VAL, 3};
 const double ball[10] = {1, 1, 1, 0, 0, 0, 0, 0, 0, -1}, badBall[10] = {1, NAN},
              below[3] = {-1, -1, -1}, above[3] = {1, 1, 1};
@@ -163,6 +164,7 @@ const Named needContext[] = {
     CALL(rtBindTexture, 0),
     CALL(rtTexImage2D, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
     CALL(rtTexParameteri, RT_TEXTURE_SRGB, 1),
+    CALL(rtTexParameterfv, RT_TEXTURE_BORDER_COLOR, colour),
     CALL(rtFrameBuffer, 4, 4, RT_RGBA),
     CALL(rtQuality, RT_SEED, 1),
     CALL(rtQualityf, RT_TARGET_ERROR, 0),
@@ -390,6 +392,7 @@ const Wrong wrong[] = {
     WRONG(ID, Outside, rtDeleteTexture, w.object), WRONG(ID, Outside, rtBindTexture, foreign),
     WRONG(OPERATION, Outside, rtTexImage2D, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
     WRONG(OPERATION, Outside, rtTexParameteri, RT_TEXTURE_SRGB, 1),
+    WRONG(OPERATION, Outside, rtTexParameterfv, RT_TEXTURE_BORDER_COLOR, colour),
     // Frames and queries.
     WRONG(VALUE, Outside, rtFrameBuffer, 0, 1, RT_RGBA),
     WRONG(VALUE, Outside, rtFrameBuffer, 65537, 1, RT_RGBA),

@@ -287,6 +287,7 @@ class Textures : public Shaders {
     rtBindTexture(id);
     return id;
   }
+  const float half[4] = {0.5f, 0.5f, 0.5f, 0.5f};
   const unsigned char bytes[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 };
 
@@ -320,6 +321,33 @@ TEST_F(Textures, AParameterLaterDoesNotSendTheImageAgain) {
   EXPECT_EQ(edits<edit::TextureT>(c).at(0)->texels, texels);
 }
 
+TEST_F(Textures, WrapModesAndABorder) {
+  bindTexture();
+  const float border[4] = {0, 0.25f, 0.5f, 1}, nan[4] = {0, 0, NAN, 0}, low[4] = {-0.01f, 0, 0, 0},
+              high[4] = {0, 0, 0, 1.01f};
+  rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, border); // before there is an image
+  rtTexParameteri(RT_TEXTURE_WRAP_S, RT_MIRRORED_REPEAT);
+  rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_BORDER);
+  rtTexImage2D(1, 4, 4, RT_UNSIGNED_BYTE, bytes);
+  {
+    const Commit& c = commit();
+    const edit::TextureT& t = *edits<edit::TextureT>(c).at(0);
+    EXPECT_EQ(t.wrapS, edit::Wrap::Mirror);
+    EXPECT_EQ(t.wrapT, edit::Wrap::Border);
+    EXPECT_EQ(t.border, std::vector<float>(border, border + 4));
+  }
+  EXPECT_FAILS(RT_INVALID_ENUM, rtTexParameterfv(RT_TEXTURE_WRAP_S, border));
+  EXPECT_FAILS(RT_INVALID_ENUM, rtTexParameteri(RT_TEXTURE_BORDER_COLOR, 0));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, nullptr));
+  for (const float* wrong : {nan, low, high})
+    EXPECT_FAILS(RT_INVALID_VALUE, rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, wrong));
+  EXPECT_TRUE(edits<edit::TextureT>(commit()).empty());
+  rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, half);
+  const Commit& c = commit();
+  EXPECT_TRUE(c.arrays.empty()); // the image is not sent again
+  EXPECT_EQ(edits<edit::TextureT>(c).at(0)->border, std::vector<float>(4, 0.5f));
+}
+
 TEST_F(Textures, FloatImages) {
   bindTexture();
   const float values[4] = {0.5f, 2, -1, 0};
@@ -334,6 +362,7 @@ TEST_F(Textures, BadCallsAreErrors) {
   EXPECT_FAILS(RT_INVALID_OPERATION,
                rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, bytes)); // no texture is bound
   EXPECT_FAILS(RT_INVALID_OPERATION, rtTexParameteri(RT_TEXTURE_SRGB, 1));
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, half));
   EXPECT_FAILS(RT_INVALID_ID, rtBindTexture(4711));
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteTexture(0));
   EXPECT_FAILS(RT_INVALID_VALUE, rtGenTextures(1, nullptr));

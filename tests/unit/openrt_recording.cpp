@@ -2,6 +2,7 @@
 // refused with the position of the fault. The faults are put into a good recording, whose checksums
 // are then corrected where they would hide the fault. Longer than 500 lines because the tests share
 // one format of edits.
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -398,6 +399,21 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"TextureHuge", [](Example& e) { e.texture.width = e.texture.height = 65536; },
               "impossible size"},
         Fault{"TextureWrap", [](Example& e) { e.texture.wrapS = edit::Wrap(5); }, "unknown wrap"},
+        Fault{"TextureBorder",
+              [](Example& e) {
+                e.texture.border = {0, 0, 0};
+              },
+              "needs four numbers"},
+        Fault{"TextureBorderRange",
+              [](Example& e) {
+                e.texture.border = {0, 0, 0, 1.5f};
+              },
+              "out of range"},
+        Fault{"TextureBorderNumber",
+              [](Example& e) {
+                e.texture.border = {0, NAN, 0, 0};
+              },
+              "out of range"},
         Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; },
               "a frame has an impossible size"},
         Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 20; }, "unknown channels"},

@@ -1,9 +1,12 @@
 // openrt_texture.cpp: Tests texture lookups against values worked out by hand.
 #include "shading/texture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -93,6 +96,132 @@ TEST(OpenrtTexture, TheAxesWrapIndependently) {
   EXPECT_FLOAT_EQ(at(t, -0.25f, 4).r, 3);
 }
 
+// Returns the texel of one axis that a wrap mode has at an index (OpenGL 4.6, table 8.20), -1 for
+// the border.
+int wrapped(edit::Wrap wrap, int index, int size) {
+  const auto modulo = [](int a, int n) { return (a % n + n) % n; };
+  switch (wrap) {
+  case edit::Wrap::Repeat: return modulo(index, size);
+  case edit::Wrap::Clamp: return std::clamp(index, 0, size - 1);
+  case edit::Wrap::Mirror: {
+    const int i = modulo(index, 2 * size) - size;
+    return size - 1 - (i >= 0 ? i : -(1 + i));
+  }
+  case edit::Wrap::Border: return index < 0 || index >= size ? -1 : index;
+  }
+  return -1;
+}
+
+constexpr edit::Wrap allWraps[] = {edit::Wrap::Repeat, edit::Wrap::Clamp, edit::Wrap::Mirror,
+                                   edit::Wrap::Border};
+
+// Every pair of modes is as OpenGL defines it, for all numbers of components and small sizes.
+TEST(OpenrtTexture, WrapModesAreThoseOfOpenGl) {
+  std::mt19937 random(7);
+  const std::vector<float> border = {0.25f, 0.5f, 0.75f, 0.125f};
+  for (int round = 0; round < 400; round++) {
+    const uint32_t components = 1 + random() % 4, width = 1 + random() % 5,
+                   height = 1 + random() % 5;
+    auto d = describe(components, width, height);
+    d.wrapS = allWraps[random() % 4];
+    d.wrapT = allWraps[random() % 4];
+    d.nearest = random() % 2;
+    d.border = border;
+    std::vector<float> texels(size_t(components) * width * height);
+    for (float& texel : texels) texel = float(random() % 1000) / 1000;
+    const Texture texture = floats(d, texels);
+    const auto texel = [&](int i, int j, int c) -> double {
+      const int x = wrapped(d.wrapS, i, int(width)), y = wrapped(d.wrapT, j, int(height));
+      const bool alpha = c == 3 || (c == 1 && components == 2);
+      if (x < 0 || y < 0) return border[alpha ? 3 : size_t(c)];
+      return texels[size_t((y * int(width) + x) * int(components) + c)];
+    };
+    for (int place = 0; place < 50; place++) {
+      // Places between the edges of texels, where the nearest one is certain.
+      const auto between = [&](uint32_t size) {
+        return (double(int(random() % (8 * size)) - int(4 * size)) + 0.1 +
+                0.8 * double(random() % 997) / 997) /
+               size;
+      };
+      const auto u = float(between(width)), v = float(between(height));
+      const double x = double(u) * width - (d.nearest ? 0 : 0.5),
+                   y = double(v) * height - (d.nearest ? 0 : 0.5);
+      const int i = int(std::floor(x)), j = int(std::floor(y));
+      const double s = d.nearest ? 0 : x - i, t = d.nearest ? 0 : y - j;
+      const auto value = [&](int c) {
+        return (texel(i, j, c) * (1 - s) + texel(i + 1, j, c) * s) * (1 - t) +
+               (texel(i, j + 1, c) * (1 - s) + texel(i + 1, j + 1, c) * s) * t;
+      };
+      const bool grey = components <= 2;
+      const Rgba seen = at(texture, u, v);
+      const std::string where = std::to_string(components) + " components, " +
+                                std::to_string(int(d.wrapS)) + std::to_string(int(d.wrapT)) +
+                                " at " + std::to_string(u) + " " + std::to_string(v);
+      ASSERT_NEAR(seen.r, value(0), 2e-5) << where;
+      ASSERT_NEAR(seen.g, value(grey ? 0 : 1), 2e-5) << where;
+      ASSERT_NEAR(seen.b, value(grey ? 0 : 2), 2e-5) << where;
+      ASSERT_NEAR(seen.a, components % 2 == 0 ? value(int(components) - 1) : 1, 2e-5) << where;
+    }
+  }
+}
+
+TEST(OpenrtTexture, MirroredPicturesAreSymmetric) {
+  for (const bool nearest : {false, true}) {
+    auto d = describe(1, 5, 1);
+    d.wrapS = edit::Wrap::Mirror;
+    d.nearest = nearest;
+    const Texture t = floats(d, {0.1f, 0.7f, 0.2f, 0.9f, 0.4f});
+    std::mt19937 random(3);
+    for (int i = 0; i < 2000; i++) {
+      const float u = float(random() % 4096) / 2048; // sums with small integers are exact
+      const float value = at(t, u, 0).r;
+      EXPECT_EQ(at(t, -u, 0).r, value) << u;
+      EXPECT_EQ(at(t, 2 - u, 0).r, value) << u;
+      EXPECT_EQ(at(t, u + 1024, 0).r, value) << u;
+      EXPECT_EQ(at(t, u - 1024, 0).r, value) << u;
+    }
+    EXPECT_EQ(at(t, 0, 0).r, 0.1f); // an edge meets its mirror image
+    EXPECT_EQ(at(t, 1, 0).r, 0.4f);
+  }
+}
+
+TEST(OpenrtTexture, ABorderBeginsAtTheEdgeAndBlendsOverATexel) {
+  auto d = describe(1, 2, 1);
+  d.wrapS = edit::Wrap::Border;
+  d.border = {0.5f, 0, 0, 0};
+  const Texture t = floats(d, {0, 1});
+  EXPECT_FLOAT_EQ(at(t, 0, 0.5f).r, 0.25f); // half a texel, half the border
+  EXPECT_FLOAT_EQ(at(t, -0.125f, 0.5f).r, 0.375f);
+  EXPECT_FLOAT_EQ(at(t, -0.25f, 0.5f).r, 0.5f);
+  EXPECT_FLOAT_EQ(at(t, 1, 0.5f).r, 0.75f);
+  EXPECT_FLOAT_EQ(at(t, 1.25f, 0.5f).r, 0.5f);
+  EXPECT_FLOAT_EQ(at(t, 100, 0.5f).r, 0.5f);
+  EXPECT_FLOAT_EQ(at(t, 0.75f, 900).r, 1); // the other axis repeats
+  d.nearest = true;
+  const Texture blocks = floats(d, {0, 1});
+  EXPECT_EQ(at(blocks, -0.001f, 0.5f).r, 0.5f);
+  EXPECT_EQ(at(blocks, 0.001f, 0.5f).r, 0);
+  EXPECT_EQ(at(blocks, 0.999f, 0.5f).r, 1);
+  EXPECT_EQ(at(blocks, 1.001f, 0.5f).r, 0.5f);
+  d.border.clear(); // as in recordings of older versions
+  EXPECT_EQ(at(floats(d, {1, 1}), 7, 0.5f).r, 0);
+}
+
+// The border is linear, whatever the texels are; that of grey is its red.
+TEST(OpenrtTexture, ABorderHasTheComponentsOfItsTexture) {
+  for (const uint32_t components : {1u, 2u, 3u, 4u}) {
+    auto d = describe(components, 1, 1);
+    d.srgb = true;
+    d.wrapS = d.wrapT = edit::Wrap::Border;
+    d.border = {0.25f, 0.5f, 0.75f, 0.125f};
+    const Rgba out = at(bytes(d, {9, 9, 9, 9}), 3, -3);
+    EXPECT_EQ(out.r, 0.25f);
+    EXPECT_EQ(out.g, components < 3 ? 0.25f : 0.5f);
+    EXPECT_EQ(out.b, components < 3 ? 0.25f : 0.75f);
+    EXPECT_EQ(out.a, components % 2 == 0 ? 0.125f : 1);
+  }
+}
+
 TEST(OpenrtTexture, NearestTakesOneTexel) {
   auto d = describe(1, 2, 2);
   d.nearest = true;
@@ -130,10 +259,11 @@ TEST(OpenrtTexture, AlphaBytesAreNeverSrgb) {
 TEST(OpenrtTexture, CoordinatesThatAreNotNumbersCountAsZero) {
   const float inf = std::numeric_limits<float>::infinity(),
               nan = std::numeric_limits<float>::quiet_NaN();
-  for (const bool clamp : {false, true})
+  for (const edit::Wrap wrap : allWraps)
     for (const bool nearest : {false, true}) {
       auto d = describe(1, 3, 3);
-      d.wrapS = d.wrapT = clamp ? edit::Wrap::Clamp : edit::Wrap::Repeat;
+      d.wrapS = d.wrapT = wrap;
+      d.border = {1, 1, 1, 1};
       d.nearest = nearest;
       const Texture t = floats(d, {1, 2, 3, 4, 5, 6, 7, 8, 9});
       const float zero = at(t, 0, 0).r;

@@ -175,6 +175,9 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     }
     rtTexParameteri(RT_TEXTURE_MAG_FILTER,
                     random() % 2 ? RT_NEAREST : RT_LINEAR); // also affects existing texels
+    rtTexParameteri(RT_TEXTURE_WRAP_S, random() % 2 ? RT_MIRRORED_REPEAT : RT_CLAMP_TO_BORDER);
+    const float border[4] = {number(0, 1), number(0, 1), number(0, 1), number(0, 1)};
+    if (random() % 2) rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, border);
   }
   void parameters(RTid shader) {
     if (!shader || shader == varying) return;

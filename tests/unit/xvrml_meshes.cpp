@@ -371,6 +371,7 @@ TEST(Meshes, GltfSamplersThatNeedTextureProperties) {
   EXPECT_EQ(properties->boundaryModeS, "MIRRORED_REPEAT");
   EXPECT_EQ(properties->boundaryModeT, "CLAMP_TO_EDGE");
   EXPECT_EQ(properties->magnificationFilter, "NEAREST_PIXEL");
+  EXPECT_EQ(messages(*world).find("MIRRORED"), std::string::npos) << messages(*world);
 }
 
 // One bone, turned by a quarter about z, moves the vertex 1 0 0 to 0 1 0; the node's own

@@ -180,7 +180,8 @@ class Context:
                 *,
                 srgb: bool = ...,
                 wrap: str = ...,
-                filter: str = ...) -> Texture:
+                filter: str = ...,
+                border: Sequence[float] = ...) -> Texture:
         ...
 
     def light(self,

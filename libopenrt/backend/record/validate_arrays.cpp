@@ -106,6 +106,9 @@ void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::Tex
              uint64_t(t.width) * t.height <= uint64_t(1) << 28,
          "a texture has an impossible size");
   demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
+  demand(t.border.empty() || t.border.size() == 4, "a border colour needs four numbers");
+  for (const float part : t.border)
+    demand(part >= 0 && part <= 1, "a border colour is out of range");
   demand(t.texels != 0, "a texture has no texels");
   const auto found = commit.arrays.find(t.texels);
   if (found == commit.arrays.end()) {

@@ -122,12 +122,20 @@ RT_API void rtOrtho(double height);
 
 /* Textures ------------------------------------------------------------------------------------- */
 
-enum { RT_REPEAT = 0x2901, RT_CLAMP_TO_EDGE = 0x812F, RT_NEAREST = 0x2600, RT_LINEAR = 0x2601 };
+enum {
+  RT_REPEAT = 0x2901,
+  RT_MIRRORED_REPEAT = 0x8370,
+  RT_CLAMP_TO_EDGE = 0x812F,
+  RT_CLAMP_TO_BORDER = 0x812D,
+  RT_NEAREST = 0x2600,
+  RT_LINEAR = 0x2601
+};
 enum {
   RT_TEXTURE_MAG_FILTER = 0x2800,
   RT_TEXTURE_WRAP_S = 0x2802,
   RT_TEXTURE_WRAP_T = 0x2803,
-  RT_TEXTURE_SRGB = 0x8C40
+  RT_TEXTURE_SRGB = 0x8C40,
+  RT_TEXTURE_BORDER_COLOR = 0x1004
 };
 /* Make count textures and write their ids, delete one, and bind one for the calls below.
  * [context-thread] */
@@ -140,11 +148,17 @@ RT_API void rtBindTexture(RTid texture);
  *  - pixels: rows from the bottom (t = 0) up, tightly packed. */
 RT_API void rtTexImage2D(int components, int width, int height, RTenum type, const void* pixels);
 /* Sets a property of the bound texture. [context-thread]
- *  - RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T: RT_REPEAT (default) or RT_CLAMP_TO_EDGE.
+ *  - RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T: RT_REPEAT (default), RT_MIRRORED_REPEAT (every other
+ *    copy is mirrored), RT_CLAMP_TO_EDGE (the edge goes on) or RT_CLAMP_TO_BORDER (beyond the edges
+ *    is the border).
  *  - RT_TEXTURE_MAG_FILTER: RT_LINEAR (default) or RT_NEAREST.
  *  - RT_TEXTURE_SRGB: 1 if bytes are sRGB-encoded (colours are decoded, alpha is not); 0 (default)
  *    if they are linear. */
 RT_API void rtTexParameteri(RTenum name, int value);
+/* Sets a property of the bound texture that is a colour. [context-thread]
+ *  - RT_TEXTURE_BORDER_COLOR: linear rgba of 0 to 1, which RT_CLAMP_TO_BORDER shows; default
+ *    0 0 0 0. Of the border of a grey texture red counts; without alpha the border is opaque. */
+RT_API void rtTexParameterfv(RTenum name, const float rgba[4]);
 
 #ifdef __cplusplus
 }

@@ -147,7 +147,8 @@ bool Textures::changedIn(Entries& entries, Node& node, bool face) {
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
-    if (own.properties && !face) setSampling(samplingOf(own.repeatS, own.repeatT, own.properties));
+    if (own.properties && !face)
+      setSampling(samplingOf(own.repeatS, own.repeatT, own.properties), found->second.data);
     try {
       upload(before, *own.image);
     } catch (const std::runtime_error& failure) { // as makeNode() does
@@ -163,8 +164,11 @@ bool Textures::changedIn(Entries& entries, Node& node, bool face) {
     remove(before);
     --count_;
   }
+  if (const auto* file = nodeCast<nodes::ImageTexture>(&node); file && before != 0 && !face)
+    resample(before, samplingOf(file->repeatS, file->repeatT, file->textureProperties));
   const RTid id = makeNode(node, found->second.data, face);
   entries[&node].id = id;
+  if (id != before) dropUnused(before);
   return id != before;
 }
 
@@ -213,6 +217,7 @@ RTid Textures::ofFile(const std::string& path, const Sampling& sampling, std::st
                ? make(decodeRadiance(bytes.data(), bytes.size(), limits), sampling)
                : make(decodeImage(bytes.data(), bytes.size(), room), sampling);
       if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
+      if (id != 0 && sampling.bordered()) bordered_.emplace(id, it);
     } catch (const std::exception& failure) { why = failure.what(); }
   }
   error = why;
@@ -257,12 +262,6 @@ void Textures::upload(RTid texture, const RadianceImage& image) {
   ++loaded_;
 }
 
-void Textures::setSampling(const Sampling& sampling) {
-  rtTexParameteri(RT_TEXTURE_WRAP_S, int(sampling.wrapS));
-  rtTexParameteri(RT_TEXTURE_WRAP_T, int(sampling.wrapT));
-  rtTexParameteri(RT_TEXTURE_MAG_FILTER, sampling.nearest ? RT_NEAREST : RT_LINEAR);
-}
-
 template <class Picture> RTid Textures::make(const Picture& image, const Sampling& sampling) {
   if (!usable(image)) return 0;
   RTid id = 0;
@@ -275,7 +274,7 @@ template <class Picture> RTid Textures::make(const Picture& image, const Samplin
     remove(id);
     throw;
   }
-  setSampling(sampling);
+  setSampling(sampling, data_);
   rtTexParameteri(RT_TEXTURE_SRGB, srgb_ && !data_ ? 1 : 0);
   ++count_;
   return id;

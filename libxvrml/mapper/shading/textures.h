@@ -2,7 +2,9 @@
 // mode. Made on first use. [the mapper's thread]
 #pragma once
 
+#include <array>
 #include <compare>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <tuple>
@@ -56,6 +58,8 @@ class Textures {
   struct Sampling {
     RTenum wrapS = RT_REPEAT, wrapT = RT_REPEAT;
     bool nearest = false;
+    std::array<float, 4> border{}; // as the world has it; zeros where no edge leads to the border
+    bool bordered() const { return wrapS == RT_CLAMP_TO_BORDER || wrapT == RT_CLAMP_TO_BORDER; }
     auto operator<=>(const Sampling&) const = default;
   };
   static Sampling samplingOf(bool repeatS, bool repeatT);
@@ -65,7 +69,11 @@ class Textures {
   RTid ofFile(const std::string& path, const Sampling& sampling, std::string& error);
   // Throws std::runtime_error if the world's budget does not allow the picture.
   template <class Picture> RTid make(const Picture& image, const Sampling& sampling);
-  static void setSampling(const Sampling& sampling);
+  // Sets the sampling of the bound texture. data: it holds numbers.
+  void setSampling(const Sampling& sampling, bool data);
+  // Gives a bordered picture of a file, which one node shows, another sampling.
+  void resample(RTid texture, const Sampling& sampling);
+  void dropUnused(RTid texture); // deletes a bordered picture of a file that no node shows any more
   void upload(RTid texture, const Image& image);
   void upload(RTid texture, const RadianceImage& image); // values are used unchanged
   void take(RTid texture, uint64_t bytes);
@@ -91,7 +99,11 @@ class Textures {
   Entries nodes_, faces_; // faces_: those of ofFace()
   // The texture of each file, by its sampling and whether it holds numbers, or the reason why there
   // is none.
-  std::map<std::tuple<std::string, Sampling, bool>, std::pair<RTid, std::string>> files_;
+  using Files = std::map<std::tuple<std::string, Sampling, bool>, std::pair<RTid, std::string>>;
+  Files files_;
+  std::unordered_map<RTid, Files::iterator> bordered_; // the files of bordered pictures
+  // Returns whether so many nodes show a bordered picture of a file.
+  bool showBordered(ptrdiff_t nodes, RTid texture) const;
 };
 
 } // namespace xvrml::mapper

@@ -300,8 +300,8 @@ std::string Materials::urlOf(const Item& texture) {
   return url;
 }
 
-// Filters are hints (3.8.4.1), of which magFilter is followed. Mirroring needs TextureProperties,
-// which then say all.
+// Filters are hints (3.8.4.1), of which magFilter is followed. It and mirroring need
+// TextureProperties, which then say all.
 void Materials::writeSampler(const Item& texture) {
   constexpr uint64_t nearest = 9728, clampToEdge = 33071, mirroredRepeat = 33648;
   const auto number = texture.index("sampler", samplers_.size());
@@ -313,10 +313,6 @@ void Materials::writeSampler(const Item& texture) {
   if (s == clampToEdge) nodes_.set("repeatS", false);
   if (t == clampToEdge) nodes_.set("repeatT", false);
   if (!blocks && !mirrored) return;
-  if (!nodes_.knows("ImageTexture", "textureProperties")) {
-    if (mirrored) sampler.warn("MIRRORED_REPEAT is not supported: the picture is repeated");
-    return;
-  }
   const auto mode = [](uint64_t wrap) {
     return std::string(wrap == clampToEdge      ? "CLAMP_TO_EDGE"
                        : wrap == mirroredRepeat ? "MIRRORED_REPEAT"
