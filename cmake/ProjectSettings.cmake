@@ -21,7 +21,12 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 if(NOT CMAKE_SKIP_INSTALL_RPATH)
   set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 endif()
-set(CMAKE_INSTALL_RPATH "$ORIGIN;$ORIGIN/../lib;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+if(APPLE)
+  set(own_folder @loader_path)
+else()
+  set(own_folder $ORIGIN)
+endif()
+set(CMAKE_INSTALL_RPATH "${own_folder};${own_folder}/../lib;${own_folder}/../${CMAKE_INSTALL_LIBDIR}")
 list(REMOVE_DUPLICATES CMAKE_INSTALL_RPATH)
 set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON) # for libraries of others outside the system's folders
 
@@ -49,7 +54,9 @@ add_compile_options(-fstack-protector-strong $<$<BOOL:${OPENRT_HAS_CF_PROTECTION
 if(NOT OPENRT_SANITIZE) # the sanitizers have checked functions of their own
   add_compile_options($<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=2>)
 endif()
-add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
+if(NOT APPLE) # whose files have another format, and are so anyway
+  add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
+endif()
 
 add_library(project_options INTERFACE)
 # No contraction into fused multiply-adds, so that the results do not depend on the compiler.

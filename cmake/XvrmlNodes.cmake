@@ -48,15 +48,16 @@ function(xvrml_add_nodes name)
   set_target_properties(nodes_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/nodes)
   target_compile_features(nodes_${name} PRIVATE cxx_std_20)
-  # same hardening as the programs that load it
-  target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  if(NOT APPLE) # same hardening as the programs that load it
+    target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  endif()
   target_include_directories(nodes_${name} PRIVATE ${out})
   if(TARGET xvrml::xvrml)
     target_link_libraries(nodes_${name} PRIVATE xvrml::xvrml)
   else()
     target_link_libraries(nodes_${name} PRIVATE xvrml)
   endif()
-  if(NOT OPENRT_SANITIZE) # the program contains the sanitizers' functions
+  if(NOT OPENRT_SANITIZE AND NOT APPLE) # the program contains the sanitizers' functions
     target_link_options(nodes_${name} PRIVATE -Wl,--no-undefined)
   endif()
 endfunction()

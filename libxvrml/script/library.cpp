@@ -23,7 +23,7 @@ ScriptLibrary loadScriptLibrary(const std::string& path) {
       throw std::runtime_error("script library " + path +
                                ": exports no " XS_ENTRY_NAME ", so it is not a script plug-in");
     const auto* plugin = static_cast<const XsPlugin*>(symbol);
-    return {checkScriptPlugin(plugin, plugin_files::exportedBytes(symbol), path), plugin->minor};
+    return {checkScriptPlugin(plugin, os::exportedBytes(symbol), path), plugin->minor};
   } catch (...) {
     dlclose(handle);
     throw;
