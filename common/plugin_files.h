@@ -158,7 +158,8 @@ inline std::vector<std::string> folders(std::string_view configured,
                                         const void* here) {
   std::vector<std::string> result;
   appendList(result, configured);
-  if (const char* environment = os::trustedEnvironment(environmentVariable)) appendList(result, environment);
+  if (const char* environment = os::trustedEnvironment(environmentVariable))
+    appendList(result, environment);
   std::vector<fs::path> own;
   std::error_code error;
   Dl_info info{};

@@ -1,6 +1,6 @@
-// process.h: processes that this one starts: their descriptors, memory, time and end; and how such a
-// process is bound to the one that started it. Where a system lacks a call, the function does what is
-// next best, and says so.
+// process.h: processes that this one starts: their descriptors, memory, time and end; and how such
+// a process is bound to the one that started it. Where a system lacks a call, the function does
+// what is next best, and says so.
 #pragma once
 
 #include <csignal>

@@ -15,8 +15,9 @@
 #include <unistd.h>
 
 #include "plugin_files.h"
-#include "system/files.h"
 #include "shading/plugin_check.h"
+#include "system/files.h"
+#include "system/libraries.h"
 
 namespace openrt {
 
@@ -144,8 +145,8 @@ void ShaderLibrary::open(const std::string& file) {
 void ShaderLibrary::readClasses() {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
   if (!symbol) failLoading(path, "exports no " RTS_ENTRY_NAME ", so it is not a shader plug-in");
-  for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol),
-                                       os::exportedBytes(symbol), path)) {
+  for (const RtsClass& c :
+       checkPlugin(static_cast<const RtsPlugin*>(symbol), os::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();
     static_cast<RtsClass&>(*loaded) = c;
     loaded->minor = static_cast<const RtsPlugin*>(symbol)->minor;

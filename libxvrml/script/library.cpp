@@ -7,6 +7,7 @@
 
 #include "plugin_files.h"
 #include "script/plugin_check.h"
+#include "system/libraries.h"
 
 namespace xvrml {
 

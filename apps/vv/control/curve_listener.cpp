@@ -16,8 +16,8 @@
 #include <zmq.hpp>
 
 #include "control/listener.h"
-#include "system/wake_up.h"
 #include "options/values.h"
+#include "system/wake_up.h"
 
 namespace vv::control {
 

@@ -19,6 +19,7 @@
 #include "options/shader_text.h"
 #include "plugin_files.h"
 #include "printable.h"
+#include "system/libraries.h"
 
 namespace vv {
 

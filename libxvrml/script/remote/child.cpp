@@ -140,9 +140,7 @@ double Child::processorSeconds() const {
   return pid_ <= 0 || ended_ ? 0 : os::processorSeconds(pid_);
 }
 
-bool Child::computes() const {
-  return pid_ > 0 && !ended_ && os::computes(pid_);
-}
+bool Child::computes() const { return pid_ > 0 && !ended_ && os::computes(pid_); }
 
 void Child::kill() noexcept {
   if (pid_ <= 0 || ended_ || owner_ != getpid()) return; // not in a copy made by fork()
