@@ -48,6 +48,6 @@ qemu=$(command -v qemu-aarch64-static || command -v qemu-aarch64 || true)
 if [ -n "$qemu" ] && [ -x "$folder/release/bin/vv" ]; then
   "$qemu" -L "$root" "$folder/release/bin/vv" examples/scenes/still_life.wrl -o "$folder/still_life.png" --size 160x120 --spp 4
   echo "$folder/still_life.png: drawn by the program for 64-bit ARM"
-else
+elif [ -z "$qemu" ]; then
   echo "cross-aarch64: built; without qemu-user-static it is not tried"
 fi
