@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel cross-aarch64
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -68,6 +68,11 @@ container:
 ## make test-embree4  build and all tests against Embree 4, in a Debian 13 of its own below build/ (needs root and debootstrap)
 test-embree4:
 	@tools/test-embree4.sh build/trixie $(JOBS)
+
+## make cross-aarch64 for 64-bit ARM on this machine, into build/aarch64 (needs root, mmdebstrap, g++-aarch64-linux-gnu); with
+##                   qemu-user-static it draws a picture there
+cross-aarch64: packages
+	@PYTHON=$(PYTHON) tools/cross-aarch64.sh build/aarch64 $(JOBS)
 
 ## make bench         benchmarks, JSON into build/bench; bench_live prints what the window does
 bench: build

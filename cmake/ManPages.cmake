@@ -13,8 +13,10 @@ if(Python3_Interpreter_FOUND)
   install(DIRECTORY ${man_folder}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man3 FILES_MATCHING PATTERN "*.3")
 endif()
 
-# Manual pages and completions of the programs, generated from their --help.
-if(Python3_Interpreter_FOUND)
+# Manual pages and completions of the programs, generated from their --help. A cross build needs an
+# emulator that runs the programs, and has none of these files without one.
+if(Python3_Interpreter_FOUND AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR))
+  string(REPLACE ";" "|" emulator "${CMAKE_CROSSCOMPILING_EMULATOR}")
   set(docs_script ${CMAKE_SOURCE_DIR}/tools/make_program_docs.py)
   set(documented vv openrt-replay nodegen)
   if(TARGET openrt-worker)
@@ -22,7 +24,8 @@ if(Python3_Interpreter_FOUND)
   endif()
   list(TRANSFORM documented REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE documented_programs)
   add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/share/man/man1/vv.1
-                     COMMAND ${Python3_EXECUTABLE} ${docs_script} ${PROJECT_VERSION} ${CMAKE_BINARY_DIR}/share ${documented_programs}
+                     COMMAND ${CMAKE_COMMAND} -E env "EMULATOR=${emulator}"
+                             ${Python3_EXECUTABLE} ${docs_script} ${PROJECT_VERSION} ${CMAKE_BINARY_DIR}/share ${documented_programs}
                      DEPENDS ${docs_script} ${documented}
                      COMMENT "Manual pages and completions: --help -> share" VERBATIM)
   add_custom_target(program_docs ALL DEPENDS ${CMAKE_BINARY_DIR}/share/man/man1/vv.1)

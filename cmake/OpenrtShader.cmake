@@ -7,8 +7,9 @@ function(openrt_add_shader name)
   set_target_properties(shader_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         C_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/openrt/shaders)
   target_compile_features(shader_${name} PRIVATE cxx_std_20)
-  # same hardening as the programs that load it
-  target_link_options(shader_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  if(NOT APPLE) # same hardening as the programs that load it
+    target_link_options(shader_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  endif()
   target_link_libraries(shader_${name} PRIVATE openrt::headers)
   # No contraction into fused multiply-adds: openrts_lanes.hpp promises the same bytes for every instruction set. Without
   # errno a square root is one instruction.

@@ -21,7 +21,12 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 if(NOT CMAKE_SKIP_INSTALL_RPATH)
   set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 endif()
-set(CMAKE_INSTALL_RPATH "$ORIGIN;$ORIGIN/../lib;$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+if(APPLE)
+  set(own_folder @loader_path)
+else()
+  set(own_folder $ORIGIN)
+endif()
+set(CMAKE_INSTALL_RPATH "${own_folder};${own_folder}/../lib;${own_folder}/../${CMAKE_INSTALL_LIBDIR}")
 list(REMOVE_DUPLICATES CMAKE_INSTALL_RPATH)
 set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON) # for libraries of others outside the system's folders
 
@@ -35,19 +40,23 @@ if(CCACHE)
 endif()
 
 # Hardening: stack protection, size checks in string functions, read-only relocations once the
-# loader is done, and control-flow protection of jumps (CET, if the compiler has it).
+# loader is done, and control-flow protection of jumps (CET or BTI, if the compiler has it).
 # tests/checks/hardening.py checks the built files.
 include(CheckPIESupported)
 check_pie_supported(LANGUAGES C CXX)
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-fcf-protection OPENRT_HAS_CF_PROTECTION)
+check_cxx_compiler_flag(-mbranch-protection=standard OPENRT_HAS_BRANCH_PROTECTION)
 check_cxx_compiler_flag(-fstack-clash-protection OPENRT_HAS_STACK_CLASH_PROTECTION)
 add_compile_options(-fstack-protector-strong $<$<BOOL:${OPENRT_HAS_CF_PROTECTION}>:-fcf-protection>
+                    $<$<BOOL:${OPENRT_HAS_BRANCH_PROTECTION}>:-mbranch-protection=standard>
                     $<$<BOOL:${OPENRT_HAS_STACK_CLASH_PROTECTION}>:-fstack-clash-protection>)
 if(NOT OPENRT_SANITIZE) # the sanitizers have checked functions of their own
   add_compile_options($<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE> $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=2>)
 endif()
-add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
+if(NOT APPLE) # whose files have another format, and are so anyway
+  add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
+endif()
 
 add_library(project_options INTERFACE)
 # No contraction into fused multiply-adds, so that the results do not depend on the compiler.
@@ -55,6 +64,10 @@ target_compile_options(project_options INTERFACE -Wall -Wextra -Wno-missing-fiel
                        # false alarms on std::string in GCC 12 (its bug 105651)
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        $<$<BOOL:${OPENRT_WERROR}>:-Werror>)
+# Bytes of files are compared as on x86: ARM's char has no sign unless it is asked for.
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "86|AMD64")
+  target_compile_options(project_options INTERFACE -fsigned-char)
+endif()
 if(OPENRT_SANITIZE)
   # With sanitizers GCC gives false warnings (see its manual on this warning).
   target_compile_options(project_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -11,6 +11,9 @@ function(openrt_version_script target node)
     message(STATUS "No Python: ${target} without versions of its symbols")
     return()
   endif()
+  if(APPLE) # its files have no versions of symbols; what is private is hidden all the same
+    return()
+  endif()
   # their run-time libraries need internal symbols
   if(OPENRT_SANITIZE OR OPENRT_FUZZ OR CMAKE_CXX_FLAGS MATCHES coverage)
     return()

@@ -12,9 +12,9 @@ function(xvrml_generate_nodes prefix numbers)
   endforeach()
   set(others ${out}/xvrml/nodes.h ${out}/nodes.md ${out}/nodes.pyi)
   add_custom_command(OUTPUT ${sources} ${others}
-                     COMMAND nodegen --numbers ${numbers} --output ${out} --reference ${out}/nodes.md
+                     COMMAND ${XVRML_NODEGEN} --numbers ${numbers} --output ${out} --reference ${out}/nodes.md
                              --stub ${out}/nodes.pyi ${ARGN}
-                     DEPENDS nodegen ${numbers} ${ARGN} COMMENT "Generating nodes" VERBATIM)
+                     DEPENDS ${XVRML_NODEGEN} ${numbers} ${ARGN} COMMENT "Generating nodes" VERBATIM)
   set(${prefix}_include ${out} PARENT_SCOPE)
   set(${prefix}_sources ${sources} ${out}/xvrml/nodes.h PARENT_SCOPE)
 endfunction()
@@ -37,28 +37,27 @@ function(xvrml_add_nodes name)
     endif()
   endforeach()
   if(TARGET nodegen)
-    set(nodegen nodegen)
     file(GLOB standard ${PROJECT_SOURCE_DIR}/libxvrml/nodes/*.node)
   else()
-    set(nodegen ${XVRML_NODEGEN})
     file(GLOB standard ${XVRML_NODE_SPECIFICATIONS}/*.node)
   endif()
   list(TRANSFORM standard PREPEND --import= OUTPUT_VARIABLE imports)
-  add_custom_command(OUTPUT ${generated} COMMAND ${nodegen} --plugin ${name} --output ${out} ${imports} ${specifications}
-                     DEPENDS ${nodegen} ${specifications} ${standard} COMMENT "Generating nodes of ${name}" VERBATIM)
+  add_custom_command(OUTPUT ${generated} COMMAND ${XVRML_NODEGEN} --plugin ${name} --output ${out} ${imports} ${specifications}
+                     DEPENDS ${XVRML_NODEGEN} ${specifications} ${standard} COMMENT "Generating nodes of ${name}" VERBATIM)
   add_library(nodes_${name} MODULE ${sources} ${generated})
   set_target_properties(nodes_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/nodes)
   target_compile_features(nodes_${name} PRIVATE cxx_std_20)
-  # same hardening as the programs that load it
-  target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  if(NOT APPLE) # same hardening as the programs that load it
+    target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  endif()
   target_include_directories(nodes_${name} PRIVATE ${out})
   if(TARGET xvrml::xvrml)
     target_link_libraries(nodes_${name} PRIVATE xvrml::xvrml)
   else()
     target_link_libraries(nodes_${name} PRIVATE xvrml)
   endif()
-  if(NOT OPENRT_SANITIZE) # the program contains the sanitizers' functions
+  if(NOT OPENRT_SANITIZE AND NOT APPLE) # the program contains the sanitizers' functions
     target_link_options(nodes_${name} PRIVATE -Wl,--no-undefined)
   endif()
 endfunction()

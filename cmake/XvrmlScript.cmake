@@ -9,8 +9,9 @@ function(xvrml_add_script_engine name)
   set_target_properties(script_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         C_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/scripts)
   target_compile_features(script_${name} PRIVATE cxx_std_20 c_std_99)
-  # same hardening as the programs that load it
-  target_link_options(script_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  if(NOT APPLE) # same hardening as the programs that load it
+    target_link_options(script_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
+  endif()
   target_link_libraries(script_${name} PRIVATE xvrml::script_headers)
   if(TARGET project_options)
     target_link_libraries(script_${name} PRIVATE project_options)

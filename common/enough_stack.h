@@ -11,18 +11,11 @@
 #include <pthread.h>
 #include <sys/resource.h>
 
+#include "system/threads.h"
+
 // Returns the free bytes of this thread's stack; 0: unknown.
 inline size_t stackLeft() {
-  thread_local const char* lowest = [] {
-    pthread_attr_t attributes;
-    void* place = nullptr;
-    size_t bytes = 0;
-    if (pthread_getattr_np(pthread_self(), &attributes) != 0)
-      return static_cast<const char*>(nullptr);
-    pthread_attr_getstack(&attributes, &place, &bytes);
-    pthread_attr_destroy(&attributes);
-    return static_cast<const char*>(place);
-  }();
+  thread_local const char* const lowest = os::stackBottom();
   const char here = 0;
   return lowest && &here > lowest ? size_t(&here - lowest) : 0;
 }
@@ -64,15 +57,7 @@ inline int withEnoughStack(const std::function<int()>& run) {
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, enough);
-#ifdef __GLIBC__
-  pthread_attr_t usual; // glibc's default is the soft limit
-  size_t bytes = 0;
-  if (pthread_getattr_default_np(&usual) == 0) {
-    pthread_attr_getstacksize(&usual, &bytes);
-    pthread_attr_destroy(&usual);
-    if (bytes < enough) pthread_setattr_default_np(&attributes);
-  }
-#endif
+  os::enlargeThreadStacks(attributes, enough);
   rlimit limit{};
   bool here = getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= enough;
   if (!here && limit.rlim_max >= enough) { // the kernel checks the limit when the stack grows

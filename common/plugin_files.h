@@ -18,10 +18,12 @@
 
 #include <dlfcn.h>
 #include <grp.h>
-#include <link.h>
 #include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "system/files.h"
+#include "system/libraries.h"
 
 namespace plugin_files {
 
@@ -129,16 +131,6 @@ inline void checkFile(const std::string& path, const char* what) {
         (why.starts_with("others") ? " (chmod go-w takes that right away)" : ""));
 }
 
-// Returns the size of the object that an exported symbol names; 0 if it is unknown.
-inline size_t exportedBytes(void* symbol) {
-  Dl_info info{};
-  ElfW(Sym)* entry = nullptr;
-  if (dladdr1(symbol, &info, reinterpret_cast<void**>(&entry), RTLD_DL_SYMENT) == 0 || !entry ||
-      info.dli_saddr != symbol)
-    return 0;
-  return entry->st_size;
-}
-
 // Returns the file of a library in a folder, with or without the prefix lib; empty if it does not
 // exist.
 inline std::string file(const std::string& folder, const std::string& bareName) {
@@ -166,7 +158,8 @@ inline std::vector<std::string> folders(std::string_view configured,
                                         const void* here) {
   std::vector<std::string> result;
   appendList(result, configured);
-  if (const char* environment = secure_getenv(environmentVariable)) appendList(result, environment);
+  if (const char* environment = os::trustedEnvironment(environmentVariable))
+    appendList(result, environment);
   std::vector<fs::path> own;
   std::error_code error;
   Dl_info info{};
@@ -175,7 +168,7 @@ inline std::vector<std::string> folders(std::string_view configured,
     const fs::path library = fs::canonical(info.dli_fname, error);
     if (!error) own.push_back(library.parent_path());
   }
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path program = os::programFile(error);
   if (!error) own.push_back(program.parent_path());
   for (const fs::path& place : own)
     for (const fs::path& candidate : {place / "../lib" / subfolder, place / subfolder}) {

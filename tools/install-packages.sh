@@ -26,6 +26,12 @@ tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hy
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 
+# `--list` only prints the packages for building (tools/cross-aarch64.sh).
+if [ "${1:-}" = --list ]; then
+  printf '%s\n' "${build[@]}"
+  exit 0
+fi
+
 wanted=("${build[@]}" "${tests[@]}")
 [ "${1:-}" = dev ] && wanted+=("${dev[@]}")
 [ "${1:-}" = docs ] && wanted+=("${docs[@]}")

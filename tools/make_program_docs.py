@@ -4,11 +4,14 @@ It reads their tables of options from `PROGRAM --help`, so new options appear at
 
 make_program_docs.py VERSION FOLDER PROGRAM...
 
+$EMULATOR, words between bars (|), runs programs that were built for another machine.
+
 It writes FOLDER/man/man1/NAME.1, FOLDER/bash-completion/completions/NAME,
 FOLDER/zsh/site-functions/_NAME and FOLDER/fish/vendor_completions.d/NAME.fish. The name of an
 option's argument determines the completion: FILE, TEXT and similar names complete files, DIR
 completes folders, and alternatives in lower case (on|off|auto) complete words.
 """
+import os
 import pathlib
 import re
 import subprocess
@@ -253,8 +256,9 @@ def fish(program):
 
 def main():
     version, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    emulator = [word for word in os.environ.get("EMULATOR", "").split("|") if word]
     for path in map(pathlib.Path, sys.argv[3:]):
-        done = subprocess.run([path, "--help"],
+        done = subprocess.run([*emulator, path, "--help"],
                               capture_output=True,
                               text=True,
                               timeout=60,

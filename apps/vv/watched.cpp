@@ -11,6 +11,7 @@
 
 #include "folder_files.h"
 #include "report/describe.h"
+#include "system/files.h"
 
 namespace vv {
 
@@ -52,14 +53,11 @@ std::vector<std::string> shaderFiles(const std::string& shaderPath) {
 Watched::Stamp Watched::stampOf(const std::string& path) {
   struct stat info;
   if (::stat(path.c_str(), &info) != 0) return {};
-  return {info.st_mtim.tv_sec, info.st_mtim.tv_nsec, info.st_size, info.st_ino};
+  const timespec modified = os::modifiedTime(info);
+  return {modified.tv_sec, modified.tv_nsec, info.st_size, info.st_ino};
 }
 
-timespec Watched::now() {
-  timespec time{};
-  clock_gettime(CLOCK_REALTIME_COARSE, &time); // the kernel stamps files with this clock
-  return time;
-}
+timespec Watched::now() { return os::fileClock(); }
 
 void Watched::add(const std::vector<std::string>& files, timespec read) {
   for (const std::string& file : files) {

@@ -11,6 +11,7 @@ for link in bin lib lib64; do
   ln -sfn "usr/$link" "$root/$link"
 done
 cp -a "$stage/." "$root/"
+rm -f "$root"/usr/bin/openrt-replay # a copy of libopenrt, to look at recordings
 rm -rf "$root"/usr/share/{man,applications,mime,icons,metainfo,bash-completion,zsh,fish}
 
 # The libraries keep their places, so that the loader finds them without a cache.
@@ -29,4 +30,6 @@ for folder in fonts/truetype/dejavu fontconfig/conf.avail; do
   if [ -d /usr/share/$folder ]; then cp -a /usr/share/$folder "$root/usr/share/${folder%/*}/"; fi
 done
 printf 'root:x:0:0::/:/\nuser:x:1000:1000::/work:/\n' >"$root/etc/passwd"
-du -sm "$root"
+size=$(du -sb "$root" | cut -f1)
+echo "$root: $size bytes"
+[ "$size" -lt 100000000 ] || { echo "make_root: the image has more than 100 MB" >&2; exit 1; }

@@ -16,6 +16,8 @@
 
 #include "plugin_files.h"
 #include "shading/plugin_check.h"
+#include "system/files.h"
+#include "system/libraries.h"
 
 namespace openrt {
 
@@ -129,7 +131,8 @@ void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
 FileStamp FileStamp::of(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) return {};
-  return {info.st_dev, info.st_ino, info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
+  const timespec modified = os::modifiedTime(info);
+  return {info.st_dev, info.st_ino, info.st_size, modified.tv_sec, modified.tv_nsec};
 }
 
 void ShaderLibrary::open(const std::string& file) {
@@ -142,8 +145,8 @@ void ShaderLibrary::open(const std::string& file) {
 void ShaderLibrary::readClasses() {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
   if (!symbol) failLoading(path, "exports no " RTS_ENTRY_NAME ", so it is not a shader plug-in");
-  for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol),
-                                       plugin_files::exportedBytes(symbol), path)) {
+  for (const RtsClass& c :
+       checkPlugin(static_cast<const RtsPlugin*>(symbol), os::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();
     static_cast<RtsClass&>(*loaded) = c;
     loaded->minor = static_cast<const RtsPlugin*>(symbol)->minor;

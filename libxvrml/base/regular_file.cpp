@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "system/files.h"
+
 namespace xvrml {
 namespace {
 
@@ -31,7 +33,8 @@ RegularFile::RegularFile(const std::string& path)
                                                      : "not a regular file");
   }
   size_ = uint64_t(std::max<off_t>(status.st_size, 0));
-  modified_ = int64_t(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec;
+  const timespec modified = os::modifiedTime(status);
+  modified_ = int64_t(modified.tv_sec) * 1'000'000'000 + modified.tv_nsec;
 }
 
 RegularFile::~RegularFile() { ::close(descriptor_); }

@@ -7,6 +7,7 @@
 
 #include "plugin_files.h"
 #include "script/plugin_check.h"
+#include "system/libraries.h"
 
 namespace xvrml {
 
@@ -23,7 +24,7 @@ ScriptLibrary loadScriptLibrary(const std::string& path) {
       throw std::runtime_error("script library " + path +
                                ": exports no " XS_ENTRY_NAME ", so it is not a script plug-in");
     const auto* plugin = static_cast<const XsPlugin*>(symbol);
-    return {checkScriptPlugin(plugin, plugin_files::exportedBytes(symbol), path), plugin->minor};
+    return {checkScriptPlugin(plugin, os::exportedBytes(symbol), path), plugin->minor};
   } catch (...) {
     dlclose(handle);
     throw;

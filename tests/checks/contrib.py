@@ -4,6 +4,7 @@
 * Every option that they pass to vv and openrt-worker exists.
 * bash and systemd-analyze accept their files.
 * The YAML files parse, and their objects agree with each other.
+* The recipe, the formula and the jobs of a release name files, targets and versions that exist.
 
 A tool that is not installed is named and skipped."""
 import pathlib
@@ -187,6 +188,61 @@ if yaml:
                 "ALL"
         ] or service.get("read_only") is not True:
             complain(compose, "another image than Kubernetes', or rights that are not needed")
+
+# Indexes of packages ----------------------------------------------------------------------------
+
+version = re.search(r"project\(openrt VERSION ([0-9.]+)", (root / "CMakeLists.txt").read_text()).group(1)
+build_script = contrib / "conda/recipe/build.sh"
+if (done := run("bash", "-n", build_script)).returncode:
+    complain(build_script, done.stderr)
+formula = contrib / "homebrew/openrt.rb"
+text = formula.read_text()
+if f"openrt-{version}.tar.gz" not in text:
+    complain(formula, f"is not of version {version}")
+if shutil.which("ruby"):
+    if (done := run("ruby", "-c", formula)).returncode:
+        complain(formula, done.stderr)
+else:
+    skipped.append("no ruby")
+formulas = set(re.findall(r'(?:depends_on|uses_from_macos) "([^"]+)"', text))
+libraries = contrib / "homebrew/libraries.txt"
+for name in set(libraries.read_text().split()) - formulas:
+    complain(libraries, f"the formula does not need {name}")
+components = set(re.findall(r"COMPONENT (\w+)", (root / "cmake/Install.cmake").read_text())) | {"dev"}
+for path in (formula, build_script):
+    parts = re.search(r"(?:%w\[|for part in )([\w ]+)", path.read_text()).group(1).split()
+    for name in set(parts) - components:
+        complain(path, f"no component {name}")
+if yaml:
+    recipe_path = contrib / "conda/recipe/recipe.yaml"
+    recipe = yaml.safe_load(recipe_path.read_text())
+    if recipe["context"]["version"] != version:
+        complain(recipe_path, f"is not of version {version}")
+    for test in recipe["tests"]:
+        for command in test.get("script", []):
+            check_command(recipe_path, shlex.split(command))
+        for name in test.get("files", {}).get("source", []):
+            if not (root / name).is_file():
+                complain(recipe_path, f"no file {name}")
+    release_path = contrib / "github/release.yml"
+    release = yaml.safe_load(release_path.read_text())
+    targets = set(re.findall(r"^([\w-]+):", (root / "Makefile").read_text(), re.M))
+    for name, job in release["jobs"].items():
+        for needed in [job["needs"]] if isinstance(job.get("needs"), str) else job.get("needs", []):
+            if needed not in release["jobs"]:
+                complain(release_path, f"{name} needs {needed}, which is no job")
+        for step in job["steps"]:
+            script = step.get("run", "")
+            if ("uses" in step) == bool(script):
+                complain(release_path, f"a step of {name} neither runs nor uses something")
+            if (done := run("bash", "-n", input=script)).returncode:
+                complain(release_path, f"{name}: {done.stderr}")
+            for target in re.findall(r"^make ([\w-]+)", script, re.M):
+                if target not in targets:
+                    complain(release_path, f"{name}: the Makefile has no {target}")
+            for file in re.findall(r"\b(?:tools|contrib)/[\w./-]+", script):
+                if not (root / file).exists():
+                    complain(release_path, f"{name}: no file {file}")
 
 listed = (contrib / "README.md").read_text()
 for path in contrib.rglob("*"):

@@ -11,7 +11,7 @@ import sys
 
 root = pathlib.Path(sys.argv[1]).resolve()
 TOPS = {p.name for p in root.iterdir() if p.is_dir() and not p.name.startswith(".")} - {"build"}
-targets = set(re.findall(r"^([a-z-]+):", (root / "Makefile").read_text(), re.M))
+targets = set(re.findall(r"^([a-z0-9-]+):", (root / "Makefile").read_text(), re.M))
 presets = {
     p["name"] for p in json.loads((root / "CMakePresets.json").read_text())["configurePresets"]
 }
@@ -35,7 +35,7 @@ def missing(document, text):
             elif word.startswith("decisions/") and "NNNN" not in word and not (root / "docs" /
                                                                                word).exists():
                 yield f"no docs/{word}"
-        for target in re.findall(r"^make ([a-z]+)", code):
+        for target in re.findall(r"^make ([a-z][a-z0-9-]*)", code):
             if target not in targets:
                 yield f"no make target {target}"
         for preset in re.findall(r"--preset ([a-z-]+)", code):

@@ -1,6 +1,7 @@
 """PEP 517 backend of the distribution `xvrml`: scikit-build-core builds the wheel, then auditwheel
 adds the libraries that it links. pip calls this for `pip install .` and `pip wheel .`, so that both
-need no system package at run time.
+need no system package at run time. On other systems than Linux the libraries are left to
+cibuildwheel, which has delocate for macOS.
 
 auditwheel omits libraries that its manylinux policies expect of every desktop (X11, glib, zlib,
 expat, ...). A bare system has only the C and C++ run time, so everything else is included.
@@ -23,6 +24,8 @@ _SYSTEM = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libut
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    if sys.platform != "linux":
+        return _build.build_wheel(wheel_directory, config_settings, metadata_directory)
     with tempfile.TemporaryDirectory() as plain:
         name = _build.build_wheel(plain, config_settings, metadata_directory)
         out = pathlib.Path(plain) / "bundled"

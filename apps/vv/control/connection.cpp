@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "system/sockets.h"
+
 namespace vv::control {
 
 namespace {
@@ -81,7 +83,7 @@ void Connection::work() {
 
 void Connection::send() {
   while (!isBroken_ && sent_ < output_.size()) {
-    const ssize_t put = ::send(fd_, output_.data() + sent_, output_.size() - sent_, MSG_NOSIGNAL);
+    const ssize_t put = ::send(fd_, output_.data() + sent_, output_.size() - sent_, os::noSignal);
     if (put < 0 && errno == EINTR) continue;
     if (put < 0 && errno == EAGAIN) break;
     if (put <= 0) isBroken_ = true;

@@ -16,8 +16,8 @@
 #include <zmq.hpp>
 
 #include "control/listener.h"
-#include "control/wake_up.h"
 #include "options/values.h"
+#include "system/wake_up.h"
 
 namespace vv::control {
 
@@ -257,7 +257,7 @@ class CurveListener final : public Listener {
   zmq::context_t context_;
   zmq::socket_t door_, socket_;
   uint16_t port_ = 0;
-  std::shared_ptr<WakeUp> wake_ = std::make_shared<WakeUp>();
+  std::shared_ptr<os::WakeUp> wake_ = std::make_shared<os::WakeUp>();
   std::atomic<bool> ending_{false};
   std::map<std::string, Client> clients_; // by the routing id of their connection
   std::thread thread_;

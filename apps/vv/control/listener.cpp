@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "options/values.h"
+#include "system/sockets.h"
 
 namespace vv::control {
 
@@ -28,8 +29,7 @@ constexpr int backlog = 64;
 // A socket that is closed unless release() is called.
 class Socket {
  public:
-  explicit Socket(int family)
-      : fd_(::socket(family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {}
+  explicit Socket(int family) : fd_(os::streamSocket(family)) {}
   ~Socket() {
     if (fd_ >= 0) ::close(fd_);
   }

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <list>
 #include <memory>
-#include <new>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,7 +18,8 @@
 
 #include "control/connection.h"
 #include "control/listener.h"
-#include "control/wake_up.h"
+#include "system/sockets.h"
+#include "system/wake_up.h"
 
 namespace vv::control {
 
@@ -31,10 +32,8 @@ double steadySeconds() {
 // Tells whether the other end of a unix socket belongs to this user, or to root. The folder may be
 // open to others.
 bool isOurs(int fd) {
-  ucred who{};
-  socklen_t size = sizeof who;
-  return ::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 &&
-         (who.uid == ::geteuid() || who.uid == 0);
+  const std::optional<uid_t> user = os::peerUser(fd);
+  return user && (*user == ::geteuid() || *user == 0);
 }
 
 class SocketListener final : public Listener {
@@ -105,7 +104,7 @@ class SocketListener final : public Listener {
 
   // Accepts one client, or refuses it.
   void accept() {
-    const int fd = ::accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    const int fd = os::acceptStream(fd_);
     if (fd < 0) {
       waitingSince_ = 0;
       // out of file descriptors: do not ask again at once
@@ -122,7 +121,7 @@ class SocketListener final : public Listener {
       client = mailbox_.join([wake = wake_] { wake->call(); }, why);
     if (client == 0) { // the next one that waits is refused at once, too
       const std::string text = errorAnswer("", ours ? "limit" : "refused", why) + "\n";
-      static_cast<void>(!::send(fd, text.data(), text.size(), MSG_NOSIGNAL));
+      static_cast<void>(!::send(fd, text.data(), text.size(), os::noSignal));
       ::close(fd);
       return;
     }
@@ -136,7 +135,7 @@ class SocketListener final : public Listener {
   const Place place_;
   const uint16_t port_;
   Mailbox& mailbox_;
-  std::shared_ptr<WakeUp> wake_ = std::make_shared<WakeUp>();
+  std::shared_ptr<os::WakeUp> wake_ = std::make_shared<os::WakeUp>();
   std::atomic<bool> ending_{false};
   std::list<std::unique_ptr<Connection>> connections_;
   double waitingSince_ = 0; // time since which a client waits to be accepted; 0: none waits

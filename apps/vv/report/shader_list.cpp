@@ -19,6 +19,7 @@
 #include "options/shader_text.h"
 #include "plugin_files.h"
 #include "printable.h"
+#include "system/libraries.h"
 
 namespace vv {
 
@@ -110,7 +111,7 @@ std::string addLibrary(const File& file, Json& classes) {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
   if (!symbol) return "exports no " RTS_ENTRY_NAME;
   const auto& plugin = *static_cast<const RtsPlugin*>(symbol);
-  if (plugin_files::exportedBytes(symbol) < sizeof(RtsPlugin) || plugin.magic != RTS_MAGIC ||
+  if (os::exportedBytes(symbol) < sizeof(RtsPlugin) || plugin.magic != RTS_MAGIC ||
       plugin.major != RTS_ABI_MAJOR || plugin.classCount == 0 || plugin.classCount > 10000 ||
       !plugin.classes || !plugin.classes[0] || !plugin.classes[0]->name) {
     rtNewShaderClass("any", file.name.c_str()); // fails and records the error text

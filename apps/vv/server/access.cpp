@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cstdint>
-#include <system_error>
 
 #include <fmt/format.h>
-#include <sys/random.h>
 
 #include "server/limits.h"
+#include "system/random.h"
 
 namespace vv::server {
 
@@ -73,14 +71,7 @@ std::string faultOfToken(std::string_view token) {
 
 std::string newToken() {
   uint8_t bytes[16];
-  size_t have = 0;
-  while (have < sizeof bytes) {
-    const ssize_t got = ::getrandom(bytes + have, sizeof bytes - have, 0);
-    if (got > 0)
-      have += size_t(got);
-    else if (errno != EINTR)
-      throw std::system_error(errno, std::generic_category(), "no random numbers for a token");
-  }
+  os::fillRandomly(bytes, sizeof bytes);
   std::string token;
   for (const uint8_t byte : bytes) {
     token += hexDigits[byte >> 4];

@@ -7,9 +7,8 @@
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <thread>
 
-#include <sched.h>
+#include "system/threads.h"
 
 namespace openrt {
 namespace {
@@ -124,12 +123,8 @@ uint32_t fewest(uint32_t allowed, double quota, uint32_t batch) {
 }
 
 uint32_t availableThreads() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  const uint32_t allowed = sched_getaffinity(0, sizeof set, &set) == 0
-                               ? uint32_t(CPU_COUNT(&set))
-                               : std::thread::hardware_concurrency();
-  return fewest(allowed, quotaOfGroups(), slurmThreads(std::getenv("SLURM_CPUS_PER_TASK")));
+  return fewest(os::allowedProcessors(), quotaOfGroups(),
+                slurmThreads(std::getenv("SLURM_CPUS_PER_TASK")));
 }
 
 } // namespace openrt

@@ -6,9 +6,10 @@
 #include <cerrno>
 #include <cstring>
 
-#include <poll.h>
-#include <sys/socket.h>
 #include <unistd.h>
+
+#include "system/process.h"
+#include "system/sockets.h"
 
 namespace xvrml::wire {
 namespace {
@@ -21,9 +22,8 @@ bool wait(int socket, short what, Clock::time_point until) {
     const auto left =
         std::chrono::duration_cast<std::chrono::nanoseconds>(until - Clock::now()).count();
     if (left <= 0) return false;
-    const timespec time{time_t(left / 1'000'000'000), long(left % 1'000'000'000)};
     pollfd ready{socket, what, 0};
-    const int count = ppoll(&ready, 1, &time, nullptr);
+    const int count = os::pollFor(ready, left);
     if (count > 0) return true; // also on errors, which the next call reports
     if (count < 0 && errno != EINTR) return true;
   }
@@ -37,7 +37,7 @@ bool Channel::send(std::string_view message) {
   auto until = Clock::now() + patience_;
   while (!message.empty()) {
     const ssize_t sent =
-        ::send(socket_, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        ::send(socket_, message.data(), message.size(), os::noSignal | MSG_DONTWAIT);
     if (sent > 0) {
       message.remove_prefix(size_t(sent));
       until = Clock::now() + patience_;

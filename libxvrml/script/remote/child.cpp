@@ -3,22 +3,22 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "plugin_files.h"
+#include "system/files.h"
+#include "system/libraries.h"
+#include "system/process.h"
+#include "system/sockets.h"
 
 namespace xvrml {
 namespace {
@@ -65,7 +65,7 @@ struct Actions {
 } // namespace
 
 std::string findScriptHostProgram(std::string& why) {
-  if (const char* named = secure_getenv("XVRML_SCRIPT_HOST"); named && *named)
+  if (const char* named = os::trustedEnvironment("XVRML_SCRIPT_HOST"); named && *named)
     return usable(named, why) ? std::string(named) : std::string();
   static const char here = 0;
   std::error_code error;
@@ -73,7 +73,7 @@ std::string findScriptHostProgram(std::string& why) {
   std::vector<fs::path> places;
   if (dladdr(&here, &info) != 0 && info.dli_fname)
     places.push_back(fs::canonical(info.dli_fname, error).parent_path());
-  places.push_back(fs::read_symlink("/proc/self/exe", error).parent_path());
+  places.push_back(os::programFile(error).parent_path());
   for (const fs::path& place : places)
     for (const char* folder : {"../libexec/xvrml", "../../libexec/xvrml", "../bin", "."}) {
       const fs::path program = fs::canonical(place / folder / programName, error);
@@ -91,7 +91,7 @@ Child::~Child() {
 
 int Child::start(const std::string& program, std::string& why) {
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+  if (os::streamPair(ends) != 0) {
     why = fmt::format("no socket pair: {}", std::strerror(errno));
     return -1;
   }
@@ -99,12 +99,13 @@ int Child::start(const std::string& program, std::string& why) {
   for (int standard = 0; standard < 3; ++standard)
     posix_spawn_file_actions_addopen(&actions.files, standard, "/dev/null", O_RDWR, 0);
   posix_spawn_file_actions_adddup2(&actions.files, ends[1], 3);
-  posix_spawn_file_actions_addclosefrom_np(&actions.files, 4);
+  const short closing = os::closeFrom(&actions.files, 4);
   sigset_t none, all;
   sigemptyset(&none);
   sigfillset(&all);
-  posix_spawnattr_setflags(&actions.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-                                                    POSIX_SPAWN_SETSID); // not ended by Ctrl-C
+  posix_spawnattr_setflags(&actions.attributes,
+                           short(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                 POSIX_SPAWN_SETSID | closing)); // not ended by Ctrl-C
   posix_spawnattr_setsigmask(&actions.attributes, &none);
   posix_spawnattr_setsigdefault(&actions.attributes, &all);
   std::string name = program, parent = std::to_string(getpid());
@@ -127,44 +128,23 @@ int Child::start(const std::string& program, std::string& why) {
     return -1;
   }
   owner_ = getpid();
-  descriptor_ = int(syscall(SYS_pidfd_open, pid_, 0));
+  descriptor_ = os::processDescriptor(pid_);
   return ends[0];
 }
 
 void Child::limitMemory(uint64_t bytes) {
-  rlimit old{};
-  if (pid_ <= 0 || ended_ || prlimit(pid_, RLIMIT_AS, nullptr, &old) != 0) return;
-  const rlimit fresh{std::min<rlim_t>(bytes, old.rlim_max), old.rlim_max};
-  prlimit(pid_, RLIMIT_AS, &fresh, nullptr);
+  if (pid_ > 0 && !ended_) os::limitAddressSpace(pid_, bytes);
 }
 
 double Child::processorSeconds() const {
-  clockid_t clock{};
-  timespec time{};
-  if (pid_ <= 0 || ended_ || clock_getcpuclockid(pid_, &clock) != 0 ||
-      clock_gettime(clock, &time) != 0)
-    return 0;
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+  return pid_ <= 0 || ended_ ? 0 : os::processorSeconds(pid_);
 }
 
-bool Child::computes() const {
-  if (pid_ <= 0 || ended_) return false;
-  char line[512] = {};
-  std::FILE* file = std::fopen(fmt::format("/proc/{}/stat", pid_).c_str(), "re");
-  if (!file) return false;
-  const size_t got = std::fread(line, 1, sizeof line - 1, file);
-  std::fclose(file);
-  // The state follows the program's name.
-  const size_t name = std::string_view(line, got).rfind(") ");
-  return name != std::string_view::npos && name + 2 < got && line[name + 2] == 'R';
-}
+bool Child::computes() const { return pid_ > 0 && !ended_ && os::computes(pid_); }
 
 void Child::kill() noexcept {
   if (pid_ <= 0 || ended_ || owner_ != getpid()) return; // not in a copy made by fork()
-  if (descriptor_ >= 0)
-    syscall(SYS_pidfd_send_signal, descriptor_, SIGKILL, nullptr, 0);
-  else
-    ::kill(pid_, SIGKILL);
+  os::endProcess(pid_, descriptor_);
 }
 
 // Waits for the end. If the application has already waited for the process, the exit status stays
@@ -195,8 +175,7 @@ std::string Child::ending() {
   if (WIFEXITED(status_)) return fmt::format("ended with code {}", WEXITSTATUS(status_));
   const int signal = WTERMSIG(status_);
   constexpr long much = 64 * 1024; // in kB, more than any language needs for itself
-  return fmt::format("ended by signal {} ({})", signal,
-                     sigdescr_np(signal) ? sigdescr_np(signal) : "?") +
+  return fmt::format("ended by signal {} ({})", signal, os::signalName(signal)) +
          (peak_ > much ? fmt::format(", having used {} MB", peak_ / 1024) : "");
 }
 

@@ -1,7 +1,6 @@
 // child.h: a process of the program xvrml-script-host: finds the program, starts it at one end of a
-// socket pair, limits its memory and ends it. The Linux-specific code of the browser's side is in
-// child.cpp. It waits for its own processes only and leaves other children of the application
-// alone. [the browser's thread]
+// socket pair, limits its memory and ends it. It waits for its own processes only and leaves other
+// children of the application alone. [the browser's thread]
 #pragma once
 
 #include <cstdint>

@@ -2,18 +2,17 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #ifdef XVRML_WITH_SECCOMP
 #include <seccomp.h>
 #endif
+
+#include "system/process.h"
 
 namespace xvrml {
 namespace {
@@ -25,7 +24,7 @@ bool limitResources(std::string& why) {
   const int lowestFree = dup(0);
   if (lowestFree >= 0) close(lowestFree);
   const struct {
-    __rlimit_resource resource;
+    decltype(RLIMIT_CORE) resource;
     rlim_t most;
     const char* name;
   } table[] = {{RLIMIT_CORE, 0, "core files"},
@@ -137,15 +136,14 @@ bool bindToParent(long parent, int socket) {
     errno = saved;
   };
   sigaction(SIGUSR2, &action, nullptr);
-  prctl(PR_SET_PDEATHSIG, SIGUSR2);
+  os::signalWhenParentEnds(SIGUSR2);
   return getppid() == parent && chdir("/") == 0;
 }
 
 bool enterSandbox(std::string& why) {
-  static char* empty[] = {nullptr}; // instead of clearenv(), because Tcl needs a list
-  environ = empty;
+  os::emptyEnvironment();
   if (!limitResources(why)) return false;
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
+  if (!os::giveUpPrivileges()) {
     why = "no way to give up privileges";
     return false;
   }
@@ -153,12 +151,7 @@ bool enterSandbox(std::string& why) {
 }
 
 uint64_t addressSpace() {
-  unsigned long pages = 0;
-  if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
-    if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
-    std::fclose(file);
-  }
-  const uint64_t bytes = uint64_t(pages) * uint64_t(sysconf(_SC_PAGESIZE));
+  const uint64_t bytes = os::addressSpace();
   return bytes > (uint64_t(64) << 30) ? 0 : bytes;
 }
 

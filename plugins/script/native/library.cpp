@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "plugin_files.h"
+#include "system/libraries.h"
 
 namespace native {
 namespace {
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> searchedFolders() {
   static const char here = 0;
   std::vector<std::string> folders;
-  if (const char* configured = secure_getenv("XVRML_NATIVE_PATH"))
+  if (const char* configured = os::trustedEnvironment("XVRML_NATIVE_PATH"))
     plugin_files::appendList(folders, configured);
   Dl_info info{};
   std::error_code error;

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include <dlfcn.h>
-#include <link.h>
 
 #include "call.h"
 #include "library.h"
+#include "system/libraries.h"
 
 using namespace native;
 
@@ -73,15 +73,9 @@ class Interpreter {
   }
 
  private:
-  // Returns whether the library itself defines a function. dlsym also finds functions of its
-  // dependencies; the C library has poll and shutdown.
+  // Returns whether the library itself defines a function; the C library has poll and shutdown.
   static bool isOwn(void* library, const std::string& name) {
-    link_map* map = nullptr;
-    Dl_info info{};
-    void* function = dlsym(library, name.c_str());
-    return function && dlinfo(library, RTLD_DI_LINKMAP, &map) == 0 &&
-           dladdr(function, &info) != 0 &&
-           reinterpret_cast<uintptr_t>(info.dli_fbase) == uintptr_t(map->l_addr);
+    return os::defines(library, dlsym(library, name.c_str()));
   }
 
   template <class Wanted> XsResult run(double time, Wanted&& wanted) {

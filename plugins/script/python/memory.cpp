@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 
-#include <malloc.h>
-
 #include <Python.h>
+
+#include "system/memory.h"
 
 namespace python {
 namespace {
@@ -21,7 +21,7 @@ bool mayTake(size_t bytes) {
          (bytes <= size_t(INT64_MAX) && account->used + int64_t(bytes) <= account->most);
 }
 void* taken(void* memory) {
-  if (memory && account) account->used += int64_t(malloc_usable_size(memory));
+  if (memory && account) account->used += int64_t(os::blockBytes(memory));
   return memory;
 }
 
@@ -34,14 +34,14 @@ void* rawCalloc(void* context, size_t count, size_t bytes) {
 }
 void* rawRealloc(void* context, void* memory, size_t bytes) {
   if (!account) return raw.realloc(context, memory, bytes);
-  const int64_t before = memory ? int64_t(malloc_usable_size(memory)) : 0;
+  const int64_t before = memory ? int64_t(os::blockBytes(memory)) : 0;
   if (int64_t(bytes) > before && !mayTake(bytes - size_t(before))) return nullptr;
   void* moved = raw.realloc(context, memory, bytes);
-  if (moved) account->used += int64_t(malloc_usable_size(moved)) - before;
+  if (moved) account->used += int64_t(os::blockBytes(moved)) - before;
   return moved;
 }
 void rawFree(void* context, void* memory) {
-  if (memory && account) account->used -= int64_t(malloc_usable_size(memory));
+  if (memory && account) account->used -= int64_t(os::blockBytes(memory));
   raw.free(context, memory);
 }
 void* arenaAlloc(void* context, size_t bytes) {

@@ -10,6 +10,7 @@
 
 #include "interpreter.h"
 #include "notifier.h"
+#include "system/process.h"
 
 namespace {
 
@@ -57,8 +58,7 @@ XsResult prepare() {
 XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   return guarded([&] {
     prepare();
-    static char* none[] = {nullptr};
-    if (!environ) environ = none; // null after clearenv(); Tcl reads the first entry
+    os::listEnvironment(); // Tcl reads the first entry
     auto interpreter = std::make_unique<Interpreter>(host, info);
     const XsResult result = interpreter->create();
     if (result == XS_OK) *made = XsInterpreter(reinterpret_cast<uintptr_t>(interpreter.release()));

@@ -3,12 +3,7 @@
 #include "backend/cluster/net/wire.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <stdexcept>
-#include <system_error>
-
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include "backend/cluster/net/wire_impl.h"
 
@@ -48,8 +43,6 @@ Wire::Impl::Impl(const WireOptions& options)
     checkAddress(Address::parse(options.listen), keys);
     listen(options.listen);
   }
-  wakeFd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (wakeFd < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
 Wire::Impl::~Impl() {
@@ -62,7 +55,6 @@ Wire::Impl::~Impl() {
     call.monitor.reset();
     if (call.socket && call.peer) call.socket->set(zmq::sockopt::linger, byeMilliseconds);
   }
-  if (wakeFd >= 0) ::close(wakeFd);
 }
 
 void Wire::Impl::pushEvent(Event::Kind kind, Peer peer, std::string text) {
@@ -96,7 +88,7 @@ void Wire::Impl::runTimers(double now) {
 }
 
 void Wire::Impl::poll(double seconds) {
-  std::vector<zmq_pollitem_t> items{{nullptr, wakeFd, ZMQ_POLLIN, 0}};
+  std::vector<zmq_pollitem_t> items{{nullptr, wakeUp.fd(), ZMQ_POLLIN, 0}};
   const auto add = [&](void* socket) {
     items.push_back({socket, 0, ZMQ_POLLIN, 0});
     return items.size() - 1;
@@ -114,10 +106,7 @@ void Wire::Impl::poll(double seconds) {
       0)
     return; // also after a signal
   const double now = steadyNow();
-  if (items[0].revents) {
-    uint64_t count = 0;
-    if (read(wakeFd, &count, sizeof count) == sizeof count) pushEvent(Event::Kind::woken, 0, {});
-  }
+  if (items[0].revents && wakeUp.clear()) pushEvent(Event::Kind::woken, 0, {});
   if (authenticator && items[atAuthenticator].revents)
     while (authenticator->answer([this](const std::string& text) { refused(text); })) {}
   if (listenSocket && (items[atListenSocket].revents || items[atListenMonitor].revents))
@@ -187,11 +176,7 @@ std::string Wire::address() const {
   return shownEndpoint(impl_->listenSocket->get(zmq::sockopt::last_endpoint));
 }
 
-void Wire::wake() {
-  const uint64_t one = 1;
-  // If the counter is full, the thread wakes up anyway.
-  static_cast<void>(write(impl_->wakeFd, &one, sizeof one) == sizeof one);
-}
+void Wire::wake() { impl_->wakeUp.call(); }
 
 Wire::Traffic Wire::traffic(Peer peer) const {
   if (const Impl::PeerState* state = impl_->find(peer)) return state->traffic;

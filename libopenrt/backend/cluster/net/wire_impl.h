@@ -12,6 +12,7 @@
 #include "backend/cluster/net/flow.h"
 #include "backend/cluster/net/sockets.h"
 #include "backend/cluster/net/wire.h"
+#include "system/wake_up.h"
 
 namespace openrt::cluster {
 
@@ -101,7 +102,7 @@ struct Wire::Impl {
   std::deque<Event> events;
   std::map<std::string, double> refusals; // reasons and when they were reported
   double timersRunAt = 0;
-  int wakeFd = -1;
+  os::WakeUp wakeUp;
 };
 
 } // namespace openrt::cluster
