@@ -25,6 +25,8 @@ import numpy.typing as npt
 
 from . import nodes as nodes
 from .nodes import *
+from ._features import Feature as Feature
+from ._features import features as features
 from .notebook import View as _View
 from .rt import Raycaster
 
@@ -373,6 +375,13 @@ class Picture:
 
     @property
     def stats(self) -> Dict[str, Any]:
+        ...
+
+    @property
+    def note(self) -> str:
+        ...
+
+    def denoised(self, *, threads: int = ...) -> Picture:
         ...
 
     @property
@@ -799,6 +808,16 @@ class LiveView:
 
 
 def load_node_plugins(path: Union[None, str, "os.PathLike[str]"] = ...) -> List[str]:
+    ...
+
+
+def denoise(
+    colour: npt.ArrayLike,
+    albedo: Optional[npt.ArrayLike] = ...,
+    normal: Optional[npt.ArrayLike] = ...,
+    *,
+    threads: int = ...,
+) -> npt.NDArray[np.float32]:
     ...
 
 
