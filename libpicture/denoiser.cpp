@@ -73,7 +73,7 @@ struct PictureDenoiser::Impl {
     std::unique_ptr<OidnFilter>& filter = hasGuides ? guided : blind;
     if (!filter)
       filter = std::make_unique<OidnFilter>(library, threads, live::OidnQuality::high,
-                                            hasGuides ? OidnGuides::clean : OidnGuides::none);
+                                            hasGuides ? OidnGuides::noisyAlbedo : OidnGuides::none);
     filter->denoise(images);
   }
 
@@ -118,9 +118,19 @@ struct PictureDenoiser::Impl {
   }
 };
 
-PictureDenoiser::PictureDenoiser(int threads) : impl_(std::make_unique<Impl>()) {
+namespace {
+
+std::shared_ptr<const live::OidnLibrary> installed() {
   checkDenoiser(Denoiser::oidn);
-  impl_->library = live::OidnLibrary::find();
+  return live::OidnLibrary::find();
+}
+
+} // namespace
+
+PictureDenoiser::PictureDenoiser(int threads) : PictureDenoiser(installed(), threads) {}
+PictureDenoiser::PictureDenoiser(std::shared_ptr<const live::OidnLibrary> library, int threads)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->library = std::move(library);
   impl_->threads = threads;
 }
 PictureDenoiser::~PictureDenoiser() = default;

@@ -12,6 +12,10 @@
 
 namespace picture {
 
+namespace live {
+class OidnLibrary;
+}
+
 // Channels that the filter reads beside rgba. Without them it sees colours alone and blurs what it
 // takes for noise.
 inline constexpr uint32_t denoiserGuides = RT_ALBEDO | RT_NORMAL;
@@ -25,6 +29,8 @@ class PictureDenoiser {
   // it. Throws RenderError: there is no library, or it cannot be used; the message says how to get
   // one.
   explicit PictureDenoiser(int threads);
+  // With a library that is loaded; not null.
+  PictureDenoiser(std::shared_ptr<const live::OidnLibrary> library, int threads);
   ~PictureDenoiser();
   PictureDenoiser(const PictureDenoiser&) = delete;
   PictureDenoiser& operator=(const PictureDenoiser&) = delete;

@@ -61,10 +61,9 @@ enum class OidnQuality : uint8_t { fast, balanced, high };
 
 // What the filter knows about the pixels besides their colours (OidnImages::albedo, normal).
 enum class OidnGuides : uint8_t {
-  clean,    // both, without noise
-  noisy,    // both, as noisy as the colours may be
-  filtered, // both; they are denoised first, and then taken for clean
-  none      // nothing; the images of the guides are not read
+  clean,       // both, without noise
+  noisyAlbedo, // both; the albedo has noise, and is denoised first
+  none         // nothing; the images of the guides are not read
 };
 
 // Three floats for each pixel, rows one after the other.

@@ -1,6 +1,7 @@
 // oidn_find.cpp: Finds Open Image Denoise: where it is looked for, and how a library that may end
 // the process is tried in a child process.
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <glob.h>
 #include <poll.h>
 #include <sys/wait.h>

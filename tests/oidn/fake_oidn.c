@@ -1,6 +1,7 @@
 /* fake_oidn.c: A library with the functions of Open Image Denoise that OpenRT uses, for tests on
- * machines without it. Its filter gives every pixel the mean colour of the image. It checks what it
- * is given as the real one does, and counts what was made and released.
+ * machines without it. Its filter gives every pixel the mean colour of the image, and leaves an
+ * albedo as it is. It checks what it is given as the real one does, and counts what was made and
+ * released.
  *
  * Compiled with one of these it is unusable in one way: FAKE_OLD (version 1), FAKE_INCOMPLETE (a
  * function is missing), FAKE_WITHOUT_DEVICE, FAKE_FAILING (filtering fails), FAKE_FAILING_LARGE
@@ -204,8 +205,8 @@ EXPORT void oidnSetFilterInt(void* given, const char* name, int value) {
 EXPORT void oidnCommitFilter(void* given) {
   Filter* filter = given;
   filter->committed = true;
-  fakeOidnCounts.width = (int)filter->image[0].width;
-  fakeOidnCounts.height = (int)filter->image[0].height;
+  fakeOidnCounts.width = (int)filter->image[3].width;
+  fakeOidnCounts.height = (int)filter->image[3].height;
   fakeOidnCounts.quality = filter->quality;
 }
 
@@ -216,9 +217,15 @@ EXPORT void oidnExecuteFilter(void* given) {
 #ifdef FAKE_CRASHING
   raise(SIGSEGV);
 #endif
+  if (!filter->image[0].buffer) { /* an albedo alone: it stays as it is */
+    if (!filter->committed || !filter->image[1].buffer || filter->image[2].buffer ||
+        filter->image[1].offset != filter->image[3].offset || filter->hdr || filter->cleanAux)
+      filter->device->error = "the fake cannot filter this albedo";
+    return;
+  }
   const bool guided = filter->image[1].buffer && filter->image[2].buffer;
   bool usable = filter->committed && filter->hdr && filter->cleanAux == guided;
-  usable = usable && filter->image[0].buffer && filter->image[3].buffer;
+  usable = usable && filter->image[3].buffer;
 #ifdef FAKE_FAILING
   usable = false;
 #endif
