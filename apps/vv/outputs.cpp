@@ -31,10 +31,9 @@ std::vector<Named> outputsOf(const Options& options) {
   std::vector<Named> all;
   for (const Output& output : options.outputs)
     if (!options.allViewpoints())
-      all.push_back(
-          {output.option(),
-           pathFor(output.path,
-                   {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
+      all.push_back({output.option(),
+                     pathFor(output.path,
+                             {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--write", options.write});
   all.push_back({"--record", options.render.record});

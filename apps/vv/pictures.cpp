@@ -450,8 +450,7 @@ class Pictures {
     addToFilms(job, result.picture, Which::raw);
     const auto start = Clock::now();
     const StageProgress progress(job.name.text(), "denoising", options_.quiet);
-    if (!denoiser_)
-      denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
+    if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
     result.picture = denoiser_->denoised(result.picture);
     result.denoiseSeconds = secondsSince(start);
   }
@@ -462,8 +461,7 @@ class Pictures {
     sayBias(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
     writePictures(job, result.picture, coloured, Which::shown);
-    if (!result.interrupted)
-      addToFilms(job, coloured ? *coloured : result.picture, Which::shown);
+    if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture, Which::shown);
     const double writeSeconds = secondsSince(start) - result.denoiseSeconds;
     if (!options_.compare.empty() && !result.interrupted)
       writeOut(compareText(result.picture, options_.compare));
@@ -561,7 +559,7 @@ class Pictures {
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
   bool biasSaid_ = false;
-  bool anyWorker_ = false;                                      // a worker has been connected
+  bool anyWorker_ = false; // a worker has been connected
   struct OpenFilm {
     const Output* of = nullptr;
     std::unique_ptr<picture::Film> film;

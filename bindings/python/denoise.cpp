@@ -49,9 +49,9 @@ py::object denoised(const PictureObject& self, long long threads) {
 
 // Returns the numbers of an array of shape (height, width, 3), or with alpha (height, width, 4).
 py::array_t<float> imageOf(const py::object& given, const char* name, bool mayHaveAlpha) {
-  const std::string expected =
-      mayHaveAlpha ? "numbers of shape (height, width, 3) or (height, width, 4)"
-                   : "numbers of shape (height, width, 3)";
+  const std::string expected = mayHaveAlpha
+                                   ? "numbers of shape (height, width, 3) or (height, width, 4)"
+                                   : "numbers of shape (height, width, 3)";
   const py::array any = numberArray(given, name, expected);
   const auto image = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(any);
   constexpr py::ssize_t most = 65536;
@@ -111,15 +111,15 @@ py::list features() {
   }
   py::list out;
   for (const picture::Feature& row : rows)
-    out.append(py::make_tuple(toText(row.name), toText(row.text), row.available,
-                              toText(row.detail), toText(row.file), toText(row.how)));
+    out.append(py::make_tuple(toText(row.name), toText(row.text), row.available, toText(row.detail),
+                              toText(row.file), toText(row.how)));
   return out;
 }
 
 } // namespace
 
 void defineDenoise(py::module_& module) {
-  py::class_<PictureObject>(module.attr("Picture"))
+  py::reinterpret_borrow<py::class_<PictureObject>>(module.attr("Picture"))
       .def("denoised", denoised, py::kw_only(), py::arg("threads") = 0,
            "Returns the picture without noise, by Open Image Denoise 2, which must be installed "
            "(pip install xvrml[denoise]). The picture needs the channels albedo and normal. The "
@@ -135,7 +135,6 @@ void defineDenoise(py::module_& module) {
              "normal: vectors of length 0 to 1, of shape (height, width, 3); without them textures "
              "become blurred.");
   module.def("_features", features);
-  module.def("_look_in", [](const py::object& folder) {
-    picture::live::OidnLibrary::lookIn(toPath(folder));
-  });
+  module.def("_look_in",
+             [](const py::object& folder) { picture::live::OidnLibrary::lookIn(toPath(folder)); });
 }

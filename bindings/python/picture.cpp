@@ -101,9 +101,9 @@ void save(const PictureObject& self, const py::object& file) {
     throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
                                       picture::formatSuffixes(), path));
   if (!self.picture.denoisedBy.empty() && !format->keepsNote)
-    throw py::value_error(fmt::format(
-        "{} files cannot say that they are denoised; {} files can", format->name,
-        picture::formatsWith(&picture::Format::keepsNote)));
+    throw py::value_error(fmt::format("{} files cannot say that they are denoised; {} files can",
+                                      format->name,
+                                      picture::formatsWith(&picture::Format::keepsNote)));
   std::string failure;
   {
     const ReleaseGil release;

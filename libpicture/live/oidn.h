@@ -32,7 +32,8 @@ class OidnLibrary {
   // file that the environment variable OPENRT_OIDN_LIBRARY names, otherwise for
   // libOpenImageDenoise.so.2 and libOpenImageDenoise.so where the dynamic linker looks for
   // libraries, then in the Python package pyoidn, where pip puts it (oidn_find.cpp). The name
-  // "none" means that there is none. Throws OidnError if there is a file that cannot be used; so do all later calls.
+  // "none" means that there is none. Throws OidnError if there is a file that cannot be used; so do
+  // all later calls.
   static std::shared_ptr<const OidnLibrary> find();
   // The same, but tries the library in a child process before the first call loads it: a file that
   // ends the process that uses it is an OidnError, too. For callers that can wait a moment.

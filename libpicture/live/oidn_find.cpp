@@ -27,7 +27,7 @@ namespace {
 constexpr const char* variable = "OPENRT_OIDN_LIBRARY";
 constexpr const char* names[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so"};
 constexpr const char* inPackage = "/oidn/lib/libOpenImageDenoise.so.2"; // of pyoidn
-constexpr char finished = '\n';                            // ends what the child of a trial says
+constexpr char finished = '\n';          // ends what the child of a trial says
 constexpr int trialMilliseconds = 60000; // a busy machine may need seconds
 
 std::mutex mutex; // guards `packages`
@@ -159,8 +159,8 @@ std::string problemOf(pid_t child, int pipe) {
     return fmt::format("{} crashes when it is tried ({}): it is not a working Open Image Denoise 2",
                        file, ::strsignal(WTERMSIG(status)));
   if (!said.ends_with(finished))
-    return fmt::format("{} ends the process that loads it: it is not a working Open Image Denoise 2",
-                       file);
+    return fmt::format(
+        "{} ends the process that loads it: it is not a working Open Image Denoise 2", file);
   said.pop_back();
   return said;
 }

@@ -234,8 +234,8 @@ def test_features_are_listed(usable):
     rows = json.loads(usable("--list-features", "--json").text)["features"]
     names = [row["name"] for row in rows]
     assert names[:4] == ["denoise", "mp4", "webm", "gif"] and len(set(names)) == len(names)
-    assert {"ecmascript", "tcl", "python", "native", "seccomp", "window", "serve",
-            "keys"} <= set(names)
+    assert {"ecmascript", "tcl", "python", "native", "seccomp", "window",
+            "serve"} <= set(names)
     for row in rows:
         assert set(row) == {"name", "text", "available", "detail", "file", "how"}
         assert bool(row["how"]) != row["available"], row

@@ -30,9 +30,7 @@ Picture pictureOf(int width, int height, const std::vector<float>& red) {
   return picture;
 }
 
-float redAt(const Picture& picture, size_t pixel) {
-  return picture.planes.at(RT_RGBA)[4 * pixel];
-}
+float redAt(const Picture& picture, size_t pixel) { return picture.planes.at(RT_RGBA)[4 * pixel]; }
 float alphaAt(const Picture& picture, size_t pixel) {
   return picture.planes.at(RT_RGBA)[4 * pixel + 3];
 }
@@ -62,7 +60,7 @@ TEST(Denoiser, ThePictureSaysWhatItIs) {
 
 TEST(Denoiser, GuidesAreGivenOnlyIfBothAreThere) {
   Picture noisy = pictureOf(1, 1, {0.5f});
-  PictureDenoiser denoiser(fake(), 1); // the fake refuses guides of one kind
+  PictureDenoiser denoiser(fake(), 1);                // the fake refuses guides of one kind
   noisy.planes[RT_ALBEDO] = {2, 0.5f, std::nanf("")}; // neither may reach the filter
   EXPECT_FLOAT_EQ(redAt(denoiser.denoised(noisy), 0), 0.5f);
   noisy.planes[RT_NORMAL] = {0, 0, infinite};

@@ -19,11 +19,11 @@ namespace {
 
 // If several jobs are asked for, the first of the table is done.
 constexpr JobInfo jobs[] = {
-    {Job::help, false, false},         {Job::version, false, false},
-    {Job::serve, false, true},         {Job::listKeys, false, false},
-    {Job::listShaders, true, false},   {Job::listEngines, true, false},
-    {Job::listFeatures, true, false},  {Job::listNodes, true, false},
-    {Job::explain, true, true},        {Job::listViewpoints, true, true},
+    {Job::help, false, false},        {Job::version, false, false},
+    {Job::serve, false, true},        {Job::listKeys, false, false},
+    {Job::listShaders, true, false},  {Job::listEngines, true, false},
+    {Job::listFeatures, true, false}, {Job::listNodes, true, false},
+    {Job::explain, true, true},       {Job::listViewpoints, true, true},
     {Job::info, true, true},
 };
 

@@ -1,10 +1,9 @@
 #include "feature_list.h"
 
-#include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <zmq.h>
 
 #include "libpicture/features.h"
 #include "printable.h"
@@ -23,13 +22,6 @@ Feature built(const char* name, const char* text, const std::string& library, co
   return {name, text, !library.empty(), library, "", library.empty() ? how : ""};
 }
 
-std::string zeroMq() {
-  if (!zmq_has("curve")) return "";
-  int major = 0, minor = 0, patch = 0;
-  zmq_version(&major, &minor, &patch);
-  return fmt::format("ZeroMQ {}.{}.{} with CURVE", major, minor, patch);
-}
-
 // Returns the rows in the order of the list: what all programs have, and what vv has.
 std::vector<Feature> rowsOf(const std::string& scriptPath) {
   std::vector<Feature> rows = picture::listFeatures(scriptPath);
@@ -37,8 +29,6 @@ std::vector<Feature> rowsOf(const std::string& scriptPath) {
                        "build with SDL 2 (Debian: libsdl2-dev); -o makes pictures without it"));
   rows.push_back(built("serve", "vv serve, which shows a world on a page", serverLibrary(),
                        "build with libwebsockets 4.1 or newer (Debian: libwebsockets-dev)"));
-  rows.push_back(built("keys", "encrypted connections of clusters and --control (--key)", zeroMq(),
-                       "a libzmq with CURVE, such as Debian's"));
   return rows;
 }
 
@@ -55,9 +45,8 @@ std::string listFeatures(const std::string& scriptPath, bool json) {
                     {"file", row.file},
                     {"how", row.how}});
     text += fmt::format("{:<11} {:<4} {}\n", row.name, row.available ? "yes" : "no", row.text);
-    for (const auto& [head, value] :
-         {std::pair("", &row.detail), std::pair("library: ", &row.file),
-          std::pair("to get it: ", &row.how)})
+    for (const auto& [head, value] : {std::pair("", &row.detail), std::pair("library: ", &row.file),
+                                      std::pair("to get it: ", &row.how)})
       if (!value->empty()) text += fmt::format("{:17}{}{}\n", "", head, printable(*value));
   }
   if (json)

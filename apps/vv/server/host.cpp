@@ -465,4 +465,6 @@ std::string Host::offerDownload(std::string name, std::string type, std::string 
 
 } // namespace vv::server
 
-std::string vv::serverLibrary() { return std::string("libwebsockets ") + lws_get_library_version(); }
+std::string vv::serverLibrary() {
+  return std::string("libwebsockets ") + lws_get_library_version();
+}
