@@ -1,13 +1,14 @@
 """Tests Picture.denoised(), xvrml.denoise() and xvrml.features(). A process finds the library once,
 so each test runs a program of its own, with a fake library in the place of the real one."""
 import os
+import re
 import subprocess
 import sys
 import textwrap
 
 import pytest
 
-from conftest import BOX
+from conftest import BOX, ROOT
 from test_vv_denoiser import fake  # noqa: F401  a fixture
 
 xvrml = pytest.importorskip("xvrml")
@@ -140,6 +141,13 @@ def test_arrays(program, fake):  # noqa: F811
             fails(ValueError, "colour: finite numbers expected", xvrml.denoise, colour * bad)
         assert xvrml.denoise(np.zeros((1, 1, 3))).tolist() == [[[0, 0, 0]]]
         """, fake())
+
+
+def test_the_example_of_the_guide(program, fake):  # noqa: F811
+    guide = (ROOT / "docs/python.md").read_text()
+    block, = re.findall(r"```python needs=pyoidn\n(.*?)```", guide, re.S)
+    program('world = xvrml.load("box.wrl")\n' + block, fake())
+    assert b"denoised by" in (program.folder / "pretty.png").read_bytes()
 
 
 @pytest.mark.parametrize("fault, words", [

@@ -11,6 +11,7 @@ from typing import (
     Iterator,
     List,
     Mapping,
+    NamedTuple,
     Optional,
     Sequence,
     TextIO,
@@ -25,8 +26,6 @@ import numpy.typing as npt
 
 from . import nodes as nodes
 from .nodes import *
-from ._features import Feature as Feature
-from ._features import features as features
 from .notebook import View as _View
 from .rt import Raycaster
 
@@ -808,6 +807,19 @@ class LiveView:
 
 
 def load_node_plugins(path: Union[None, str, "os.PathLike[str]"] = ...) -> List[str]:
+    ...
+
+
+class Feature(NamedTuple):
+    name: str
+    text: str
+    available: bool
+    detail: str
+    file: str
+    how: str
+
+
+def features() -> Dict[str, Feature]:
     ...
 
 
