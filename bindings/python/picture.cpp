@@ -192,6 +192,7 @@ PictureObject unpickled(const py::tuple& state) {
   if (version > 2) {
     made.note = fromText(state[9]);
     made.denoisedBy = fromText(state[10]);
+    if ((made.note + made.denoisedBy).find_first_of("\n\r") != std::string::npos) refuse();
   }
   return object;
 }
