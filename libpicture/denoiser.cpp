@@ -93,12 +93,13 @@ struct PictureDenoiser::Impl {
     }
   }
 
-  // Replaces alpha at the borders of what is seen, where it has the noise of the colours. Where
-  // nothing is seen, the colours stay black.
+  // Replaces alpha at the borders of what is seen, where it has the noise of the colours, if files
+  // of the picture have alpha. Where nothing is seen, black stays black.
   void alpha(const Picture& picture, const std::vector<float>& before, OidnImages& images,
              bool hasGuides, std::vector<float>& rgba) {
     bool isPartial = false;
-    for (size_t i = 3; i < before.size(); i += 4) isPartial |= before[i] > 0 && before[i] < 1;
+    if (picture.transparent)
+      for (size_t i = 3; i < before.size(); i += 4) isPartial |= before[i] > 0 && before[i] < 1;
     if (isPartial) {
       for (size_t i = 3, to = 0; i < before.size(); i += 4)
         for (int c = 0; c < 3; c++) images.colour[to++] = std::clamp(finite(before[i]), 0.0f, 1.0f);
@@ -108,12 +109,12 @@ struct PictureDenoiser::Impl {
     for (int y = 0; y < picture.height; y++)
       for (int x = 0; x < picture.width; x++, pixel++) {
         float* const colour = &rgba[4 * pixel];
-        if (!isEven(picture, before, x, y))
-          colour[3] = isPartial && std::isfinite(images.colour[3 * pixel])
-                          ? std::clamp(images.colour[3 * pixel], 0.0f, 1.0f)
-                          : before[4 * pixel + 3];
-        else if (before[4 * pixel + 3] == 0)
-          std::copy_n(&before[4 * pixel], 3, colour);
+        const float made = images.colour[3 * pixel];
+        if (!isEven(picture, before, x, y)) {
+          if (isPartial && std::isfinite(made)) colour[3] = std::clamp(made, 0.0f, 1.0f);
+        } else if (before[4 * pixel + 3] == 0 && brightestOf(&before[4 * pixel]) == 0) {
+          std::fill_n(colour, 3, 0.0f);
+        }
       }
   }
 };

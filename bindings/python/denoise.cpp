@@ -82,6 +82,7 @@ py::array denoise(const py::object& colour, const py::object& albedo, const py::
     throw py::value_error("albedo and normal: both or none expected");
   const auto components = size_t(image.shape(2));
   picture::Picture noisy;
+  noisy.transparent = components == 4;
   noisy.height = int(image.shape(0));
   noisy.width = int(image.shape(1));
   std::vector<float>& rgba = noisy.planes[RT_RGBA];

@@ -3,6 +3,7 @@
 // library (tests/oidn) gives every pixel the mean of the image.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -73,9 +74,10 @@ TEST(Denoiser, AlphaChangesAtBordersOnly) {
   std::vector<float>& rgba = noisy.planes[RT_RGBA];
   const float alphas[] = {1, 1, 0.5f, 0, 0, 0};
   double mean = 0;
+  noisy.transparent = true;
   for (size_t i = 0; i < 12; i++) {
     rgba[4 * i + 3] = alphas[i % 6];
-    if (alphas[i % 6] == 0) rgba[4 * i] = 0;
+    if (alphas[i % 6] == 0) std::fill_n(&rgba[4 * i], 3, 0.0f);
     mean += double(alphas[i % 6]) / 12;
   }
   PictureDenoiser denoiser(fake(), 1);
@@ -86,11 +88,14 @@ TEST(Denoiser, AlphaChangesAtBordersOnly) {
     EXPECT_EQ(alphaAt(made, row + 4), 0);
     EXPECT_EQ(redAt(made, row + 5), 0) << "nothing is seen there";
   }
+  noisy.transparent = false; // files have no alpha, so it is not worth the time
+  EXPECT_EQ(alphaAt(denoiser.denoised(noisy), 2), 0.5f);
 }
 
 TEST(Denoiser, WholeAlphaStaysWhole) {
   Picture noisy = pictureOf(2, 1, {1, 1}); // a border without partial coverage has no noise
   noisy.planes[RT_RGBA][3] = 0;
+  noisy.transparent = true;
   PictureDenoiser denoiser(fake(), 1);
   const Picture made = denoiser.denoised(noisy);
   EXPECT_EQ(alphaAt(made, 0), 0);
