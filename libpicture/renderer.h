@@ -77,7 +77,8 @@ struct RenderError : std::runtime_error {
 // Throws RenderError if this machine does not have the instruction set; the message says what was
 // expected. Otherwise rendering would fail later.
 void checkIsa(const std::string& isa);
-// Throws RenderError if this machine does not have what the denoiser needs.
+// Throws RenderError if this machine does not have what the denoiser needs. The library is tried in
+// a child process once.
 void checkDenoiser(Denoiser denoiser);
 
 struct RenderResult {
@@ -88,6 +89,7 @@ struct RenderResult {
   bool missing = false;
   bool interrupted = false; // the picture holds what was finished when it was interrupted
   double mapSeconds = 0, renderSeconds = 0;
+  double denoiseSeconds = 0;      // of whoever has denoised the picture; 0: nobody
   std::vector<RTworker> workers;  // workers of the cluster at the end of the picture
   xvrml::CameraSettings camera{}; // camera of the picture; its shader is null
   bool hasCameraShader = false;   // a camera shader generated the rays

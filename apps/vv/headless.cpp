@@ -13,6 +13,7 @@
 #include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/engine_list.h"
+#include "report/feature_list.h"
 #include "report/messages.h"
 #include "report/node_list.h"
 #include "report/problems.h"
@@ -49,6 +50,10 @@ class Headless {
     }
     if (options_.has(Job::listEngines)) {
       writeOut(listEngines(options_.running.scriptPath, options_.json));
+      return exitDone;
+    }
+    if (options_.has(Job::listFeatures)) {
+      writeOut(listFeatures(options_.running.scriptPath, options_.json));
       return exitDone;
     }
     if (options_.has(Job::listNodes) && options_.input.empty()) {

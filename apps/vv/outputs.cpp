@@ -31,9 +31,9 @@ std::vector<Named> outputsOf(const Options& options) {
   std::vector<Named> all;
   for (const Output& output : options.outputs)
     if (!options.allViewpoints())
-      all.push_back(
-          {"-o", pathFor(output.path,
-                         {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
+      all.push_back({output.option(),
+                     pathFor(output.path,
+                             {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--write", options.write});
   all.push_back({"--record", options.render.record});
@@ -90,7 +90,9 @@ void checkOutputs(const Options& options) {
   for (const Output& output : options.outputs) {
     if (output.path == "-" && ::isatty(STDOUT_FILENO))
       throw Failure{exitUsage,
-                    "-o -: standard output is a terminal; redirect it to a file or a pipe"};
+                    fmt::format("{} -: standard output is a terminal; redirect it to a file or a "
+                                "pipe",
+                                output.option())};
     if (output.film == picture::FilmKind::none) continue;
     if (const std::string why = picture::whyNoFilm(output.film); !why.empty())
       throw Failure{exitRender, output.path + ": " + why};

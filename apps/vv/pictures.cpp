@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "ending.h"
+#include "libpicture/denoiser.h"
 #include "libpicture/false_colour.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
@@ -94,13 +95,19 @@ std::vector<Job> chooseJobs(const Options& options,
   return jobs;
 }
 
-// Writes a file of -o. Errors name the option.
-void writeOutput(const std::string& path, const std::string& bytes) {
+// Writes a file of -o or --raw. Errors name the option.
+void writeOutput(const Output& output, const std::string& path, const std::string& bytes) {
   try {
     picture::writeFile(path, bytes);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("-o: {}", error.what()));
+    throw std::runtime_error(fmt::format("{}: {}", output.option(), error.what()));
   }
+}
+
+// Which options' files get a picture.
+enum class Which : uint8_t { all, shown, raw };
+bool isOf(const Output& output, Which only) {
+  return only == Which::all || output.raw == (only == Which::raw);
 }
 
 class Pictures {
@@ -120,6 +127,7 @@ class Pictures {
     // With RT_VARIANCE, RTstats contains the error; spp_mean needs the samples.
     if (!options_.stats.empty() && !options_.isSequence())
       settings.channels |= RT_VARIANCE | RT_SAMPLES;
+    if (options_.denoise) settings.channels |= picture::denoiserGuides;
     if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed() needs the samples
     warnOfAlpha();
     settings.progressive = !options_.isSequence() && picture::isWorthProgressive(settings);
@@ -297,7 +305,7 @@ class Pictures {
   // Waits for the oldest frame and saves it.
   int finishOldest() {
     if (progress_) progress_->rename(inFlight_.front().job.name.text());
-    const picture::RenderResult result = renderer_->finish();
+    picture::RenderResult result = renderer_->finish();
     interruptHandled();
     const FrameInFlight flight = std::move(inFlight_.front());
     inFlight_.pop_front();
@@ -360,7 +368,7 @@ class Pictures {
     if (!finished) return stopped("vv: interrupted before the audit was finished");
     writeOut(audit.text());
     for (const Output& output : options_.outputs)
-      writeOutput(pathFor(output.path, job.name), output.format->encode(audit.picture()));
+      writeOutput(output, pathFor(output.path, job.name), output.format->encode(audit.picture()));
     return audit.good() ? exitDone : exitProblems;
   }
 
@@ -382,12 +390,13 @@ class Pictures {
     return picture::falseColours(made, most);
   }
 
-  // coloured: the picture in false colours, for files that are made for screens.
+  // coloured: the picture in false colours, for files that are made for screens. only: the options
+  // whose files are written; every other file is left as it is.
   void writePictures(const Job& job, const picture::Picture& made,
-                     const std::optional<picture::Picture>& coloured) {
+                     const std::optional<picture::Picture>& coloured, Which only = Which::all) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
     for (const Output& output : options_.outputs) {
-      if (output.film != picture::FilmKind::none) continue;
+      if (output.film != picture::FilmKind::none || !isOf(output, only)) continue;
       const bool shows = coloured && output.format->appliesCurve;
       const std::string bytes = output.format->encode(shows ? *coloured : wanted);
       if (output.path == "-") {
@@ -396,16 +405,17 @@ class Pictures {
       }
       const std::string path = pathFor(output.path, job.name);
       protectFilesOf(browser_.world(), path);
-      writeOutput(path, bytes);
+      writeOutput(output, path, bytes);
     }
   }
 
   // Adds a picture to the film of its view.
-  void addToFilms(const Job& job, const picture::Picture& made) {
+  void addToFilms(const Job& job, const picture::Picture& made, Which only = Which::all) {
     for (const Output& output : options_.outputs) {
-      if (output.film == picture::FilmKind::none) continue;
+      if (output.film == picture::FilmKind::none || !isOf(output, only)) continue;
       const std::string path = pathFor(output.path, {job.name.viewpoint, {}});
-      auto& film = films_[path];
+      auto& [of, film] = films_[path];
+      of = &output;
       try {
         if (!film)
           film = std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps,
@@ -425,25 +435,41 @@ class Pictures {
     } catch (const std::exception& error) { sayWarning(error.what()); }
   }
 
-  // Says once that the pictures are previews.
-  void sayPreview(const picture::Picture& made) {
-    if (made.note.empty() || std::exchange(previewSaid_, true) || options_.quiet) return;
-    say(fmt::format("vv: {}; without --preview, pictures are unbiased", made.note));
+  // Says once that the pictures are biased.
+  void sayBias(const picture::Picture& made) {
+    if (made.note.empty() || std::exchange(biasSaid_, true) || options_.quiet) return;
+    say(fmt::format("vv: {}; without {}, pictures are unbiased", made.note,
+                    options_.denoise ? "--denoise" : "--preview"));
   }
 
-  void finish(const Job& job, const Moment& moment, const picture::RenderResult& result) {
+  // Writes the files of --raw and denoises the picture for those of -o. A picture that was
+  // interrupted stays as it is, in all files.
+  void denoise(const Job& job, picture::RenderResult& result) {
+    writePictures(job, result.picture, {}, Which::raw);
+    if (result.interrupted) return;
+    addToFilms(job, result.picture, Which::raw);
     const auto start = Clock::now();
-    sayPreview(result.picture);
+    const StageProgress progress(job.name.text(), "denoising", options_.quiet);
+    if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
+    result.picture = denoiser_->denoised(result.picture);
+    result.denoiseSeconds = secondsSince(start);
+  }
+
+  void finish(const Job& job, const Moment& moment, picture::RenderResult& result) {
+    const auto start = Clock::now();
+    if (options_.denoise) denoise(job, result);
+    sayBias(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
-    writePictures(job, result.picture, coloured);
-    if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture);
-    const double writeSeconds = secondsSince(start);
+    writePictures(job, result.picture, coloured, Which::shown);
+    if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture, Which::shown);
+    const double writeSeconds = secondsSince(start) - result.denoiseSeconds;
     if (!options_.compare.empty() && !result.interrupted)
       writeOut(compareText(result.picture, options_.compare));
     if (options_.verbose)
-      say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}, written in {}",
+      say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}{}, written in {}",
                       job.name.text(), job.name.text().empty() ? "" : ": ", result.stats.triangles,
                       duration(result.mapSeconds), duration(result.renderSeconds),
+                      options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
     if (options_.verbose && done_ == moments_ * views_) reportLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
@@ -507,7 +533,7 @@ class Pictures {
   void finishSequence() {
     for (auto& [path, film] : films_) {
       protectFilesOf(browser_.world(), path);
-      writeOutput(path, film->finish());
+      writeOutput(*film.of, path, film.film->finish());
     }
     films_.clear();
     if (!options_.stats.empty() && options_.isSequence())
@@ -532,9 +558,14 @@ class Pictures {
   size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
-  bool previewSaid_ = false;
-  bool anyWorker_ = false;                                      // a worker has been connected
-  std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
+  bool biasSaid_ = false;
+  bool anyWorker_ = false; // a worker has been connected
+  struct OpenFilm {
+    const Output* of = nullptr;
+    std::unique_ptr<picture::Film> film;
+  };
+  std::map<std::string, OpenFilm> films_;              // indexed by path
+  std::unique_ptr<picture::PictureDenoiser> denoiser_; // null before the first use
   SequenceStats frames_;
   double endOfScale_ = 0; // of false colours, in cd/m2; 0: no picture has been made
 };
@@ -549,6 +580,7 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   wanted.transparent = made.transparent;
   wanted.names = made.names;
   wanted.note = made.note;
+  wanted.denoisedBy = made.denoisedBy;
   for (const auto& [bit, plane] : made.planes)
     if (channels & bit) wanted.planes[bit] = plane;
   return wanted;

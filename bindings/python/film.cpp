@@ -36,7 +36,7 @@ class FilmObject {
         ReleaseGil release;
         bytes = picture::displayBytes(made);
       }
-      return append(bytes.data(), made.width, made.height);
+      return append(bytes.data(), made.width, made.height, made.note);
     }
     const auto array = py::array::ensure(shown);
     if (!array || array.ndim() != 3 || array.shape(2) != 3 ||
@@ -73,12 +73,17 @@ class FilmObject {
   const std::string& path() const { return path_; }
 
  private:
-  void append(const uint8_t* rgb, int width, int height) {
+  // note: what the file says about its pictures. It stands at the beginning of the file.
+  void append(const uint8_t* rgb, int width, int height, const std::string& note = "") {
     if (film_ && (width != width_ || height != height_))
       throw py::value_error(fmt::format("all pictures of a film have one size: {}x{}, not {}x{}",
                                         width_, height_, width, height));
+    if (film_ && note != note_)
+      throw py::value_error("the pictures of a film are denoised by one library, or none of them "
+                            "is denoised");
     ReleaseGil release;
-    if (!film_) film_ = std::make_unique<picture::Film>(kind_, width, height, fps_);
+    if (!film_) film_ = std::make_unique<picture::Film>(kind_, width, height, fps_, note);
+    note_ = note;
     width_ = width;
     height_ = height;
     film_->add({rgb, size_t(width) * size_t(height) * 3});
@@ -88,6 +93,7 @@ class FilmObject {
   picture::FilmKind kind_;
   double fps_;
   int width_ = 0, height_ = 0;
+  std::string note_;
   bool closed_ = false;
   std::unique_ptr<picture::Film> film_; // null before the first picture and after the last one
 };

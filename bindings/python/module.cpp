@@ -181,6 +181,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineCluster(module);
   defineNode(module);
   definePicture(module);
+  defineDenoise(module);
   defineFilm(module);
   defineMeasurement(module);
   defineWorld(module);

@@ -216,6 +216,7 @@ void defineMeasurement(py::module_& module); // before defineWorld()
 void defineBrowser(py::module_& module);
 void defineViewer(py::module_& module);
 void definePicture(py::module_& module);
+void defineDenoise(py::module_& module); // after definePicture()
 void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);
 void defineRt(py::module_& module);

@@ -72,7 +72,10 @@ py::object item(const py::object& self, const py::object& key) {
 
 py::array errorBars(const py::object& self) {
   const picture::Channel& channel = *picture::findChannel("error");
-  if (!self.cast<const PictureObject&>().picture.planes.count(channel.bit))
+  const picture::Picture& picture = self.cast<const PictureObject&>().picture;
+  if (!picture.denoisedBy.empty())
+    throw py::attribute_error("the picture is denoised: error bars belong to the picture before");
+  if (!picture.planes.count(channel.bit))
     throw py::attribute_error("the picture was made without error bars: render(error=0.02) or "
                               "channels=('error',) makes some");
   return floats(self, channel);
@@ -97,6 +100,10 @@ void save(const PictureObject& self, const py::object& file) {
   if (!format)
     throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
                                       picture::formatSuffixes(), path));
+  if (!self.picture.denoisedBy.empty() && !format->keepsNote)
+    throw py::value_error(fmt::format("{} files cannot say that they are denoised; {} files can",
+                                      format->name,
+                                      picture::formatsWith(&picture::Format::keepsNote)));
   std::string failure;
   {
     const ReleaseGil release;
@@ -137,10 +144,10 @@ py::tuple channels(const PictureObject& self) {
   return py::tuple(out);
 }
 
-constexpr int pickleVersion = 2; // version 1 had no camera
+constexpr int pickleVersion = 3; // version 1 had no camera, version 2 was never denoised
 
 // Returns the pickled members: version, size, linear, names, time, stats, {channel name: numbers},
-// camera.
+// camera, note, denoisedBy.
 py::tuple pickled(const py::object& self) {
   PictureObject& object = self.cast<PictureObject&>();
   py::dict planes;
@@ -149,14 +156,16 @@ py::tuple pickled(const py::object& self) {
       planes[py::str(std::string(channel.name))] = floats(self, channel);
   return py::make_tuple(pickleVersion, object.picture.width, object.picture.height,
                         object.picture.linear, names(object), object.time, object.stats, planes,
-                        camera(object));
+                        camera(object), toText(object.picture.note),
+                        toText(object.picture.denoisedBy));
 }
 
 PictureObject unpickled(const py::tuple& state) {
   const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
   const int version =
       state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
-  if (version < 1 || version > pickleVersion || state.size() != (version == 1 ? 8 : 9)) refuse();
+  constexpr size_t sizes[] = {8, 9, 11}; // of each version
+  if (version < 1 || version > pickleVersion || state.size() != sizes[version - 1]) refuse();
   PictureObject object;
   picture::Picture& made = object.picture;
   made.width = state[1].cast<int>();
@@ -179,6 +188,11 @@ PictureObject unpickled(const py::tuple& state) {
   if (version > 1 && !state[8].is_none()) {
     if (!py::isinstance(state[8], py::module_::import("xvrml._camera").attr("Pinhole"))) refuse();
     object.camera = state[8];
+  }
+  if (version > 2) {
+    made.note = fromText(state[9]);
+    made.denoisedBy = fromText(state[10]);
+    if ((made.note + made.denoisedBy).find_first_of("\n\r") != std::string::npos) refuse();
   }
   return object;
 }
@@ -231,6 +245,8 @@ void definePicture(py::module_& module) {
            [](const PictureObject& self) { return py::bytes(picture::encodePng(self.picture)); })
       .def(py::pickle(&pickled, &unpickled))
       .def("__repr__", [](const PictureObject& self) {
-        return fmt::format("<Picture {}x{}>", self.picture.width, self.picture.height);
+        const std::string& by = self.picture.denoisedBy;
+        return fmt::format("<Picture {}x{}{}{}>", self.picture.width, self.picture.height,
+                           by.empty() ? "" : ", denoised by ", by);
       });
 }

@@ -34,6 +34,8 @@ struct Picture {
   // What files of the picture say about it, a line of ASCII; "": nothing. Formats without
   // Format::keepsNote do not say it.
   std::string note;
+  // The library that has denoised rgba (libpicture/denoiser.h); "": none has.
+  std::string denoisedBy;
 };
 
 // Returns the plane rgba. Throws std::runtime_error if the picture has none.

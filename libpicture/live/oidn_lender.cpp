@@ -5,15 +5,16 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace picture {
 
 void checkDenoiser(Denoiser wanted) {
   if (wanted != Denoiser::oidn) return;
   try {
-    if (live::OidnLibrary::find()) return;
+    if (live::OidnLibrary::findTried()) return;
   } catch (const live::OidnError& error) { throw RenderError(error.what()); }
-  throw RenderError("Open Image Denoise 2 was not found: neither the dynamic linker finds "
-                    "libOpenImageDenoise.so.2, nor does OPENRT_OIDN_LIBRARY name its file");
+  throw RenderError(fmt::format("Open Image Denoise 2 was not found: {}", live::howToGetOidn));
 }
 
 namespace live {

@@ -1,10 +1,14 @@
 /* fake_oidn.c: A library with the functions of Open Image Denoise that OpenRT uses, for tests on
- * machines without it. Its filter gives every pixel the mean colour of the image. It checks what it
- * is given as the real one does, and counts what was made and released.
+ * machines without it. Its filter gives every pixel the mean colour of the image, and leaves an
+ * albedo as it is. It checks what it is given as the real one does, and counts what was made and
+ * released.
  *
  * Compiled with one of these it is unusable in one way: FAKE_OLD (version 1), FAKE_INCOMPLETE (a
- * function is missing), FAKE_WITHOUT_DEVICE, FAKE_FAILING (filtering fails), FAKE_SLOW (a picture
- * takes 50 ms). */
+ * function is missing), FAKE_WITHOUT_DEVICE, FAKE_FAILING (filtering fails), FAKE_FAILING_LARGE
+ * (filtering of more than 16x16 pixels fails), FAKE_WITHOUT_MEMORY (the same, for lack of memory),
+ * FAKE_SLOW (a picture takes 50 ms), FAKE_CRASHING (filtering ends the process by a signal),
+ * FAKE_LEAVING (loading ends the process), FAKE_NAN (the result is not a number). */
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +22,7 @@ typedef struct {
   int threads;
   bool affinity, committed;
   const char* error;
+  int code; /* of the error; 0: 3, an invalid operation */
 } Device;
 
 typedef struct {
@@ -44,6 +49,10 @@ typedef struct {
 EXPORT FakeOidnCounts fakeOidnCounts;
 
 static const char* globalError;
+
+#ifdef FAKE_LEAVING
+__attribute__((constructor)) static void leave(void) { _Exit(0); }
+#endif
 
 EXPORT void* oidnNewDevice(int type) {
 #ifdef FAKE_WITHOUT_DEVICE
@@ -98,7 +107,7 @@ EXPORT void oidnSetDeviceBool(void* given, const char* name, bool value) {
 EXPORT int oidnGetDeviceError(void* given, const char** message) {
   Device* device = given;
   const char** error = device ? &device->error : &globalError;
-  const int code = *error ? 3 : 0;
+  const int code = !*error ? 0 : device && device->code ? device->code : 3;
   if (message) *message = *error;
   *error = NULL;
   return code;
@@ -196,8 +205,8 @@ EXPORT void oidnSetFilterInt(void* given, const char* name, int value) {
 EXPORT void oidnCommitFilter(void* given) {
   Filter* filter = given;
   filter->committed = true;
-  fakeOidnCounts.width = (int)filter->image[0].width;
-  fakeOidnCounts.height = (int)filter->image[0].height;
+  fakeOidnCounts.width = (int)filter->image[3].width;
+  fakeOidnCounts.height = (int)filter->image[3].height;
   fakeOidnCounts.quality = filter->quality;
 }
 
@@ -205,10 +214,26 @@ EXPORT void oidnCommitFilter(void* given) {
 EXPORT void oidnExecuteFilter(void* given) {
   Filter* filter = given;
   __atomic_add_fetch(&fakeOidnCounts.runs, 1, __ATOMIC_SEQ_CST);
-  bool usable = filter->committed && filter->hdr && filter->cleanAux;
-  for (int i = 0; i < images; i++) usable = usable && filter->image[i].buffer;
+#ifdef FAKE_CRASHING
+  raise(SIGSEGV);
+#endif
+  if (!filter->image[0].buffer) { /* an albedo alone: it stays as it is */
+    if (!filter->committed || !filter->image[1].buffer || filter->image[2].buffer ||
+        filter->image[1].offset != filter->image[3].offset || filter->hdr || filter->cleanAux)
+      filter->device->error = "the fake cannot filter this albedo";
+    return;
+  }
+  const bool guided = filter->image[1].buffer && filter->image[2].buffer;
+  bool usable = filter->committed && filter->hdr && filter->cleanAux == guided;
+  usable = usable && filter->image[3].buffer;
 #ifdef FAKE_FAILING
   usable = false;
+#endif
+#if defined FAKE_FAILING_LARGE || defined FAKE_WITHOUT_MEMORY
+  usable = usable && filter->image[0].width <= 16;
+#endif
+#ifdef FAKE_WITHOUT_MEMORY
+  filter->device->code = 4;
 #endif
   if (!usable) {
     filter->device->error = "the fake cannot filter this";
@@ -225,5 +250,8 @@ EXPORT void oidnExecuteFilter(void* given) {
   double sum[3] = {0, 0, 0};
   for (size_t i = 0; i < 3 * pixels; i++) sum[i % 3] += from[i];
   for (size_t i = 0; i < 3 * pixels; i++) to[i] = (float)(sum[i % 3] / (double)pixels);
+#ifdef FAKE_NAN
+  for (size_t i = 0; i < 3 * pixels; i += 2) to[i] = 0.0f / 0.0f;
+#endif
 }
 #endif

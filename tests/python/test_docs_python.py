@@ -27,5 +27,7 @@ def test_blocks_run(page, tmp_path, monkeypatch, capsys):
         needs = re.findall(r"needs=(\w+)", mark)
         if any(importlib.util.find_spec(package) is None for package in needs):
             continue
+        if needs == ["pyoidn"]:  # test_denoise.py runs it, with a library of its own
+            continue
         line = text[:text.index(block)].count("\n")
         exec(compile("\n" * line + block, str(DOCS / page), "exec"), names)

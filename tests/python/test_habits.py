@@ -180,7 +180,7 @@ def test_damaged_pickles_are_refused():
             "rgba": np.zeros(3, np.float32)
     }), (7, {
             "nothing": np.zeros(3)
-    }), (8, "camera")):
+    }), (8, "camera"), (9, "two\nlines")):
         damaged = [*state[:place], wrong, *state[place + 1:]]
         with pytest.raises(ValueError):
             xvrml.Picture.__new__(xvrml.Picture).__setstate__(tuple(damaged))

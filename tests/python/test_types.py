@@ -47,6 +47,8 @@ with rt.Context() as context:
     context.instance(context.mesh(np.zeros((3, 3)))).matrix = np.eye(4)
     print(context.render(size=(4, 3)).array.shape)
 print(interop.to_pil(image))
+print(image.denoised(threads=1).note, xvrml.denoise(image.array, threads=1).shape)
+print([row.how for row in xvrml.features().values() if not row.available])
 with xvrml.LiveView(world, size=(64, 48), spp=4) as live:
     live.event({"type": "wheel", "dy": 100})
     delay = live.step() or 0.1

@@ -71,6 +71,8 @@ def test_pictures_without_bias_are_not_touched(rolling, fake):
     ("FAKE_OLD", "is Open Image Denoise 1.4.3; version 2.0.0 or newer is needed"),
     ("FAKE_INCOMPLETE", "has no function oidnExecuteFilter"),
     ("FAKE_WITHOUT_DEVICE", "the fake has no device"),
+    ("FAKE_FAILING", "the fake cannot filter this"),
+    ("FAKE_CRASHING", "crashes when it is tried"),
 ])
 def test_a_library_that_cannot_be_used_is_refused(rolling, fake, fault, words):
     rolling.library(fake(fault))
@@ -80,7 +82,7 @@ def test_a_library_that_cannot_be_used_is_refused(rolling, fake, fault, words):
 
 
 def test_a_failure_ends_the_sequence(rolling, fake):
-    rolling.library(fake("FAKE_FAILING"))
+    rolling.library(fake("FAKE_FAILING_LARGE"))
     done = rolling("rolling.wrl", "--frames", "0-2", "--preview", "--denoiser", "oidn", "--size",
                    "64x48", "-o", "a.png")
     assert done.returncode == 1 and "the fake cannot filter this" in done.talk, done.talk

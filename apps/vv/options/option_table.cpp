@@ -90,6 +90,18 @@ void setDenoiser(Options& o, const std::string& value) {
   } catch (const picture::RenderError& error) { throw UsageError(error.what()); }
 }
 
+void setDenoise(Options& o, const std::string&) {
+  o.denoise = true;
+  try {
+    picture::checkDenoiser(picture::Denoiser::oidn);
+  } catch (const picture::RenderError& error) { throw UsageError(error.what()); }
+}
+
+void addRaw(Options& o, const std::string& value) {
+  addOutput(o, value);
+  o.outputs.back().raw = true;
+}
+
 void setBackground(Options& o, const std::string& value) {
   try {
     o.render.background = picture::readBackground(value);
@@ -197,6 +209,15 @@ const OptionInfo table[] = {
          " files are transparent there. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to "
          "1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
      setBackground},
+    {"--denoise", "", "Picture",
+     "Remove the noise of the pictures of -o by Open Image Denoise 2, which must be installed "
+     "(--list-features). Such pictures are biased and have no error bars; files and --stats say "
+     "so.",
+     setDenoise},
+    {"--raw", "FILE", "Picture",
+     "With --denoise: also write the picture as it was rendered, in the formats and with the names "
+     "that -o knows. May be given several times.",
+     addRaw, true},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint, given by DEF name, description or number from 0 (default: the "
      "first). all makes a picture from each viewpoint; its name replaces {viewpoint} in the file "
@@ -368,6 +389,10 @@ const OptionInfo table[] = {
      "List the script engines: the programs they run, whether they need --trust, and the library "
      "they come from.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::listEngines); }},
+    {"--list-features", "", "Inspect",
+     "List what of vv depends on libraries that need not be there: Open Image Denoise, the window, "
+     "films, vv serve, script engines and their sandbox; and how to get what is missing.",
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::listFeatures); }},
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::listKeys); }},
     {"--explain", "", "Inspect",

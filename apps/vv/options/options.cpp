@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "habits.h"
+#include "libpicture/denoiser.h"
 #include "nearest.h"
 
 namespace vv {
@@ -18,11 +19,12 @@ namespace {
 
 // If several jobs are asked for, the first of the table is done.
 constexpr JobInfo jobs[] = {
-    {Job::help, false, false},         {Job::version, false, false},
-    {Job::serve, false, true},         {Job::listKeys, false, false},
-    {Job::listShaders, true, false},   {Job::listEngines, true, false},
-    {Job::listNodes, true, false},     {Job::explain, true, true},
-    {Job::listViewpoints, true, true}, {Job::info, true, true},
+    {Job::help, false, false},        {Job::version, false, false},
+    {Job::serve, false, true},        {Job::listKeys, false, false},
+    {Job::listShaders, true, false},  {Job::listEngines, true, false},
+    {Job::listFeatures, true, false}, {Job::listNodes, true, false},
+    {Job::explain, true, true},       {Job::listViewpoints, true, true},
+    {Job::info, true, true},
 };
 
 std::string longName(const OptionInfo& option) {
@@ -113,11 +115,11 @@ constexpr Rule rules[] = {
      "only one of --quiet and --verbose can be used"},
     {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
     {[](const Options& o) { return o.json && inspectionsOf(o) == 0; },
-     "--json needs --info, --explain, --list-nodes, --list-viewpoints, --list-shaders or "
-     "--list-engines"},
+     "--json needs --info, --explain, --list-nodes, --list-viewpoints, --list-shaders, "
+     "--list-engines or --list-features"},
     {[](const Options& o) { return inspectionsOf(o) > 1; },
-     "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders and "
-     "--list-engines can be used"},
+     "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders, "
+     "--list-engines and --list-features can be used"},
     // sequences of pictures
     {[](const Options& o) { return o.frames && o.time; },
      "only one of --time and --frames can be used"},
@@ -254,6 +256,43 @@ void checkPreview(const Options& o) {
           output.format->name, picture::formatsWith(&picture::Format::keepsNote)));
 }
 
+// Refuses what needs values without bias, and what could not say that it is denoised.
+void checkDenoise(const Options& o) {
+  const bool writesRaw = std::any_of(o.outputs.begin(), o.outputs.end(),
+                                     [](const Output& output) { return output.raw; });
+  const bool keepsErrors = std::any_of(o.outputs.begin(), o.outputs.end(), [](const Output& one) {
+    return one.raw && one.format && one.format->encode == picture::encodeExr;
+  });
+  if (!o.denoise && writesRaw)
+    throw UsageError("--raw needs --denoise: without it, -o writes the picture as it was rendered");
+  if (!o.denoise) return;
+  const std::pair<bool, const char*> refused[] = {
+      {o.render.error > 0, "--denoise changes colours by an amount that is not known: it cannot be "
+                           "used with --error, which keeps a promise"},
+      {o.audit > 0, "--audit tests error bars, and denoised pictures have none: it cannot be used "
+                    "with --denoise"},
+      {!o.compare.empty(), "--compare needs pictures without bias: it cannot be used with "
+                           "--denoise"},
+      {o.measures(), "--measure needs readings without bias: it cannot be used with --denoise"},
+      {o.falseColour.has_value(), "--false-colour shows luminance to be read: it cannot be used "
+                                  "with --denoise"},
+      {o.render.preview, "only one of --preview, which smooths pictures itself, and --denoise can "
+                         "be used"},
+      {o.outputs.size() == size_t(std::count_if(o.outputs.begin(), o.outputs.end(),
+                                                [](const Output& one) { return one.raw; })),
+       "--denoise needs -o (in the window, --denoiser chooses what smooths previews)"},
+      {(o.render.channels & picture::errorChannels) && !keepsErrors,
+       "--denoise: the channels error, trust and variance are those of the picture before; "
+       "--raw FILE.exr keeps them"}};
+  for (const auto& [isBroken, message] : refused)
+    if (isBroken) throw UsageError(message);
+  for (const Output& output : o.outputs)
+    if (!output.raw && output.film == picture::FilmKind::none && !output.format->keepsNote)
+      throw UsageError(fmt::format(
+          "--denoise: {} files cannot say that they are denoised; {} files and films can",
+          output.format->name, picture::formatsWith(&picture::Format::keepsNote)));
+}
+
 // Checks combinations of options.
 void checkTogether(const Options& options) {
   if (!options.isSequence())
@@ -264,6 +303,7 @@ void checkTogether(const Options& options) {
   for (const Rule& rule : rules)
     if (rule.broken(options)) throw UsageError(rule.message);
   checkPreview(options);
+  checkDenoise(options);
 }
 
 } // namespace

@@ -25,6 +25,8 @@ struct Output {
   const picture::Format* format = nullptr; // never null in a file of one picture
   // Not none: the file holds all pictures of a sequence, and `format` is null.
   picture::FilmKind film = picture::FilmKind::none;
+  bool raw = false; // of --raw: pictures as they were before --denoise
+  const char* option() const { return raw ? "--raw" : "-o"; }
 };
 
 // A job that is done instead of making a picture or opening the window: it prints something, or
@@ -36,6 +38,7 @@ enum class Job : uint8_t {
   listKeys,
   listShaders,
   listEngines,
+  listFeatures,
   listNodes,
   explain,
   listViewpoints,
@@ -93,7 +96,8 @@ struct Options {
   bool noWindow = false;
   // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen by the first.
   std::optional<double> falseColour;
-  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
+  bool denoise = false; // files and films of -o hold denoised pictures
+  std::string measure;  // file for the readings of the sensors, .csv or .json; empty: none
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const {

@@ -142,6 +142,9 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
                    {"spp_mean", samples},
                    {"channels", channelNames(r.channels)}};
   if (r.preview) json["image"]["preview"] = true;
+  if (!result.picture.denoisedBy.empty())
+    json["image"]["denoised"] = {
+        {"by", result.picture.denoisedBy}, {"channels", Json::array({"rgba"})}, {"biased", true}};
   return json;
 }
 
@@ -186,6 +189,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
                   {"render", result.renderSeconds},
                   {"write", times.write},
                   {"total", times.total}};
+  if (result.denoiseSeconds > 0) json["time"]["denoise"] = result.denoiseSeconds;
   json["rays"] = rayStats(s.cameraRays, s.shadowRays, s.secondaryRays, s.renderSeconds);
   addMachine(json, options, result);
   return dump(json);
@@ -195,7 +199,7 @@ struct SequenceStats::Impl {
   Json frames = Json::array();
   picture::RenderResult last{}; // the last result, without the pixels
   Json samples;                 // mean number of samples of the last picture
-  double map = 0, build = 0, render = 0, write = 0, first = 0, tracing = 0;
+  double map = 0, build = 0, render = 0, denoise = 0, write = 0, first = 0, tracing = 0;
   uint64_t camera = 0, shadow = 0, secondary = 0;
 };
 
@@ -213,11 +217,13 @@ void SequenceStats::add(const PictureName& name, double worldTime,
                    {"build", build},
                    {"render", result.renderSeconds},
                    {"write", writeSeconds}};
+  if (result.denoiseSeconds > 0) frame["time"]["denoise"] = result.denoiseSeconds;
   if (sum.frames.empty()) sum.first = result.renderSeconds;
   sum.frames.push_back(std::move(frame));
   sum.map += result.mapSeconds;
   sum.build += build;
   sum.render += result.renderSeconds;
+  sum.denoise += result.denoiseSeconds;
   sum.write += writeSeconds;
   sum.tracing += s.renderSeconds;
   sum.camera += s.cameraRays;
@@ -226,6 +232,7 @@ void SequenceStats::add(const PictureName& name, double worldTime,
   sum.samples = meanSamples(result);
   sum.last.map = result.map;
   sum.last.stats = s;
+  if (!result.interrupted) sum.last.picture.denoisedBy = result.picture.denoisedBy;
   sum.last.workers = result.workers;
   sum.last.interrupted |= result.interrupted;
 }
@@ -241,6 +248,7 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
                   {"build", sum.build},         {"first_pass", sum.first},
                   {"render", sum.render},       {"write", sum.write},
                   {"total", totalSeconds}};
+  if (sum.denoise > 0) json["time"]["denoise"] = sum.denoise;
   json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
   addMachine(json, options, sum.last);
   json["fps"] = options.fps;

@@ -19,6 +19,7 @@
 #include "server/flow.h"
 #include "server/idle_connections.h"
 #include "server/limits.h"
+#include "server/server.h"
 
 namespace vv::server {
 
@@ -463,3 +464,7 @@ std::string Host::offerDownload(std::string name, std::string type, std::string 
 }
 
 } // namespace vv::server
+
+std::string vv::serverLibrary() {
+  return std::string("libwebsockets ") + lws_get_library_version();
+}

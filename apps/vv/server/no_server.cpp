@@ -7,4 +7,6 @@ int runServer(const Options&, const std::vector<std::string>&) {
   throw Failure{exitRender, "no page: vv was built without libwebsockets"};
 }
 
+std::string serverLibrary() { return ""; }
+
 } // namespace vv

@@ -14,4 +14,7 @@ namespace vv {
 // other machines could see the page without a token.
 int runServer(const Options& options, const std::vector<std::string>& arguments);
 
+// Returns the library that serves the page, with its version; "": vv was built without it.
+std::string serverLibrary();
+
 } // namespace vv

@@ -8,4 +8,6 @@ int runWindow(const Options&, const std::vector<std::string>&) {
                 "no window: vv was built without SDL; -o picture.png makes a picture without one"};
 }
 
+std::string windowLibrary() { return ""; }
+
 } // namespace vv

@@ -13,6 +13,7 @@
 #include "options/values.h"
 #include "printable.h"
 #include "session/input/world_keys.h"
+#include "window/window.h"
 
 namespace vv {
 
@@ -298,6 +299,12 @@ void Screen::setTitle(const std::string& title) {
 void Screen::toggleFullScreen() {
   const bool full = SDL_GetWindowFlags(impl_->window) & SDL_WINDOW_FULLSCREEN_DESKTOP;
   SDL_SetWindowFullscreen(impl_->window, full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+}
+
+std::string windowLibrary() {
+  SDL_version version;
+  SDL_GetVersion(&version);
+  return fmt::format("SDL {}.{}.{}", version.major, version.minor, version.patch);
 }
 
 } // namespace vv

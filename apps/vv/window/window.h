@@ -13,4 +13,7 @@ namespace vv {
 // built without windows.
 int runWindow(const Options& options, const std::vector<std::string>& arguments);
 
+// Returns the library that opens the window, with its version; "": vv was built without windows.
+std::string windowLibrary();
+
 } // namespace vv

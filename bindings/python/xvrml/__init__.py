@@ -21,9 +21,10 @@ import difflib as _difflib
 import importlib as _importlib
 import warnings as _warnings
 
-from . import _arguments, _world
+from . import _arguments, _features, _world
 from . import _xvrml
 from ._camera import Pinhole
+from ._features import Feature, features
 from ._live import LiveView
 from ._world import loads
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Measurement, Mesh, Node,
@@ -31,9 +32,12 @@ from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Measureme
                      load_node_plugins, __version__)
 
 load = _arguments.explained(_xvrml.load)
+denoise = _arguments.explained(_xvrml.denoise)
 for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
+
+_features.look_for_pyoidn()
 
 for _line in load_node_plugins():
     _warnings.warn(_line, RuntimeWarning)
@@ -42,9 +46,10 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Measurement", "Mesh",
-    "Node", "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World",
-    "load", "load_node_plugins", "loads", "__version__", *nodes.__all__
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Feature", "Film", "LiveView",
+    "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
+    "ViewpointInfo", "Worker", "World", "denoise", "features", "load", "load_node_plugins", "loads",
+    "__version__", *nodes.__all__
 ]
 
 _SUBMODULES = ("control", "dask", "interop", "notebook", "rt")

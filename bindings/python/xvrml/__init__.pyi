@@ -11,6 +11,7 @@ from typing import (
     Iterator,
     List,
     Mapping,
+    NamedTuple,
     Optional,
     Sequence,
     TextIO,
@@ -373,6 +374,13 @@ class Picture:
 
     @property
     def stats(self) -> Dict[str, Any]:
+        ...
+
+    @property
+    def note(self) -> str:
+        ...
+
+    def denoised(self, *, threads: int = ...) -> Picture:
         ...
 
     @property
@@ -799,6 +807,29 @@ class LiveView:
 
 
 def load_node_plugins(path: Union[None, str, "os.PathLike[str]"] = ...) -> List[str]:
+    ...
+
+
+class Feature(NamedTuple):
+    name: str
+    text: str
+    available: bool
+    detail: str
+    file: str
+    how: str
+
+
+def features() -> Dict[str, Feature]:
+    ...
+
+
+def denoise(
+    colour: npt.ArrayLike,
+    albedo: Optional[npt.ArrayLike] = ...,
+    normal: Optional[npt.ArrayLike] = ...,
+    *,
+    threads: int = ...,
+) -> npt.NDArray[np.float32]:
     ...
 
 
