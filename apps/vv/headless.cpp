@@ -37,9 +37,7 @@ class Headless {
  public:
   Headless(const Options& options, const std::string& commandLine)
       : options_(options), commandLine_(commandLine) {
-    if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
-                                        options_.render.shaderPath);
+    options_.view.shader = readCameraShader(options_);
   }
 
   int run() {
