@@ -73,9 +73,9 @@ struct SideInfo {
   const char* name;
   double right, above;
 };
-constexpr SideInfo sides[] = {{"three-quarter", 35, 25}, {"above", 20, 50}, {"front", 0, 0},
-                              {"back", 180, 0},          {"left", -90, 0},  {"right", 90, 0},
-                              {"top", 0, 90},            {"bottom", 0, -90}};
+constexpr SideInfo sides[] = {
+    {"three-quarter", 35, 25}, {"above", 20, 50}, {"front", 0, 0}, {"back", 180, 0},
+    {"left", -90, 0},          {"right", 90, 0},  {"top", 0, 90},  {"bottom", 0, -90}};
 
 // Writes the axes of a camera that looks at a model from a side.
 void sideView(Side side, xvrml::Axis axis, double view[16]) {

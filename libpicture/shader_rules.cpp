@@ -53,9 +53,8 @@ std::array<float, 3> readColour(const std::string& text) {
     const auto read = std::from_chars(at, end, out[k]);
     const bool follows = k < 2 ? read.ptr != end && *read.ptr == ',' : read.ptr == end;
     if (read.ec != std::errc() || !follows || !(out[k] >= 0 && out[k] <= 1))
-      throw ShaderError(
-          fmt::format("colour: R,G,B from 0 to 1, as in diffuseColor, was expected, not \"{}\"",
-                      text));
+      throw ShaderError(fmt::format(
+          "colour: R,G,B from 0 to 1, as in diffuseColor, was expected, not \"{}\"", text));
     at = read.ptr + 1;
   }
   return out;
@@ -78,8 +77,8 @@ std::pair<Selector, std::string> readRule(const std::string& text) {
     std::string pattern = selector.substr(prefix.size());
     if (kind == Kind::colour) return {{kind, {}, readColour(pattern)}, shader};
     if (pattern.empty())
-      throw ShaderError(fmt::format("a name was expected after {}, such as {}PIN-*", prefix,
-                                    prefix));
+      throw ShaderError(
+          fmt::format("a name was expected after {}, such as {}PIN-*", prefix, prefix));
     return {{kind, std::move(pattern), {}}, shader};
   }
   return {{Kind::name, selector, {}}, shader};
@@ -92,10 +91,10 @@ Node& findNode(const std::string& name, const World& world) {
   std::vector<std::string> known;
   for (const auto& [one, node] : world.scope.names) known.push_back(one);
   const std::string near = nearest::word(name, known);
-  throw ShaderError(
-      known.empty() ? "no node of the world has a DEF name; use * for all shapes"
-                    : fmt::format("no node is called {}{}", name,
-                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  throw ShaderError(known.empty()
+                        ? "no node of the world has a DEF name; use * for all shapes"
+                        : fmt::format("no node is called {}{}", name,
+                                      near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
 std::optional<std::array<float, 3>> colourOf(const Node* material) {
@@ -267,8 +266,8 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
     if (!shader)
       shader = readShader(shaderText, rule.where.c_str(), RT_SURFACE, shaderPath, rule.folder);
     if (shapes.empty() && selector.kind == Kind::name)
-      throw wrong(fmt::format("{} is not part of a shape, and no shape is below it",
-                              selector.pattern));
+      throw wrong(
+          fmt::format("{} is not part of a shape, and no shape is below it", selector.pattern));
     if (shapes.empty() && selector.kind != Kind::rest)
       world.diagnostics.warn(
           {}, fmt::format("{} {}: no shape of the world matches", rule.where, rule.text));

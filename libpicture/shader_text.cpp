@@ -124,7 +124,8 @@ int wholeNumber(const std::string& text) {
 }
 
 std::string quoted(const std::string& text) {
-  if (text.find('\'') != text.npos) throw ShaderError("a quotation mark is not possible in " + text);
+  if (text.find('\'') != text.npos)
+    throw ShaderError("a quotation mark is not possible in " + text);
   return "'" + text + "'";
 }
 
@@ -132,13 +133,13 @@ std::string quoted(const std::string& text) {
 std::string optionOf(const RTparameterInfo& info, const std::string& value,
                      const std::string& folder) {
   switch (info.type) {
-  case RT_PARAM_TEXTURE: return fmt::format("texture {} {}", info.name, quoted(fileUrl(value, folder)));
+  case RT_PARAM_TEXTURE:
+    return fmt::format("texture {} {}", info.name, quoted(fileUrl(value, folder)));
   case RT_PARAM_STRING:
     if (value.starts_with('@'))
       return fmt::format("file {} {}", info.name, quoted(fileUrl(value.substr(1), folder)));
     return fmt::format("string {} {}", info.name, quoted(value));
-  case RT_PARAM_INT:
-    return fmt::format("1i {} {}", info.name, wholeNumber(value));
+  case RT_PARAM_INT: return fmt::format("1i {} {}", info.name, wholeNumber(value));
   default: break;
   }
   std::vector<float> list = numbers(value);
@@ -146,7 +147,7 @@ std::string optionOf(const RTparameterInfo& info, const std::string& value,
   if (info.type == RT_PARAM_COLOR && list.size() == 1) list.resize(3, list[0]);
   if (info.type != RT_PARAM_FLOATS && list.size() != count)
     throw ShaderError(fmt::format("{} number{} expected, not \"{}\"", count,
-                                 count == 1 ? " was" : "s were", value));
+                                  count == 1 ? " was" : "s were", value));
   std::string option = info.type == RT_PARAM_FLOATS ? "floats " : fmt::format("{}f ", count);
   option += info.name;
   for (const float x : list) {
@@ -194,14 +195,14 @@ std::vector<std::string> optionsOf(const Written& written, RTenum role,
   if (shaderClass == 0) {
     const std::string why = lastMessage();
     throw ShaderError(why + (why.ends_with('?') ? "" : ";") +
-                     " vv --list-shaders lists the classes");
+                      " vv --list-shaders lists the classes");
   }
   RTenum found = 0;
   int count = 0;
   rtGetShaderClass(shaderClass, &found, &count);
   if (found != role)
     throw ShaderError(fmt::format("{} is a shader for a {}, not for a {}", written.name,
-                                 roleName(found), roleName(role)));
+                                  roleName(found), roleName(role)));
   std::vector<RTparameterInfo> infos(size_t(std::max(count, 0)));
   std::vector<std::string> names, options;
   for (size_t i = 0; i < infos.size(); ++i) {
@@ -215,9 +216,9 @@ std::vector<std::string> optionsOf(const Written& written, RTenum role,
       std::string all;
       for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
       throw ShaderError(fmt::format("{} has no parameter {}{}", written.name, setting.name,
-                                   !near.empty() ? fmt::format("; did you mean {}?", near)
-                                   : all.empty() ? ", it has none at all"
-                                                 : "; it has " + all));
+                                    !near.empty() ? fmt::format("; did you mean {}?", near)
+                                    : all.empty() ? ", it has none at all"
+                                                  : "; it has " + all));
     }
     try {
       options.push_back(optionOf(infos[size_t(at - names.begin())], setting.value, folder));

@@ -30,9 +30,9 @@ struct SoftBox {
   double wide, high;   // half sizes in degrees
   double radiance;
 };
-// Key from the left, strip from the right, a rim behind, and one overhead.
+// Key from the left, strip from the right, a rim behind; none overhead, where flat models reflect.
 constexpr SoftBox boxes[] = {
-    {-50, 45, 26, 20, 5.0}, {70, 30, 12, 26, 2.2}, {165, 40, 34, 12, 3.0}, {0, 82, 30, 8, 2.4}};
+    {-50, 42, 28, 20, 5.0}, {70, 30, 12, 26, 2.2}, {165, 40, 34, 12, 2.8}};
 
 double smooth(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -56,9 +56,7 @@ double boxesAt(Vec d) {
   return sum;
 }
 
-double linearOf(double v) {
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
+double linearOf(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 } // namespace
 
@@ -77,8 +75,8 @@ StudioLight makeStudioLight(const std::array<float, 3>& backdrop, bool linear) {
   std::array<double, 3> irradiance{}; // of the ground, by the upper half
   for (int row = 0; row < mapHeight; ++row) {
     const double theta = std::numbers::pi * ((row + 0.5) / mapHeight - 0.5); // above the horizon
-    const double weight = std::sin(theta) * std::cos(theta) *
-                          (std::numbers::pi / mapHeight) * (2 * std::numbers::pi / mapWidth);
+    const double weight = std::sin(theta) * std::cos(theta) * (std::numbers::pi / mapHeight) *
+                          (2 * std::numbers::pi / mapWidth);
     const double wall = 1 - smooth(0.1, 0.6, theta);
     for (int column = 0; column < mapWidth; ++column) {
       // the middle of the map is towards -z, its right half towards +x
@@ -94,8 +92,7 @@ StudioLight makeStudioLight(const std::array<float, 3>& backdrop, bool linear) {
     }
   }
   for (size_t c = 0; c < 3; ++c)
-    light.groundReflectance[c] =
-        std::clamp(base[c] * std::numbers::pi / irradiance[c], 0.0, 0.95);
+    light.groundReflectance[c] = std::clamp(base[c] * std::numbers::pi / irradiance[c], 0.0, 0.95);
   return light;
 }
 
@@ -176,9 +173,10 @@ void StudioSet::place(const Studio& studio, bool linear, const xvrml::CameraSett
   const double extent = 60 * radius;
   const Vec place = middle + up * (bottom - dot(middle, up));
   const std::array<double, 16> placed = {
-      across.x * extent, across.y * extent, across.z * extent, 0, top.x * extent, top.y * extent,
-      top.z * extent,    0,                 front.x * extent,  front.y * extent,
-      front.z * extent,  0,                 place.x,           place.y, place.z, 1};
+      across.x * extent, across.y * extent, across.z * extent, 0,
+      top.x * extent,    top.y * extent,    top.z * extent,    0,
+      front.x * extent,  front.y * extent,  front.z * extent,  0,
+      place.x,           place.y,           place.z,           1};
   if (instance_ == 0) {
     rtLoadName(0);
     rtLoadMatrixd(placed.data());

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "bare_model.h"
 #include "ending.h"
 #include "inputs.h"
 #include "libpicture/files/atomic_file.h"
@@ -64,6 +65,7 @@ class Headless {
     browser_ = startWorld(std::move(read), options_, problems_);
     const double startSeconds = secondsSinceStart() - before;
     const xvrml::World& world = browser_->world();
+    chooseBackground(options_, world);
     protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) {
       if (!options_.check)

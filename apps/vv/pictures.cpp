@@ -151,9 +151,8 @@ class Pictures {
       if (!clock.advance(moment.time))
         return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
                                  : finishOldest();
-      std::vector<Job> jobs =
-          pilot_ ? std::vector<Job>{scriptedJob()}
-                 : chooseJobs(options_, renderer.viewpoints(), i == 0);
+      std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()}
+                                     : chooseJobs(options_, renderer.viewpoints(), i == 0);
       views_ = jobs.size();
       for (Job& job : jobs) {
         job.turns = !turnsOneOfSeveral() || &job == &jobs.front();
@@ -168,9 +167,8 @@ class Pictures {
     finishSequence();
     endRecording();
     if (options_.cluster.used() && !anyWorker_ && !options_.audit && !options_.quiet)
-      sayWarning(total() == 1
-                     ? "no worker answered; this machine made the picture alone"
-                     : "no worker answered; this machine made the pictures alone");
+      sayWarning(total() == 1 ? "no worker answered; this machine made the picture alone"
+                              : "no worker answered; this machine made the pictures alone");
     return exitDone;
   }
 
@@ -180,9 +178,8 @@ class Pictures {
   // Tells whether it does so for films only; other files then get the picture at its beginning.
   bool turnsIntoFilm() const {
     return turnsOneOfSeveral() &&
-           std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
-             return output.film != picture::FilmKind::none;
-           });
+           std::any_of(options_.outputs.begin(), options_.outputs.end(),
+                       [](const Output& output) { return output.film != picture::FilmKind::none; });
   }
   size_t total() const {
     return turnsOneOfSeveral() ? options_.from.size() + moments_ - 1 : moments_ * views_;

@@ -18,7 +18,7 @@ studio = "white"
 [preset.technical]
 from = "three-quarter"
 background = "white"
-shader = "*=Phong"
+spp = 32
 
 # Materials of KiCad's library have names; the layers of its exporter have colours alone.
 [preset.pcb]

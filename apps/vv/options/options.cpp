@@ -48,10 +48,9 @@ void apply(const Setting& setting, Options& options) {
     else
       options.render.quality.set(option.quality, readQuality(option.quality, setting.value));
   } catch (const UsageError& error) {
-    throw UsageError(setting.where.empty()
-                         ? fmt::format("{}: {}", shownName(option), error.what())
-                         : fmt::format("{}: {}: {}", setting.where, longName(option).substr(2),
-                                       error.what()));
+    throw UsageError(setting.where.empty() ? fmt::format("{}: {}", shownName(option), error.what())
+                                           : fmt::format("{}: {}: {}", setting.where,
+                                                         longName(option).substr(2), error.what()));
   }
 }
 

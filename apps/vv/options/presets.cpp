@@ -31,18 +31,17 @@ constexpr int mostSamples = 4096;
 // The options that a preset may set. A vv.toml may come with a world from somewhere: no option here
 // writes files, reads files elsewhere, runs programs, trusts a world more, or uses the network.
 constexpr std::string_view allowed[] = {
-    "size",        "channels",  "colour",    "color",         "false-colour", "false-color",
-    "background",  "viewpoint", "camera",    "from",          "fit",          "up",
-    "fov",         "headlight", "fps",       "camera-shader", "turntable",    "compat",
-    "old-world",   "shader",    "studio",    "exact-shapes",  "environment",  "spp",
-    "error",       "depth",     "transport", "energy-cut",    "clamp",        "shadows",
-    "roulette",    "denoise",   "exposure",  "view"};
+    "size",       "channels",  "colour",    "color",         "false-colour", "false-color",
+    "background", "viewpoint", "camera",    "from",          "fit",          "up",
+    "fov",        "headlight", "fps",       "camera-shader", "turntable",    "compat",
+    "old-world",  "shader",    "studio",    "exact-shapes",  "environment",  "spp",
+    "error",      "depth",     "transport", "energy-cut",    "clamp",        "shadows",
+    "roulette",   "denoise",   "exposure",  "view"};
 
 // Options for the same purpose: one in a later layer replaces the others of earlier layers.
-constexpr std::array<std::string_view, 4> groups[] = {
-    {"viewpoint", "camera", "from", "fit"},
-    {"environment", "studio", "background", ""},
-    {"spp", "error", "time-limit", ""}};
+constexpr std::array<std::string_view, 4> groups[] = {{"viewpoint", "camera", "from", "fit"},
+                                                      {"environment", "studio", "background", ""},
+                                                      {"spp", "error", "time-limit", ""}};
 
 struct Document {
   std::string name;   // for messages
@@ -56,8 +55,7 @@ std::string placeOf(const Document& document, const toml::node& node) {
   return fmt::format("{}:{}:{}", document.name, at.line, at.column);
 }
 
-[[noreturn]] void refuse(const Document& document, const toml::node& node,
-                         const std::string& why) {
+[[noreturn]] void refuse(const Document& document, const toml::node& node, const std::string& why) {
   throw Failure{exitInput, fmt::format("{}: {}", placeOf(document, node), why)};
 }
 
@@ -82,8 +80,8 @@ Document readFile(const std::string& path) {
   file.read(text.data(), std::streamsize(text.size()));
   text.resize(size_t(std::max<std::streamsize>(file.gcount(), 0)));
   if (text.size() > fileBytes)
-    throw Failure{exitInput, fmt::format("{} is longer than {} bytes, too long for options", path,
-                                         fileBytes)};
+    throw Failure{exitInput,
+                  fmt::format("{} is longer than {} bytes, too long for options", path, fileBytes)};
   const std::string folder = fs::path(path).parent_path().string();
   return parse(text, path, folder.empty() ? "." : folder);
 }
@@ -113,9 +111,8 @@ const OptionInfo& optionNamed(const Document& document, const toml::key& key,
   for (const std::string_view one : allowed) known.emplace_back(one);
   const std::string near = nearest::word(std::string(name), known);
   const toml::source_position at = key.source().begin;
-  const std::string where = at.line > 0
-                                ? fmt::format("{}:{}:{}", document.name, at.line, at.column)
-                                : placeOf(document, node);
+  const std::string where = at.line > 0 ? fmt::format("{}:{}:{}", document.name, at.line, at.column)
+                                        : placeOf(document, node);
   throw Failure{exitInput,
                 exists ? fmt::format("{}: {} can only be set on the command line", where, name)
                        : fmt::format("{}: there is no option {}{}", where, name,
@@ -129,8 +126,8 @@ std::optional<std::string> textOf(const Document& document, const OptionInfo& op
   const bool isSwitch = !*option.argument, onOff = std::string_view(option.argument) == "on|off";
   if (const auto* flag = node.as_boolean()) {
     if (onOff) return flag->get() ? "on" : "off";
-    if (!isSwitch) refuse(document, node, fmt::format("{} was expected, not a boolean",
-                                                      option.argument));
+    if (!isSwitch)
+      refuse(document, node, fmt::format("{} was expected, not a boolean", option.argument));
     return flag->get() ? std::optional<std::string>("") : std::nullopt;
   }
   if (isSwitch) refuse(document, node, "true or false was expected");
@@ -256,8 +253,8 @@ void checkRoot(const Document& document) {
     const bool files = key.str() == "files" && node.is_array_of_tables(),
                presets = key.str() == "preset" && node.is_table();
     if (!files && !presets)
-      refuse(document, node, fmt::format("[[files]] or [preset.NAME] was expected, not {}",
-                                         key.str()));
+      refuse(document, node,
+             fmt::format("[[files]] or [preset.NAME] was expected, not {}", key.str()));
   }
   if (const toml::table* presets = document.root["preset"].as_table())
     for (const auto& [key, node] : *presets) { // reports wrong options of presets that are not used
