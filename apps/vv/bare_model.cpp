@@ -40,7 +40,8 @@ void chooseBackground(Options& options, const xvrml::World& world) {
                     render.channels == RT_RGBA && !options.outputs.empty();
   const bool forScreens =
       std::all_of(options.outputs.begin(), options.outputs.end(), [](const Output& output) {
-        return output.film != picture::FilmKind::none || output.format->appliesCurve;
+        return output.film != picture::FilmKind::none ||
+               (output.format->appliesCurve && std::string_view(output.format->name) != "ppm");
       });
   if (!open || !forScreens || !isBareModel(world)) return;
   options.render.background.kind = picture::Background::Kind::colour;

@@ -12,7 +12,8 @@ namespace vv {
 bool isBareModel(const xvrml::World& world);
 
 // Sets the background of such a model, if the pictures are made for screens and the options leave
-// the background open. EXR files and comparisons keep the world as it is.
+// the background open. EXR and PPM files, which programs read, and comparisons keep the world as it
+// is.
 void chooseBackground(Options& options, const xvrml::World& world);
 
 } // namespace vv
