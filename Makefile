@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel cross-aarch64
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel cross-aarch64 bench-board
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -183,6 +183,11 @@ python-sequences: build
 PARTS ?= 100000
 bench-parts: build
 	@$(PYTHON) tools/bench_parts.py --vv $(R)/bin/vv --parts $(PARTS)
+
+## make bench-board   seconds of one picture of a KiCad board, and FLIP to its picture of 1,024 samples, into build/bench/board;
+##                   needs flip-evaluator on PYTHONPATH and an idle machine
+bench-board: build
+	@$(PYTHON) tools/bench_board.py --vv $(R)/bin/vv --out build/bench/board
 
 ## make bench-rays     ray queries from numpy beside raw Embree, Open3D and embreex
 bench-rays: build

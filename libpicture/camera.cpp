@@ -68,6 +68,42 @@ void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axi
   }
 }
 
+// A direction from the model to the eye: degrees to the right of the front, and above.
+struct SideInfo {
+  const char* name;
+  double right, above;
+};
+constexpr SideInfo sides[] = {
+    {"three-quarter", 35, 25}, {"above", 20, 50}, {"front", 0, 0}, {"back", 180, 0},
+    {"left", -90, 0},          {"right", 90, 0},  {"top", 0, 90},  {"bottom", 0, -90}};
+
+// Writes the axes of a camera that looks at a model from a side.
+void sideView(Side side, xvrml::Axis axis, double view[16]) {
+  constexpr double radians = std::numbers::pi / 180;
+  const SideInfo& info = sides[size_t(side)];
+  double quarter[16], upward[3];
+  xvrml::threeQuarterView(axis, quarter);
+  xvrml::upVector(axis, upward);
+  // the front is 35 degrees to the left of the three-quarter view
+  const Vec up{upward[0], upward[1], upward[2]}, across{quarter[0], quarter[1], quarter[2]};
+  const Vec forward = cross(across, up); // horizontal, from the model to the eye
+  const auto turned = [&](double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return Vec{c * forward.x + s * across.x, c * forward.y + s * across.y,
+               c * forward.z + s * across.z};
+  };
+  const double angle = (info.right - 35) * radians, above = info.above * radians;
+  const Vec level = turned(angle), right = turned(angle + std::numbers::pi / 2);
+  const double c = std::cos(above), s = std::sin(above);
+  const Vec back{c * level.x + s * up.x, c * level.y + s * up.y, c * level.z + s * up.z};
+  // at the bottom the picture's right side stays where it is for an eye that looks from the top
+  const double mirror = side == Side::bottom ? -1 : 1;
+  const Vec x{mirror * right.x, mirror * right.y, mirror * right.z}, y = cross(back, x);
+  const double columns[16] = {x.x,    x.y,    x.z,    0, y.x, y.y, y.z, 0,
+                              back.x, back.y, back.z, 0, 0,   0,   0,   1};
+  std::copy_n(columns, 16, view);
+}
+
 // Shows a model from three quarters, or a figure in the x-y plane from the front.
 xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy,
                                   double aspect) {
@@ -87,6 +123,20 @@ bool lookAtMatrix(const View& view, double matrix[16]) {
   LookAt look = *view.lookAt;
   if (view.up && !look.saysUp) xvrml::upVector(*view.up, look.up);
   return lookAtMatrix(look, matrix);
+}
+
+std::optional<Side> sideNamed(std::string_view name) {
+  for (size_t i = 0; i < std::size(sides); ++i)
+    if (name == sides[i].name) return Side(i);
+  return {};
+}
+
+const char* sideName(Side side) { return sides[size_t(side)].name; }
+
+std::string sideNames() {
+  std::string all;
+  for (const SideInfo& info : sides) all += (all.empty() ? "" : ", ") + std::string(info.name);
+  return all;
 }
 
 static constexpr const char* axisNames[] = {"x", "y", "z", "-x", "-y", "-z"};
@@ -117,7 +167,12 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
     camera.fovy = view.pinhole->fovy;
     return camera;
   }
-  if (view.lookAt) {
+  if (view.side) {
+    double axes[16];
+    sideView(*view.side, upOf(mapper, view), axes);
+    camera = view.turns ? xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect)
+                        : xvrml::cameraAround(mapper.bounds(), axes, fovy, aspect);
+  } else if (view.lookAt) {
     lookAtMatrix(view, camera.matrix);
     camera.fovy = fovy;
     if (view.fit)

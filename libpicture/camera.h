@@ -15,6 +15,23 @@ struct LookAt {
   bool saysUp = false; // false: the view's up axis, where it has one, replaces `up`
 };
 
+// A side that a model is seen from. The front is where an eye stands that has x to its right.
+enum class Side : unsigned char {
+  threeQuarter, // 35 degrees to the right of the front and 25 above
+  above,        // 20 degrees to the right of the front and 50 above
+  front,
+  back,
+  left,
+  right,
+  top,   // the front is below in the picture
+  bottom // the model is turned over about the axis that points from the front to the back
+};
+// Returns the side with a name such as "three-quarter" or "top". sideName is the inverse;
+// sideNames lists all names for messages.
+std::optional<Side> sideNamed(std::string_view name);
+const char* sideName(Side side);
+std::string sideNames();
+
 // Describes where a picture is taken from. The caller sets one of viewpoint, lookAt and fit, or
 // lookAt and fit together: the direction of lookAt, at the distance that shows everything. If none
 // is set, the camera is the world's first Viewpoint. A world without a Viewpoint but with a given
@@ -31,6 +48,9 @@ struct View {
   std::optional<size_t> viewpoint; // index into OpenRTMapper::viewpoints()
   std::optional<LookAt> lookAt;
   bool fit = false;
+  // The whole world from this side; it replaces the direction of viewpoint and lookAt.
+  std::optional<Side> side;
+  bool turns = false; // with side: at such a distance that a full turn stays in the picture
   // camera of a running world; it replaces the first Viewpoint
   std::optional<xvrml::CameraSettings> viewer;
   // none: y if a Viewpoint is bound, otherwise what the world suggests

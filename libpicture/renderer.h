@@ -16,6 +16,7 @@
 #include "libpicture/camera.h"
 #include "libpicture/files/picture.h"
 #include "libpicture/quality.h"
+#include "libpicture/studio.h"
 #include "openrt/openrt.h"
 #include "xvrml/browser.h"
 #include "xvrml/mapper.h"
@@ -52,6 +53,7 @@ struct RenderSettings {
   std::string environment; // Environment map (radiance.h) that replaces the world's Background.
   double environmentIntensity = 1;
   Background background; // Every kind except Kind::world excludes `environment`.
+  Studio studio;         // on: replaces the world's Background; excludes the two above
   // Each picture is rebuilt from its samples and those of the renderer's earlier pictures
   // (live/reconstruction.h). It has only the channel rgba, it is biased, and Picture::note says so.
   // A picture that was interrupted has its samples as they are, and no note. For pictures of one

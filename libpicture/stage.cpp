@@ -145,6 +145,8 @@ std::string Stage::close(bool leaveMapper) {
     rtDeleteTexture(environmentTexture_);
   }
   environment_ = environmentTexture_ = 0;
+  if (borrowed_) studio_.clear();
+  studio_.forget();
   const RTcontext context = context_.exchange(nullptr);
   if (std::exchange(borrowed_, false)) {
     settings.cluster->giveBack();
@@ -200,10 +202,13 @@ xvrml::CameraSettings Stage::cameraOf(const View& view) const {
 }
 
 void Stage::prepare(const View& view) {
-  mapper_->setHeadlight(settings.headlight);
-  mapper_->setModelLight(settings.environment.empty());
+  using Headlight = xvrml::MapOptions::Headlight;
+  const bool studio = settings.studio.on;
+  mapper_->setHeadlight(studio && settings.headlight == Headlight::automatic ? Headlight::off
+                                                                             : settings.headlight);
+  mapper_->setModelLight(settings.environment.empty() && !studio);
   // otherwise alpha is the coverage by shapes
-  mapper_->setBackground(settings.background.kind == Background::Kind::world);
+  mapper_->setBackground(settings.background.kind == Background::Kind::world && !studio);
   readBackground();
   shown_ = cameraOf(view);
   mapper_->map(shown_);
@@ -212,6 +217,11 @@ void Stage::prepare(const View& view) {
     rtPerspective(view.pinhole->fovy * 180 / std::numbers::pi);
   }
   useEnvironment();
+  if (studio) {
+    studio_.place(settings.studio, settings.linear, shown_, mapper_->bounds(),
+                  upOf(*mapper_, view));
+    throwOnError("studio");
+  }
   if (memoryExhausted_) throw std::bad_alloc();
 }
 

@@ -94,6 +94,7 @@ class Stage {
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
   RTid environment_ = 0, environmentTexture_ = 0;
+  StudioSet studio_;
   BackgroundLayer backgroundLayer_{{}, true}; // drawn behind the frames, as `background_` says
   Background background_;
   xvrml::CameraSettings shown_{};

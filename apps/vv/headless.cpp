@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "bare_model.h"
 #include "ending.h"
 #include "inputs.h"
 #include "libpicture/files/atomic_file.h"
@@ -38,9 +39,7 @@ class Headless {
  public:
   Headless(const Options& options, const std::string& commandLine)
       : options_(options), commandLine_(commandLine) {
-    if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
-                                        options_.render.shaderPath);
+    options_.view.shader = readCameraShader(options_);
   }
 
   int run() {
@@ -71,6 +70,7 @@ class Headless {
     browser_ = startWorld(std::move(read), options_, problems_);
     const double startSeconds = secondsSinceStart() - before;
     const xvrml::World& world = browser_->world();
+    chooseBackground(options_, world);
     protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) {
       if (!options_.check)

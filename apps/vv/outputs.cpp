@@ -29,11 +29,20 @@ std::vector<Named> outputsOf(const Options& options) {
   const std::optional<long long> frame =
       options.isSequence() ? std::optional(Timeline(options)[0].frame.value_or(0)) : std::nullopt;
   std::vector<Named> all;
+  std::vector<std::string> views = {""};
+  if (options.from.size() > 1) {
+    views.clear();
+    for (const picture::Side side : options.from) views.emplace_back(picture::sideName(side));
+  }
   for (const Output& output : options.outputs)
-    if (!options.allViewpoints())
-      all.push_back({output.option(),
-                     pathFor(output.path,
-                             {"", output.film != picture::FilmKind::none ? std::nullopt : frame})});
+    for (const std::string& view : views) {
+      if (options.allViewpoints()) continue;
+      const bool film = output.film != picture::FilmKind::none;
+      if (!film || view == views[0])
+        all.push_back({output.option(), pathFor(output.path, {view, film || views.size() > 1
+                                                                        ? std::nullopt
+                                                                        : frame})});
+    }
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--write", options.write});
   all.push_back({"--record", options.render.record});
@@ -51,9 +60,10 @@ std::vector<Named> inputsOf(const Options& options) {
                             {"the file of --allow-keys", options.cluster.allow}};
   if (options.cluster.workers.starts_with('@'))
     all.push_back({"the file of --workers", options.cluster.workers.substr(1)});
-  for (const std::string& shader : options.shaders) // DEF=CLASS:texture=@FILE
-    for (size_t at = shader.find("=@"); at != shader.npos; at = shader.find("=@", at + 1))
-      all.push_back({"a file of --shader", shader.substr(at + 2, shader.find(':', at) - at - 2)});
+  for (const picture::ShaderRule& rule : options.shaders) // DEF=CLASS:texture=@FILE
+    for (size_t at = rule.text.find("=@"); at != rule.text.npos; at = rule.text.find("=@", at + 1))
+      all.push_back(
+          {"a file of --shader", rule.text.substr(at + 2, rule.text.find(':', at) - at - 2)});
   std::erase_if(all, [](const Named& one) { return one.path.empty() || one.path == "-"; });
   return all;
 }

@@ -50,11 +50,24 @@ constexpr int stuckSeconds = 4;
 struct Job {
   picture::View view;
   PictureName name;
+  bool turns = true;   // the picture is part of the run's films
+  bool isStill = true; // the picture is written to files of one picture
 };
 
-// Returns the views of one moment.
+// Returns the views of one moment. The turntable goes round from the first side of --from.
 std::vector<Job> chooseJobs(const Options& options,
-                            const std::vector<xvrml::ViewpointInfo>& viewpoints) {
+                            const std::vector<xvrml::ViewpointInfo>& viewpoints,
+                            bool first = true) {
+  if (options.from.size() > 1) {
+    std::vector<Job> jobs;
+    for (const picture::Side side : options.from) {
+      jobs.push_back({options.view, {picture::sideName(side), {}}});
+      jobs.back().view.side = side;
+      jobs.back().view.turns = options.turntable > 0 && jobs.size() == 1;
+      if (options.turntable > 0 && !first) break;
+    }
+    return jobs;
+  }
   if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty()))
     return {{options.view, {}}};
   std::vector<Job> jobs;
@@ -146,11 +159,13 @@ class Pictures {
       if (!clock.advance(moment.time))
         return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
                                  : finishOldest();
-      std::vector<Job> jobs =
-          pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints());
+      std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()}
+                                     : chooseJobs(options_, renderer.viewpoints(), i == 0);
       views_ = jobs.size();
       for (Job& job : jobs) {
-        job.name.frame = moment.frame;
+        job.turns = !turnsOneOfSeveral() || &job == &jobs.front();
+        job.isStill = i == 0 || !turnsIntoFilm();
+        if (job.turns && !turnsIntoFilm()) job.name.frame = moment.frame;
         job.view.turn = moment.turn;
         if (const int code = makeOne(job, moment); code != exitDone) return code;
       }
@@ -160,13 +175,24 @@ class Pictures {
     finishSequence();
     endRecording();
     if (options_.cluster.used() && !anyWorker_ && !options_.audit && !options_.quiet)
-      sayWarning(moments_ * views_ == 1
-                     ? "no worker answered; this machine made the picture alone"
-                     : "no worker answered; this machine made the pictures alone");
+      sayWarning(total() == 1 ? "no worker answered; this machine made the picture alone"
+                              : "no worker answered; this machine made the pictures alone");
     return exitDone;
   }
 
  private:
+  // Tells whether the turntable goes round from one of several sides.
+  bool turnsOneOfSeveral() const { return options_.from.size() > 1 && options_.turntable > 0; }
+  // Tells whether it does so for films only; other files then get the picture at its beginning.
+  bool turnsIntoFilm() const {
+    return turnsOneOfSeveral() &&
+           std::any_of(options_.outputs.begin(), options_.outputs.end(),
+                       [](const Output& output) { return output.film != picture::FilmKind::none; });
+  }
+  size_t total() const {
+    return turnsOneOfSeveral() ? options_.from.size() + moments_ - 1 : moments_ * views_;
+  }
+
   // Warns if no output file keeps the requested transparency.
   void warnOfAlpha() const {
     if (options_.quiet || options_.render.background.kind != picture::Background::Kind::none ||
@@ -249,7 +275,7 @@ class Pictures {
     if (progress_ && !stage.empty()) {
       progress_->showStage(stage);
     } else if (progress_) {
-      const double all = double(moments_ * views_);
+      const double all = double(total());
       progress_->show(float((double(done_) + double(fraction)) / std::max(1.0, all)),
                       workersText(options_.render.cluster.get()));
     }
@@ -310,7 +336,7 @@ class Pictures {
     const FrameInFlight flight = std::move(inFlight_.front());
     inFlight_.pop_front();
     ++done_;
-    if (done_ == moments_ * views_) progress_.reset();
+    if (done_ == total()) progress_.reset();
     if (progress_) progress_->clear();
     reportClusterMessages();
     problems_.tell(browser_.world());
@@ -396,7 +422,7 @@ class Pictures {
                      const std::optional<picture::Picture>& coloured, Which only = Which::all) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
     for (const Output& output : options_.outputs) {
-      if (output.film != picture::FilmKind::none || !isOf(output, only)) continue;
+      if (output.film != picture::FilmKind::none || !job.isStill || !isOf(output, only)) continue;
       const bool shows = coloured && output.format->appliesCurve;
       const std::string bytes = output.format->encode(shows ? *coloured : wanted);
       if (output.path == "-") {
@@ -412,7 +438,7 @@ class Pictures {
   // Adds a picture to the film of its view.
   void addToFilms(const Job& job, const picture::Picture& made, Which only = Which::all) {
     for (const Output& output : options_.outputs) {
-      if (output.film == picture::FilmKind::none || !isOf(output, only)) continue;
+      if (output.film == picture::FilmKind::none || !job.turns || !isOf(output, only)) continue;
       const std::string path = pathFor(output.path, {job.name.viewpoint, {}});
       auto& [of, film] = films_[path];
       of = &output;
@@ -471,11 +497,11 @@ class Pictures {
                       duration(result.mapSeconds), duration(result.renderSeconds),
                       options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
-    if (options_.verbose && done_ == moments_ * views_) reportLast(result);
+    if (options_.verbose && done_ == total()) reportLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
     anythingShown_ = anythingShown_ || !nothing;
     // In a sequence, only the last picture prints a hint.
-    const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_);
+    const bool hints = !options_.isSequence() || (done_ == total() && !anythingShown_);
     if (nothing && hints && inFlight_.empty())
       if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty())
         say("vv: " + hint);

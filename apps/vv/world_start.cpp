@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "options/definitions.h"
-#include "options/shader_changes.h"
 #include "report/messages.h"
 #include "report/progress.h"
 
@@ -55,6 +54,12 @@ std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world
   return browser;
 }
 
+void giveShaders(const Options& options, xvrml::World& world) {
+  try {
+    picture::applyShaderRules(options.shaders, options.render.shaderPath, world);
+  } catch (const picture::ShaderError& error) { throw Failure{exitUsage, error.what()}; }
+}
+
 } // namespace
 
 std::unique_ptr<xvrml::World> readWorld(const std::string& path,
@@ -88,7 +93,7 @@ std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
       changes ? readDefinitions(options.definitions, *world) : std::vector<Definition>();
   for (const Definition& d : definitions)
     if (!d.asEvent) d.node->set(*d.field, d.value);
-  if (changes) changeShaders(options.shaders, options.render.shaderPath, *world);
+  if (changes) giveShaders(options, *world);
   std::unique_ptr<xvrml::Browser> browser = startScripts(std::move(world), options);
   for (const Definition& d : definitions)
     if (d.asEvent) browser->set(*d.node, d.field->name, d.value);

@@ -7,6 +7,7 @@
 * The recipe, the formula and the jobs of a release name files, targets and versions that exist.
 
 A tool that is not installed is named and skipped."""
+import os
 import pathlib
 import re
 import shlex
@@ -73,6 +74,33 @@ if shutil.which("shellcheck") and (done := run("shellcheck", "-s", "bash", scrip
     complain(script, done.stdout)
 if not re.search(r"^#SBATCH --", text, re.M) or text.index("#SBATCH") > text.index("set -euo"):
     complain(script, "options of sbatch stand before the first command")
+
+# Pictures of boards -------------------------------------------------------------------------------
+
+action = contrib / "github-action/action.yml"
+script = action.with_name("board-pictures.sh")
+if (done := run("bash", "-n", script)).returncode:
+    complain(script, done.stderr)
+if shutil.which("shellcheck") and (done := run("shellcheck", "-s", "bash", script)).returncode:
+    complain(script, done.stdout)
+for line in re.sub(r"\\\n", " ", script.read_text()).splitlines():
+    if re.match(r"vv\b", line):
+        check_command(script, shlex.split(line))
+if known["vv"]:
+    with tempfile.TemporaryDirectory() as folder:
+        done = run(script,
+                   root / "examples/kicad/blinker.wrl",
+                   pathlib.Path(folder) / "new/a.png",
+                   "--spp",
+                   1,
+                   env={
+                       **os.environ, "PATH": f"{build / 'bin'}:{os.environ['PATH']}",
+                       "SIZE": "40x30",
+                       "TURNTABLE": "2"
+                   })
+        made = sorted(path.name for path in pathlib.Path(folder, "new").glob("*"))
+        if done.returncode or made != ["a-above.gif", "a-above.png", "a-bottom.png", "a-top.png"]:
+            complain(script, f"it made {made}: {done.stderr}")
 
 # systemd -----------------------------------------------------------------------------------------
 
@@ -141,6 +169,21 @@ def check_pod(path, pod, labels):
 
 
 if yaml:
+    made = yaml.safe_load(action.read_text())
+    if made["runs"]["using"] != "composite" or any("shell" not in s for s in made["runs"]["steps"]):
+        complain(action, "no composite action, or a step without a shell")
+    used = set(re.findall(r"inputs\.(\w+)", action.read_text()))
+    if used != set(made["inputs"]):
+        complain(action, f"inputs that are not declared, or not used: {used ^ set(made['inputs'])}")
+    for step in made["runs"]["steps"]:
+        if "${{" in step["run"]:
+            complain(action, "an input is pasted into a script; pass it in the environment")
+        if (done := run("bash", "-n", "-c", step["run"])).returncode:
+            complain(action, done.stderr)
+    template = contrib / "kibot/board.kibot.yaml"
+    made = yaml.safe_load(template.read_text())
+    if made["kibot"]["version"] != 1 or [one["type"] for one in made["outputs"]] != ["vrml"]:
+        complain(template, "no KiBot configuration with a vrml output")
     objects = {}
     for path in sorted((contrib / "kubernetes").glob("*.yaml")):
         for one in yaml.safe_load_all(path.read_text()):

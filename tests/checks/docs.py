@@ -38,7 +38,7 @@ def missing(document, text):
         for target in re.findall(r"^make ([a-z][a-z0-9-]*)", code):
             if target not in targets:
                 yield f"no make target {target}"
-        for preset in re.findall(r"--preset ([a-z-]+)", code):
+        for preset in re.findall(r"cmake --preset ([a-z-]+)", code):
             if preset not in presets:
                 yield f"no preset {preset}"
     for link, anchor in re.findall(r"\]\(([^)#:\s]*)(#[^)\s]+)?\)", text):

@@ -48,7 +48,7 @@ def test_it_can_be_written(wall):
 
 
 @pytest.mark.parametrize("shader, words", [
-    ("Wall", "DEF=CLASS"),
+    ("Wall", "SELECTOR=CLASS"),
     ("Wal=Glass", "did you mean Wall?"),
     ("Wall=", "shader class was expected"),
     ("Wall=Nothing", "error: --shader Nothing: there is no shader class \"Nothing\"; looked in"),

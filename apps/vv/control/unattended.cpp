@@ -33,9 +33,7 @@ class Unattended {
                                                        open({urls, "", {}});
                                                      },
                                                      [this] { ended_ = true; }})) {
-    if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
-                                        options_.render.shaderPath);
+    options_.view.shader = readCameraShader(options_);
   }
 
   int run() {

@@ -168,6 +168,34 @@ double secondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+void addShader(Options& o, const std::string& value) {
+  try {
+    if (!value.starts_with('@')) {
+      picture::checkShaderRule(value);
+      return o.shaders.push_back({value, "--shader", {}, false});
+    }
+    for (picture::ShaderRule& rule : picture::readShaderRules(value.substr(1)))
+      o.shaders.push_back(std::move(rule));
+  } catch (const picture::ShaderError& error) {
+    throw UsageError(fmt::format("{}, not \"{}\"", error.what(), value));
+  } catch (const std::runtime_error& error) {
+    throw Failure{exitInput, fmt::format("--shader: {}", error.what())};
+  }
+}
+
+void setFrom(Options& o, const std::string& value) {
+  o.from.clear();
+  for (const std::string_view name : split(value, ',')) {
+    const std::optional<picture::Side> side = picture::sideNamed(name);
+    if (!side)
+      throw UsageError(fmt::format("sides of {}, separated by commas, were expected, not \"{}\"",
+                                   picture::sideNames(), name));
+    if (std::find(o.from.begin(), o.from.end(), *side) != o.from.end())
+      throw UsageError(fmt::format("{} is named twice", name));
+    o.from.push_back(*side);
+  }
+}
+
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
      "Write the picture to FILE. The suffix selects the format (" + picture::formatSuffixes() +
@@ -236,6 +264,12 @@ const OptionInfo table[] = {
      "--camera or of the first Viewpoint. A world without Viewpoint is shown in three-quarter "
      "view, and there --fit is the default.",
      [](Options& o, const std::string&) { o.view.fit = true; }},
+    {"--from", "LIST", "View",
+     "Show the whole model from these sides: three-quarter, above, front, back, left, right, top, "
+     "bottom. Several, separated by commas, make a picture each; the side replaces {viewpoint} in "
+     "the file name, or is added before the suffix. A turntable begins at the first one, and the "
+     "others get one picture.",
+     setFrom},
     {"--up", "x|y|z|-x|-y|-z", "View",
      "The axis that points up, for the three-quarter view, --turntable and --camera. Default: y in "
      "a world with a Viewpoint; otherwise it is guessed from the program that wrote the file and "
@@ -303,6 +337,15 @@ const OptionInfo table[] = {
        notEmpty(v, "a file name");
        o.recordInput = v;
      }},
+    {"--preset", "NAME", "Change",
+     "Use the options of a preset, unless others are given: studio (soft light, grey backdrop), "
+     "product (the same before white), technical (even light without shadows, white), pcb (a "
+     "studio for KiCad's boards, with materials by their names), or one of a vv.toml.",
+     [](Options&, const std::string&) {}},
+    {"--config", "FILE|none", "Change",
+     "Take presets and options from FILE, or from none, instead of the vv.toml beside the world "
+     "(docs/presets.md).",
+     [](Options&, const std::string&) {}},
     {"-D,--define", "DEF.FIELD=VALUE", "Change",
      "Set a field of a node with a DEF name before rendering. The value is written as in a VRML "
      "file (Door.translation='0 0 2', Sign.string='\"open\"'). May be given several times.",
@@ -332,19 +375,30 @@ const OptionInfo table[] = {
        o.render.linear = false;
        o.render.quality.set(RT_SHADOWS, 0);
      }},
-    {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
-     "Replace the surface shader of a shape, of all shapes with an appearance, or of everything "
-     "below a group: Ball=Glass:index=1.33, Wall=Diffuse:reflectance=.8,.1,.1. DEF is * for all "
-     "shapes that have no shader yet. CLASS is LIBRARY/CLASS for a class of a plug-in. The VALUE "
-     "of a texture is a file name; @FILE as VALUE reads a text from a file. May be given several "
-     "times.",
+    {"--shader", "SELECTOR=CLASS[:PARAM=VALUE...]|@FILE", "Change",
+     "Replace the surface shader of shapes: Ball=Glass:index=1.33, material:PIN-*=Metal. SELECTOR "
+     "is a DEF name (of a shape, an appearance, a Material or a group), or material:GLOB, "
+     "appearance:GLOB or shape:GLOB for all nodes with such DEF names, also in Inlines and "
+     "prototypes, or colour:R,G,B for Materials of about this diffuseColor, or * for all shapes "
+     "that have no shader yet. CLASS is LIBRARY/CLASS for a class of a plug-in. The VALUE of a "
+     "texture is a file name; @FILE as VALUE reads a text from a file. --shader @FILE reads rules, "
+     "one a line. May be given several times; the last rule that selects a shape wins.",
+     addShader, true},
+    {"--studio", "COLOUR", "Change",
+     "Light a model as in a studio: soft boxes that stand where the camera stands, a ground that "
+     "catches its shadow, and a backdrop of COLOUR (as for --background), instead of the world's "
+     "Background. Lights of the world shine, too.",
      [](Options& o, const std::string& v) {
-       const size_t equals = v.find('=');
-       if (equals == v.npos || equals == 0)
-         throw UsageError(fmt::format("DEF=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", v));
-       o.shaders.push_back(v);
-     },
-     true},
+       try {
+         const picture::Background read = picture::readBackground(v);
+         if (read.kind != picture::Background::Kind::colour) throw std::invalid_argument("");
+         o.render.studio = {true, read.colour};
+       } catch (const std::invalid_argument&) {
+         throw UsageError(fmt::format("a colour (a name such as white, #rgb, #rrggbb, or R,G,B "
+                                      "from 0 to 1) was expected, not \"{}\"",
+                                      v));
+       }
+     }},
     {"--environment", "FILE[:INTENSITY]", "Change",
      "Light the world from all around with a picture of radiance (exr, hdr, pfm), instead of its "
      "Background. The picture is a longitude-latitude map with its middle towards -z; INTENSITY "

@@ -12,6 +12,7 @@
 #include "habits.h"
 #include "libpicture/denoiser.h"
 #include "nearest.h"
+#include "presets.h"
 
 namespace vv {
 
@@ -39,13 +40,28 @@ std::string shownName(const OptionInfo& option) {
   return std::string(names.substr(0, names.find(',')));
 }
 
-void apply(const OptionInfo& option, Options& options, const std::string& value) {
+void apply(const Setting& setting, Options& options) {
+  const OptionInfo& option = *setting.option;
   try {
-    if (option.apply)
-      option.apply(options, value);
+    if (!setting.where.empty())
+      applyConfined(setting, options);
+    else if (option.apply)
+      option.apply(options, setting.value);
     else
-      options.render.quality.set(option.quality, readQuality(option.quality, value));
-  } catch (const UsageError& error) { throw UsageError(shownName(option) + ": " + error.what()); }
+      options.render.quality.set(option.quality, readQuality(option.quality, setting.value));
+  } catch (const UsageError& error) {
+    throw UsageError(setting.where.empty() ? fmt::format("{}: {}", shownName(option), error.what())
+                                           : fmt::format("{}: {}: {}", setting.where,
+                                                         longName(option).substr(2), error.what()));
+  }
+}
+
+// A colour of --background is the backdrop of a studio.
+void mergeBackdrop(Options& options) {
+  picture::Background& background = options.render.background;
+  if (!options.render.studio.on || background.kind != picture::Background::Kind::colour) return;
+  options.render.studio.backdrop = background.colour;
+  background = {};
 }
 
 std::vector<std::string> allNames() {
@@ -95,7 +111,7 @@ int printed(const Options& o) {
          (inspectionsOf(o) > 0);
 }
 
-bool showsOnePicture(const Options& o) { return !o.allViewpoints() && !o.isSequence(); }
+bool showsOnePicture(const Options& o) { return !o.severalViews() && !o.isSequence(); }
 
 // A combination of options that cannot be used, and the message for it.
 struct Rule {
@@ -107,6 +123,18 @@ struct Rule {
 constexpr Rule rules[] = {
     {[](const Options& o) { return !o.viewpoint.empty() && (o.view.lookAt || o.view.fit); },
      "--viewpoint cannot be used with --camera or --fit, which choose another view"},
+    {[](const Options& o) {
+       return !o.from.empty() && (!o.viewpoint.empty() || o.view.lookAt || o.view.fit);
+     },
+     "--from cannot be used with --viewpoint, --camera or --fit, which choose another view"},
+    {[](const Options& o) {
+       return o.render.studio.on && (!o.render.environment.empty() ||
+                                     o.render.background.kind != Background::Kind::world);
+     },
+     "--studio has a light and a backdrop of its own: it cannot be used with --environment or "
+     "with a --background other than a colour"},
+    {[](const Options& o) { return o.render.studio.on && o.measures(); },
+     "--measure reads the light of the world: it cannot be used with --studio"},
     {[](const Options& o) {
        return !o.render.environment.empty() && o.render.background.kind != Background::Kind::world;
      },
@@ -145,7 +173,7 @@ constexpr Rule rules[] = {
     {[](const Options& o) { return (o.audit || !o.compare.empty()) && printed(o) > 0; },
      "--audit and --compare write to standard output: nothing else can go there"},
     {[](const Options& o) {
-       return o.measures() && (o.audit || o.isSequence() || o.allViewpoints() || o.watch ||
+       return o.measures() && (o.audit || o.isSequence() || o.severalViews() || o.watch ||
                                !o.render.record.empty());
      },
      "--measure reads the sensors of one moment: it cannot be used with --audit, --frames, "
@@ -169,9 +197,9 @@ constexpr Rule rules[] = {
     {[](const Options& o) { return o.check && o.makesPictures(); },
      "--check makes no picture: it cannot be used with -o"},
     {[](const Options& o) {
-       return o.makesPictures() && o.allViewpoints() && writesToStandardOutput(o);
+       return o.makesPictures() && o.severalViews() && writesToStandardOutput(o);
      },
-     "--viewpoint all needs file names, not standard output"},
+     "--viewpoint all and several sides of --from need file names, not standard output"},
     // the page
     {[](const Options& o) {
        return o.has(Job::serve) &&
@@ -191,8 +219,8 @@ constexpr Rule rules[] = {
      },
      "--no-window cannot be used with --input, --record-input or --watch"},
     // the window
-    {[](const Options& o) { return o.showsWorld() && o.allViewpoints(); },
-     "--viewpoint all needs -o"},
+    {[](const Options& o) { return o.showsWorld() && o.severalViews(); },
+     "--viewpoint all and several sides of --from need -o"},
     {[](const Options& o) {
        return !o.recordInput.empty() && (!o.opensWindow() || !o.inputScript.empty());
      },
@@ -204,9 +232,10 @@ constexpr Rule rules[] = {
     {[](const Options& o) { return !o.inputScript.empty() && o.opensWindow() && o.time; },
      "only one of --input and --time can be used in the window"},
     {[](const Options& o) {
-       return !o.inputScript.empty() && (o.audit || o.turntable || o.allViewpoints());
+       return !o.inputScript.empty() && (o.audit || o.turntable || o.severalViews());
      },
-     "--input cannot be used with --audit, --turntable or --viewpoint all"},
+     "--input cannot be used with --audit, --turntable, --viewpoint all or several sides of "
+     "--from"},
     {[](const Options& o) {
        const JobInfo* job = o.job();
        return o.input.empty() && !o.opensWindow() && (!job || job->needsWorld);
@@ -239,7 +268,8 @@ void checkPreview(const Options& o) {
   const std::pair<bool, const char*> refused[] = {
       {!several || o.outputs.empty(),
        "--preview needs -o with several pictures: --frames FIRST-LAST or --turntable N"},
-      {o.allViewpoints(), "--preview follows one view: it cannot be used with --viewpoint all"},
+      {o.severalViews(), "--preview follows one view: it cannot be used with --viewpoint all or "
+                         "several sides of --from"},
       {o.render.channels != RT_RGBA, "--preview rebuilds rgba only: it cannot be used with other "
                                      "--channels"},
       {o.render.error > 0 || o.render.timeLimit > 0,
@@ -369,15 +399,23 @@ Options readCommandLine(int argc, char** argv) {
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty()) options.input = inputs[0];
   if (servesPage(argc, argv)) options.jobs.push_back(Job::serve);
+  std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
     if (added[i]->count() == 0) continue;
-    if (!*option.argument) apply(option, options, "");
+    if (!*option.argument) given.push_back({&option, "", {}, {}, false});
     // If an option holds one value, the last one counts.
     const size_t first = option.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
     for (size_t k = first; k < values[i].size(); ++k)
-      apply(option, options, option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k]);
+      given.push_back({&option,
+                       option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k],
+                       {},
+                       {},
+                       false});
   }
+  for (const Setting& setting : withPresets(std::move(given), options.input))
+    apply(setting, options);
+  mergeBackdrop(options);
   checkTogether(options);
   if (!options.inputScript.empty()) {
     options.script = std::make_shared<InputScript>(readInputScript(options.inputScript));
@@ -385,6 +423,9 @@ Options readCommandLine(int argc, char** argv) {
       options.time = options.script->end;
   }
   const picture::RenderSettings& render = options.render;
+  if (options.from.size() == 1 || options.opensWindow())
+    options.view.side = options.from.empty() ? std::optional<picture::Side>() : options.from[0];
+  options.view.turns = options.turntable > 0;
   options.render.samples =
       options.samples.value_or(render.timeLimit > 0                            ? 65536
                                : render.error > 0                              ? 4096

@@ -14,6 +14,7 @@
 #include "libpicture/files/film.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/renderer.h"
+#include "libpicture/shader_rules.h"
 #include "session/input/input_script.h"
 #include "values.h"
 #include "xvrml/world.h"
@@ -73,8 +74,10 @@ struct Options {
   double fps = 30;   // rate of frames and films; also the step of the world's clock
   int turntable = 0; // number of pictures around the world; 0: none
   std::vector<std::string> definitions; // texts of the form DEF.field=value
-  std::vector<std::string> shaders;     // texts of the form DEF=Class:param=value
-  std::string cameraShader;             // text of the form Class:param=value
+  std::vector<picture::ShaderRule> shaders;
+  std::string cameraShader; // text of the form Class:param=value
+  std::string cameraShaderFolder; // confines the files that it names; empty: anywhere
+  std::vector<picture::Side> from; // sides that the model is seen from
   std::string viewpoint;                // viewpoint as given: a name, a number or "all"
   bool check = false, strict = false;
   bool json = false;
@@ -100,6 +103,8 @@ struct Options {
   std::string measure;  // file for the readings of the sensors, .csv or .json; empty: none
 
   bool allViewpoints() const { return viewpoint == "all"; }
+  // Tells whether each moment has several pictures, whose names say which.
+  bool severalViews() const { return allViewpoints() || from.size() > 1; }
   bool makesPictures() const {
     return !outputs.empty() || !compare.empty() || audit > 0 || measures();
   }

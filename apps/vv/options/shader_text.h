@@ -1,22 +1,12 @@
-// shader_text.h: Parses the command line's syntax for shaders: Class:param=value:... and
-// library/Class:param=value:... The class is looked up in a context of its own. [main thread]
+// shader_text.h: Reads the shader of --camera-shader. [main thread]
 #pragma once
 
-#include <string>
-
-#include "openrt/openrt.h"
-#include "xvrml/node.h"
+#include "libpicture/shader_text.h"
+#include "options/options.h"
 
 namespace vv {
 
-// Returns an ORTShader node with that class and these parameters. Throws UsageError that says what
-// was expected: the nearest class or parameter, the type of a value, or its range. `option` is for
-// messages, such as "--shader"; `role` is RT_SURFACE, RT_CAMERA and so on.
-xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
-                          const std::string& shaderPath);
-
-// Returns "surface", "light" and so on for RT_SURFACE, RT_LIGHT and so on.
-const char* roleName(RTenum role);
-const char* parameterTypeName(RTenum type);
+// Returns the camera shader that the options ask for; null if there is none. Throws UsageError.
+xvrml::NodeRef readCameraShader(const Options& options);
 
 } // namespace vv

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/walk.h"
 #include "openrt/openrt.h"
 #include "xvrml/numbers.h"
-#include "xvrml/walk.h"
 
 namespace vv {
 
@@ -45,35 +45,9 @@ template <class T> std::string text(const std::vector<T>& list) {
   return out + "]";
 }
 
-using Nodes = std::vector<const Node*>;
+using picture::walkInto;
 
 void nothing(const Scope&) {}
-
-// Visits nodes and all nodes below them, bodies of prototypes and contents of Inlines included.
-// Calls enter() for each such scope.
-template <class Visit, class Enter>
-void walkInto(Nodes first, const Visit& visit, const Enter& enter) {
-  walk(std::move(first), [&](const Node& node, Nodes& open) {
-    visit(node);
-    appendChildren(node, open);
-    const auto add = [&](const Scope& scope) {
-      enter(scope);
-      appendRoots(scope, open);
-    };
-    if (node.type().index < 0)
-      if (auto* instance = dynamic_cast<const ProtoInstance*>(&node)) add(instance->body);
-    if (const Scope* content = node.type().name == "Inline" ? inlineScope(node) : nullptr)
-      add(*content);
-  });
-}
-
-template <class Visit, class Enter>
-void walkInto(const Scope& scope, const Visit& visit, const Enter& enter) {
-  enter(scope);
-  Nodes roots;
-  appendRoots(scope, roots);
-  walkInto(std::move(roots), visit, enter);
-}
 
 } // namespace
 
@@ -100,7 +74,7 @@ void forEachNode(const World& world, const std::function<void(const Node& node)>
 }
 
 void forEachNodeBelow(const Node& node, const std::function<void(const Node& node)>& visit) {
-  walkInto(Nodes{&node}, visit, nothing);
+  walkInto(picture::NodeList{&node}, visit, nothing);
 }
 
 std::string scriptProtocol(const std::vector<std::string>& urls) {

@@ -26,6 +26,8 @@ namespace vv {
 namespace {
 
 namespace fs = std::filesystem;
+using picture::parameterTypeName;
+using picture::roleName;
 using Json = nlohmann::ordered_json;
 
 struct File {

@@ -49,9 +49,7 @@ class Server {
   Server(const Options& options, const std::vector<std::string>& arguments)
       : options_(options), arguments_(arguments), hostOptions_(hostOptionsOf(options_.serve)),
         world_(options_, callbacks()) {
-    if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
-                                        options_.render.shaderPath);
+    options_.view.shader = readCameraShader(options_);
   }
 
   int run() {

@@ -183,7 +183,7 @@ void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
 }
 
 std::optional<picture::View> Pilot::initialView(const picture::View& view) const {
-  if (viewer_->viewpoint() && !view.up && !view.lookAt) return {};
+  if (viewer_->viewpoint() && !view.up && !view.lookAt && !view.side) return {};
   picture::View wanted = view;
   wanted.fit = true;
   if (!wanted.fov && viewer_->viewpoint()) { // keep the Viewpoint's field of view
@@ -205,7 +205,7 @@ bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
     viewer_->setUp(up);
   }
   if (picture::lookAtMatrix(view, matrix)) viewer_->place(matrix);
-  return view.fit || (!view.lookAt && !viewer_->viewpoint());
+  return view.fit || view.side || (!view.lookAt && !viewer_->viewpoint());
 }
 
 void Pilot::animateTransitions() {

@@ -44,9 +44,7 @@ class Window {
   Window(const Options& options, const std::vector<std::string>& arguments)
       : options_(options), arguments_(arguments), problems_(options_),
         screen_("vv", options.render.width, options.render.height), speaker_(mixer_) {
-    if (!options_.cameraShader.empty())
-      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
-                                        options_.render.shaderPath);
+    options_.view.shader = readCameraShader(options_);
     if (!options_.recordInput.empty()) {
       record_.open(options_.recordInput, std::ios::binary | std::ios::trunc);
       if (!record_)

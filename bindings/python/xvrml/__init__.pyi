@@ -477,6 +477,9 @@ class World:
     def remove(self, node: Node) -> None:
         ...
 
+    def set_shader(self, selector: str, shader: str) -> int:
+        ...
+
     def route(self, source: _End, target: _End) -> None:
         ...
 

@@ -1,0 +1,19 @@
+// bare_model.h: Gives pictures of models that say nothing of how they are shown a neutral
+// background (docs/decisions/0040-models.md). [main thread]
+#pragma once
+
+#include "options/options.h"
+#include "xvrml/world.h"
+
+namespace vv {
+
+// Returns whether the world is a model alone: no Viewpoint, NavigationInfo, Background, fog or
+// light, and no ORT node that shows or lights it.
+bool isBareModel(const xvrml::World& world);
+
+// Sets the background of such a model, if the pictures are made for screens and the options leave
+// the background open. EXR and PPM files, which programs read, and comparisons keep the world as it
+// is.
+void chooseBackground(Options& options, const xvrml::World& world);
+
+} // namespace vv

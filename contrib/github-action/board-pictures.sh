@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Makes pictures of a KiCad board with vv: top, bottom, three quarters, and a turntable if one is
+# asked for. The GitHub Action beside this file and contrib/kibot call it; it runs alone, too:
+#
+#   board-pictures.sh BOARD OUTPUT [OPTIONS OF VV...]
+#
+# BOARD is a .wrl that KiCad has exported with relative models, or a .kicad_pcb, which kicad-cli
+# (KiCad 8 or later) exports first. OUTPUT is a .png; its folder is made if it is missing. Change
+# VIEWS, SIZE and TURNTABLE (number of pictures; 0: none) in the environment.
+set -euo pipefail
+
+if [ $# -lt 2 ]; then
+  echo "usage: $0 BOARD OUTPUT [OPTIONS OF VV...]" >&2
+  exit 2
+fi
+board=$1 output=$2
+shift 2
+views=${VIEWS:-above,top,bottom} size=${SIZE:-800x600} turntable=${TURNTABLE:-0}
+mkdir -p "$(dirname "$output")"
+
+case $board in
+*.kicad_pcb)
+  scratch=$(mktemp -d)
+  trap 'rm -rf "$scratch"' EXIT
+  kicad-cli pcb export vrml --units mm --models-dir shapes3D --models-relative \
+    -o "$scratch/board.wrl" "$board"
+  board=$scratch/board.wrl
+  ;;
+esac
+
+outputs=(-o "$output")
+if [ "$turntable" != 0 ]; then
+  outputs+=(-o "${output%.*}.gif" --turntable "$turntable")
+fi
+vv "$board" --preset pcb --from "$views" --size "$size" "${outputs[@]}" "$@"

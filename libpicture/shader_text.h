@@ -1,0 +1,29 @@
+// shader_text.h: Parses the syntax for shaders of the command line and of presets:
+// Class:param=value:... and library/Class:param=value:... The class is looked up in a context of
+// its own. [any thread; the current context stays]
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "openrt/openrt.h"
+#include "xvrml/node.h"
+
+namespace picture {
+
+struct ShaderError : std::runtime_error {
+  using runtime_error::runtime_error;
+};
+
+// Returns an ORTShader node with that class and these parameters. Throws ShaderError that says what
+// was expected: the nearest class or parameter, the type of a value, or its range. `option` is for
+// messages, such as "--shader"; `role` is RT_SURFACE, RT_CAMERA and so on. If `folder` is not
+// empty, the files that the text names are relative to it and must be inside.
+xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
+                          const std::string& shaderPath, const std::string& folder = "");
+
+// Returns "surface", "light" and so on for RT_SURFACE, RT_LIGHT and so on.
+const char* roleName(RTenum role);
+const char* parameterTypeName(RTenum type);
+
+} // namespace picture

@@ -1,0 +1,350 @@
+"""Tests rules for shaders, presets, vv.toml, --studio and --from of vv, and World.set_shader."""
+import os
+
+import pytest
+from conftest import HEADER, ROOT, SMALL, read_pfm
+
+PART = HEADER + """Transform { translation %s children Shape {
+  appearance Appearance { material DEF %s Material { diffuseColor %s } }
+  geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] }
+    coordIndex [ 0 1 2 3 ] } } }
+"""
+# pins at the left in an Inline, a body in the middle in a prototype, a board at the right
+BOARD = HEADER + """Viewpoint { position 0 0 5 fieldOfView 1.2 }
+NavigationInfo { headlight FALSE }
+Inline { url "pin.wrl" }
+PROTO Body [ field SFColor c 1 0 0 ] { Shape {
+  appearance Appearance { material DEF IC-BODY-01 Material { diffuseColor IS c } }
+  geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] }
+    coordIndex [ 0 1 2 3 ] } } }
+DEF Chip Body { }
+Transform { translation 2.5 0 0 children Shape {
+  appearance Appearance { material Material { diffuseColor .72 .45 .2 } }
+  geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] }
+    coordIndex [ 0 1 2 3 ] } } }
+"""
+
+
+def glow(colour):
+    return "Diffuse:reflectance=0:emission=" + colour
+
+
+def written(text):
+    """Replaces words that stand for what is too large for a test's name."""
+    if isinstance(text, bytes):
+        return text
+    return text.replace("deep", "[" * 5000).replace("long", "#" * (1 << 20) + "##")
+
+
+RED, GREEN, BLUE = glow("1,0,0"), glow("0,1,0"), glow("0,0,1")
+
+
+@pytest.fixture
+def board(vv):
+    vv.write("pin.wrl", PART % ("-2.5 0 0", "PIN-01", "0 0 1"))
+    vv.write("board.wrl", BOARD)
+    return vv
+
+
+def colours(vv, *arguments):
+    """Returns which of r, g, b the three parts glow in; - if they do not."""
+    row = vv.picture(*arguments, world="board.wrl")[12]
+    return "".join("rgb"[p.index(255)] if sorted(p) == [0, 0, 255] else "-"
+                   for p in (row[6], row[16], row[26]))
+
+
+@pytest.mark.parametrize("rules, seen", [
+    (["material:PIN-*=" + RED], "r--"),
+    (["material:*=" + RED], "rrr"),
+    (["material:?IN-0?=" + RED], "r--"),
+    (["material:IC-BODY-*=" + GREEN], "-g-"),
+    (["colour:.72,.47,.19=" + BLUE], "--b"),
+    (["color:0,0,1=" + BLUE], "b--"),
+    (["Chip=" + BLUE], "-b-"),
+    (["material:*-01=" + RED, "material:PIN-01=" + BLUE], "br-"),
+    (["material:PIN-01=" + BLUE, "material:*-01=" + RED], "rr-"),
+    (["*=" + RED, "material:PIN-*=" + GREEN], "grr"),
+    (["material:PIN-*=" + GREEN, "*=" + RED], "grr"),
+])
+def test_rules_select(board, rules, seen):
+    arguments = [word for rule in rules for word in ("--shader", rule)]
+    assert colours(board, *arguments) == seen
+    board.write("rules.txt", "# a comment\n\n" + "\r\n".join("  " + rule for rule in rules))
+    assert colours(board, "--shader", "@rules.txt") == seen
+
+
+def test_a_rule_that_selects_nothing_is_a_warning(board):
+    done = board("board.wrl", "-o", "x.png", "--shader", "material:PIN=" + RED, *SMALL)
+    assert done.returncode == 0
+    assert "--shader material:PIN=Diffuse" in done.talk and "no shape of the world" in done.talk
+    done = board("board.wrl", "-o", "y.png", "--strict", "--shader", "shape:Nothing=Metal", *SMALL)
+    assert done.returncode == 4 and not (board.folder / "y.png").exists()
+
+
+@pytest.mark.parametrize("rules, message", [
+    ("material:PIN-*=Metal\nPIN Metal\n", "rules.txt:2: SELECTOR=CLASS[:PARAM=VALUE...] was"),
+    ("colour:1,2=Metal", "rules.txt:1: colour: R,G,B from 0 to 1"),
+    ("material:=Metal", "rules.txt:1: a name was expected after material:"),
+    ("\n\nmaterial:PIN-*=Metall", 'rules.txt:3: Metall: there is no shader class "Metall"'),
+    ("material:PIN-*=Metal:rough=1", "Metal has no parameter rough"),
+    (b"\xff\xfe\x00=", "rules.txt:1: "),
+    ("long", "too long for rules"),
+])
+def test_wrong_rules(board, rules, message):
+    board.write("rules.txt", written(rules))
+    done = board("board.wrl", "-o", "x.png", "--shader", "@rules.txt", *SMALL)
+    assert done.returncode in (2, 3)
+    assert message in done.talk or "no node is called" in done.talk
+    assert not (board.folder / "x.png").exists()
+
+
+def test_a_glob_of_stars_ends(board):
+    name = "A" * 60
+    board.write("pin.wrl", PART % ("-2.5 0 0", name, "0 0 1"))
+    assert colours(board, "--shader", "material:" + "*A" * 30 + "*B=" + RED) == "---"
+    assert colours(board, "--shader", "material:" + "*A" * 30 + "*=" + RED) == "r--"
+
+
+# Presets ----------------------------------------------------------------------------------------
+
+
+def floats(vv, *arguments, world="board.wrl"):
+    done = vv(world, "-o", "pfm:-", "--size", "24x16", "--spp", "4", *arguments)
+    assert done.returncode == 0, done.talk
+    return read_pfm(done.stdout)[2]
+
+
+@pytest.mark.parametrize("name", ["studio", "product", "technical", "pcb"])
+def test_built_in_presets(board, name):
+    rows = floats(board, "--preset", name)
+    seen = [pixel for row in rows for pixel in row]
+    assert all(0 <= value < 30 for pixel in seen for value in pixel)
+    assert len(set(map(tuple, seen))) > 4
+    if name in ("product", "technical"):  # the corners are the white backdrop
+        for corner in (rows[0][0], rows[0][-1]):
+            assert min(corner) > .8
+
+
+def test_options_win_over_presets(board):
+    plain = floats(board, "--from", "top", "--background", "none")
+    assert floats(board, "--preset", "product", "--from", "top", "--background", "none") == plain
+    assert board("board.wrl", "--preset", "pcb", "--viewpoint", "0", "-o", "x.png",
+                 *SMALL).returncode == 0
+    red = floats(board, "--preset", "pcb", "--background", "#ff0000")
+    assert red[0][0][0] > .9 and red[0][0][1] < .1
+
+
+FILE = """
+[[files]]
+match = ["nothing*", "boar?.wrl"]
+shader = ["material:PIN-*=%s"]
+
+[[files]]
+match = "*.x3d"
+shader = "*=%s"
+
+[preset.mine]
+shader = "material:IC-*=%s"
+""" % (RED, BLUE, GREEN)
+
+
+def test_a_file_beside_the_world(board):
+    board.write("vv.toml", FILE)
+    assert colours(board) == "r--"
+    assert colours(board, "--config", "none") == "---"
+    assert colours(board, "--preset", "mine") == "rg-"
+    done = board("board.wrl", "-o", "x.png", *SMALL)
+    assert "vv.toml sets options for this world; --config none ignores it" in done.talk
+    board.write("other.toml", '[[files]]\npreset = "a"\nspp = 2\n[preset.a]\npreset = "b"\n'
+                '[preset.b]\nshader = "*=' + BLUE + '"')
+    assert colours(board, "--config", "other.toml") == "bbb"
+
+
+@pytest.mark.parametrize("text, message", [
+    ("[[files]]\nspp = \n", "vv.toml:2:"),
+    ("[[files]]\nsppp = 3\n", "vv.toml:2:1: there is no option sppp; did you mean spp?"),
+    ("[[files]]\noutput = 'a.png'\n", "vv.toml:2:1: output can only be set on the command line"),
+    ("[[files]]\ntrust = true\n", "vv.toml:2:1: trust can only be set on the command line"),
+    ("[[files]]\nallow-absolute = true\n", "allow-absolute can only be set"),
+    ("[[files]]\nshader-path = '.'\n", "shader-path can only be set"),
+    ("[[files]]\nspp = true\n", "vv.toml:2:7: N was expected, not a boolean"),
+    ("[[files]]\nspp = [1, 2]\n", "vv.toml:2:7: spp has one value, not a list"),
+    ("[[files]]\nspp = 99999999\n", "vv.toml:2:7: spp: "),
+    ("[[files]]\nspp = 60000\n", "at most 4096 can be set here"),
+    ("[[files]]\nsize = '9000x9000'\n", "at most 4096x4096 pixels"),
+    ("[[files]]\nfit = 3\n", "vv.toml:2:7: true or false was expected"),
+    ("[[files]]\npreset = 'stud'\n", 'there is no preset "stud" (did you mean studio?)'),
+    ("[[files]]\npreset = 'a'\n[preset.a]\npreset = 'a'\n", "preset a builds on itself"),
+    ("[[files]]\nmatch = 3\n", "vv.toml:2:9: a pattern for file names was expected"),
+    ("files = 3\n", "vv.toml:1:9: [[files]] or [preset.NAME] was expected, not files"),
+    ("[[file]]\n", "[[files]] or [preset.NAME] was expected, not file"),
+    ("[[files]]\nenvironment = '/etc/passwd.hdr'\n", "a file inside"),
+    ("[[files]]\nenvironment = '../x.hdr'\n", "a file inside"),
+    ("[[files]]\nbackground = '../../x.png'\n", "a file inside"),
+    ("[[files]]\nshader = '@/etc/passwd'\n", "a file inside"),
+    ("[[files]]\nshader = '*=VRML97:texture=../x.png'\n", "a file inside"),
+    ("[[files]]\nshader = '*=Marble:x=@/etc/passwd'\n", "Marble has no parameter x"),
+    ("deep", "vv.toml:1:"),
+    ("a = deep", "vv.toml:1:"),
+    (b"\xff\xfe\x01", "vv.toml:1:"),
+    ("long", "too long for options"),
+])
+def test_hostile_files(board, text, message):
+    board.write("vv.toml", written(text))
+    done = board("board.wrl", "-o", "x.png")
+    assert done.returncode in (2, 3), done.talk
+    errors = [line for line in done.talk.splitlines() if "--config none" not in line]
+    assert len(errors) == 1 and message in errors[0]
+    assert not (board.folder / "x.png").exists()
+
+
+def test_links_do_not_lead_outside(board):
+    os.symlink("/etc", board.folder / "inside")
+    board.write("vv.toml", "[[files]]\nbackground = 'inside/x.png'\n")
+    done = board("board.wrl", "-o", "x.png", "--size", "4x4")
+    assert done.returncode == 2 and "a file inside" in done.talk
+
+
+def test_files_of_presets_are_relative_to_their_folder(board):
+    (board.folder / "sub").mkdir()
+    board.write("sub/rules.txt", "material:PIN-*=" + RED)
+    board.write("sub/my.toml", "[[files]]\nshader = '@rules.txt'\n")
+    assert colours(board, "--config", "sub/my.toml") == "r--"
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["--preset", "nothing"], '--preset: there is no preset "nothing"'),
+    (["--config", "missing.toml"], "--config: cannot read missing.toml"),
+    (["--config", "."], "--config: cannot read ."),
+    (["--studio", "none"], "--studio: a colour"),
+    (["--studio", "grey", "--environment", "a.hdr"], "--studio has a light"),
+    (["--studio", "grey", "--background", "none"], "--studio has a light"),
+    (["--from", "under"], "--from: sides of three-quarter, above"),
+    (["--from", "top,top"], "--from: top is named twice"),
+    (["--from", "top", "--viewpoint", "0"], "--from cannot be used with --viewpoint"),
+])
+def test_wrong_options(board, arguments, message):
+    done = board("board.wrl", "-o", "x.png", "--size", "4x4", *arguments)
+    assert done.returncode in (2, 3)
+    assert message in done.talk
+    done = board("board.wrl", "-o", "-", "--from", "top,front")
+    assert done.returncode == 2 and "need file names" in done.talk
+
+
+# Sides and the studio ---------------------------------------------------------------------------
+
+CUBE = HEADER + "NavigationInfo { headlight FALSE }\n" + "".join(
+    """Shape { appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+      options [ "color reflectance 0 0 0" "color emission %s" ] } }
+    geometry IndexedFaceSet { coord Coordinate { point [ %s ] } coordIndex [ 0 1 2 3 ] } }
+""" % one for one in [
+        (".1 0 0", "1 0 0, 1 1 0, 1 1 1, 1 0 1"),  # right
+        (".2 0 0", "0 0 0, 0 0 1, 0 1 1, 0 1 0"),  # left
+        (".3 0 0", "0 0 0, 1 0 0, 1 0 1, 0 0 1"),  # front of a world whose z is up
+        (".4 0 0", "0 1 0, 0 1 1, 1 1 1, 1 1 0"),  # back
+        (".5 0 0", "0 0 1, 1 0 1, 1 1 1, 0 1 1"),  # top
+        (".6 0 0", "0 0 0, 0 1 0, 1 1 0, 1 0 0"),  # bottom
+    ])
+
+
+@pytest.mark.parametrize("side, value", [("right", .1), ("left", .2), ("front", .3), ("back", .4),
+                                         ("top", .5), ("bottom", .6)])
+def test_sides(vv, side, value):
+    vv.write("cube.wrl", CUBE)
+    rows = floats(vv, "--from", side, "--up", "z", world="cube.wrl")
+    assert rows[8][12][0] == pytest.approx(value)
+
+
+def test_several_sides_and_a_turntable_in_one_call(vv):
+    vv.write("cube.wrl", CUBE)
+    done = vv("cube.wrl", "--from", "above,top,bottom", "--turntable", "3", "-o", "a.png", "-o",
+              "turn.gif", "--size", "8x6", "--spp", "1")
+    assert done.returncode == 0, done.talk
+    made = sorted(p.name for p in vv.folder.iterdir() if p.suffix in (".png", ".gif"))
+    assert made == ["a-above.png", "a-bottom.png", "a-top.png", "turn-above.gif"]
+    vv("cube.wrl", "--from", "top", "-o", "b.png", "--up", "z", "--size", "8x6", "--spp", "1")
+    vv("cube.wrl", "--from", "top,above", "-o", "c.png", "--up", "z", "--size", "8x6", "--spp", "1")
+    assert (vv.folder / "b.png").read_bytes() == (vv.folder / "c-top.png").read_bytes()
+    done = vv("cube.wrl", "--from", "front,back", "--turntable", "2", "-o", "{viewpoint}.png",
+              "--size", "8x6", "--spp", "1")
+    made = sorted(p.name for p in vv.folder.iterdir() if p.name[:2] in ("fr", "ba"))
+    assert made == ["back.png", "front-0000.png", "front-0001.png"]
+
+
+WHITE = HEADER + """Shape { appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" } }
+  geometry Box { } }"""
+
+
+def test_ground_and_backdrop_of_a_studio_have_one_colour(vv):
+    vv.write("box.wrl", WHITE)
+    linear = (188 / 255 + .055)**2.4 / 1.055**2.4
+    done = vv("box.wrl", "-o", "pfm:-", "--studio", "#bcbcbc", "--from", "above", "--fov", "70",
+              "--size", "24x18", "--spp", "400")
+    rows = read_pfm(done.stdout)[2]
+    for pixel in (rows[0][0], rows[0][-1], rows[0][12]):  # the ground far behind the box
+        assert pixel[0] == pytest.approx(linear, rel=.05)
+    below = vv("box.wrl", "-o", "pfm:-", "--studio", "#bcbcbc", "--from", "bottom", "--size",
+               "24x18", "--spp", "4")
+    for pixel in (read_pfm(below.stdout)[2][0][0], read_pfm(below.stdout)[2][-1][-1]):
+        assert pixel[0] == pytest.approx(linear, rel=1e-3)  # no ground there: the backdrop alone
+    # the box is lit from the camera's side, and casts a shadow
+    assert read_pfm(below.stdout)[2][9][12][0] > .4
+    assert min(pixel[0] for row in rows for pixel in row) < .9 * linear
+
+
+def test_the_studio_turns_with_the_camera(vv):
+    vv.write("box.wrl", WHITE)
+    quarter = [
+        floats(vv, "--studio", "white", "--camera", camera, world="box.wrl")
+        for camera in ("0,3,8:0,0,0", "8,3,0:0,0,0")
+    ]  # a box looks the same from both sides, if the light comes along
+    for a, b in zip(*quarter):
+        for p, q in zip(a, b):
+            assert p[0] == pytest.approx(q[0], rel=.6, abs=.15)
+    mean = [sum(p[0] for row in rows for p in row) for rows in quarter]
+    assert mean[0] == pytest.approx(mean[1], rel=.02)
+
+
+def test_studio_is_the_same_on_any_number_of_threads(board):
+    assert floats(board, "--preset", "pcb", "--threads", "1") == floats(
+        board, "--preset", "pcb", "--threads", "3")
+
+
+def test_the_preset_knows_the_boards_materials(vv):
+    done = vv(ROOT / "examples/kicad/blinker.wrl", "--preset", "pcb", "--write", "out.wrl")
+    assert done.returncode == 0, done.talk
+    assert 'name "Metal"' in (vv.folder / "out.wrl").read_text()
+
+
+# Python -----------------------------------------------------------------------------------------
+
+xvrml = pytest.importorskip("xvrml")
+
+
+def test_set_shader(board):
+    world = xvrml.load(board.folder / "board.wrl")
+    assert world.set_shader("material:PIN-*", RED) == 1
+    assert world.set_shader("material:IC-*", GREEN) == 1
+    assert world.set_shader("*", BLUE) == 1
+    row = world.render(size=(32, 24), samples=1).rgba[12]
+    assert [tuple(row[x, :3]) for x in (6, 16, 26)] == [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    assert world.set_shader("material:PIN-01", GREEN) == 1  # in a world that runs
+    row = world.render(size=(32, 24), samples=1).rgba[12]
+    assert tuple(row[6, :3]) == (0, 1, 0)
+    before = len(world.warnings)
+    assert world.set_shader("material:none", RED) == 0
+    assert len(world.warnings) == before + 1
+
+
+@pytest.mark.parametrize("selector, shader, message", [
+    ("material:PIN-*", "Metall", "there is no shader class"),
+    ("Nothing", "Metal", "no node is called Nothing"),
+    ("a=b", "Metal", "selector"),
+    ("", "Metal", "selector"),
+    ("colour:1", "Metal", "colour: R,G,B"),
+    ("*", "Metal:roughness=x", "roughness"),
+])
+def test_wrong_set_shader(board, selector, shader, message):
+    world = xvrml.load(board.folder / "board.wrl")
+    with pytest.raises(ValueError, match=message):
+        world.set_shader(selector, shader)
