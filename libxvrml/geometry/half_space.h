@@ -22,7 +22,7 @@ struct HalfSpace {
 };
 using HalfSpaces = std::vector<HalfSpace>;
 
-// How many ClipPlanes cut a shape, from the root down; further ones have no effect (docs/limits.md).
+// How many ClipPlanes cut a shape, from the root down; others have no effect (docs/limits.md).
 inline constexpr size_t maximumClipPlanes = 16;
 
 // Returns what a ClipPlane leaves, in coordinates of its parent group. Nothing if it is off, or if

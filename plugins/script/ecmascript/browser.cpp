@@ -170,8 +170,8 @@ duk_ret_t print(duk_context* ctx) { // any number of values
   return 0;
 }
 
-// Options and properties of the SAI (ISO/IEC 19775-2) and of other browsers: this one has none that a
-// world may ask for or change.
+// Options and properties of the SAI (ISO/IEC 19775-2) and of other browsers: this one has none that
+// a world may ask for or change.
 duk_ret_t noOption(duk_context* ctx) {
   duk_push_null(ctx);
   return 1;
