@@ -40,10 +40,10 @@ void checkShaderRule(const std::string& text);
 // Assigns an appearance to a Shape.
 using SetAppearance = std::function<void(xvrml::Node& shape, const xvrml::NodeRef& appearance)>;
 
-// Applies the rules in their order, so that later ones win; those for * after all others. Material and texture of a shape stay,
-// for shaders with parameters of these names. A pattern or colour that selects nothing is a warning
-// of the world. Returns how many times a shape got a shader. Throws ShaderError that says what was
-// expected, before the rule that it is about has changed anything.
+// Applies the rules in their order, those for * last. Later ones win. Material and texture of a
+// shape stay, for shaders that have such parameters. A pattern or colour that selects nothing is a
+// warning of the world. Returns how many times a shape got a shader. Throws ShaderError that says
+// what was expected, before the rule that it is about has changed anything.
 size_t applyShaderRules(const std::vector<ShaderRule>& rules, const std::string& shaderPath,
                         xvrml::World& world, const SetAppearance& set = {});
 

@@ -37,7 +37,7 @@ py::object denoised(const PictureObject& self, long long threads) {
   refuseInfinite(picture::rgbaOf(self.picture), "colours");
   auto made = std::make_unique<PictureObject>();
   made->picture = run(self.picture, threads);
-  made->nodes = self.nodes;
+  for (const NodeObject& node : self.nodes) made->nodes.push_back(node);
   made->time = self.time;
   made->place = self.place;
   made->camera = self.camera;

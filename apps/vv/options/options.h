@@ -75,10 +75,10 @@ struct Options {
   int turntable = 0; // number of pictures around the world; 0: none
   std::vector<std::string> definitions; // texts of the form DEF.field=value
   std::vector<picture::ShaderRule> shaders;
-  std::string cameraShader; // text of the form Class:param=value
-  std::string cameraShaderFolder; // confines the files that it names; empty: anywhere
+  std::string cameraShader;        // text of the form Class:param=value
+  std::string cameraShaderFolder;  // confines the files that it names; empty: anywhere
   std::vector<picture::Side> from; // sides that the model is seen from
-  std::string viewpoint;                // viewpoint as given: a name, a number or "all"
+  std::string viewpoint;           // viewpoint as given: a name, a number or "all"
   bool check = false, strict = false;
   bool json = false;
   std::vector<Job> jobs; // requested jobs, in any order
