@@ -213,6 +213,7 @@ class Pictures {
   Job scriptedJob() {
     Job job;
     job.view.shader = options_.view.shader;
+    job.view.intrinsics = options_.view.intrinsics;
     job.view.viewer = pilot_->camera();
     renderer_->change([this](picture::RenderSettings& s) {
       const std::optional<bool> switched = pilot_->headlight();
@@ -297,7 +298,7 @@ class Pictures {
   // Waits for the oldest frame and saves it.
   int finishOldest() {
     if (progress_) progress_->rename(inFlight_.front().job.name.text());
-    const picture::RenderResult result = renderer_->finish();
+    picture::RenderResult result = renderer_->finish();
     interruptHandled();
     const FrameInFlight flight = std::move(inFlight_.front());
     inFlight_.pop_front();
@@ -418,11 +419,25 @@ class Pictures {
   }
 
   // Saves the picture so far. A failure to write this copy does not stop the picture.
-  void savePart(const Job& job, const picture::Picture& soFar) {
+  void savePart(const Job& job, picture::Picture soFar) {
     try {
+      if (options_.fitExposure)
+        soFar.view.exposure = exposure_ ? *exposure_ : picture::fittingExposure(soFar);
       writePictures(job, soFar, inFalseColours(soFar, false));
       if (!options_.quiet) say("vv: the picture so far is saved");
     } catch (const std::exception& error) { sayWarning(error.what()); }
+  }
+
+  // Chooses the exposure of all pictures by the first one, if that is wanted.
+  void fitExposure(picture::Picture& made) {
+    if (!options_.fitExposure) return;
+    if (!exposure_) {
+      exposure_ = picture::fittingExposure(made);
+      if (!options_.quiet)
+        say(fmt::format("vv: --exposure auto is {:g} for {}", *exposure_,
+                        moments_ * views_ > 1 ? "all pictures" : "this picture"));
+    }
+    made.view.exposure = *exposure_;
   }
 
   // Says once that the pictures are previews.
@@ -431,9 +446,10 @@ class Pictures {
     say(fmt::format("vv: {}; without --preview, pictures are unbiased", made.note));
   }
 
-  void finish(const Job& job, const Moment& moment, const picture::RenderResult& result) {
+  void finish(const Job& job, const Moment& moment, picture::RenderResult& result) {
     const auto start = Clock::now();
     sayPreview(result.picture);
+    fitExposure(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
     writePictures(job, result.picture, coloured);
     if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture);
@@ -536,7 +552,8 @@ class Pictures {
   bool anyWorker_ = false;                                      // a worker has been connected
   std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
   SequenceStats frames_;
-  double endOfScale_ = 0; // of false colours, in cd/m2; 0: no picture has been made
+  std::optional<double> exposure_; // of --exposure auto; none: no picture has been made
+  double endOfScale_ = 0;          // of false colours, in cd/m2; 0: no picture has been made
 };
 
 } // namespace
@@ -545,7 +562,13 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   picture::Picture wanted;
   wanted.width = made.width;
   wanted.height = made.height;
+  wanted.wholeWidth = made.wholeWidth;
+  wanted.wholeHeight = made.wholeHeight;
+  wanted.left = made.left;
+  wanted.top = made.top;
+  wanted.depthAlongRay = made.depthAlongRay;
   wanted.linear = made.linear;
+  wanted.view = made.view;
   wanted.transparent = made.transparent;
   wanted.names = made.names;
   wanted.note = made.note;

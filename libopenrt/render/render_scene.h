@@ -112,6 +112,8 @@ struct RenderScene {
   RoleSlot camera, environment;
   ShaderSlot transport;          // shaderClass null: the engine's own transport
   Vec3f eye, viewAxis{0, 0, -1}; // render space; unit
+  // Perpendicular to the picture's plane: the view axis, unless the camera's matrix shears it.
+  Vec3f depthAxis{0, 0, -1};
   double origin[3] = {0, 0, 0};  // world position of render space's origin
   Emitters emitters;             // path tracing: emissive surfaces and the environment
   // RT_MOTION (motion.h). Null: the frame lacks the channel, or nothing has moved.
