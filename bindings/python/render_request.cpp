@@ -302,7 +302,10 @@ std::optional<double> exposureOf(const py::object& given) {
   double stops = NAN;
   if (!py::isinstance<py::str>(given) && !py::isinstance<py::bool_>(given)) {
     stops = PyFloat_AsDouble(given.ptr());
-    if (PyErr_Occurred()) PyErr_Clear();
+    if (PyErr_Occurred()) {
+      PyErr_Clear();
+      stops = NAN;
+    }
   }
   if (!(std::abs(stops) <= picture::mostExposure))
     throw py::value_error(fmt::format("exposure: 'auto' or a number of stops from -{0} to {0} "

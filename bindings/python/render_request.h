@@ -30,7 +30,7 @@ struct RenderArguments {
   std::optional<std::string> up;
   py::object background = py::none();
   std::string isa = "auto";
-  py::object exposure = py::float_(0);
+  py::object exposure = py::float_(0.0);
   std::string view = "standard";
   py::object crop = py::none();
   picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)

@@ -283,6 +283,9 @@ class Pinhole:
     def center(self) -> float:
         ...
 
+    def cropped(self, x: int, y: int) -> Pinhole:
+        ...
+
     def project(self, points: npt.ArrayLike) -> npt.NDArray[np.float64]:
         ...
 
