@@ -112,8 +112,6 @@ struct RenderScene {
   RoleSlot camera, environment;
   ShaderSlot transport;          // shaderClass null: the engine's own transport
   Vec3f eye, viewAxis{0, 0, -1}; // render space; unit
-  // Perpendicular to the picture's plane: the view axis, unless the camera's matrix shears it.
-  Vec3f depthAxis{0, 0, -1};
   double origin[3] = {0, 0, 0};  // world position of render space's origin
   Emitters emitters;             // path tracing: emissive surfaces and the environment
   // RT_MOTION (motion.h). Null: the frame lacks the channel, or nothing has moved.
@@ -139,6 +137,9 @@ struct RenderScene {
   bool skyKnown = false, skyShines = false;
   RenderHost host;
   edit::FrameSettingsT frame;
+  // RT_DEPTH is along it: perpendicular to the picture, and viewAxis unless the camera's matrix
+  // shears the picture.
+  Vec3f depthAxis{0, 0, -1};
 };
 
 // Fills in the host table's functions (render/surface/host.cpp).
