@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <stdexcept>
 
 namespace picture {
 
@@ -43,6 +44,57 @@ bool lookAtMatrix(const LookAt& view, double matrix[16]) {
                               back.x,  back.y,  back.z,  0, p[0], p[1], p[2], 1};
   std::copy_n(columns, 16, matrix);
   return true;
+}
+
+LookAt lookAtOf(const double rows[16]) {
+  constexpr double rounding = 1e-4; // measured poses are rounded
+  double off = 0;
+  for (size_t i = 0; i < 4; ++i) off = std::max(off, std::abs(rows[12 + i] - (i == 3 ? 1 : 0)));
+  for (size_t a = 0; a < 3; ++a)
+    for (size_t b = 0; b < 3; ++b) {
+      double product = 0;
+      for (size_t i = 0; i < 3; ++i) product += rows[4 * i + a] * rows[4 * i + b];
+      off = std::max(off, std::abs(product - (a == b ? 1 : 0)));
+    }
+  double handed = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const double *r = rows + 4 * i, *s = rows + 4 * ((i + 1) % 3), *t = rows + 4 * ((i + 2) % 3);
+    handed += r[0] * (s[1] * t[2] - t[1] * s[2]);
+  }
+  if (!(off <= rounding) || !(handed > 0))
+    throw std::invalid_argument(
+        "the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
+  LookAt camera;
+  camera.saysUp = true;
+  for (size_t i = 0; i < 3; ++i) {
+    if (!std::isfinite(rows[4 * i + 3]))
+      throw std::invalid_argument("the 4x4 matrix has a number that is not finite");
+    camera.position[i] = rows[4 * i + 3];
+    camera.target[i] = rows[4 * i + 3] - rows[4 * i + 2];
+    camera.up[i] = rows[4 * i + 1];
+  }
+  return camera;
+}
+
+// The rays of a symmetric camera with square pixels and the focal length fy are sheared to those of
+// the intrinsics.
+View::Pinhole pinholeOf(const Intrinsics& inner, const double matrix[16], int width, int height) {
+  View::Pinhole camera{};
+  camera.fovy = 2 * std::atan(height / 2.0 / inner.fy);
+  const double up = (inner.cy - height / 2.0) / inner.fy,
+               right = (width / 2.0 - inner.cx) / inner.fx + inner.skew / inner.fx * up;
+  for (size_t i = 0; i < 3; ++i) {
+    const double x = matrix[i], y = matrix[4 + i], z = matrix[8 + i], place = matrix[12 + i];
+    const double columns[] = {x, y, z, place};
+    const double sheared[] = {x * inner.fy / inner.fx, y + x * inner.skew / inner.fx,
+                              z - x * right - y * up, place};
+    for (size_t k = 0; k < 4; ++k) {
+      camera.matrix[4 * k + i] = columns[k];
+      camera.sheared[4 * k + i] = sheared[k];
+    }
+  }
+  camera.matrix[15] = camera.sheared[15] = 1;
+  return camera;
 }
 
 double verticalAngle(double smaller, double aspect) {

@@ -32,6 +32,13 @@ std::optional<Side> sideNamed(std::string_view name);
 const char* sideName(Side side);
 std::string sideNames();
 
+// The inner geometry of a camera as OpenCV describes it: a point at (x, y, z) of the camera, where
+// x points to the right, y down and z forward, appears at (fx x/z + skew y/z + cx, fy y/z + cy), in
+// pixels from the left upper corner of the picture. The centre of the first pixel is at (0.5, 0.5).
+struct Intrinsics {
+  double fx, fy, cx, cy, skew = 0;
+};
+
 // Describes where a picture is taken from. The caller sets one of viewpoint, lookAt and fit, or
 // lookAt and fit together: the direction of lookAt, at the distance that shows everything. If none
 // is set, the camera is the world's first Viewpoint. A world without a Viewpoint but with a given
@@ -45,6 +52,8 @@ struct View {
     double matrix[16], sheared[16], fovy;
   };
   std::optional<Pinhole> pinhole;
+  // Replaces the angle of view, and the projection, of the camera that the other members choose.
+  std::optional<Intrinsics> intrinsics;
   std::optional<size_t> viewpoint; // index into OpenRTMapper::viewpoints()
   std::optional<LookAt> lookAt;
   bool fit = false;
@@ -62,6 +71,14 @@ struct View {
   // Degrees, for the smaller of the two angles of view, as in Viewpoint.fieldOfView.
   std::optional<double> fov;
 };
+
+// Returns the camera of a pose: a 4x4 matrix from camera to world, by rows, for a camera that looks
+// along -z with +y up. Throws std::invalid_argument if it does more than turn and move.
+LookAt lookAtOf(const double rows[16]);
+
+// Returns the camera of these intrinsics that stands and looks as `matrix` says: from camera to
+// world, by columns, looking along -z with +y up. height: that of the picture, in pixels.
+View::Pinhole pinholeOf(const Intrinsics& inner, const double matrix[16], int width, int height);
 
 // Returns false if position and target coincide. Replaces an up vector that is parallel to the view
 // direction by a perpendicular one.

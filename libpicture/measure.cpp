@@ -147,6 +147,7 @@ Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& giv
   RenderSettings frame = given;
   frame.width = sensor.columns;
   frame.height = sensor.rows;
+  frame.crop = {};
   frame.channels = RT_RGBA | RT_ERROR | RT_TRUST | RT_SAMPLES;
   frame.progressive = frame.preview = false;
   frame.quality.set(RT_MEASURE, sensor.luminance ? RT_MEASURE_LUMINANCE : RT_MEASURE_ILLUMINANCE);

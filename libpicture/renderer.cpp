@@ -66,6 +66,21 @@ bool isWorthProgressive(const RenderSettings& settings) {
          int64_t(settings.width) * settings.height <= pixels;
 }
 
+std::string whyNoCrop(const RenderSettings& settings) {
+  const Crop& c = settings.crop;
+  if (c.width == 0) return "";
+  if (settings.preview) return "previews are rebuilt from the pixels around, which are not made";
+  if (settings.error > 0)
+    return "with a target error the samples are shared out over the whole picture; without one a "
+           "part has the bytes of the whole";
+  const bool touches =
+      c.x == 0 || c.y == 0 || c.x + c.width == settings.width || c.y + c.height == settings.height;
+  if (touches && (settings.channels & (RT_ERROR | RT_TRUST)))
+    return "errors at the border of the picture follow from the colours of the whole picture; the "
+           "channels error and trust need a part that does not touch it";
+  return "";
+}
+
 struct Renderer::Impl {
   Stage stage;
   ProgressCallback watch;

@@ -33,8 +33,17 @@ enum class Denoiser : uint8_t {
   automatic // LiveRenderer: that library, too, where it is there and fast enough; Renderer: own
 };
 
+// A rectangle of the pixels of a picture, rows from the top; width 0: all.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Crop&) const = default;
+};
+
 struct RenderSettings {
   int width = 800, height = 600;
+  // Only this part of the picture is made, with the bytes that it has in the whole one. It lies
+  // within the picture.
+  Crop crop;
   int samples = 16;         // RT_SAMPLES_PER_PIXEL
   double error = 0;         // RT_TARGET_ERROR; 0: none
   double timeLimit = 0;     // time limit in seconds (RT_TIME_LIMIT); 0: none
@@ -43,6 +52,7 @@ struct RenderSettings {
   int threads = 0;          // 0: as many threads as the process may use
   std::string isa = "auto"; // instruction set of the ray kernels (isa=NAME of rtNewContext)
   bool linear = true;
+  ViewTransform view;            // how files for screens, and screens, show linear light
   bool exactShapes = false;      // value of xvrml::OpenRTMapper::setExactShapes
   bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
@@ -62,6 +72,10 @@ struct RenderSettings {
   Denoiser denoiser = Denoiser::own;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
+  // The size of the picture that is made.
+  int madeWidth() const { return crop.width > 0 ? crop.width : width; }
+  int madeHeight() const { return crop.width > 0 ? crop.height : height; }
+
   bool operator==(const RenderSettings&) const = default;
 };
 
@@ -69,6 +83,11 @@ struct RenderSettings {
 // saved early shows the whole frame instead of the finished tiles only. This costs no time, but up
 // to 320 bytes per pixel. On a cluster it would make many small jobs.
 bool isWorthProgressive(const RenderSettings& settings);
+
+// Returns why a part of a picture could not have the bytes of the whole one: "pictures with a
+// target error share their samples out as a whole". Empty if it has them, or if no part is asked
+// for.
+std::string whyNoCrop(const RenderSettings& settings);
 
 struct RenderError : std::runtime_error {
   explicit RenderError(const std::string& text, RTenum engine = RT_NO_ERROR)

@@ -211,10 +211,15 @@ void Stage::prepare(const View& view) {
   mapper_->setBackground(settings.background.kind == Background::Kind::world && !studio);
   readBackground();
   shown_ = cameraOf(view);
+  std::optional<View::Pinhole> pinhole = view.pinhole;
+  if (view.intrinsics) {
+    pinhole = pinholeOf(*view.intrinsics, shown_.matrix, settings.width, settings.height);
+    shown_.fovy = pinhole->fovy;
+  }
   mapper_->map(shown_);
-  if (view.pinhole) {
-    rtLoadMatrixd(view.pinhole->sheared);
-    rtPerspective(view.pinhole->fovy * 180 / std::numbers::pi);
+  if (pinhole) {
+    rtLoadMatrixd(pinhole->sheared);
+    rtPerspective(pinhole->fovy * 180 / std::numbers::pi);
   }
   useEnvironment();
   if (studio) {
@@ -253,6 +258,7 @@ void Stage::useEnvironment() {
 
 void Stage::setUpFrame(const RenderSettings& frame) {
   rtFrameBuffer(frame.width, frame.height, frame.channels);
+  rtScissor(frame.crop.x, frame.crop.y, frame.crop.width, frame.crop.height);
   QualityValues quality = frame.quality;
   quality.set(RT_SAMPLES_PER_PIXEL, frame.samples);
   quality.set(RT_TARGET_ERROR, frame.error);
@@ -266,8 +272,16 @@ void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t cha
   picture.width = frame.width;
   picture.height = frame.height;
   picture.linear = frame.linear;
+  picture.view = frame.view;
+  picture.depthAlongRay = frame.quality.whole(RT_DEPTH_ALONG) == RT_DEPTH_ALONG_RAY;
   picture.transparent = frame.background.kind == Background::Kind::none;
   if (channels & RT_NAME) picture.names = mapper_->names();
+}
+
+// Keeps the part of a picture that its settings ask for.
+static void keepCrop(const RenderSettings& frame, Picture& picture) {
+  if (const Crop& crop = frame.crop; crop.width > 0)
+    cut(picture, crop.x, crop.y, crop.width, crop.height);
 }
 
 bool Stage::snapshot(Picture& picture, uint32_t channels) const {
@@ -282,6 +296,7 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
   describe(settings, picture, channels);
   if (channels & RT_RGBA)
     backgroundLayer_.compositeOver(picture.planes[RT_RGBA], settings.width, settings.height);
+  keepCrop(settings, picture);
   return true;
 }
 
@@ -296,6 +311,7 @@ void Stage::readChannels(const RenderSettings& frame, Picture& picture,
   });
   if (frame.channels & RT_RGBA)
     backgroundLayer_.compositeOver(picture.planes[RT_RGBA], frame.width, frame.height);
+  keepCrop(frame, picture);
 }
 
 void Stage::describe(const RenderSettings& frame, RenderResult& result) const {

@@ -55,6 +55,7 @@ std::vector<Named> inputsOf(const Options& options) {
   std::vector<Named> all = {{"the world that is read", options.input},
                             {"the picture of --environment", options.render.environment},
                             {"the script of --input", options.inputScript},
+                            {"the matrix of --pose", options.poseFile},
                             {"the picture of --compare", options.compare},
                             {"the file of --key", options.cluster.key},
                             {"the file of --allow-keys", options.cluster.allow}};

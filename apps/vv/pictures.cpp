@@ -247,6 +247,7 @@ class Pictures {
   Job scriptedJob() {
     Job job;
     job.view.shader = options_.view.shader;
+    job.view.intrinsics = options_.view.intrinsics;
     job.view.viewer = pilot_->camera();
     renderer_->change([this](picture::RenderSettings& s) {
       const std::optional<bool> switched = pilot_->headlight();
@@ -454,11 +455,25 @@ class Pictures {
   }
 
   // Saves the picture so far. A failure to write this copy does not stop the picture.
-  void savePart(const Job& job, const picture::Picture& soFar) {
+  void savePart(const Job& job, picture::Picture soFar) {
     try {
+      if (options_.fitExposure)
+        soFar.view.exposure = exposure_ ? *exposure_ : picture::fittingExposure(soFar);
       writePictures(job, soFar, inFalseColours(soFar, false));
       if (!options_.quiet) say("vv: the picture so far is saved");
     } catch (const std::exception& error) { sayWarning(error.what()); }
+  }
+
+  // Chooses the exposure of all pictures by the first one, if that is wanted.
+  void fitExposure(picture::Picture& made) {
+    if (!options_.fitExposure) return;
+    if (!exposure_) {
+      exposure_ = picture::fittingExposure(made);
+      if (!options_.quiet)
+        say(fmt::format("vv: --exposure auto is {:g} for {}", *exposure_,
+                        total() > 1 ? "all pictures" : "this picture"));
+    }
+    made.view.exposure = *exposure_;
   }
 
   // Says once that the pictures are biased.
@@ -483,6 +498,7 @@ class Pictures {
 
   void finish(const Job& job, const Moment& moment, picture::RenderResult& result) {
     const auto start = Clock::now();
+    fitExposure(result.picture);
     if (options_.denoise) denoise(job, result);
     sayBias(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
@@ -593,7 +609,8 @@ class Pictures {
   std::map<std::string, OpenFilm> films_;              // indexed by path
   std::unique_ptr<picture::PictureDenoiser> denoiser_; // null before the first use
   SequenceStats frames_;
-  double endOfScale_ = 0; // of false colours, in cd/m2; 0: no picture has been made
+  std::optional<double> exposure_; // of --exposure auto; none: no picture has been made
+  double endOfScale_ = 0;          // of false colours, in cd/m2; 0: no picture has been made
 };
 
 } // namespace
@@ -602,7 +619,13 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   picture::Picture wanted;
   wanted.width = made.width;
   wanted.height = made.height;
+  wanted.wholeWidth = made.wholeWidth;
+  wanted.wholeHeight = made.wholeHeight;
+  wanted.left = made.left;
+  wanted.top = made.top;
+  wanted.depthAlongRay = made.depthAlongRay;
   wanted.linear = made.linear;
+  wanted.view = made.view;
   wanted.transparent = made.transparent;
   wanted.names = made.names;
   wanted.note = made.note;

@@ -1,5 +1,6 @@
 // picture.cpp: Implements the Python class Picture: planes are numpy arrays that share the
 // picture's memory. [GIL held]
+#include <array>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "libpicture/transport.h"
 #include "objects.h"
 #include "picture_object.h"
+#include "render_request.h"
 
 void describePicture(py::dict& stats, const RTstats& s) {
   stats["transport"] = picture::transportName(s.transport);
@@ -130,10 +132,15 @@ py::object nodes(PictureObject& self) {
 }
 
 py::object camera(PictureObject& self) {
-  if (!self.camera && self.place.fovy > 0)
+  const picture::Picture& made = self.picture;
+  const bool isPart = made.wholeWidth > 0;
+  if (!self.camera && self.place.fovy > 0) {
     self.camera = py::module_::import("xvrml._camera")
                       .attr("_of")(std::vector<double>(self.place.matrix, self.place.matrix + 16),
-                                   self.place.fovy, self.picture.width, self.picture.height);
+                                   self.place.fovy, isPart ? made.wholeWidth : made.width,
+                                   isPart ? made.wholeHeight : made.height);
+    if (isPart) self.camera = self.camera.attr("cropped")(made.left, made.top);
+  }
   return self.camera ? self.camera : py::none();
 }
 
@@ -144,10 +151,25 @@ py::tuple channels(const PictureObject& self) {
   return py::tuple(out);
 }
 
-constexpr int pickleVersion = 3; // version 1 had no camera, version 2 was never denoised
+void setExposure(PictureObject& self, const py::object& given) {
+  picture::Picture& shown = self.picture;
+  const std::optional<double> stops = exposureOf(given);
+  if (!shown.linear && (!stops || *stops != 0))
+    throw py::value_error("exposure: the picture has no linear light (colour='vrml97')");
+  shown.view.exposure = stops ? *stops : picture::fittingExposure(shown);
+}
+
+void setCurve(PictureObject& self, const std::string& name) {
+  const picture::ViewCurve curve = curveOf(name);
+  if (!self.picture.linear && curve != picture::ViewCurve::standard)
+    throw py::value_error("view: the picture has no linear light (colour='vrml97')");
+  self.picture.view.curve = curve;
+}
+
+constexpr int pickleVersion = 3; // version 1 had no camera, version 2 not the last six members
 
 // Returns the pickled members: version, size, linear, names, time, stats, {channel name: numbers},
-// camera, note, denoisedBy.
+// camera, exposure, view, place in the whole picture, whether z is along the ray, note, denoisedBy.
 py::tuple pickled(const py::object& self) {
   PictureObject& object = self.cast<PictureObject&>();
   py::dict planes;
@@ -156,7 +178,11 @@ py::tuple pickled(const py::object& self) {
       planes[py::str(std::string(channel.name))] = floats(self, channel);
   return py::make_tuple(pickleVersion, object.picture.width, object.picture.height,
                         object.picture.linear, names(object), object.time, object.stats, planes,
-                        camera(object), toText(object.picture.note),
+                        camera(object), object.picture.view.exposure,
+                        std::string(picture::curveName(object.picture.view.curve)),
+                        py::make_tuple(object.picture.wholeWidth, object.picture.wholeHeight,
+                                       object.picture.left, object.picture.top),
+                        object.picture.depthAlongRay, toText(object.picture.note),
                         toText(object.picture.denoisedBy));
 }
 
@@ -164,8 +190,8 @@ PictureObject unpickled(const py::tuple& state) {
   const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
   const int version =
       state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
-  constexpr size_t sizes[] = {8, 9, 11}; // of each version
-  if (version < 1 || version > pickleVersion || state.size() != sizes[version - 1]) refuse();
+  constexpr size_t sizes[] = {0, 8, 9, 15}; // of each version
+  if (version < 1 || version > pickleVersion || state.size() != sizes[version]) refuse();
   PictureObject object;
   picture::Picture& made = object.picture;
   made.width = state[1].cast<int>();
@@ -190,8 +216,19 @@ PictureObject unpickled(const py::tuple& state) {
     object.camera = state[8];
   }
   if (version > 2) {
-    made.note = fromText(state[9]);
-    made.denoisedBy = fromText(state[10]);
+    if (!py::isinstance<py::str>(state[10])) refuse();
+    made.view = {exposureOf(state[9]).value_or(0), curveOf(fromText(state[10]))};
+    const auto place = state[11].cast<std::array<int, 4>>();
+    const bool lies = place[2] >= 0 && place[3] >= 0 && place[0] <= 65536 && place[1] <= 65536 &&
+                      place[2] <= place[0] - made.width && place[3] <= place[1] - made.height;
+    if (!lies && place != std::array<int, 4>{}) refuse();
+    made.wholeWidth = place[0];
+    made.wholeHeight = place[1];
+    made.left = place[2];
+    made.top = place[3];
+    made.depthAlongRay = state[12].cast<bool>();
+    made.note = fromText(state[13]);
+    made.denoisedBy = fromText(state[14]);
     if ((made.note + made.denoisedBy).find_first_of("\n\r") != std::string::npos) refuse();
   }
   return object;
@@ -236,11 +273,33 @@ void definePicture(py::module_& module) {
       .def_property_readonly(
           "colour",
           [](const PictureObject& self) { return self.picture.linear ? "linear" : "vrml97"; })
+      .def_property(
+          "exposure", [](const PictureObject& self) { return self.picture.view.exposure; },
+          setExposure,
+          "The exposure of display, save() of files for screens, and films, in stops. 'auto' sets "
+          "one that fits the picture. The array and EXR files keep the light as it is.")
+      .def_property(
+          "view",
+          [](const PictureObject& self) {
+            return std::string(picture::curveName(self.picture.view.curve));
+          },
+          setCurve, "The curve of the same: 'standard', 'filmic' or 'agx'.")
       .def("__getitem__", item)
       .def("__array__", asArray, py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def("save", save, py::arg("path"),
            ("Writes a file; the suffix (" + picture::formatSuffixes() + ") selects the format.")
                .c_str())
+      .def(
+          "coco",
+          [](const py::object& self, const py::args& given, const py::kwargs& named) {
+            return py::module_::import("xvrml._masks").attr("coco")(self, *given, **named);
+          },
+          "coco(image_id=1, file_name='', categories=None, compressed=False, first_id=1): returns "
+          "the annotations of the Shapes in the picture in COCO's format (images, categories, "
+          "annotations), from the channel 'id': bounding box, area and run lengths in pixels. "
+          "categories: a dict or a function from the names of Shapes to categories; Shapes without "
+          "one are left out; None: the name is the category. compressed: run lengths as "
+          "pycocotools packs them in a text. first_id: the number of the first annotation.")
       .def("_repr_png_",
            [](const PictureObject& self) { return py::bytes(picture::encodePng(self.picture)); })
       .def(py::pickle(&pickled, &unpickled))

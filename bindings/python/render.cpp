@@ -19,20 +19,6 @@ using namespace xvrml;
 
 namespace {
 
-// Converts depths from the picture's centre direction to the view axis. They differ if the
-// principal point is off-centre.
-void measureAlongAxis(const picture::View::Pinhole& camera, picture::Picture& picture) {
-  const std::vector<float>& position = picture.planes.at(RT_POSITION);
-  std::vector<float>& depth = picture.planes.at(RT_DEPTH);
-  const double* m = camera.matrix;
-  for (size_t i = 0; i < depth.size(); ++i) {
-    if (!std::isfinite(depth[i])) continue;
-    double along = 0;
-    for (size_t k = 0; k < 3; ++k) along -= (double(position[3 * i + k]) - m[12 + k]) * m[8 + k];
-    depth[i] = float(along);
-  }
-}
-
 py::dict statsOf(const World& world, const picture::RenderResult& result) {
   const RTstats& s = result.stats;
   py::dict stats;
@@ -104,16 +90,16 @@ void Making::draw(std::shared_ptr<picture::Renderer>& renderer) {
 }
 
 py::object Making::picture() {
-  const uint32_t channels = request.channels;
   auto made = std::make_unique<PictureObject>();
   made->stats = statsOf(world->graph(), result);
   made->time = world->browser() ? world->browser()->now() : 0;
-  if (request.view.pinhole && (channels & RT_DEPTH))
-    measureAlongAxis(*request.view.pinhole, result.picture);
-  if (!(channels & RT_POSITION)) result.picture.planes.erase(RT_POSITION);
   if (!result.hasCameraShader) made->place = result.camera;
   if (request.view.pinhole) made->camera = given.camera;
+  if (const picture::Crop& crop = request.settings.crop; request.view.pinhole && crop.width > 0)
+    made->camera = given.camera.attr("cropped")(crop.x, crop.y);
   made->picture = std::move(result.picture);
+  made->picture.view = request.shown;
+  if (request.fitExposure) made->picture.view.exposure = picture::fittingExposure(made->picture);
   made->nodes.reserve(result.nodes.size());
   for (xvrml::NodeRef& node : result.nodes) made->nodes.emplace_back(world, std::move(node));
   return py::cast(std::move(made));
@@ -376,7 +362,8 @@ void defineRender(py::object worldClass) {
           parameter("isa", &A::isa), qualityParameter<Switch>(RT_FOLLOW_IMAGES),
           qualityParameter<Switch>(RT_JITTER), qualityParameter<long long>(RT_LIGHT_STRIDE),
           parameter("exact_shapes", &A::exactShapes)),
-      parameterList(),
+      parameterList(parameter("exposure", &A::exposure), parameter("view", &A::view),
+                    parameter("crop", &A::crop), qualityParameter<std::string>(RT_DEPTH_ALONG)),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
       "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "
@@ -387,6 +374,10 @@ void defineRender(py::object worldClass) {
       "up ('z', '-y' ...) in a world without a Viewpoint. background: 'none', a colour or a file. "
       "isa: instruction set of the ray kernels ('avx2', ...); machines give the same bytes with "
       "the same one. "
+      "exposure (in stops, or 'auto') and view ('standard', 'filmic', 'agx'): how the picture is "
+      "shown; Picture.exposure and Picture.view change them later. "
+      "crop: (x, y, width, height), the part of the picture to make. depth_along: 'axis' or 'ray', "
+      "what the channel z measures. "
       "progress: True for a bar, or a function that is called with the fraction done. Ctrl-C "
       "raises KeyboardInterrupt, whose attribute image is the picture so far.");
 }

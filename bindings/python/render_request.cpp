@@ -47,34 +47,19 @@ MapOptions::Headlight headlightOf(const py::object& value) {
 
 // Converts a pose: a camera-to-world matrix that looks along -z with +y up, as in VRML.
 picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
-  picture::LookAt camera;
-  camera.saysUp = true;
-  double products[3][3] = {}, last = 0;
+  double numbers[16];
   for (size_t i = 0; i < 4; ++i) {
     if (rows[i].size() != 4) throw py::cast_error();
-    for (size_t k = 0; k < 4; ++k)
+    for (size_t k = 0; k < 4; ++k) {
       if (!std::isfinite(rows[i][k])) throw py::cast_error();
-    last = std::max(last, std::abs(rows[3][i] - (i == 3 ? 1 : 0)));
-  }
-  double off = last;
-  for (size_t a = 0; a < 3; ++a)
-    for (size_t b = 0; b < 3; ++b) {
-      for (size_t i = 0; i < 3; ++i) products[a][b] += rows[i][a] * rows[i][b];
-      off = std::max(off, std::abs(products[a][b] - (a == b ? 1 : 0)));
+      numbers[4 * i + k] = rows[i][k];
     }
-  double handed = 0;
-  for (size_t i = 0; i < 3; ++i)
-    handed += rows[i][0] * (rows[(i + 1) % 3][1] * rows[(i + 2) % 3][2] -
-                            rows[(i + 2) % 3][1] * rows[(i + 1) % 3][2]);
-  if (off > 1e-4 || handed < 0)
-    throw py::value_error(
-        "camera: the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
-  for (size_t i = 0; i < 3; ++i) {
-    camera.position[i] = rows[i][3];
-    camera.target[i] = rows[i][3] - rows[i][2];
-    camera.up[i] = rows[i][1];
   }
-  return camera;
+  try {
+    return picture::lookAtOf(numbers);
+  } catch (const std::invalid_argument& error) {
+    throw py::value_error(std::string("camera: ") + error.what());
+  }
 }
 
 // Returns whether an array is a rotation, which gives a camera's direction but not its position.
@@ -121,27 +106,17 @@ picture::LookAt cameraOf(const py::object& given) {
   return camera;
 }
 
-// Converts a Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels and the
-// same focal length fy are sheared to those of the Pinhole.
+// Converts a Pinhole (xvrml/_camera.py).
 picture::View::Pinhole pinholeOf(const py::object& given, int width, int height) {
   const auto [numbers, pose] =
       given.attr("_numbers")().cast<std::pair<std::array<double, 5>, std::array<double, 16>>>();
   const auto [fx, fy, cx, cy, skew] = numbers;
-  picture::View::Pinhole camera{};
-  camera.fovy = 2 * std::atan(height / 2.0 / fy);
-  const double up = (cy - height / 2.0) / fy, right = (width / 2.0 - cx) / fx + skew / fx * up;
-  for (size_t i = 0; i < 3; ++i) { // the pose's y points down and its z forward
-    const double x = pose[4 * i], y = -pose[4 * i + 1], z = -pose[4 * i + 2];
-    const double columns[] = {x, y, z, pose[4 * i + 3]};
-    const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up,
-                              pose[4 * i + 3]};
-    for (size_t k = 0; k < 4; ++k) {
-      camera.matrix[4 * k + i] = columns[k];
-      camera.sheared[4 * k + i] = sheared[k];
-    }
-  }
-  camera.matrix[15] = camera.sheared[15] = 1;
-  return camera;
+  double matrix[16] = {};
+  for (size_t i = 0; i < 3; ++i)
+    for (size_t k = 0; k < 4; ++k) // the pose's y points down and its z forward
+      matrix[4 * k + i] = (k == 1 || k == 2 ? -1 : 1) * pose[4 * i + k];
+  matrix[15] = 1;
+  return picture::pinholeOf({fx, fy, cx, cy, skew}, matrix, width, height);
 }
 
 picture::Background backgroundOf(const py::object& given) {
@@ -214,6 +189,25 @@ void setHeadlight(const char*, const Given& given, RenderRequest& request) {
   request.settings.headlight = headlightOf(given.headlight);
 }
 
+void setCrop(const char* name, const Given& given, RenderRequest& request) {
+  if (given.crop.is_none()) return;
+  Settings& settings = request.settings;
+  std::array<int, 4> c{};
+  try {
+    c = given.crop.cast<std::array<int, 4>>();
+  } catch (const py::cast_error&) {}
+  const bool lies = c[0] >= 0 && c[1] >= 0 && c[2] >= 1 && c[3] >= 1 &&
+                    c[2] <= settings.width - c[0] && c[3] <= settings.height - c[1];
+  if (!lies)
+    throw py::value_error(fmt::format("{}: (x, y, width, height) within the picture of {}x{} "
+                                      "pixels expected, not {}",
+                                      name, settings.width, settings.height,
+                                      std::string(py::repr(given.crop))));
+  settings.crop = {c[0], c[1], c[2], c[3]};
+  if (const std::string why = picture::whyNoCrop(settings); !why.empty())
+    throw py::value_error(fmt::format("{}: {}", name, why));
+}
+
 void setSamples(const char* name, const Given& given, RenderRequest& request) {
   Settings& settings = request.settings;
   const long long most = settings.timeLimit > 0 ? 65536
@@ -229,7 +223,6 @@ void setChannels(const char*, const Given& given, RenderRequest& request) {
   request.channels =
       given.channels.is_none() ? RT_RGBA | RT_DEPTH | error : channelsOf(given.channels);
   request.settings.channels = request.channels;
-  if (isPinhole(given) && (request.channels & RT_DEPTH)) request.settings.channels |= RT_POSITION;
 }
 
 void checkViewpoint(const char*, const Given& given, RenderRequest&) {
@@ -266,6 +259,14 @@ void setBackground(const char*, const Given& given, RenderRequest& request) {
   request.settings.background = backgroundOf(given.background);
 }
 
+void setExposure(const char*, const Given& given, RenderRequest& request) {
+  const std::optional<double> stops = exposureOf(given.exposure);
+  request.fitExposure = !stops;
+  request.shown = {stops.value_or(0), curveOf(given.view)};
+  if ((request.fitExposure || !request.shown.isPlain()) && !request.settings.linear)
+    throw py::value_error("exposure, view: they need linear light, not colour='vrml97'");
+}
+
 // Checks one parameter, and sets the members of the request that it decides.
 struct Rule {
   const char* name;
@@ -284,15 +285,41 @@ constexpr Rule rules[] = {
     {"headlight", setHeadlight},
     {"spp", setSamples},
     {"channels", setChannels},
+    {"crop", setCrop},
     {"viewpoint", checkViewpoint},
     {"fit", setFit},
     {"fov", setFov},
     {"camera", setCamera},
     {"up", setUp},
     {"background", setBackground},
+    {"exposure", setExposure},
 };
 
 } // namespace
+
+std::optional<double> exposureOf(const py::object& given) {
+  if (py::isinstance<py::str>(given) && fromText(given) == "auto") return {};
+  double stops = NAN;
+  if (!py::isinstance<py::str>(given) && !py::isinstance<py::bool_>(given)) {
+    stops = PyFloat_AsDouble(given.ptr());
+    if (PyErr_Occurred()) {
+      PyErr_Clear();
+      stops = NAN;
+    }
+  }
+  if (!(std::abs(stops) <= picture::mostExposure))
+    throw py::value_error(fmt::format("exposure: 'auto' or a number of stops from -{0} to {0} "
+                                      "expected, not {1}",
+                                      picture::mostExposure, shown(given)));
+  return stops;
+}
+
+picture::ViewCurve curveOf(const std::string& name) {
+  const std::optional<picture::ViewCurve> curve = picture::curveNamed(name);
+  if (!curve)
+    throw py::value_error(fmt::format("view: {} expected, not '{}'", picture::curveNames, name));
+  return *curve;
+}
 
 std::string checkedIsa(const std::string& isa) {
   try {

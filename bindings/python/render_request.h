@@ -30,6 +30,9 @@ struct RenderArguments {
   std::optional<std::string> up;
   py::object background = py::none();
   std::string isa = "auto";
+  py::object exposure = py::float_(0.0);
+  std::string view = "standard";
+  py::object crop = py::none();
   picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
 };
 
@@ -38,10 +41,19 @@ struct RenderRequest {
   picture::RenderSettings settings;
   picture::View view;
   uint32_t channels = 0; // the channels of the Picture; the settings may have more
+  // How the Picture is shown; fitExposure: with an exposure that fits it instead of this one.
+  // The settings do not have it, so that the scene is kept between pictures.
+  picture::ViewTransform shown;
+  bool fitExposure = false;
 };
 
 // Returns the instruction set. Raises ValueError if this machine does not have it.
 std::string checkedIsa(const std::string& isa);
+
+// Returns a number of stops; nothing for 'auto'. Raises ValueError.
+std::optional<double> exposureOf(const py::object& given);
+// Returns the curve with this name. Raises ValueError.
+picture::ViewCurve curveOf(const std::string& name);
 
 // Raises TypeError, ValueError or IndexError for the first argument that is wrong.
 RenderRequest requestOf(const RenderArguments& given);

@@ -146,6 +146,7 @@ void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
           qualityParameter<std::string>(RT_TRANSPORT), qualityParameter<Switch>(RT_SHADOWS),
           parameter("channels", &A::channels), parameter("progress", &A::progress),
           qualityParameter<Switch>(RT_FOLLOW_IMAGES), qualityParameter<Switch>(RT_JITTER),
-          qualityParameter<long long>(RT_LIGHT_STRIDE)),
+          qualityParameter<long long>(RT_LIGHT_STRIDE),
+          qualityParameter<std::string>(RT_DEPTH_ALONG)),
       "Renders the scene. Returns a Picture, like World.render. seed: 0 to 2147483647.");
 }

@@ -34,6 +34,21 @@ void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
   c.scene.frameDirty = true;
 }
 
+void setScissor(Context& c, int x, int y, int width, int height) {
+  constexpr int maxSide = 65536;
+  require(x >= 0 && y >= 0 && x < maxSide && y < maxSide, RT_INVALID_VALUE,
+          "a scissor begins at a pixel, 0 to 65535 each way");
+  require((width == 0 && height == 0) ||
+              (width >= 1 && height >= 1 && width <= maxSide && height <= maxSide),
+          RT_INVALID_VALUE, "a scissor has 1 to 65536 pixels a side; 0 and 0 mean the whole frame");
+  edit::FrameSettingsT& frame = c.scene.frame;
+  frame.scissorX = static_cast<uint32_t>(x);
+  frame.scissorY = static_cast<uint32_t>(y);
+  frame.scissorWidth = static_cast<uint32_t>(width);
+  frame.scissorHeight = static_cast<uint32_t>(height);
+  c.scene.frameDirty = true;
+}
+
 // real: the caller is rtQualityf.
 void setQuality(Context& c, RTenum name, double value, bool real) {
   const QualitySetting* setting = findQuality(name);
@@ -131,6 +146,10 @@ void requireNoDefinition(Context& c) {
 
 void rtFrameBuffer(int width, int height, uint32_t channels) {
   guarded("rtFrameBuffer", [&](Context& c) { setFrameBuffer(c, width, height, channels); });
+}
+
+void rtScissor(int x, int y, int width, int height) {
+  guarded("rtScissor", [&](Context& c) { setScissor(c, x, y, width, height); });
 }
 
 void rtQuality(RTenum name, int value) {

@@ -137,6 +137,9 @@ struct RenderScene {
   bool skyKnown = false, skyShines = false;
   RenderHost host;
   edit::FrameSettingsT frame;
+  // RT_DEPTH is along it: perpendicular to the picture, and viewAxis unless the camera's matrix
+  // shears the picture.
+  Vec3f depthAxis{0, 0, -1};
 };
 
 // Fills in the host table's functions (render/surface/host.cpp).

@@ -95,6 +95,10 @@ constexpr QualitySetting table[] = {
       "whether pixels are photometric readings"},
      get<&Frame::measure>,
      set<&Frame::measure>},
+    {{size, RT_DEPTH_ALONG, "depth_along", 0, RT_DEPTH_ALONG_AXIS, RT_DEPTH_ALONG_RAY,
+      RT_DEPTH_ALONG_AXIS, 0, "axis ray", "what depth is measured along"},
+     get<&Frame::depthAlong>,
+     set<&Frame::depthAlong>},
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
@@ -56,12 +57,23 @@ std::string nameTable(const std::vector<std::string>& names) {
 
 Imf::Header makeHeader(const Picture& picture) {
   Imf::Header header(picture.width, picture.height);
+  if (picture.wholeWidth > 0) { // a part of a picture: its place in the whole
+    header.displayWindow() = {{0, 0}, {picture.wholeWidth - 1, picture.wholeHeight - 1}};
+    header.dataWindow() = {{picture.left, picture.top},
+                           {picture.left + picture.width - 1, picture.top + picture.height - 1}};
+  }
   header.compression() = Imf::ZIP_COMPRESSION;
   header.insert("software",
                 Imf::StringAttribute(fmt::format("vv {}.{}.{}", OPENRT_VERSION_MAJOR,
                                                  OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
   header.insert("colour", Imf::StringAttribute(picture.linear ? "linear" : "vrml97"));
   if (picture.linear) Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
+  if (!picture.view.isPlain() && picture.linear) { // advice for who shows it; pixels stay linear
+    header.insert("viewExposure", Imf::FloatAttribute(float(picture.view.exposure)));
+    header.insert("viewCurve", Imf::StringAttribute(std::string(curveName(picture.view.curve))));
+  }
+  if (picture.planes.count(RT_DEPTH))
+    header.insert("depthAlong", Imf::StringAttribute(picture.depthAlongRay ? "ray" : "axis"));
   if (!picture.note.empty()) Imf::addComments(header, picture.note);
   if (picture.planes.count(RT_NAME))
     header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));
@@ -83,7 +95,10 @@ std::string encodeExr(const Picture& picture) {
         const std::string name(channel.exr[c]);
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
         char* base = reinterpret_cast<char*>(const_cast<float*>(plane->second.data() + c));
-        frame.insert(name, Imf::Slice(Imf::FLOAT, base, pixel, pixel * size_t(picture.width)));
+        const size_t row = pixel * size_t(picture.width);
+        // OpenEXR addresses pixels relative to the display window.
+        base -= picture.left * std::ptrdiff_t(pixel) + picture.top * std::ptrdiff_t(row);
+        frame.insert(name, Imf::Slice(Imf::FLOAT, base, pixel, row));
       }
     }
     MemoryStream stream(out);

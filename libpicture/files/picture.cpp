@@ -16,7 +16,11 @@ namespace {
 
 constexpr Channel table[] = {
     {"rgba", RT_RGBA, 4, {"R", "G", "B", "A"}, "mean radiance and coverage"},
-    {"z", RT_DEPTH, 1, {"Z"}, "distance along the view axis, infinite where nothing is hit"},
+    {"z",
+     RT_DEPTH,
+     1,
+     {"Z"},
+     "distance along the view axis or the ray, infinite where nothing is hit"},
     {"normal", RT_NORMAL, 3, {"N.X", "N.Y", "N.Z"}, "mean shading normal in world space"},
     {"albedo", RT_ALBEDO, 3, {"albedo.R", "albedo.G", "albedo.B"}, "mean surface colour"},
     {"position", RT_POSITION, 3, {"P.X", "P.Y", "P.Z"}, "world-space position of the first hit"},
@@ -110,23 +114,51 @@ const std::vector<float>& rgbaOf(const Picture& picture) {
   return found->second;
 }
 
+void cut(Picture& picture, int x, int y, int width, int height) {
+  for (const Channel& channel : table) {
+    const auto found = picture.planes.find(channel.bit);
+    if (found == picture.planes.end()) continue;
+    const std::vector<float> whole = std::move(found->second);
+    const auto components = size_t(channel.components), row = size_t(width) * components;
+    found->second.resize(row * size_t(height));
+    for (size_t j = 0; j < size_t(height); ++j)
+      std::copy_n(
+          whole.begin() +
+              std::ptrdiff_t(((size_t(y) + j) * size_t(picture.width) + size_t(x)) * components),
+          row, found->second.begin() + std::ptrdiff_t(j * row));
+  }
+  picture.wholeWidth = picture.width;
+  picture.wholeHeight = picture.height;
+  picture.left = x;
+  picture.top = y;
+  picture.width = width;
+  picture.height = height;
+}
+
 std::vector<uint8_t> displayBytes(const Picture& picture) {
   const std::vector<float>& rgba = rgbaOf(picture);
+  const bool plain = picture.view.isPlain() || !picture.linear;
   std::vector<uint8_t> bytes(rgba.size() / 4 * 3);
-  for (size_t i = 0; i < rgba.size() / 4; ++i)
-    for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(rgba[4 * i + c], picture.linear);
+  for (size_t i = 0; i < rgba.size() / 4; ++i) {
+    float screen[3] = {rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]};
+    if (!plain) toScreen(picture.view, &rgba[4 * i], screen);
+    for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(screen[c], picture.linear);
+  }
   return bytes;
 }
 
 std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {
   const std::vector<float>& rgba = rgbaOf(picture);
+  const bool plain = picture.view.isPlain() || !picture.linear;
   std::vector<uint8_t> bytes(rgba.size());
   for (size_t i = 0; i < rgba.size(); i += 4) {
     const float alpha = rgba[i + 3];
     bytes[i + 3] = displayByte(alpha, false);
-    for (size_t c = 0; c < 3; ++c)
-      bytes[i + c] =
-          alpha > 0 ? displayByte(rgba[i + c] / std::min(alpha, 1.0f), picture.linear) : 0;
+    if (!(alpha > 0)) continue; // black, as all bytes are at first
+    float screen[3];
+    for (size_t c = 0; c < 3; ++c) screen[c] = rgba[i + c] / std::min(alpha, 1.0f);
+    if (!plain) toScreen(picture.view, screen, screen);
+    for (size_t c = 0; c < 3; ++c) bytes[i + c] = displayByte(screen[c], picture.linear);
   }
   return bytes;
 }

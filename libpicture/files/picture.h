@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libpicture/files/view_transform.h"
+
 namespace picture {
 
 // One channel of a frame: its name on the command line and in Python, OpenRT's bit, and the names
@@ -26,10 +28,15 @@ const Channel* findChannel(std::string_view name);
 
 struct Picture {
   int width = 0, height = 0;
-  bool linear = true;       // true: rgba is linear radiance; false: rgba holds display values
-  bool transparent = false; // files of the picture have alpha if their format keeps it
+  bool linear = true;         // true: rgba is linear radiance; false: rgba holds display values
+  bool depthAlongRay = false; // channel z is the distance along the ray, not along the view axis
+  ViewTransform view;         // how linear rgba is shown on screens
+  bool transparent = false;   // files of the picture have alpha if their format keeps it
   // Indexed by Channel::bit; width*height*components floats, first row at the top.
   std::map<uint32_t, std::vector<float>> planes;
+  // The picture is a part of a larger one of this size: its left upper corner there. Not of a
+  // larger one: 0.
+  int wholeWidth = 0, wholeHeight = 0, left = 0, top = 0;
   std::vector<std::string> names; // names for the numbers of channel id; names[0] is ""
   // What files of the picture say about it, a line of ASCII; "": nothing. Formats without
   // Format::keepsNote do not say it.
@@ -37,6 +44,9 @@ struct Picture {
   // The library that has denoised rgba (libpicture/denoiser.h); "": none has.
   std::string denoisedBy;
 };
+
+// Keeps a rectangle of the pixels of a whole picture, which must lie within it.
+void cut(Picture& picture, int x, int y, int width, int height);
 
 // Returns the plane rgba. Throws std::runtime_error if the picture has none.
 const std::vector<float>& rgbaOf(const Picture& picture);

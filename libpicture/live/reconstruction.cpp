@@ -228,6 +228,7 @@ struct Reconstruction::Impl {
     picture.width = frame.width;
     picture.height = frame.height;
     picture.linear = frame.linear;
+    picture.view = frame.view;
     picture.transparent = frame.transparent;
     std::vector<float>& rgba = picture.planes[RT_RGBA];
     rgba.resize(size_t(frame.width) * size_t(frame.height) * 4);

@@ -114,6 +114,27 @@ void setColour(Options& o, const std::string& value) {
   o.render.linear = value == "linear";
 }
 
+void setExposure(Options& o, const std::string& value) {
+  o.fitExposure = value == "auto";
+  if (o.fitExposure) return;
+  try {
+    // the limits of readNumber are exclusive
+    o.render.view.exposure =
+        readNumber(value, -picture::mostExposure - 1e-9, picture::mostExposure + 1e-9);
+  } catch (const UsageError&) {
+    throw UsageError(fmt::format("auto or a number of stops from -{0} to {0} was expected, not "
+                                 "\"{1}\"",
+                                 picture::mostExposure, value));
+  }
+}
+
+void setView(Options& o, const std::string& value) {
+  const std::optional<picture::ViewCurve> curve = picture::curveNamed(value);
+  if (!curve)
+    throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::curveNames, value));
+  o.render.view.curve = *curve;
+}
+
 void setCompat(Options& o, const std::string& value) {
   for (const std::string_view name : split(value, ',')) {
     if (name == "scripts")
@@ -208,6 +229,11 @@ const OptionInfo table[] = {
     {"--size", "WxH", "Picture",
      "Width and height of pictures and of the window, in pixels (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
+    {"--crop", "X,Y,WxH", "Picture",
+     "Make only this part of the picture of --size: W x H pixels, the first X from the left and Y "
+     "from the top. They have the same bytes as in the whole picture and take their share of its "
+     "time. An EXR file says where the part lies (dataWindow in displayWindow).",
+     [](Options& o, const std::string& v) { o.render.crop = readCrop(v); }},
     {"--channels", "LIST", "Picture",
      "Channels of an EXR file, separated by commas: rgba, z, normal, albedo, position, id, "
      "samples, variance, error, trust, motion, reflection (default rgba). error is the half-width "
@@ -231,6 +257,18 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
      }},
+    {"--exposure", "EV|auto", "Picture",
+     "Brighten " + picture::formatsWith(&picture::Format::appliesCurve) +
+         " files and films by EV stops: light is multiplied by 2 to the power of EV (default 0). "
+         "auto fits it to the luminances of the first picture of the run, for all its pictures, "
+         "and "
+         "says what it chose. EXR files keep the light as it is and record the value.",
+     setExposure},
+    {"--view", "standard|filmic|agx", "Picture",
+     "How light beyond the range of screens is shown in the same files. standard (default): cut "
+     "off at 1. filmic: Hable's curve, dark ends and bright ends of each colour are compressed. "
+     "agx: bright colours turn white gradually, as on film, and hues stay.",
+     setView},
     {"--background", "none|COLOUR|FILE", "Picture",
      "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
          picture::formatsWith(&picture::Format::keepsAlpha) +
@@ -259,6 +297,21 @@ const OptionInfo table[] = {
      "0,1,0. With --fit only the direction is used: the camera moves back until the whole world is "
      "in the picture.",
      [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
+    {"--pose", "[opencv:|opengl:]MATRIX|FILE", "View",
+     "Look from a camera with this pose: a 4x4 matrix from camera to world, 16 numbers row by row "
+     "with commas, or a file of them. opencv (default): the camera's x points to the right, y down "
+     "and z forward. opengl: y points up and z backward, as in VRML and Blender.",
+     [](Options& o, const std::string& v) {
+       if (o.view.lookAt) throw UsageError("only one of --camera and --pose can be used");
+       o.view.lookAt = readPose(v, o.poseFile);
+       o.posed = true;
+     }},
+    {"--intrinsics", "FX,FY,CX,CY", "View",
+     "Focal lengths and principal point in pixels of --size, as OpenCV has them (the centre of the "
+     "first pixel is at 0,0), instead of an angle of view: a point at x,y,z of an OpenCV camera "
+     "appears at FX x/z + CX, FY y/z + CY. The camera stands as --pose, --camera, --viewpoint or "
+     "the first Viewpoint says.",
+     [](Options& o, const std::string& v) { o.view.intrinsics = readIntrinsics(v); }},
     {"--fit", "", "View",
      "Place the camera so that the whole world is in the picture. It looks in the direction of "
      "--camera or of the first Viewpoint. A world without Viewpoint is shown in three-quarter "

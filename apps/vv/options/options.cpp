@@ -122,7 +122,16 @@ struct Rule {
 // The first broken rule is reported.
 constexpr Rule rules[] = {
     {[](const Options& o) { return !o.viewpoint.empty() && (o.view.lookAt || o.view.fit); },
-     "--viewpoint cannot be used with --camera or --fit, which choose another view"},
+     "--viewpoint cannot be used with --camera, --pose or --fit, which choose another view"},
+    {[](const Options& o) { return o.posed && o.view.fit; },
+     "--pose says where the camera stands: it cannot be used with --fit"},
+    {[](const Options& o) {
+       return o.view.intrinsics && (o.view.fit || o.view.fov || !o.cameraShader.empty());
+     },
+     "--intrinsics says what the camera sees: it cannot be used with --fit, --fov or "
+     "--camera-shader"},
+    {[](const Options& o) { return o.view.intrinsics && (!o.makesPictures() || o.render.preview); },
+     "--intrinsics needs -o without --preview"},
     {[](const Options& o) {
        return !o.from.empty() && (!o.viewpoint.empty() || o.view.lookAt || o.view.fit);
      },
@@ -187,6 +196,21 @@ constexpr Rule rules[] = {
      "--false-colour needs -o with a film or a file for a screen, such as .png"},
     {[](const Options& o) { return o.falseColour && !o.render.linear; },
      "--false-colour needs light that is added linearly: it cannot be used with --colour vrml97"},
+    {[](const Options& o) {
+       return (o.fitExposure || !o.render.view.isPlain()) && (!o.render.linear || o.falseColour);
+     },
+     "--exposure and --view need light that is added linearly, in its own colours: they cannot be "
+     "used with --colour vrml97, --old-world or --false-colour"},
+    {[](const Options& o) {
+       return (o.fitExposure || !o.render.view.isPlain()) && !o.showsWorld() &&
+              std::none_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.film != picture::FilmKind::none || output.format->appliesCurve ||
+                       output.format->encode == picture::encodeExr;
+              });
+     },
+     "--exposure and --view need -o with a film or a file that they change, such as .png"},
+    {[](const Options& o) { return o.fitExposure && (o.showsWorld() || o.audit); },
+     "--exposure auto needs -o without --audit; the window and vv serve take a number"},
     {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },
      "--audit cannot be used with --time-limit, whose pictures differ from run to run"},
     // the cluster
@@ -260,6 +284,21 @@ void checkCluster(const Options& options) {
       throw UsageError(fmt::format("{} needs --workers or --listen-workers", name));
 }
 
+// Refuses parts of pictures that do not exist, or could not have the bytes of the whole.
+void checkCrop(const Options& o) {
+  const picture::Crop& c = o.render.crop;
+  if (c.width == 0) return;
+  if (o.outputs.empty() && o.compare.empty())
+    throw UsageError("--crop needs -o: the window and vv serve show whole pictures");
+  if (c.width > o.render.width - c.x || c.height > o.render.height - c.y)
+    throw UsageError(fmt::format("--crop: {},{},{}x{} does not lie within the picture of {}x{} "
+                                 "pixels (--size)",
+                                 c.x, c.y, c.width, c.height, o.render.width, o.render.height));
+  if (o.audit) throw UsageError("--audit tests whole pictures: it cannot be used with --crop");
+  if (const std::string why = picture::whyNoCrop(o.render); !why.empty())
+    throw UsageError("--crop: " + why);
+}
+
 // Refuses what a preview cannot be, or could not say of itself.
 void checkPreview(const Options& o) {
   if (!o.render.preview) return;
@@ -306,6 +345,8 @@ void checkDenoise(const Options& o) {
       {o.measures(), "--measure needs readings without bias: it cannot be used with --denoise"},
       {o.falseColour.has_value(), "--false-colour shows luminance to be read: it cannot be used "
                                   "with --denoise"},
+      {o.render.crop.width != 0, "--denoise looks around each pixel, so that a part would differ "
+                                 "from the whole picture: it cannot be used with --crop"},
       {o.render.preview, "only one of --preview, which smooths pictures itself, and --denoise can "
                          "be used"},
       {o.outputs.size() == size_t(std::count_if(o.outputs.begin(), o.outputs.end(),
@@ -334,6 +375,7 @@ void checkTogether(const Options& options) {
     if (rule.broken(options)) throw UsageError(rule.message);
   checkPreview(options);
   checkDenoise(options);
+  checkCrop(options);
 }
 
 } // namespace

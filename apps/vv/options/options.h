@@ -99,8 +99,11 @@ struct Options {
   bool noWindow = false;
   // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen by the first.
   std::optional<double> falseColour;
-  bool denoise = false; // files and films of -o hold denoised pictures
-  std::string measure;  // file for the readings of the sensors, .csv or .json; empty: none
+  bool denoise = false;     // files and films of -o hold denoised pictures
+  std::string poseFile;     // of --pose; empty: none
+  bool posed = false;       // view.lookAt is that of --pose
+  bool fitExposure = false; // render.view.exposure is chosen by the first picture
+  std::string measure;      // file for the readings of the sensors, .csv or .json; empty: none
 
   bool allViewpoints() const { return viewpoint == "all"; }
   // Tells whether each moment has several pictures, whose names say which.

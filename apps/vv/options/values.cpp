@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
@@ -174,6 +177,100 @@ picture::LookAt readCamera(std::string_view text) {
   if (!picture::lookAtMatrix(camera, matrix))
     throw UsageError("position and target are the same point");
   return camera;
+}
+
+picture::Crop readCrop(std::string_view text) {
+  picture::Crop crop;
+  const std::vector<std::string_view> parts = split(text, ',');
+  const std::vector<std::string_view> size = split(parts.back(), 'x');
+  const bool read = parts.size() == 3 && size.size() == 2 && whole(parts[0], crop.x) &&
+                    whole(parts[1], crop.y) && whole(size[0], crop.width) &&
+                    whole(size[1], crop.height);
+  if (!read || crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1)
+    throw UsageError(fmt::format("X,Y,WxH was expected: the left upper pixel and the size of the "
+                                 "part, such as 100,50,320x240, not \"{}\"",
+                                 text));
+  return crop;
+}
+
+picture::Intrinsics readIntrinsics(std::string_view text) {
+  constexpr double most = 1e6, middle = 0.5; // pixels; of the first pixel, from the edge
+  const std::vector<std::string_view> parts = split(text, ',');
+  double numbers[4] = {};
+  bool read = parts.size() == 4;
+  for (size_t i = 0; i < 4 && read; ++i)
+    read = whole(parts[i], numbers[i]) && std::abs(numbers[i]) <= most &&
+           (i > 1 || numbers[i] >= 1 / most);
+  if (!read)
+    throw UsageError(
+        fmt::format("FX,FY,CX,CY was expected: focal lengths above 0 and the principal "
+                    "point, in pixels, up to 1000000, not \"{}\"",
+                    text));
+  return {numbers[0], numbers[1], numbers[2] + middle, numbers[3] + middle};
+}
+
+namespace {
+
+// Parses numbers between blanks, line breaks and commas; returns whether there are 16 and no more.
+bool readMatrix(std::string_view text, double rows[16]) {
+  size_t count = 0;
+  for (size_t at = 0;;) {
+    at = text.find_first_not_of(" \t\r\n,", at);
+    if (at == text.npos) return count == 16;
+    const size_t end = std::min(text.find_first_of(" \t\r\n,", at), text.size());
+    if (count == 16 || !whole(text.substr(at, end - at), rows[count]) ||
+        !std::isfinite(rows[count]))
+      return false;
+    ++count;
+    at = end;
+  }
+}
+
+// Reads at most as much as a matrix can need. Throws Failure.
+std::string readPoseFile(const std::string& path) {
+  constexpr std::streamsize most = 4096;
+  std::ifstream file(path, std::ios::binary);
+  std::string text(size_t(most) + 1, ' ');
+  file.read(text.data(), most + 1);
+  if (!file.is_open() || file.bad())
+    throw Failure{exitInput, fmt::format("--pose: cannot read {}: {}", path, std::strerror(errno))};
+  text.resize(size_t(file.gcount()));
+  return text;
+}
+
+} // namespace
+
+picture::LookAt readPose(std::string_view text, std::string& file) {
+  bool opencv = true;
+  for (const std::string_view name : {"opencv:", "opengl:"})
+    if (text.starts_with(name)) {
+      opencv = name == "opencv:";
+      text.remove_prefix(name.size());
+      break;
+    }
+  double rows[16];
+  if (!readMatrix(text, rows)) {
+    if (text.empty() || text.find_first_of(",") != text.npos)
+      throw UsageError(fmt::format("16 numbers, row by row, or a file of them were expected, not "
+                                   "\"{}\"",
+                                   text));
+    file = text;
+    if (!readMatrix(readPoseFile(file), rows))
+      throw Failure{exitInput, fmt::format("--pose: {}: 16 numbers were expected, row by row, and "
+                                           "nothing else",
+                                           file)};
+  }
+  if (opencv) // there y points down and z forward
+    for (size_t i = 0; i < 3; ++i) {
+      rows[4 * i + 1] = -rows[4 * i + 1];
+      rows[4 * i + 2] = -rows[4 * i + 2];
+    }
+  try {
+    return picture::lookAtOf(rows);
+  } catch (const std::invalid_argument& error) {
+    if (file.empty()) throw UsageError(error.what());
+    throw Failure{exitInput, fmt::format("--pose: {}: {}", file, error.what())};
+  }
 }
 
 xvrml::Axis readAxis(std::string_view text) {

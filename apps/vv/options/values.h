@@ -1,5 +1,5 @@
 // values.h: Parses option values strictly. Each function throws UsageError that says what was
-// expected. [any thread]
+// expected; readPose() throws Failure for a file. [any thread]
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 
 #include "libpicture/camera.h"
 #include "libpicture/quality.h"
+#include "libpicture/renderer.h"
 
 namespace vv {
 
@@ -54,6 +55,12 @@ double readSeconds(std::string_view text); // seconds from 0 to a million
 uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off
 void readSize(std::string_view text, int& width, int& height);
+picture::Crop readCrop(std::string_view text); // X,Y,WxH
+// FX,FY,CX,CY in OpenCV's convention: the centre of the first pixel is at (0, 0)
+picture::Intrinsics readIntrinsics(std::string_view text);
+// 16 numbers by rows, or a file of them, after "opencv:" (the default) or "opengl:". file: gets the
+// name of the file, if it is one.
+picture::LookAt readPose(std::string_view text, std::string& file);
 picture::LookAt readCamera(std::string_view text);
 xvrml::Axis readAxis(std::string_view text);  // x, y or z, with an optional sign
 FrameRange readFrames(std::string_view text); // A-B, A-B/STEP or A

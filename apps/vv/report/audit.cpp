@@ -39,7 +39,7 @@ std::vector<double> coloursOf(const picture::Picture& picture) {
 
 void checkReference(const Options& options) {
   if (!options.compare.empty())
-    readReference(options.compare, options.render.width, options.render.height);
+    readReference(options.compare, options.render.madeWidth(), options.render.madeHeight());
 }
 
 std::string compareText(const picture::Picture& made, const std::string& path) {

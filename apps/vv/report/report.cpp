@@ -141,6 +141,12 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
                    {"spp", r.samples},
                    {"spp_mean", samples},
                    {"channels", channelNames(r.channels)}};
+  if (const picture::ViewTransform& view = result.picture.view; !view.isPlain()) {
+    json["image"]["exposure"] = view.exposure;
+    json["image"]["view"] = picture::curveName(view.curve);
+  }
+  if (const picture::Crop& c = r.crop; c.width > 0)
+    json["image"]["crop"] = {c.x, c.y, c.width, c.height};
   if (r.preview) json["image"]["preview"] = true;
   if (!result.picture.denoisedBy.empty())
     json["image"]["denoised"] = {
@@ -231,6 +237,7 @@ void SequenceStats::add(const PictureName& name, double worldTime,
   sum.secondary += s.secondaryRays;
   sum.samples = meanSamples(result);
   sum.last.map = result.map;
+  sum.last.picture.view = result.picture.view;
   sum.last.stats = s;
   if (!result.interrupted) sum.last.picture.denoisedBy = result.picture.denoisedBy;
   sum.last.workers = result.workers;

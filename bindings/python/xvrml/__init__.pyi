@@ -284,6 +284,9 @@ class Pinhole:
     def center(self) -> float:
         ...
 
+    def cropped(self, x: int, y: int) -> Pinhole:
+        ...
+
     def project(self, points: npt.ArrayLike) -> npt.NDArray[np.float64]:
         ...
 
@@ -387,6 +390,22 @@ class Picture:
     def colour(self) -> str:
         ...
 
+    @property
+    def exposure(self) -> float:
+        ...
+
+    @exposure.setter
+    def exposure(self, stops: Union[float, str]) -> None:
+        ...
+
+    @property
+    def view(self) -> str:
+        ...
+
+    @view.setter
+    def view(self, curve: str) -> None:
+        ...
+
     def __getitem__(self, key: Any) -> npt.NDArray[Any]:
         ...
 
@@ -394,6 +413,16 @@ class Picture:
         ...
 
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        ...
+
+    def coco(
+        self,
+        image_id: int = ...,
+        file_name: str = ...,
+        categories: Union[None, Mapping[str, str], Callable[[str], Optional[str]]] = ...,
+        compressed: bool = ...,
+        first_id: int = ...,
+    ) -> Dict[str, Any]:
         ...
 
     def _repr_png_(self) -> bytes:
@@ -550,6 +579,11 @@ class World:
         jitter: bool = ...,
         light_stride: int = ...,
         exact_shapes: bool = ...,
+        *,
+        exposure: Union[float, str] = ...,
+        view: str = ...,
+        crop: Union[None, Tuple[int, int, int, int], Sequence[int]] = ...,
+        depth_along: str = ...,
     ) -> Picture:
         ...
 

@@ -86,6 +86,13 @@ class Pinhole:
         """The coordinate of the first pixel's centre."""
         return self._center
 
+    def cropped(self, x, y):
+        """Returns the camera of a part of its picture: the one whose first pixel is (x, y)."""
+        k = self._K.copy()
+        k[0, 2] -= _arguments.whole("x", x, 0)
+        k[1, 2] -= _arguments.whole("y", y, 0)
+        return type(self)(k, self._T, center=self._center)
+
     def project(self, points):
         """Projects points (..., 3) of the world. Returns (..., 3): column, row, and distance along
         the view axis, which is negative behind the camera."""

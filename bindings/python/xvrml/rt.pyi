@@ -229,6 +229,7 @@ class Context:
         follow_images: bool = ...,
         jitter: bool = ...,
         light_stride: int = ...,
+        depth_along: str = ...,
     ) -> Picture:
         ...
 

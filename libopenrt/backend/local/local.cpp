@@ -225,6 +225,12 @@ void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
   const Vec3d axis = scene_.camera.matrix.column(2) * (-1 / length(scene_.camera.matrix.column(2)));
   next.eye = next.camera.fromLocal.translation();
   next.viewAxis = Vec3f(axis);
+  next.depthAxis = next.viewAxis;
+  const Vec3d normal = cross(scene_.camera.matrix.column(0), scene_.camera.matrix.column(1));
+  const double along = dot(normal, axis) / length(normal);
+  constexpr double rounding = 1e-12;
+  if (std::abs(along) < 1 - rounding)
+    next.depthAxis = Vec3f(normal * ((along < 0 ? -1 : 1) / length(normal)));
 }
 
 // Returns the distance between the rays of two neighbouring pixels in the middle of the picture.

@@ -169,6 +169,10 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
          "a frame has an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0,
          "a frame has unknown channels");
+  demand(frame.scissorX < maxSide && frame.scissorY < maxSide && frame.scissorWidth <= maxSide &&
+             frame.scissorHeight <= maxSide &&
+             (frame.scissorWidth == 0) == (frame.scissorHeight == 0),
+         "a frame has an impossible scissor");
   if (const char* setting = invalidQuality(frame))
     demand(false, (std::string("a frame has an impossible ") + setting).c_str());
   hasFrame_ = true;

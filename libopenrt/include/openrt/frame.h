@@ -17,7 +17,8 @@ extern "C" {
 enum {
   RT_RGBA = 1,       /* 4: mean radiance; alpha, which is 1 where the environment shows or a surface
                            is opaque */
-  RT_DEPTH = 2,      /* 1: distance along the view axis, first sample; infinite if nothing is hit */
+  RT_DEPTH = 2,      /* 1: distance along the view axis (RT_DEPTH_ALONG: along the ray), first
+                           sample; infinite if nothing is hit */
   RT_NORMAL = 4,     /* 3: mean shading normal in world space, towards the camera; 0 0 0 if nothing
                            is hit */
   RT_ALBEDO = 8,     /* 3: mean surface colour as the shader reports it */
@@ -105,9 +106,21 @@ enum {
   RT_VIEW = 17,
   /* One of RT_MEASURE_* below, default RT_MEASURE_NOTHING: each pixel is the reading of a
    * photometric sensor instead of a part of a picture. */
-  RT_MEASURE = 18
+  RT_MEASURE = 18,
+  /* What RT_DEPTH measures: one of RT_DEPTH_ALONG_*, default RT_DEPTH_ALONG_AXIS. */
+  RT_DEPTH_ALONG = 19
 };
 
+/* What RT_DEPTH is (RT_DEPTH_ALONG), in units of the world. */
+enum {
+  /* The distance along the view axis: from the plane through the camera that is parallel to its x
+   * and y axes. Also where the camera's matrix shears the picture. */
+  RT_DEPTH_ALONG_AXIS = 0,
+  /* The distance along the ray of the sample, from the point of the ray that is nearest to the
+   * camera: the camera itself if its rays begin there (a pinhole, a panorama), the plane above if
+   * they are parallel to the axis. */
+  RT_DEPTH_ALONG_RAY = 1
+};
 /* What the pixels of a frame are (RT_MEASURE). Every sample of a sensor uses the camera's ray
  * through the middle of its pixel, so that an orthographic camera is a grid of points. Red, green
  * and blue of RT_RGBA are all the reading, and those of RT_ERROR its half-width. Units: a radiance
@@ -203,6 +216,16 @@ RT_API int rtGetTransportInfo(RTenum transport, RTtransportInfo* info);
 /* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
  * follow. [context-thread] */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
+/* Limits the frames that follow to a rectangle of their pixels, rows from the top. Its pixels are
+ * those of the whole frame in every channel, and take their share of the time (paths from lamps are
+ * traced for the whole frame). What the channels hold outside of it is undefined. The rectangle is
+ * cut off at the border of the frame; one that lies outside gives a frame without samples.
+ * width and height 0 (the default): the whole frame. x and y: 0 .. 65535; width and height:
+ * 0 .. 65536, both 0 or both above 0.
+ * Two results follow from more than the rectangle: a target error (RT_TARGET_ERROR) shares the
+ * samples out over what is made, and at the border of the frame RT_ERROR and RT_TRUST of constant
+ * pixels depend on the range of its colours. [context-thread] */
+RT_API void rtScissor(int x, int y, int width, int height);
 /* Set a quality setting of the frames that follow. [context-thread] */
 RT_API void rtQuality(RTenum name, int value);
 RT_API void rtQualityf(RTenum name, double value);

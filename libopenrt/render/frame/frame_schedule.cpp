@@ -54,7 +54,7 @@ FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts
   samples_ = timed_ ? pilotSamples_ : rounds_ ? 1 : frame.samples;
   const double ahead = bytesAhead / (double(sizeof(PixelSums)) * grid.edge() * grid.edge());
   ahead_ = std::max(uint32_t(ahead), 4 * threadCount);
-  all_ = double(frame.width) * frame.height * (double(frame.samples) + pilotSamples_);
+  all_ = double(grid.pixels()) * (double(frame.samples) + pilotSamples_);
   if (lamps_) {
     parts_ = LightImage::partsOf(frame);
     partPaths_ = lightPathsOf(frame) / parts_ + 1;

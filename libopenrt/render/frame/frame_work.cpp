@@ -434,7 +434,7 @@ void FrameWork::describeError(RTstats& stats) const {
 void FrameWork::describeLedger(RTstats& stats) const {
   Ledger all;
   for (uint32_t i = 0; i < impl_->count; i++) all.addMean(impl_->tiles[i].ledger);
-  const double pixels = std::max(double(impl_->frame.width) * impl_->frame.height, 1.0);
+  const double pixels = std::max(double(impl_->grid.pixels()), 1.0);
   stats.cutByDepth = all.cutByDepth / pixels;
   stats.cutByEnergy = all.cutByEnergy / pixels;
   stats.clipped = all.clipped / pixels;

@@ -1,5 +1,6 @@
 // tiles.h: the tiles of a picture: squares, cut off at the right and lower border, numbered row by
-// row. [any]
+// row. With a scissor (rtScissor) only those that it needs are there, each as a whole: so its
+// pixels are those of the whole picture, also where a tile shares something. [any]
 #pragma once
 
 #include <cstddef>
@@ -21,12 +22,16 @@ class TileGrid {
  public:
   explicit TileGrid(const edit::FrameSettingsT& frame);
   uint32_t count() const { return columns_ * rows_; }
+  uint64_t pixels() const { return pixels_; } // of all tiles
   uint32_t edge() const { return edge_; }
   uint32_t columns() const { return columns_; }
   Tile at(uint32_t number) const;
 
  private:
-  uint32_t width_, height_, edge_, columns_, rows_;
+  uint32_t width_, height_, edge_;
+  // the first column and the first row of tiles of the picture that are there, and their numbers
+  uint32_t firstColumn_ = 0, firstRow_ = 0, columns_, rows_;
+  uint64_t pixels_ = 0;
 };
 
 } // namespace openrt

@@ -255,7 +255,10 @@ void Guides::store(const RtsBatch& batch, uint32_t i, float* const albedo[3],
   if (found.position[0])
     openrt::store(Vec3f(seen + vectorOf(scene_.origin)), found.position, ray.path);
   if (found.depth)
-    found.depth[ray.path] = float(dot(seen - Vec3d(scene_.eye), Vec3d(scene_.viewAxis)));
+    found.depth[ray.path] =
+        float(dot(seen - Vec3d(scene_.eye), scene_.frame.depthAlong == RT_DEPTH_ALONG_RAY
+                                                ? Vec3d(load(direction_, ray.path))
+                                                : Vec3d(scene_.depthAxis)));
   if (found.motion[0]) {
     const Vec3d motion = motionOf(scene_, *points.rayHits, points.order[i], position);
     openrt::store(Vec3f(motionOfImage(Vec3d(position), motion, image)), found.motion, ray.path);

@@ -44,7 +44,10 @@ void PixelSamples::storeFirst(const RenderScene& scene, const Points& points, ui
   if (motion[0])
     store(Vec3f(motionOf(scene, *points.rayHits, points.order[i], load(h.position, i))), motion,
           path);
-  if (depth) depth[path] = dot(load(h.position, i) - scene.eye, scene.viewAxis);
+  if (depth)
+    depth[path] =
+        dot(load(h.position, i) - scene.eye,
+            scene.frame.depthAlong == RT_DEPTH_ALONG_RAY ? load(h.direction, i) : scene.depthAxis);
 }
 
 } // namespace openrt

@@ -1,0 +1,93 @@
+"""Makes the annotations of COCO's data format from the channel id of a Picture."""
+from . import _arguments
+
+
+def _runs(mask):
+    """Returns the lengths of the runs of a mask, column by column: first that of the pixels outside
+    (perhaps 0), then inside, outside and so on."""
+    import numpy as np
+    flat = mask.ravel(order="F")
+    edges = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+    counts = np.diff(np.concatenate(([0], edges, [flat.size]))).tolist()
+    return [0, *counts] if flat[0] else counts
+
+
+def _packed(counts):
+    """Returns the text that pycocotools makes of runs: six bits a character, differences to the run
+    before the last one."""
+    text = []
+    for i, value in enumerate(counts):
+        rest = value - (counts[i - 2] if i > 2 else 0)
+        while True:
+            bits, rest = rest & 31, rest >> 5
+            more = rest != (-1 if bits & 16 else 0)
+            text.append(chr((bits | (32 if more else 0)) + 48))
+            if not more:
+                break
+    return "".join(text)
+
+
+def _category(categories, name):
+    if categories is None:
+        return name
+    found = categories(name) if callable(categories) else categories.get(name)
+    if found is not None and not isinstance(found, str):
+        raise TypeError(f"categories: a text or None expected for {name!r}, not {found!r}")
+    return found
+
+
+def coco(picture, image_id=1, file_name="", categories=None, compressed=False, first_id=1):
+    """Implements Picture.coco()."""
+    import numpy as np
+    image_id = _arguments.whole("image_id", image_id, 0)
+    number = _arguments.whole("first_id", first_id, 0)
+    if not isinstance(file_name, str):
+        raise TypeError(f"file_name: a text expected, not {file_name!r}")
+    if categories is not None and not callable(categories) and not hasattr(categories, "get"):
+        raise TypeError("categories: a dict from names to categories, a function or None expected")
+    if "id" not in picture.channels:
+        raise AttributeError("the picture has no channel id: render(channels=('id',)) makes it")
+    ids = picture["id"]
+    height, width = ids.shape
+    kinds = [_category(categories, name) if i else None for i, name in enumerate(picture.names)]
+    # A dict numbers its categories alike in all pictures, whatever they show.
+    listed = categories.values() if hasattr(categories, "values") else kinds
+    numbers = {}
+    for kind in listed:
+        if kind is not None:
+            numbers.setdefault(kind, len(numbers) + 1)
+    annotations = []
+    for i in np.unique(ids).tolist():
+        if not 0 < i < len(kinds) or kinds[i] is None:
+            continue
+        mask = ids == i
+        rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
+        x, y = int(columns[0]), int(rows[0])
+        counts = _runs(mask)
+        annotations.append({
+            "id": number,
+            "image_id": image_id,
+            "category_id": numbers[kinds[i]],
+            "bbox": [x, y, int(columns[-1]) - x + 1,
+                     int(rows[-1]) - y + 1],
+            "area": int(mask.sum()),
+            "segmentation": {
+                "size": [height, width],
+                "counts": _packed(counts) if compressed else counts
+            },
+            "iscrowd": 0,
+        })
+        number += 1
+    return {
+        "images": [{
+            "id": image_id,
+            "width": width,
+            "height": height,
+            "file_name": file_name
+        }],
+        "categories": [{
+            "id": n,
+            "name": kind
+        } for kind, n in numbers.items()],
+        "annotations": annotations,
+    }
