@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "backend/backend.h"
+#include "openrt/sums.h"
 #include "scene/sums_error.h"
 
 namespace openrt {

@@ -6,12 +6,13 @@
 #include <mutex>
 
 #include "api/guard.h"
+#include "openrt/sums.h"
 #include "render/frame/frame_sums.h"
 #include "scene/channels.h"
 
 struct RTsumsObject {
   std::shared_ptr<const openrt::FrameSums> sums;
-  std::mutex mutex;                               // guards picture
+  std::mutex mutex;                                 // guards picture
   std::unique_ptr<const openrt::FrameWork> picture; // made by the first call that needs it
 };
 

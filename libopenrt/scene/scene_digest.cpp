@@ -1,11 +1,20 @@
+// scene_digest.cpp: the digest. Each thing of the scene (an object, a light, a parameter ...) has
+// the digest of its last edit, so that it does not matter how often it was edited. Their sum does
+// not depend on the order in which a map holds them.
 #include "scene/scene_digest.h"
 
-#include <vector>
+#include <utility>
 
 #include <xxhash.h>
 
 namespace openrt {
 namespace {
+
+// Arrays have a kind of their own beside those of edits (edits.fbs).
+constexpr uint64_t ofArrays = 255;
+constexpr uint64_t keyOf(uint64_t kind, uint64_t id, uint64_t index = 0) {
+  return kind << 56 | (index & 0xffffff) << 32 | (id & 0xffffffff);
+}
 
 uint64_t join(uint64_t a, uint64_t b) {
   const uint64_t both[2] = {a, b};
@@ -18,39 +27,65 @@ uint64_t digestOf(const edit::EditT& edit) {
   return XXH3_64bits(builder.GetBufferPointer(), builder.GetSize());
 }
 
+// Returns the id of the thing that an edit is about, and for a parameter its index.
+std::pair<uint64_t, uint64_t> thingOf(const edit::AnyUnion& any) {
+  switch (any.type) {
+  case edit::Any_Texture: return {any.AsTexture()->id, 0};
+  case edit::Any_ShaderClass: return {any.AsShaderClass()->id, 0};
+  case edit::Any_Shader: return {any.AsShader()->id, 0};
+  case edit::Any_Parameter: return {any.AsParameter()->shader, any.AsParameter()->index};
+  case edit::Any_Object: return {any.AsObject()->id, 0};
+  case edit::Any_Instance: return {any.AsInstance()->id, 0};
+  case edit::Any_Light: return {any.AsLight()->id, 0};
+  default: return {0, 0}; // there is one of each
+  }
+}
+
 } // namespace
 
 void SceneDigest::add(const Commit& commit) {
   for (const auto& [id, array] : commit.arrays)
-    arrays_[id] = XXH3_64bits(array->data(), array->size());
+    things_[keyOf(ofArrays, id, id >> 32)] = XXH3_64bits(array->data(), array->size());
   for (const auto& edit : commit.edits.edits) {
-    switch (edit->any.type) {
+    const edit::AnyUnion& any = edit->any;
+    switch (any.type) {
     case edit::Any_FrameSettings: break;
-    case edit::Any_Camera:
-      cameraShader_ = edit->any.AsCamera()->shader;
-      camera_ = digestOf(*edit);
+    case edit::Any_DeleteTexture:
+      things_.erase(keyOf(edit::Any_Texture, any.AsDeleteTexture()->id));
       break;
-    case edit::Any_Parameter: { // a later value of the same parameter follows the earlier one
-      uint64_t& shader = shaders_[edit->any.AsParameter()->shader];
-      shader = join(shader, digestOf(*edit));
+    case edit::Any_DeleteObject:
+      things_.erase(keyOf(edit::Any_Object, any.AsDeleteObject()->id));
+      break;
+    case edit::Any_DeleteInstance:
+      things_.erase(keyOf(edit::Any_Instance, any.AsDeleteInstance()->id));
+      break;
+    case edit::Any_DeleteLight:
+      things_.erase(keyOf(edit::Any_Light, any.AsDeleteLight()->id));
+      break;
+    case edit::Any_DeleteShader: {
+      const uint64_t id = any.AsDeleteShader()->id;
+      things_.erase(keyOf(edit::Any_Shader, id));
+      std::erase_if(things_, [&](const auto& thing) {
+        return thing.first >> 56 == edit::Any_Parameter && (thing.first & 0xffffffff) == id;
+      });
       break;
     }
-    default: world_ = join(world_, digestOf(*edit));
+    default:
+      const auto [id, index] = thingOf(any);
+      things_[keyOf(uint64_t(any.type), id, index)] = digestOf(*edit);
+      if (any.type == edit::Any_Camera) cameraShader_ = any.AsCamera()->shader;
     }
   }
 }
 
 SceneDigest::Value SceneDigest::value() const {
-  Value out{world_, camera_};
-  // Sums do not depend on the order in which a map holds its entries.
-  uint64_t shaders = 0, arrays = 0;
-  for (const auto& [id, digest] : shaders_)
-    if (id == cameraShader_)
-      out.view = join(out.view, digest);
-    else
-      shaders += join(id, digest);
-  for (const auto& [id, digest] : arrays_) arrays += join(id, digest);
-  out.world = join(join(out.world, shaders), arrays);
+  Value out;
+  for (const auto& [key, digest] : things_) {
+    const uint64_t kind = key >> 56;
+    const bool camera = kind == edit::Any_Camera ||
+                        (kind == edit::Any_Parameter && (key & 0xffffffff) == cameraShader_);
+    (camera ? out.view : out.world) += join(key, digest);
+  }
   return out;
 }
 

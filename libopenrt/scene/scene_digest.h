@@ -16,15 +16,13 @@ class SceneDigest {
     uint64_t world = 0, view = 0;
   };
   void add(const Commit& commit);
-  // Returns the digest of all commits so far: equal for equal calls in equal order.
+  // Returns the digest of what all commits so far have made. Ids and their order count.
   Value value() const;
 
  private:
-  uint64_t world_ = 0;
-  uint64_t cameraShader_ = 0;
-  uint64_t camera_ = 0;                              // of the edit of the camera
-  std::unordered_map<uint32_t, uint64_t> shaders_;   // parameters of shaders, by shader
-  std::unordered_map<ArrayId, uint64_t> arrays_;     // contents
+  uint32_t cameraShader_ = 0;
+  // By kind, index and id of what was edited: the digest of the last edit, or of an array.
+  std::unordered_map<uint64_t, uint64_t> things_;
 };
 
 } // namespace openrt

@@ -49,9 +49,7 @@ enum {
   /* A recording cannot be written. */
   RT_IO_ERROR = 0x0513,
   /* backend=cluster: there are too few workers (require=N), or no usable address or key. */
-  RT_CLUSTER_ERROR = 0x0514,
-  /* Kept sums (openrt/sums.h) are damaged, not finished, or of something else. */
-  RT_SUMS_ERROR = 0x0515
+  RT_CLUSTER_ERROR = 0x0514
 };
 
 /* level: 0 debug, 1 information, 2 warning, 3 error. Messages belong to the library and are valid

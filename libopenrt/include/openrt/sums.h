@@ -4,6 +4,7 @@
 #ifndef OPENRT_SUMS_H
 #define OPENRT_SUMS_H
 
+#include "openrt/context.h"
 #include "openrt/frame.h"
 
 #ifdef __cplusplus
@@ -19,6 +20,9 @@ extern "C" {
  *
  * An object of type RTsums never changes. It belongs to no context. */
 typedef struct RTsumsObject* RTsums;
+
+/* An error as those of openrt/context.h: sums are damaged, not finished, or of something else. */
+enum { RT_SUMS_ERROR = 0x0515 };
 
 /* 1: the sums of the frames that follow are kept, which takes 60 to 320 bytes a pixel, and as much
  * again with RT_TARGET_ERROR. 0 (default): they are not. Frames with RT_TIME_LIMIT cannot be kept.

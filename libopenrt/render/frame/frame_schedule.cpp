@@ -40,8 +40,7 @@ uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
 
 } // namespace
 
-void KnownBlocks::add(uint32_t tile, const Replicates& replicates, uint32_t first,
-                      uint32_t count) {
+void KnownBlocks::add(uint32_t tile, const Replicates& replicates, uint32_t first, uint32_t count) {
   tiles_[{tile, replicates.seed, replicates.shift}][first] = count;
 }
 

@@ -61,12 +61,17 @@ void checkSettings(const edit::FrameSettingsT& a, const edit::FrameSettingsT& b,
 }
 
 void checkScene(const SumsIdentity& a, const SumsIdentity& b, const char* here) {
-  if (a.world != b.world) refuse(std::string("it is of another world than ") + here);
-  if (a.view != b.view) refuse(std::string("it is of another view than ") + here);
+  // A headlight moves with the view, so that the world differs then, too.
+  const std::string what = a.view == b.view     ? "world"
+                           : a.world == b.world ? "view"
+                                                : "view or world";
+  if (!(a.view == b.view && a.world == b.world))
+    refuse("it is of another " + what + " than " + here);
 }
 
 // Refuses what a frame with more samples than the sums cannot use.
-void checkLonger(const FrameSums& sums, const edit::FrameSettingsT& frame, const FrameFacts& facts) {
+void checkLonger(const FrameSums& sums, const edit::FrameSettingsT& frame,
+                 const FrameFacts& facts) {
   const uint32_t had = sums.frame.samples, wanted = frame.samples;
   const std::string both =
       std::to_string(had) + " samples a pixel, and " + std::to_string(wanted) + " are wanted: ";

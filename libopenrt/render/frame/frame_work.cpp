@@ -1,6 +1,7 @@
 // frame_work.cpp: merging of results. Locks: `mutex` guards the schedule and the outstanding jobs.
 // Each tile has a lock for its sums and its place in the film, so that several threads merge and
-// store tiles at once. A tile's lock is never taken while `mutex` is held.
+// store tiles at once. A tile's lock is never taken while `mutex` is held. Longer than 500 lines
+// because all of it works on one state under these locks; frame_sums.h has what does not.
 #include "render/frame/frame_work.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ RayTotals totalsOf(const RayCounters& counters) {
 }
 
 LightImage::Kept keptOf(const edit::FrameSettingsT& frame, bool errors) {
-  return !errors                                ? LightImage::Kept::means
+  return !errors                             ? LightImage::Kept::means
          : poolingOf(frame) == Pooling::none ? LightImage::Kept::sensors
                                              : LightImage::Kept::pixels;
 }
@@ -266,8 +267,8 @@ KeptBlock FrameWork::Impl::encoded(const SumBlock& block, const Replicates& repl
   JobResult result;
   result.sums = block.sums;
   result.ledger = block.ledger;
-  out.bytes = std::make_shared<const std::vector<std::byte>>(
-      encodeResult(frame, jobOf(0, out), result));
+  out.bytes =
+      std::make_shared<const std::vector<std::byte>>(encodeResult(frame, jobOf(0, out), result));
   return out;
 }
 
@@ -314,8 +315,7 @@ void FrameWork::Impl::resume() {
 // none. Called under `mutex`.
 bool FrameWork::Impl::findKnown(const Job& job, KeptBlock& block) {
   if (known.empty() || job.kind != Job::Kind::samples) return false;
-  const auto found =
-      known.find({job.number, job.replicates.seed, job.replicates.shift, job.first});
+  const auto found = known.find({job.number, job.replicates.seed, job.replicates.shift, job.first});
   if (found == known.end() || found->second.count != job.count) return false;
   block = found->second;
   return true;

@@ -165,8 +165,8 @@ SeedSums readSeeds(Reader& r, const FrameSums& sums) {
   if (values > r.left() / sizeof(double)) damaged("it ends too early");
   const size_t pixels = size_t(sums.frame.width) * sums.frame.height;
   const uint32_t parts = LightImage::partsOf(sums.frame);
-  const bool errors = wantsError(sums.frame) ||
-                      (sums.frame.samples > 1 && (sums.frame.channels & RT_VARIANCE));
+  const bool errors =
+      wantsError(sums.frame) || (sums.frame.samples > 1 && (sums.frame.channels & RT_VARIANCE));
   const bool lamps = sums.facts.lamps && tiles > 0;
   if (values != (lamps ? pixels * (errors ? 6 : 3) : 0) ||
       (sums.condensed ? seeds.light.added != (lamps ? uint64_t(parts) * seeds.count : 0)
@@ -203,7 +203,8 @@ std::vector<std::byte> writeSums(const FrameSums& sums) {
   Writer w;
   w.bytes(magic, sizeof magic);
   w.number(uint64_t(0));
-  for (const std::string* text : {&sums.identity.version, &sums.identity.isa, &sums.identity.kernel})
+  for (const std::string* text :
+       {&sums.identity.version, &sums.identity.isa, &sums.identity.kernel})
     w.text(*text);
   w.number(sums.identity.world);
   w.number(sums.identity.view);

@@ -1,6 +1,7 @@
 // cluster.cpp: the backend that renders with remote workers. One thread, the network thread, owns
 // the Wire and the Master. The local worker (WorkerCore) has its own threads. Other threads post
-// functions to the network thread and wait if they need an answer.
+// functions to the network thread and wait if they need an answer. Longer than 500 lines because
+// all of it is one backend, whose threads share its members.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
