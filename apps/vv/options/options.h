@@ -55,6 +55,12 @@ struct ServeOptions {
   bool given = false; // one of these was given
 };
 
+// Which seeds a picture is made of.
+struct SeedRange {
+  uint32_t first = 0, last = 0;
+  uint32_t count() const { return last - first + 1; }
+};
+
 struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;
@@ -117,12 +123,6 @@ struct Options {
   // Returns the job to do; null if none was asked for.
   const JobInfo* job() const;
   bool isSequence() const { return frames || turntable > 0; }
-};
-
-// Which seeds a picture is made of.
-struct SeedRange {
-  uint32_t first = 0, last = 0;
-  uint32_t count() const { return last - first + 1; }
 };
 
 // A row of the table. `argument` is empty for a switch, and in brackets if it is optional; a

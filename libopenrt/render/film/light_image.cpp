@@ -141,10 +141,10 @@ LightImage::State LightImage::state() const {
   return out;
 }
 
-bool LightImage::restore(const State& state) {
+bool LightImage::restore(const State& state, bool complete) {
   std::unique_lock lock(sums_);
   const bool squares = means_.empty();
-  if (state.added > all_ ||
+  if ((!complete && state.added > all_) ||
       state.values.size() != (squares ? pixels_.size() * 6 : means_.size() * 3))
     return false;
   if (squares)
@@ -152,6 +152,7 @@ bool LightImage::restore(const State& state) {
   else
     std::memcpy(means_.data(), state.values.data(), state.values.size() * sizeof(double));
   added_ = state.added;
+  if (complete) all_ = state.added;
   if (kept_ == Kept::sensors && state.added > 0) summarise();
   return true;
 }

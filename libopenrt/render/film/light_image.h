@@ -43,8 +43,8 @@ class LightImage {
   };
   State state() const;
   // Sets the sums of a picture to which nothing was added. Returns false if the state is not one of
-  // such a picture.
-  bool restore(const State& state);
+  // such a picture. complete: no part is missing, however many there were.
+  bool restore(const State& state, bool complete = false);
   // Adds the sums of a picture of other paths.
   static void merge(State& into, const State& more, Kept kept);
 

@@ -229,6 +229,9 @@ FrameSumsPtr mergeSums(const FrameSums& first, const FrameSums& second) {
   blocks.insert(blocks.end(), b->seeds.begin(), b->seeds.end());
   std::sort(blocks.begin(), blocks.end(),
             [](const SeedSums& x, const SeedSums& y) { return x.first < y.first; });
+  uint64_t seeds = 0;
+  for (const SeedSums& block : blocks) seeds += block.count;
+  if (seeds * out->frame.samples > ~uint32_t(0)) refuse("both have more samples than can be added");
   for (SeedSums& block : blocks) {
     std::vector<SeedSums>& done = out->seeds;
     if (!done.empty() && done.back().first + done.back().count > block.first)

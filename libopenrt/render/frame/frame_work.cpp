@@ -329,9 +329,7 @@ void FrameWork::Impl::develop(const FrameSums& sums) {
     LightImage::State all = sums.seeds[0].light;
     for (size_t i = 1; i < sums.seeds.size(); i++)
       LightImage::merge(all, sums.seeds[i].light, keptOf(frame, !film.errors().empty()));
-    light = std::make_unique<LightImage>(frame.width, frame.height, all.added,
-                                         keptOf(frame, !film.errors().empty()));
-    if (!light->restore(all)) throw SumsError("the sums are damaged");
+    if (!light->restore(all, true)) throw SumsError("the sums are damaged");
     early = nullptr;
   }
   for (uint32_t tile = 0; tile < count; tile++) {
