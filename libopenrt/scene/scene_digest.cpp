@@ -12,8 +12,12 @@ namespace {
 
 // Arrays have a kind of their own beside those of edits (edits.fbs).
 constexpr uint64_t ofArrays = 255;
-constexpr uint64_t keyOf(uint64_t kind, uint64_t id, uint64_t index = 0) {
+constexpr uint64_t keyOf(uint64_t kind, uint64_t id, uint64_t index) {
   return kind << 56 | (index & 0xffffff) << 32 | (id & 0xffffffff);
+}
+
+constexpr uint64_t keyOf(edit::Any kind, uint64_t id, uint64_t index = 0) {
+  return keyOf(uint64_t(kind), id, index);
 }
 
 uint64_t join(uint64_t a, uint64_t b) {
@@ -30,13 +34,13 @@ uint64_t digestOf(const edit::EditT& edit) {
 // Returns the id of the thing that an edit is about, and for a parameter its index.
 std::pair<uint64_t, uint64_t> thingOf(const edit::AnyUnion& any) {
   switch (any.type) {
-  case edit::Any_Texture: return {any.AsTexture()->id, 0};
-  case edit::Any_ShaderClass: return {any.AsShaderClass()->id, 0};
-  case edit::Any_Shader: return {any.AsShader()->id, 0};
-  case edit::Any_Parameter: return {any.AsParameter()->shader, any.AsParameter()->index};
-  case edit::Any_Object: return {any.AsObject()->id, 0};
-  case edit::Any_Instance: return {any.AsInstance()->id, 0};
-  case edit::Any_Light: return {any.AsLight()->id, 0};
+  case edit::Any::Texture: return {any.AsTexture()->id, 0};
+  case edit::Any::ShaderClass: return {any.AsShaderClass()->id, 0};
+  case edit::Any::Shader: return {any.AsShader()->id, 0};
+  case edit::Any::Parameter: return {any.AsParameter()->shader, any.AsParameter()->index};
+  case edit::Any::Object: return {any.AsObject()->id, 0};
+  case edit::Any::Instance: return {any.AsInstance()->id, 0};
+  case edit::Any::Light: return {any.AsLight()->id, 0};
   default: return {0, 0}; // there is one of each
   }
 }
@@ -49,31 +53,32 @@ void SceneDigest::add(const Commit& commit) {
   for (const auto& edit : commit.edits.edits) {
     const edit::AnyUnion& any = edit->any;
     switch (any.type) {
-    case edit::Any_FrameSettings: break;
-    case edit::Any_DeleteTexture:
-      things_.erase(keyOf(edit::Any_Texture, any.AsDeleteTexture()->id));
+    case edit::Any::FrameSettings: break;
+    case edit::Any::DeleteTexture:
+      things_.erase(keyOf(edit::Any::Texture, any.AsDeleteTexture()->id));
       break;
-    case edit::Any_DeleteObject:
-      things_.erase(keyOf(edit::Any_Object, any.AsDeleteObject()->id));
+    case edit::Any::DeleteObject:
+      things_.erase(keyOf(edit::Any::Object, any.AsDeleteObject()->id));
       break;
-    case edit::Any_DeleteInstance:
-      things_.erase(keyOf(edit::Any_Instance, any.AsDeleteInstance()->id));
+    case edit::Any::DeleteInstance:
+      things_.erase(keyOf(edit::Any::Instance, any.AsDeleteInstance()->id));
       break;
-    case edit::Any_DeleteLight:
-      things_.erase(keyOf(edit::Any_Light, any.AsDeleteLight()->id));
+    case edit::Any::DeleteLight:
+      things_.erase(keyOf(edit::Any::Light, any.AsDeleteLight()->id));
       break;
-    case edit::Any_DeleteShader: {
+    case edit::Any::DeleteShader: {
       const uint64_t id = any.AsDeleteShader()->id;
-      things_.erase(keyOf(edit::Any_Shader, id));
+      things_.erase(keyOf(edit::Any::Shader, id));
       std::erase_if(things_, [&](const auto& thing) {
-        return thing.first >> 56 == edit::Any_Parameter && (thing.first & 0xffffffff) == id;
+        return thing.first >> 56 == uint64_t(edit::Any::Parameter) &&
+               (thing.first & 0xffffffff) == id;
       });
       break;
     }
     default:
       const auto [id, index] = thingOf(any);
-      things_[keyOf(uint64_t(any.type), id, index)] = digestOf(*edit);
-      if (any.type == edit::Any_Camera) cameraShader_ = any.AsCamera()->shader;
+      things_[keyOf(any.type, id, index)] = digestOf(*edit);
+      if (any.type == edit::Any::Camera) cameraShader_ = any.AsCamera()->shader;
     }
   }
 }
@@ -81,9 +86,9 @@ void SceneDigest::add(const Commit& commit) {
 SceneDigest::Value SceneDigest::value() const {
   Value out;
   for (const auto& [key, digest] : things_) {
-    const uint64_t kind = key >> 56;
-    const bool camera = kind == edit::Any_Camera ||
-                        (kind == edit::Any_Parameter && (key & 0xffffffff) == cameraShader_);
+    const auto kind = edit::Any(key >> 56);
+    const bool camera = kind == edit::Any::Camera ||
+                        (kind == edit::Any::Parameter && (key & 0xffffffff) == cameraShader_);
     (camera ? out.view : out.world) += join(key, digest);
   }
   return out;

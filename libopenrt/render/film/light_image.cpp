@@ -148,7 +148,8 @@ bool LightImage::restore(const State& state, bool complete) {
       state.values.size() != (squares ? pixels_.size() * 6 : means_.size() * 3))
     return false;
   if (squares)
-    std::memcpy(pixels_.data(), state.values.data(), state.values.size() * sizeof(double));
+    std::memcpy(static_cast<void*>(pixels_.data()), state.values.data(),
+                state.values.size() * sizeof(double));
   else
     std::memcpy(means_.data(), state.values.data(), state.values.size() * sizeof(double));
   added_ = state.added;
@@ -167,8 +168,7 @@ void LightImage::merge(State& into, const State& more, Kept kept) {
     for (size_t k = 0; k < 3; k++) {
       const double d = more.values[i + k] - into.values[i + k];
       into.values[i + k] += d * (b / (a + b));
-      if (each == 6)
-        into.values[i + 3 + k] += more.values[i + 3 + k] + d * d * (a * b / (a + b));
+      if (each == 6) into.values[i + 3 + k] += more.values[i + 3 + k] + d * d * (a * b / (a + b));
     }
   into.added += more.added;
 }
