@@ -1,7 +1,7 @@
 // frame_work.cpp: merging of results. Locks: `mutex` guards the schedule and the outstanding jobs.
 // Each tile has a lock for its sums and its place in the film, so that several threads merge and
-// store tiles at once. A tile's lock is never taken while `mutex` is held. Longer than 500 lines
-// because all of it works on one state under these locks; frame_sums.h has what does not.
+// store tiles at once. A tile's lock is never taken while `mutex` is held.
+// Longer than 500 lines because all of it works on one state under these locks.
 #include "render/frame/frame_work.h"
 
 #include <algorithm>
