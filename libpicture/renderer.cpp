@@ -20,6 +20,7 @@
 #include "libpicture/live/reconstruction.h"
 #include "libpicture/measure.h"
 #include "libpicture/stage.h"
+#include "libpicture/sums.h"
 
 namespace picture {
 
@@ -102,6 +103,7 @@ struct Renderer::Impl {
   Clock::time_point lastEnd;                          // when the last frame ended
   std::optional<live::Reconstruction> reconstruction; // none before the first preview
   std::unique_ptr<live::OidnFilter> denoiser;         // none before the first preview with it
+  Sums continueFrom;                                  // begins the next frame; may be none
   uint32_t previews = 0;                              // number of previews that were started
   bool otherWorld = false; // the browser shows another world than in the last frame
 
@@ -163,6 +165,10 @@ struct Renderer::Impl {
     otherWorld |= worldChanges.otherWorld;
   }
 
+  void beginWithSums() {
+    if (const Sums sums = std::exchange(continueFrom, Sums())) rtContinueFrom(sums.get());
+  }
+
   // Returns the settings of the next frame.
   RenderSettings nextFrame() {
     RenderSettings frame = stage.settings;
@@ -210,6 +216,7 @@ struct Renderer::Impl {
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
     if (inFlight.empty()) lastEnd = Clock::now();
     doing = "building";
+    beginWithSums();
     rtSwapBuffers();
     doing = "";
     throwOnError("rendering");
@@ -259,6 +266,7 @@ struct Renderer::Impl {
     const RenderSettings frame = nextFrame();
     stage.setUpFrame(frame);
     start = Clock::now();
+    beginWithSums();
     rtRender();
     throwOnError("rendering");
     result.renderSeconds = secondsSince(start);
@@ -364,6 +372,13 @@ std::vector<xvrml::ExplainedObject> Renderer::explain() {
   impl_->run([&] { objects = impl_->stage.mapper()->explain(); });
   return objects;
 }
+
+Sums Renderer::sums() const {
+  const RTcontext context = impl_->stage.context();
+  return context && impl_->stage.settings.keepSums ? Sums(rtGetSums(context)) : Sums();
+}
+
+void Renderer::continueFrom(const Sums& sums) { impl_->continueFrom = sums; }
 
 bool Renderer::snapshot(Picture& picture) {
   return impl_->stage.snapshot(picture, impl_->stage.settings.channels);

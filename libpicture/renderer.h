@@ -24,6 +24,7 @@
 namespace picture {
 
 class Cluster;
+class Sums;
 struct Measurement;
 
 // What smooths the light of previews (live/reconstruction.h).
@@ -69,6 +70,7 @@ struct RenderSettings {
   // A picture that was interrupted has its samples as they are, and no note. For pictures of one
   // sequence and one view at each moment, in the order of their time.
   bool preview = false;
+  bool keepSums = false; // Renderer::sums() returns the sums of frames
   Denoiser denoiser = Denoiser::own;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
@@ -164,6 +166,11 @@ class Renderer {
   // Copies the finished part of the frame in flight; called by the progress callback. Returns false
   // if no frame is in flight.
   bool snapshot(Picture& picture);
+  // Returns the sums so far of the frame in flight, or else of the last frame; none if they are not
+  // kept. The progress callback may call it.
+  Sums sums() const;
+  // The next frame begins with these sums. Its start throws RenderError if it cannot.
+  void continueFrom(const Sums& sums);
   // Throws RenderError. An exception of the progress callback ends the picture and propagates.
   RenderResult render(const View& view);
 

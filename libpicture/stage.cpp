@@ -11,6 +11,7 @@
 
 #include "libpicture/cluster.h"
 #include "libpicture/files/radiance.h"
+#include "openrt/sums.h"
 
 namespace picture {
 
@@ -43,7 +44,8 @@ template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t
 
 void throwOnError(const char* doing) {
   const RTenum code = rtGetError();
-  if (code == RT_CLUSTER_ERROR) throw RenderError(withoutCall(rtGetErrorMessage()), code);
+  if (code == RT_CLUSTER_ERROR || code == RT_SUMS_ERROR)
+    throw RenderError(withoutCall(rtGetErrorMessage()), code);
   if (code != RT_NO_ERROR)
     throw RenderError(fmt::format("{}: {}", doing, rtGetErrorMessage()), code);
 }
@@ -127,6 +129,10 @@ void Stage::open(const std::function<bool()>& stop) {
     rtLogCallback(listen, this);
   }
   rtErrorCallback(note, this);
+  if (settings.keepSums) {
+    rtKeepSums(1);
+    throwOnError("keeping the sums");
+  }
   try {
     makeMapper();
   } catch (...) {

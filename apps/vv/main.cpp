@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "checkpoint.h"
 #include "control/unattended.h"
 #include "enough_stack.h"
 #include "headless.h"
@@ -39,6 +40,7 @@ int run(int argc, char** argv) {
     vv::writeOut(vv::listKeys());
     return vv::exitDone;
   }
+  if (!options.merge.empty()) return vv::runMerge(options, quoted(argc, argv));
   vv::warnOfFolders(options);
   vv::joinCluster(options);
   if (options.has(vv::Job::serve)) {

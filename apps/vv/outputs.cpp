@@ -44,6 +44,7 @@ std::vector<Named> outputsOf(const Options& options) {
                                                                         : frame})});
     }
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
+  all.push_back({"--resume", options.resume});
   all.push_back({"--write", options.write});
   all.push_back({"--record", options.render.record});
   all.push_back({"--record-input", options.recordInput});
@@ -52,13 +53,16 @@ std::vector<Named> outputsOf(const Options& options) {
 }
 
 std::vector<Named> inputsOf(const Options& options) {
-  std::vector<Named> all = {{"the world that is read", options.input},
-                            {"the picture of --environment", options.render.environment},
-                            {"the script of --input", options.inputScript},
-                            {"the matrix of --pose", options.poseFile},
-                            {"the picture of --compare", options.compare},
-                            {"the file of --key", options.cluster.key},
-                            {"the file of --allow-keys", options.cluster.allow}};
+  std::vector<Named> all;
+  for (const std::string& part : options.merge) all.push_back({"a file of vv merge", part});
+  const std::vector<Named> named = {{"the world that is read", options.input},
+                                    {"the picture of --environment", options.render.environment},
+                                    {"the script of --input", options.inputScript},
+                                    {"the matrix of --pose", options.poseFile},
+                                    {"the picture of --compare", options.compare},
+                                    {"the file of --key", options.cluster.key},
+                                    {"the file of --allow-keys", options.cluster.allow}};
+  all.insert(all.end(), named.begin(), named.end());
   if (options.cluster.workers.starts_with('@'))
     all.push_back({"the file of --workers", options.cluster.workers.substr(1)});
   for (const picture::ShaderRule& rule : options.shaders) // DEF=CLASS:texture=@FILE
@@ -86,7 +90,8 @@ void refuseKept(const Options& options) {
 
 // Warns if --channels asks for more than colours and no output file keeps them.
 void warnOfLostChannels(const Options& options) {
-  if (options.quiet || options.outputs.empty() || !(options.render.channels & ~uint32_t(RT_RGBA)))
+  if (options.quiet || options.outputs.empty() || !options.merge.empty() ||
+      !(options.render.channels & ~uint32_t(RT_RGBA)))
     return;
   for (const Output& output : options.outputs)
     if (output.format && output.format->encode == picture::encodeExr) return;

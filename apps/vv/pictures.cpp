@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "checkpoint.h"
 #include "ending.h"
 #include "libpicture/denoiser.h"
 #include "libpicture/false_colour.h"
@@ -137,6 +138,13 @@ class Pictures {
 
   int make() {
     picture::RenderSettings settings = options_.render;
+    if (options_.keepsSums()) {
+      checkpoint_ = std::make_unique<Checkpoint>(options_);
+      settings.keepSums = true;
+      // Sums with the same channels, whether there are statistics or not, can be added.
+      settings.channels |= RT_VARIANCE | RT_SAMPLES;
+      if (checkpoint_->writes()) settings.timeLimit = 0; // it ends the run, not the picture
+    }
     // With RT_VARIANCE, RTstats contains the error; spp_mean needs the samples.
     if (!options_.stats.empty() && !options_.isSequence())
       settings.channels |= RT_VARIANCE | RT_SAMPLES;
@@ -281,13 +289,24 @@ class Pictures {
                       workersText(options_.render.cluster.get()));
     }
     saveWanted_ |= takeSaveRequest();
+    if (checkpoint_ && !inFlight_.empty() && checkpoint_->due()) saveSums();
     picture::Picture soFar;
     if (!inFlight_.empty() && saveWanted_ && renderer_->snapshot(soFar)) {
       saveWanted_ = false;
       savePart(inFlight_.front().job, soFar);
     }
     if (secondsInterrupted() >= stuckSeconds) giveUp(soFar);
-    return interrupted();
+    return interrupted() || (checkpoint_ && checkpoint_->timeIsUp());
+  }
+
+  // Writes the file of --resume. A failure does not stop the picture, unless it is the last write.
+  void saveSums() {
+    try {
+      checkpoint_->save(renderer_->sums(), names_);
+    } catch (const std::runtime_error& error) {
+      if (progress_) progress_->clear();
+      if (!std::exchange(saveFailed_, true)) sayWarning(error.what());
+    }
   }
 
   // Ends the process when a render does not stop after an interrupt: a shader hangs and blocks the
@@ -296,6 +315,7 @@ class Pictures {
   [[noreturn]] void giveUp(picture::Picture& soFar) {
     progress_.reset();
     const bool saved = !inFlight_.empty() && renderer_->snapshot(soFar);
+    if (checkpoint_) saveSums();
     interruptHandled();
     if (saved) savePart(inFlight_.front().job, soFar);
     try {
@@ -320,6 +340,7 @@ class Pictures {
   // saves them in order.
   int makeOne(const Job& job, const Moment& moment) {
     if (options_.audit) return auditOne(job);
+    if (checkpoint_) return makeKept(job, moment);
     if (!progress_) progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
     renderer_->start(job.view);
     inFlight_.push_back({job, moment});
@@ -327,6 +348,91 @@ class Pictures {
     while (inFlight_.size() >= most)
       if (const int code = finishOldest(); code != exitDone) return code;
     return exitDone;
+  }
+
+  // Makes a picture whose sums are kept: seed by seed, from where the file of --resume ends.
+  int makeKept(const Job& job, const Moment& moment) {
+    const SeedRange& seeds = options_.seeds;
+    for (uint32_t seed = checkpoint_->firstSeed(); seed <= seeds.last; ++seed) {
+      const std::string what = seeds.count() > 1 ? fmt::format("seed {}", seed) : job.name.text();
+      progress_ = std::make_unique<Progress>(what, options_.quiet);
+      renderer_->change([&](picture::RenderSettings& s) { s.quality.set(RT_SEED, double(seed)); });
+      if (const picture::Sums sums = checkpoint_->begin(seed)) renderer_->continueFrom(sums);
+      inFlight_.push_back({job, moment});
+      picture::RenderResult result;
+      try {
+        renderer_->start(job.view);
+        result = renderer_->finish();
+      } catch (const picture::RenderError& error) {
+        if (error.code != RT_SUMS_ERROR || !checkpoint_->writes()) throw;
+        progress_.reset();
+        throw Failure{exitUsage,
+                      fmt::format("--resume: cannot continue from {}: {}; it is left as it is",
+                                  options_.resume, error.what())};
+      }
+      interruptHandled();
+      inFlight_.clear();
+      progress_.reset();
+      reportClusterMessages();
+      problems_.tell(browser_.world());
+      if (options_.strict && Problems::any(browser_.world())) {
+        sayError("nothing is drawn, because of --strict");
+        return result.missing ? exitMissing : exitProblems;
+      }
+      const picture::Sums sums = renderer_->sums();
+      checkpoint_->save(sums, result.picture.names);
+      if (result.interrupted) {
+        // A picture that had not begun does not replace the one of an earlier run.
+        if (sums && seeds.count() == 1) finish(job, moment, result);
+        return endUnfinished();
+      }
+      if (seed < seeds.last) {
+        checkpoint_->nextSeed();
+        continue;
+      }
+      ++done_;
+      if (seeds.count() > 1) {
+        const picture::Sums all = checkpoint_->all();
+        result.picture.planes = picture::pictureOf(all, checkpoint_->facts()).planes;
+        if (const auto rgba = result.picture.planes.find(RT_RGBA);
+            rgba != result.picture.planes.end() &&
+            options_.render.background.kind == picture::Background::Kind::file)
+          picture::BackgroundLayer(options_.render.background, options_.render.linear)
+              .compositeOver(rgba->second, result.picture.width, result.picture.height);
+        useStatsOf(all, result.stats);
+      }
+      finish(job, moment, result);
+    }
+    return exitDone;
+  }
+
+  // Replaces the numbers that belong to the picture by those of all its seeds.
+  static void useStatsOf(const picture::Sums& all, RTstats& stats) {
+    const RTstats sums = picture::statsOf(all);
+    stats.cameraRays = sums.cameraRays;
+    stats.shadowRays = sums.shadowRays;
+    stats.secondaryRays = sums.secondaryRays;
+    stats.shaderFaults = sums.shaderFaults;
+    stats.errorMean = sums.errorMean;
+    stats.errorMeanInterval = sums.errorMeanInterval;
+    stats.errorHalfWidth = sums.errorHalfWidth;
+    stats.errorP99 = sums.errorP99;
+    stats.errorPixels = sums.errorPixels;
+    stats.errorTrusted = sums.errorTrusted;
+    stats.errorUnmet = sums.errorUnmet;
+    stats.cutByDepth = sums.cutByDepth;
+    stats.cutByEnergy = sums.cutByEnergy;
+    stats.clipped = sums.clipped;
+  }
+
+  // Ends a run whose picture is not finished.
+  int endUnfinished() {
+    if (interrupted() || !checkpoint_->writes())
+      return stopped(checkpoint_->writes()
+                         ? "vv: interrupted; the same command continues the picture"
+                         : "vv: interrupted; the picture so far is saved");
+    stopped("vv: the time limit is reached; the same command continues the picture");
+    return exitTryAgain;
   }
 
   // Waits for the oldest frame and saves it.
@@ -417,15 +523,18 @@ class Pictures {
     return picture::falseColours(made, most);
   }
 
-  // coloured: the picture in false colours, for files that are made for screens. only: the options
-  // whose files are written; every other file is left as it is.
+  // coloured: the picture in false colours, for files that are made for screens. complete: it is
+  // finished. only: the options whose files are written; every other file is left as it is.
   void writePictures(const Job& job, const picture::Picture& made,
-                     const std::optional<picture::Picture>& coloured, Which only = Which::all) {
+                     const std::optional<picture::Picture>& coloured, bool complete,
+                     Which only = Which::all) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
     for (const Output& output : options_.outputs) {
       if (output.film != picture::FilmKind::none || !job.isStill || !isOf(output, only)) continue;
       const bool shows = coloured && output.format->appliesCurve;
-      const std::string bytes = output.format->encode(shows ? *coloured : wanted);
+      std::string bytes = output.format->encode(shows ? *coloured : wanted);
+      if (options_.sums && complete && output.format->encode == picture::encodeExr)
+        picture::appendSums(bytes, checkpoint_->behindPixels());
       if (output.path == "-") {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
         continue;
@@ -459,7 +568,7 @@ class Pictures {
     try {
       if (options_.fitExposure)
         soFar.view.exposure = exposure_ ? *exposure_ : picture::fittingExposure(soFar);
-      writePictures(job, soFar, inFalseColours(soFar, false));
+      writePictures(job, soFar, inFalseColours(soFar, false), false);
       if (!options_.quiet) say("vv: the picture so far is saved");
     } catch (const std::exception& error) { sayWarning(error.what()); }
   }
@@ -486,7 +595,7 @@ class Pictures {
   // Writes the files of --raw and denoises the picture for those of -o. A picture that was
   // interrupted stays as it is, in all files.
   void denoise(const Job& job, picture::RenderResult& result) {
-    writePictures(job, result.picture, {}, Which::raw);
+    writePictures(job, result.picture, {}, !result.interrupted, Which::raw);
     if (result.interrupted) return;
     addToFilms(job, result.picture, Which::raw);
     const auto start = Clock::now();
@@ -502,7 +611,7 @@ class Pictures {
     if (options_.denoise) denoise(job, result);
     sayBias(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
-    writePictures(job, result.picture, coloured, Which::shown);
+    writePictures(job, result.picture, coloured, !result.interrupted, Which::shown);
     if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture, Which::shown);
     const double writeSeconds = secondsSince(start) - result.denoiseSeconds;
     if (!options_.compare.empty() && !result.interrupted)
@@ -600,6 +709,9 @@ class Pictures {
   size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
+  std::unique_ptr<Checkpoint> checkpoint_; // of a picture whose sums are kept; else null
+  std::vector<std::string> names_;         // of channel id, before the picture is finished
+  bool saveFailed_ = false;                // a write of the file of --resume has failed
   bool biasSaid_ = false;
   bool anyWorker_ = false; // a worker has been connected
   struct OpenFilm {

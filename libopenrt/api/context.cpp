@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "api/geometry/transform.h"
+#include "scene/sums_error.h"
 
 namespace openrt {
 
@@ -147,6 +148,7 @@ void Context::commit() {
   unsent_.push_back(scene.takeCommit(true));
   while (!unsent_.empty()) {
     backend_->apply(unsent_.front());
+    if (keepsSums_) digest_.add(*unsent_.front());
     unsent_.erase(unsent_.begin());
     everCommitted_ = true;
   }
@@ -156,6 +158,8 @@ void Context::start() {
   const edit::FrameSettingsT settings = scene.frame;
   inFlight_.push_back(settings);
   try {
+    if (keepsSums_)
+      backend_->keepSums({true, digest_.value(), std::exchange(continueFrom_, nullptr)});
     backend_->start();
   } catch (...) {
     inFlight_.pop_back();
@@ -232,6 +236,25 @@ void Context::cancel() {
 bool Context::snapshot(RTenum channel, std::span<float> out) {
   const std::lock_guard lock(backendMutex_);
   return backend_ && backend_->snapshot(channel, out);
+}
+
+// The digest knows only what is committed from now on.
+void Context::keepSums(bool keep) {
+  if (keep && !keepsSums_ && everCommitted_)
+    throw SumsError("sums must be kept from the first commit on");
+  if (!backend_->keepSums({keep, digest_.value(), nullptr}))
+    throw SumsError("this backend keeps no sums");
+  keepsSums_ = keep;
+}
+
+void Context::continueFrom(std::shared_ptr<const FrameSums> sums) {
+  require(keepsSums_, RT_INVALID_OPERATION, "call rtKeepSums first");
+  continueFrom_ = std::move(sums);
+}
+
+std::shared_ptr<FrameSums> Context::sums() {
+  const std::lock_guard lock(backendMutex_);
+  return backend_ ? backend_->sums() : nullptr;
 }
 
 std::vector<RTworker> Context::workers() {

@@ -99,6 +99,9 @@ class Context {
   float progress();
   bool snapshot(RTenum channel, std::span<float> out);
   std::vector<RTworker> workers(); // [any thread]
+  void keepSums(bool keep);
+  void continueFrom(std::shared_ptr<const FrameSums> sums);
+  std::shared_ptr<FrameSums> sums(); // [any thread]
   const edit::FrameSettingsT& finishedFrame() const;
   Backend& backend() { return *backend_; }
   bool everCommitted() const { return everCommitted_; }
@@ -123,6 +126,9 @@ class Context {
   std::mutex backendMutex_;
   // Commits that the backend has not accepted yet.
   std::vector<std::shared_ptr<const Commit>> unsent_;
+  bool keepsSums_ = false;
+  SceneDigest digest_; // of all commits, if sums are kept
+  std::shared_ptr<const FrameSums> continueFrom_;
   bool cancelled_ = false; // cancel() was called since the start of the current frame was requested
   bool everCommitted_ = false, open_ = true;
   std::deque<edit::FrameSettingsT> inFlight_; // settings of the frames in flight, oldest first
@@ -136,5 +142,7 @@ extern constinit thread_local Context* currentContext;
 
 // Adds a context to the table of live contexts, which owns it, and makes it current (life.cpp).
 RTcontext adoptContext(std::shared_ptr<Context> context);
+// Returns a live context; null if the handle is none (life.cpp). [any thread]
+std::shared_ptr<Context> findContext(RTcontext handle);
 
 } // namespace openrt

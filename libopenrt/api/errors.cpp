@@ -9,6 +9,8 @@
 #include <system_error>
 
 #include "backend/backend.h"
+#include "openrt/sums.h"
+#include "scene/sums_error.h"
 
 namespace openrt {
 namespace {
@@ -55,6 +57,8 @@ void recordCurrentException(ErrorState& errors, const char* function) noexcept {
     errors.record(RT_OUT_OF_MEMORY, function, "more elements than an array can hold");
   } catch (const ClusterError& e) {
     errors.record(RT_CLUSTER_ERROR, function, e.what());
+  } catch (const SumsError& e) {
+    errors.record(RT_SUMS_ERROR, function, e.what());
   } catch (const OptionError& e) {
     errors.record(RT_INVALID_VALUE, function, e.what());
   } catch (const std::system_error& e) {

@@ -122,6 +122,8 @@ void reportNoContext(const char* function) noexcept {
   threadErrors().record(RT_INVALID_OPERATION, function, "no context is current on this thread");
 }
 
+std::shared_ptr<Context> findContext(RTcontext handle) { return lookup(handle); }
+
 RTcontext adoptContext(std::shared_ptr<Context> context) {
   const RTcontext handle = handleOf(context.get());
   {

@@ -13,10 +13,19 @@
 
 #include "openrt/openrt.h"
 #include "scene/commit.h"
+#include "scene/scene_digest.h"
 
 namespace openrt {
 
 class ShaderRegistry;
+struct FrameSums;
+
+// Asks for the sums of frames to be kept (render/frame/frame_sums.h).
+struct SumsRequest {
+  bool keep = false;
+  SceneDigest::Value scene;              // what the frames show
+  std::shared_ptr<const FrameSums> from; // the sums that the next frame continues from; or null
+};
 
 struct BackendOptions {
   uint32_t threads = 0;     // 0: as many as the process may use
@@ -57,6 +66,13 @@ class Backend {
   // Applies the edits of a commit; they take effect with the next start(). If !pipelines(), never
   // called while a frame is in flight.
   virtual void apply(std::shared_ptr<const Commit> commit) = 0;
+  // Says whether the sums of the frames that are started from now on are kept, and with what the
+  // next one begins. start() then throws std::runtime_error if it cannot begin with that. Returns
+  // false if this backend keeps no sums.
+  virtual bool keepSums(const SumsRequest& request) { return !request.keep; }
+  // Returns the sums of the (oldest) frame in flight, or else of the finished one. Null if they are
+  // not kept. [any thread]
+  virtual std::shared_ptr<FrameSums> sums() const { return nullptr; }
   // Starts rendering a frame of the committed scene and returns at once.
   virtual void start() = 0;
   // Waits for the (oldest) frame in flight. After it, read() reads that frame.

@@ -474,6 +474,22 @@ const OptionInfo table[] = {
      "one, if their processors are of one maker (docs/accuracy.md). The workers of a cluster use "
      "it, too.",
      setIsa},
+    {"--resume", "FILE", "Quality",
+     "Keep the samples so far in FILE, and begin with those that it has. However the picture is "
+     "interrupted, the same command goes on, and its picture has the same bytes in the end. "
+     "--time-limit then ends this run (exit code 75), not the picture. FILE stays when the picture "
+     "is done (docs/long-renders.md).",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "a file name");
+       o.resume = v;
+     }},
+    {"--resume-every", "SECONDS", "Quality",
+     "Write the file of --resume so often (default 60), but never more than 2 % of the time.",
+     [](Options& o, const std::string& v) { o.resumeEvery = readNumber(v, 0, 1e6); }},
+    {"--sums", "", "Quality",
+     "Put the exact sums of the samples behind the pixels of EXR files, so that vv merge can add "
+     "pictures of other seeds to them. The file then is about ten times as large.",
+     [](Options& o, const std::string&) { o.sums = true; }},
     {"--check", "", "Inspect",
      "Read the world and report every problem, without making a picture. The exit code is 4 if "
      "there is any problem.",

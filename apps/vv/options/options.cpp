@@ -213,6 +213,29 @@ constexpr Rule rules[] = {
      "--exposure auto needs -o without --audit; the window and vv serve take a number"},
     {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },
      "--audit cannot be used with --time-limit, whose pictures differ from run to run"},
+    // pictures that survive
+    {[](const Options& o) { return o.keepsSums() && o.outputs.empty() && o.compare.empty(); },
+     "--resume, --sums and --seed A-B need -o"},
+    {[](const Options& o) {
+       return o.keepsSums() && (!showsOnePicture(o) || o.audit || o.measures() || o.watch ||
+                                o.render.preview || !o.render.record.empty());
+     },
+     "--resume, --sums and --seed A-B are for one picture: they cannot be used with --viewpoint "
+     "all, --frames, --turntable, --audit, --measure, --watch, --preview or --record"},
+    {[](const Options& o) { return o.render.timeLimit > 0 && o.resume.empty() && o.keepsSums(); },
+     "--sums and --seed A-B cannot be used with --time-limit, whose samples depend on the clock, "
+     "except with --resume"},
+    {[](const Options& o) { return o.render.error > 0 && (o.sums || o.seeds.count() > 1); },
+     "--error cannot be used with --sums or --seed A-B: such pictures have other numbers of "
+     "samples in every part, and cannot be added; --spp takes the same everywhere"},
+    {[](const Options& o) { return o.sums && o.render.background.kind == Background::Kind::file; },
+     "--sums cannot be used with a picture as --background, which the sums do not hold"},
+    {[](const Options& o) {
+       return o.sums && std::none_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.format && output.format->encode == picture::encodeExr;
+              });
+     },
+     "--sums needs -o with an EXR file"},
     // the cluster
     {[](const Options& o) { return !o.cluster.allow.empty() && o.cluster.key.empty(); },
      "--allow-keys needs --key"},
@@ -295,6 +318,9 @@ void checkCrop(const Options& o) {
                                  "pixels (--size)",
                                  c.x, c.y, c.width, c.height, o.render.width, o.render.height));
   if (o.audit) throw UsageError("--audit tests whole pictures: it cannot be used with --crop");
+  if (o.keepsSums())
+    throw UsageError("--resume, --sums and --seed A-B keep whole pictures: they cannot be used with "
+                     "--crop");
   if (const std::string why = picture::whyNoCrop(o.render); !why.empty())
     throw UsageError("--crop: " + why);
 }
@@ -345,6 +371,8 @@ void checkDenoise(const Options& o) {
       {o.measures(), "--measure needs readings without bias: it cannot be used with --denoise"},
       {o.falseColour.has_value(), "--false-colour shows luminance to be read: it cannot be used "
                                   "with --denoise"},
+      {o.sums, "--sums are those of the samples, and a denoised picture is not their mean: they "
+               "cannot be used with --denoise"},
       {o.render.crop.width != 0, "--denoise looks around each pixel, so that a part would differ "
                                  "from the whole picture: it cannot be used with --crop"},
       {o.render.preview, "only one of --preview, which smooths pictures itself, and --denoise can "
@@ -392,14 +420,36 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
-// `vv serve` is the only command without dashes; a world of that name is ./serve.
-bool servesPage(int argc, char** argv) { return argc > 1 && std::string_view(argv[1]) == "serve"; }
+// `vv serve` and `vv merge` are commands without dashes; worlds of these names are ./serve,
+// ./merge.
+bool isCommand(int argc, char** argv, std::string_view name) {
+  return argc > 1 && std::string_view(argv[1]) == name;
+}
+bool servesPage(int argc, char** argv) { return isCommand(argc, argv, "serve"); }
+bool mergesSums(int argc, char** argv) { return isCommand(argc, argv, "merge"); }
+
+// Takes the files of vv merge, and refuses options that say how to render.
+void readMerge(Options& options, const std::vector<std::string>& files,
+               const std::vector<std::string>& given) {
+  constexpr std::string_view allowed[] = {"-o", "--sums", "--stats", "--compare", "-q", "-v"};
+  for (const std::string& name : given)
+    if (std::find(std::begin(allowed), std::end(allowed), name) == std::end(allowed))
+      throw UsageError(fmt::format("vv merge renders nothing: {} cannot be used with it", name));
+  if (files.empty())
+    throw UsageError("vv merge: files were expected: EXR files that were written with --sums, or "
+                     "files of --resume");
+  if (options.outputs.empty()) throw UsageError("vv merge needs -o");
+  for (const Output& output : options.outputs)
+    if (output.film != picture::FilmKind::none)
+      throw UsageError(output.path + ": vv merge makes one picture, not a film");
+  options.merge = files;
+}
 
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
 // its argument only if it is a whole number.
 std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   std::vector<std::string> out;
-  for (int i = servesPage(argc, argv) ? 2 : 1; i < argc; ++i) {
+  for (int i = servesPage(argc, argv) || mergesSums(argc, argv) ? 2 : 1; i < argc; ++i) {
     out.emplace_back(argv[i]);
     for (const OptionInfo& option : optionTable()) {
       if (option.argument[0] != '[' || out.back() != longName(option)) continue;
@@ -436,10 +486,11 @@ Options readCommandLine(int argc, char** argv) {
   } catch (const CLI::ParseError& error) { throw UsageError(error.what()); }
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
-  if (inputs.size() > 1) throw UsageError(secondFileHint(inputs[0], inputs[1]));
+  const bool merges = mergesSums(argc, argv);
+  if (inputs.size() > 1 && !merges) throw UsageError(secondFileHint(inputs[0], inputs[1]));
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
-  if (!inputs.empty()) options.input = inputs[0];
+  if (!inputs.empty() && !merges) options.input = inputs[0];
   if (servesPage(argc, argv)) options.jobs.push_back(Job::serve);
   std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
@@ -455,6 +506,15 @@ Options readCommandLine(int argc, char** argv) {
                        {},
                        false});
   }
+  if (merges && options.jobs.empty()) {
+    std::vector<std::string> names;
+    for (const Setting& setting : given) {
+      names.push_back(shownName(*setting.option));
+      apply(setting, options);
+    }
+    readMerge(options, inputs, names);
+    return options;
+  }
   for (const Setting& setting : withPresets(std::move(given), options.input))
     apply(setting, options);
   mergeBackdrop(options);
@@ -469,7 +529,7 @@ Options readCommandLine(int argc, char** argv) {
     options.view.side = options.from.empty() ? std::optional<picture::Side>() : options.from[0];
   options.view.turns = options.turntable > 0;
   options.render.samples =
-      options.samples.value_or(render.timeLimit > 0                            ? 65536
+      options.samples.value_or(render.timeLimit > 0 && options.resume.empty()  ? 65536
                                : render.error > 0                              ? 4096
                                : options.measures() && options.outputs.empty() ? measureSamples
                                : render.preview                                ? previewSamples
@@ -510,6 +570,7 @@ std::string helpText() {
       "  vv world.wrl -o picture.png     writes a picture from the first viewpoint, or of the "
       "whole world\n"
       "  vv world.wrl --check            reports what is wrong with the world\n"
+      "  vv merge a.exr b.exr -o c.exr   adds pictures of different seeds, written with --sums\n"
       "  vv serve world.wrl              shows the world on a page for browsers; prints its "
       "address\n"
       "\n"

@@ -59,6 +59,12 @@ struct ServeOptions {
   bool given = false; // one of these was given
 };
 
+// Which seeds a picture is made of.
+struct SeedRange {
+  uint32_t first = 0, last = 0;
+  uint32_t count() const { return last - first + 1; }
+};
+
 struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;
@@ -99,6 +105,11 @@ struct Options {
   bool noWindow = false;
   // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen by the first.
   std::optional<double> falseColour;
+  std::string resume;             // file that an interrupted picture is continued from; empty: none
+  double resumeEvery = 60;        // seconds between two writes of that file
+  bool sums = false;              // EXR files get the sums of their pictures
+  SeedRange seeds;                // the first one is also in render.quality
+  std::vector<std::string> merge; // files whose sums are added (vv merge); empty: none
   bool denoise = false;     // files and films of -o hold denoised pictures
   std::string poseFile;     // of --pose; empty: none
   bool posed = false;       // view.lookAt is that of --pose
@@ -111,10 +122,12 @@ struct Options {
   bool makesPictures() const {
     return !outputs.empty() || !compare.empty() || audit > 0 || measures();
   }
+  // Tells whether the sums of the picture are kept, because they are written or added.
+  bool keepsSums() const { return !resume.empty() || sums || seeds.count() > 1; }
   bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
-    return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
-           !has(Job::listKeys) && !has(Job::serve);
+    return merge.empty() && !makesPictures() && !check && write.empty() &&
+           (!job() || !job()->inspects) && !has(Job::listKeys) && !has(Job::serve);
   }
   // Tells whether the world runs and somebody looks at it, in the window or on a page.
   bool showsWorld() const { return opensWindow() || has(Job::serve); }

@@ -57,9 +57,21 @@ const Wording wordings[] = {
      "Limit the radiance of each sample. This removes fireflies, but also light; --stats says how "
      "much (default: no limit)."},
     {RT_SHADOWS},
-    {RT_SEED, nullptr, nullptr, "Choose another set of sample positions (default 0).",
+    {RT_SEED, nullptr, "N|A-B",
+     "Choose another set of sample positions (default 0). A-B: add the pictures of the seeds from "
+     "A "
+     "to B, of --spp samples each, as vv merge does.",
      [](Options& o, const std::string& v) {
-       o.render.quality.set(RT_SEED, double(readInteger(v, 0, 2147483647)));
+       constexpr long long most = 2147483647;
+       const size_t dash = v.find('-', 1);
+       const std::string last = dash == v.npos ? v : v.substr(dash + 1);
+       o.seeds.first = uint32_t(readInteger(v.substr(0, dash), 0, most));
+       o.seeds.last = uint32_t(readInteger(last, 0, most));
+       if (o.seeds.last < o.seeds.first || o.seeds.count() > 65536)
+         throw UsageError(fmt::format(
+             "a number or a range such as 0-3, of at most 65536 seeds, was expected, not \"{}\"",
+             v));
+       o.render.quality.set(RT_SEED, double(o.seeds.first));
      }},
 };
 

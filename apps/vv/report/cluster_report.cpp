@@ -10,6 +10,7 @@
 
 #include "describe.h"
 #include "libpicture/worker_facts.h"
+#include "openrt/sums.h"
 
 namespace vv {
 
@@ -76,7 +77,9 @@ void joinCluster(Options& options) {
 }
 
 int exitCodeOf(const picture::RenderError& error) {
-  return error.code == RT_CLUSTER_ERROR ? exitNoWorkers : exitRender;
+  return error.code == RT_CLUSTER_ERROR ? exitNoWorkers
+         : error.code == RT_SUMS_ERROR  ? exitUsage
+                                        : exitRender;
 }
 
 std::string workersText(const std::vector<RTworker>& workers) {

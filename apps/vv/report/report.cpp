@@ -147,6 +147,10 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
   }
   if (const picture::Crop& c = r.crop; c.width > 0)
     json["image"]["crop"] = {c.x, c.y, c.width, c.height};
+  if (options.seeds.count() > 1) {
+    json["image"]["spp"] = uint64_t(r.samples) * options.seeds.count();
+    json["image"]["seeds"] = options.seeds.count();
+  }
   if (r.preview) json["image"]["preview"] = true;
   if (!result.picture.denoisedBy.empty())
     json["image"]["denoised"] = {
@@ -198,6 +202,29 @@ std::string statsJson(const Options& options, const std::string& commandLine,
   if (result.denoiseSeconds > 0) json["time"]["denoise"] = result.denoiseSeconds;
   json["rays"] = rayStats(s.cameraRays, s.shadowRays, s.secondaryRays, s.renderSeconds);
   addMachine(json, options, result);
+  return dump(json);
+}
+
+std::string mergedStatsJson(const std::string& commandLine, const picture::Sums& sums,
+                            const RTstats& s) {
+  const RTsumsInfo info = sums.info();
+  Json json;
+  json["schema"] = 1;
+  json["version"] = version();
+  json["command"] = commandLine;
+  json["image"] = {{"width", info.width},
+                   {"height", info.height},
+                   {"spp", uint64_t(info.samples) * info.seeds},
+                   {"seeds", info.seeds},
+                   {"channels", channelNames(info.channels)}};
+  json["error"] = errorEstimate(s);
+  json["left_out"] = {{"cut_by_depth", s.cutByDepth},
+                      {"cut_by_energy", s.cutByEnergy},
+                      {"clipped", s.clipped},
+                      {"shader_faults", s.shaderFaults}};
+  json["rays"] = {
+      {"camera", s.cameraRays}, {"shadow", s.shadowRays}, {"secondary", s.secondaryRays}};
+  json["machine"] = {{"isa", s.isa}, {"embree", s.kernel}};
   return dump(json);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "libpicture/renderer.h"
+#include "libpicture/sums.h"
 #include "options/names.h"
 #include "options/options.h"
 #include "xvrml/browser.h"
@@ -29,6 +30,10 @@ struct RunningWorld {
 std::string statsJson(const Options& options, const std::string& commandLine,
                       const RunningWorld& running, const picture::RenderResult& result,
                       const RunTimes& times);
+
+// Returns the statistics of a picture that vv merge has made of sums.
+std::string mergedStatsJson(const std::string& commandLine, const picture::Sums& sums,
+                            const RTstats& stats);
 
 // The statistics of a sequence: sums, and the times of each picture. They also use schema 1, with
 // the additional member `frames`.

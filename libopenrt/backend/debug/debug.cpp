@@ -38,6 +38,8 @@ class DebugBackend final : public Backend, public ForwardedQueries {
     renderer_->apply(std::move(commit));
   }
 
+  bool keepSums(const SumsRequest& request) override { return renderer_->keepSums(request); }
+  std::shared_ptr<FrameSums> sums() const override { return renderer_->sums(); }
   void start() override {
     if (changed_) checkRules();
     changed_ = false;

@@ -30,6 +30,8 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+std::string kernelText() { return std::string("Embree ") + RTC_VERSION_STRING; }
+
 } // namespace
 
 LocalBackend::LocalBackend(const BackendOptions& options)
@@ -310,9 +312,27 @@ std::shared_ptr<const RenderScene> LocalBackend::prepared() {
   return snapshot_;
 }
 
+bool LocalBackend::keepSums(const SumsRequest& request) {
+  keep_ = request;
+  return true;
+}
+
+std::shared_ptr<FrameSums> LocalBackend::sums() const {
+  std::shared_ptr<const Frame> frame;
+  {
+    std::lock_guard lock(mutex_);
+    frame = frame_ ? frame_ : finished_;
+  }
+  return frame ? frame->work().sums() : nullptr;
+}
+
 void LocalBackend::start() {
   prepareFrame();
-  auto frame = std::make_shared<Frame>(snapshot_, threads_);
+  KeepSums kept;
+  kept.keep = keep_.keep && !stop_; // a frame without its photons is not begun
+  kept.from = std::exchange(keep_.from, nullptr);
+  kept.identity = {keep_.scene.world, keep_.scene.view, versionText(), device_->isa, kernelText()};
+  auto frame = std::make_shared<Frame>(snapshot_, threads_, kept);
   std::lock_guard lock(mutex_);
   frame_ = std::move(frame);
   if (stop_) frame_->cancel();
@@ -329,8 +349,8 @@ void LocalBackend::wait() {
   {
     std::lock_guard lock(mutex_);
     frame_ = nullptr;
+    finished_ = std::move(frame);
   }
-  finished_ = std::move(frame);
   if (!finished_->failure().empty())
     throw std::runtime_error("rendering failed: " + finished_->failure());
 }
@@ -374,7 +394,7 @@ void LocalBackend::stats(RTstats& s) const {
     s.shadowRays = counters.shadow;
     s.secondaryRays = counters.secondary;
     s.renderSeconds = finished_->seconds();
-    s.shaderFaults = counters.faults.count(Fault::notFinite);
+    s.shaderFaults = finished_->work().shaderFaults();
     finished_->work().describeError(s);
     finished_->work().describeLedger(s);
   }
@@ -390,7 +410,7 @@ void LocalBackend::stats(RTstats& s) const {
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));
   s.threads = threads_;
   std::snprintf(s.isa, sizeof s.isa, "%s", device_->isa.c_str());
-  std::snprintf(s.kernel, sizeof s.kernel, "Embree %s", RTC_VERSION_STRING);
+  std::snprintf(s.kernel, sizeof s.kernel, "%s", kernelText().c_str());
 }
 
 // The ray is in render space, which has the world's unit of length.

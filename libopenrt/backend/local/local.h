@@ -26,6 +26,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   explicit LocalBackend(const BackendOptions& options);
   ~LocalBackend() override;
   void apply(std::shared_ptr<const Commit> commit) override;
+  bool keepSums(const SumsRequest& request) override;
+  std::shared_ptr<FrameSums> sums() const override;
   void start() override;
   void wait() override;
   void cancel() override;
@@ -121,7 +123,10 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::string transportReason_; // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
   bool warnedOfNearLamp_ = false, warnedOfAnalyticLamp_ = false;
-  mutable std::mutex mutex_; // guards frame_ against cancel(), progress() and snapshot()
+  SumsRequest keep_;
+  // Guards frame_ against cancel(), progress(), snapshot() and sums(), and finished_ against the
+  // last.
+  mutable std::mutex mutex_;
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };

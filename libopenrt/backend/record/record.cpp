@@ -170,6 +170,12 @@ class RecordBackend final : public Backend, public ForwardedQueries {
   std::vector<RTworker> workers() const override {
     return renderer_ ? renderer_->workers() : std::vector<RTworker>();
   }
+  bool keepSums(const SumsRequest& request) override {
+    return renderer_ ? renderer_->keepSums(request) : Backend::keepSums(request);
+  }
+  std::shared_ptr<FrameSums> sums() const override {
+    return renderer_ ? renderer_->sums() : nullptr;
+  }
   void start() override {
     if (renderer_) renderer_->start();
   }

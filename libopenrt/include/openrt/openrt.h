@@ -10,6 +10,7 @@
  *   openrt/geometry.h   primitives, arrays, matrices, objects and instances
  *   openrt/shader.h     shaders, their parameters and roles, textures
  *   openrt/frame.h      frames, quality settings, pixels, error bars, statistics
+ *   openrt/sums.h       sums of frames, which are continued or added
  *   openrt/worker.h     the workers of a cluster
  *   openrt/query.h      ray queries and picking
  *
@@ -31,6 +32,7 @@
 #include "openrt/geometry.h"
 #include "openrt/query.h"
 #include "openrt/shader.h"
+#include "openrt/sums.h"
 #include "openrt/worker.h"
 
 #endif

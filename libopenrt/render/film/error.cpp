@@ -360,7 +360,7 @@ static void boundDark(const LightSums& light, PixelError& e) {
     if (std::isinf(e.halfWidth[k]))
       e.halfWidth[k] = float(ruleOfThree / e.samples * light.brightest);
     bound += double(e.halfWidth[k]);
-    lamps += student95(LightImage::parts - 1) * std::sqrt(light.variance[k]);
+    lamps += student95(light.parts - 1) * std::sqrt(light.variance[k]);
   }
   e.trusted = bound <= negligible * lamps;
 }
@@ -371,12 +371,12 @@ void addLight(const LightSums& light, PixelError& e) {
   // Mean number of light paths per pixel.
   const double met = std::max(light.hits / windowOf(pictureReach), 1e-3);
   for (int k = 0; k < 3; k++) {
-    const double w = light.variance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
+    const double w = light.variance[k], h = student95(light.parts - 1) * std::sqrt(w);
     e.mean[k] += float(light.mean[k]);
     e.halfWidth[k] = float(std::hypot(double(e.halfWidth[k]), h));
     half += double(e.halfWidth[k]);
     lamps += h;
-    own += meanError(w, LightImage::parts - 1);
+    own += meanError(w, light.parts - 1);
     e.noise.second += float(w);
     e.noise.square += float(w * w);
     e.noise.third += float(w * std::sqrt(w / met));
@@ -395,7 +395,7 @@ void addLight(const LightSums& light, PixelError& e) {
 
 double lightHalfWidth(const LightSums& light) {
   double half = 0;
-  for (const double w : light.variance) half += student95(LightImage::parts - 1) * std::sqrt(w);
+  for (const double w : light.variance) half += student95(light.parts - 1) * std::sqrt(w);
   return half;
 }
 

@@ -22,6 +22,7 @@ struct LightSums {
   double hits = 0;
   // This is the largest mean of all cells of sensors, and 0 in pictures.
   double brightest = 0;
+  uint32_t parts = 16; // number of independent pictures that the variance was estimated from
 };
 
 class Film {

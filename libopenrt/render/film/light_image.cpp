@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "render/path/light_stride.h"
 
@@ -91,6 +92,7 @@ void LightImage::addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const 
 LightSums LightImage::at(uint32_t x, uint32_t y) const {
   LightSums out;
   out.hits = std::numeric_limits<double>::infinity();
+  out.parts = std::max(added(), parts);
   for (int k = 0; k < 3; k++) addWindow(x, y, k, out);
   return out;
 }
@@ -105,6 +107,7 @@ LightSums LightImage::ofSensor(uint32_t x, uint32_t y) const {
   LightSums out;
   out.hits = std::numeric_limits<double>::infinity();
   out.brightest = brightest_;
+  out.parts = std::max(added(), parts);
   const double own = variance(pixel, 0);
   if (own > 0 && pixel.mean[0] * pixel.mean[0] > enough * own) {
     out.hits = pixel.mean[0] * pixel.mean[0] / own;
@@ -114,7 +117,7 @@ LightSums LightImage::ofSensor(uint32_t x, uint32_t y) const {
     addWindow(x, y, 0, out);
     if (!(out.variance[0] > 0) && ofOnePath_ > 0) {
       const double halfWidth = ruleOfThree * ofOnePath_;
-      out.variance[0] = std::pow(halfWidth / student95(parts - 1), 2);
+      out.variance[0] = std::pow(halfWidth / student95(out.parts - 1), 2);
       out.hits = 0;
     }
   }
@@ -123,6 +126,51 @@ LightSums LightImage::ofSensor(uint32_t x, uint32_t y) const {
     out.variance[k] = out.variance[0];
   }
   return out;
+}
+
+LightImage::State LightImage::state() const {
+  std::shared_lock lock(sums_);
+  State out;
+  out.added = added_;
+  const bool squares = means_.empty();
+  out.values.resize(squares ? pixels_.size() * 6 : means_.size() * 3);
+  if (squares)
+    std::memcpy(out.values.data(), pixels_.data(), out.values.size() * sizeof(double));
+  else
+    std::memcpy(out.values.data(), means_.data(), out.values.size() * sizeof(double));
+  return out;
+}
+
+bool LightImage::restore(const State& state, bool complete) {
+  std::unique_lock lock(sums_);
+  const bool squares = means_.empty();
+  if ((!complete && state.added > all_) ||
+      state.values.size() != (squares ? pixels_.size() * 6 : means_.size() * 3))
+    return false;
+  if (squares)
+    std::memcpy(static_cast<void*>(pixels_.data()), state.values.data(),
+                state.values.size() * sizeof(double));
+  else
+    std::memcpy(means_.data(), state.values.data(), state.values.size() * sizeof(double));
+  added_ = state.added;
+  if (complete) all_ = state.added;
+  if (kept_ == Kept::sensors && state.added > 0) summarise();
+  return true;
+}
+
+// T. F. Chan, G. H. Golub, R. J. LeVeque, Updating formulae and a pairwise algorithm for computing
+// sample variances, 1979.
+void LightImage::merge(State& into, const State& more, Kept kept) {
+  const double a = into.added, b = more.added;
+  if (b == 0) return;
+  const size_t each = kept == Kept::means ? 3 : 6;
+  for (size_t i = 0; i < into.values.size(); i += each)
+    for (size_t k = 0; k < 3; k++) {
+      const double d = more.values[i + k] - into.values[i + k];
+      into.values[i + k] += d * (b / (a + b));
+      if (each == 6) into.values[i + 3 + k] += more.values[i + 3 + k] + d * d * (a * b / (a + b));
+    }
+  into.added += more.added;
 }
 
 void LightImage::read(const Tile& tile, std::vector<LightSums>& out) const {

@@ -36,11 +36,24 @@ class LightImage {
   // fewer than two parts, and 0 where it is not kept.
   void read(const Tile& tile, std::vector<LightSums>& out) const;
 
+  // The sums of the parts added so far, without those that wait.
+  struct State {
+    uint32_t added = 0;
+    std::vector<double> values; // by pixel: means of the colours, then squares where they are kept
+  };
+  State state() const;
+  // Sets the sums of a picture to which nothing was added. Returns false if the state is not one of
+  // such a picture. complete: no part is missing, however many there were.
+  bool restore(const State& state, bool complete = false);
+  // Adds the sums of a picture of other paths.
+  static void merge(State& into, const State& more, Kept kept);
+
  private:
   struct Pixel {
     double mean[3] = {}, squares[3] = {}; // squares: sum of squared differences from the mean
   };
   using Mean = std::array<double, 3>;
+  static_assert(sizeof(Pixel) == 6 * sizeof(double) && sizeof(Mean) == 3 * sizeof(double));
   void addNow(const std::vector<float>& part, double number);
   void summarise();
   double variance(const Pixel& pixel, int k) const;

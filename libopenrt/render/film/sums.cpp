@@ -103,6 +103,7 @@ void SumBlock::append(const SumBlock& later, const RequiredSums& required,
                       const Replicates& replicates) {
   for (size_t i = 0; i < sums.size(); i++) sums[i].merge(later.sums[i], required, replicates);
   ledger.add(later.ledger);
+  rays.add(later.rays);
   count += later.count;
 }
 
@@ -121,11 +122,30 @@ uint32_t blockFrom(uint32_t first, uint32_t end, uint32_t largest) {
   return count;
 }
 
+uint32_t treeBlockFrom(uint32_t first, uint32_t end, uint32_t largest, uint32_t samplesOfFrame) {
+  const uint32_t left = end - first;
+  if (samplesOfFrame < fewestOfLeaves) return left;
+  const uint32_t most = std::bit_floor(std::min(left, std::max(largest, fewestOfLeaves)));
+  if (first == 0) return most;
+  if (first < fewestOfLeaves) return leafEnd(first, end, samplesOfFrame) - first;
+  return left < fewestOfLeaves ? left : std::min(most, first & -first);
+}
+
+void TileSums::forEach(const RequiredSums& required,
+                       const std::function<void(const SumBlock& block)>& use) const {
+  SumBlock block;
+  for (const StoredBlock& kept : kept_) {
+    unpack(kept, block, required);
+    use(block);
+  }
+}
+
 void TileSums::unpack(const StoredBlock& from, SumBlock& to, const RequiredSums& required) {
   const size_t bytes = keptBytes(required);
   to.first = from.first;
   to.count = from.count;
   to.ledger = from.ledger;
+  to.rays = from.rays;
   to.sums.resize(from.bytes.size() / bytes);
   for (size_t i = 0; i < to.sums.size(); i++)
     std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
@@ -148,7 +168,7 @@ void TileSums::join(SumBlock& block, const RequiredSums& required, const Replica
 
 void TileSums::keep(const SumBlock& block, const RequiredSums& required) {
   const size_t bytes = keptBytes(required);
-  StoredBlock kept{block.first, block.count, block.ledger,
+  StoredBlock kept{block.first, block.count, block.ledger, block.rays,
                    std::vector<std::byte>(block.sums.size() * bytes)};
   for (size_t i = 0; i < block.sums.size(); i++)
     std::memcpy(&kept.bytes[i * bytes], &block.sums[i], bytes);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -77,11 +78,23 @@ struct PixelSums {
 // Clears the sums of the given number of pixels.
 void startSums(std::vector<PixelSums>& sums, size_t pixels, const RequiredSums& required);
 
+// The rays that were traced, and the hits at which a shader returned numbers that are not finite.
+struct RayTotals {
+  uint64_t camera = 0, shadow = 0, secondary = 0, faults = 0;
+  void add(const RayTotals& more) {
+    camera += more.camera;
+    shadow += more.shadow;
+    secondary += more.secondary;
+    faults += more.faults;
+  }
+};
+
 // Sums of consecutive samples of all pixels of a tile.
 struct SumBlock {
   uint32_t first = 0, count = 0;
   std::vector<PixelSums> sums; // by pixel, row by row
   Ledger ledger;
+  RayTotals rays;
   uint32_t end() const { return first + count; }
   void append(const SumBlock& later, const RequiredSums& required, const Replicates& replicates);
 };
@@ -100,6 +113,9 @@ inline bool siblings(uint32_t first, uint32_t count, uint32_t laterFirst, uint32
 // Returns the size of the largest block from `first` that a job of at most `largest` samples (32 or
 // more) may take.
 uint32_t blockFrom(uint32_t first, uint32_t end, uint32_t largest);
+// Does the same for frames whose sums are kept: the block is one of the tree, so that it can be
+// used again in a longer frame, or beside blocks that exist already. `first` begins a leaf.
+uint32_t treeBlockFrom(uint32_t first, uint32_t end, uint32_t largest, uint32_t samplesOfFrame);
 
 // The finished blocks of one tile, in any order of arrival. Stores only the sums that the frame
 // needs. One thread at a time.
@@ -116,11 +132,15 @@ class TileSums {
                        const Replicates& replicates) const;
   void clear() { kept_ = {}; }
   bool empty() const { return kept_.empty(); }
+  // Calls `use` for each stored block, in the order of their samples.
+  void forEach(const RequiredSums& required,
+               const std::function<void(const SumBlock& block)>& use) const;
 
  private:
   struct StoredBlock {
     uint32_t first, count;
     Ledger ledger;
+    RayTotals rays;
     std::vector<std::byte> bytes;
   };
   static void unpack(const StoredBlock& from, SumBlock& to, const RequiredSums& required);

@@ -40,6 +40,37 @@ uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
 
 } // namespace
 
+void KnownBlocks::add(uint32_t tile, const Replicates& replicates, uint32_t first, uint32_t count) {
+  tiles_[{tile, replicates.seed, replicates.shift}][first] = count;
+}
+
+const KnownBlocks::Ranges* KnownBlocks::find(uint32_t tile, const Replicates& replicates) const {
+  const auto found = tiles_.find({tile, replicates.seed, replicates.shift});
+  return found == tiles_.end() ? nullptr : &found->second;
+}
+
+uint32_t KnownBlocks::countAt(uint32_t tile, const Replicates& replicates, uint32_t first) const {
+  const Ranges* ranges = find(tile, replicates);
+  const auto found = ranges ? ranges->find(first) : Ranges::const_iterator{};
+  return ranges && found != ranges->end() ? found->second : 0;
+}
+
+uint32_t KnownBlocks::nextAfter(uint32_t tile, const Replicates& replicates, uint32_t first) const {
+  const Ranges* ranges = find(tile, replicates);
+  if (!ranges) return ~0u;
+  const auto found = ranges->upper_bound(first);
+  return found == ranges->end() ? ~0u : found->first;
+}
+
+uint32_t KnownBlocks::endOf(uint32_t tile, const Replicates& replicates, uint32_t at) const {
+  const Ranges* ranges = find(tile, replicates);
+  if (!ranges) return at;
+  const auto behind = ranges->lower_bound(at);
+  if (behind == ranges->begin()) return at;
+  const auto& [first, count] = *std::prev(behind);
+  return std::max(at, first + count);
+}
+
 FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts,
                              const TileGrid& grid, uint32_t threadCount, double now)
     : frame_(frame), grid_(grid), tiles_(facts.camera ? grid.count() : 0),
@@ -86,6 +117,14 @@ void FrameSchedule::give(const OutstandingJob& out, Job& job, double now) {
 
 void FrameSchedule::order(std::vector<uint32_t> tiles) {
   if (!rounds_ && nextTile_ == 0 && from_ == 0 && tiles.size() == tiles_) order_ = std::move(tiles);
+}
+
+void FrameSchedule::keep(KnownBlocks known, uint32_t lightParts) {
+  known_ = std::move(known);
+  nextPart_ = std::min(lightParts, parts_);
+  done_ += double(nextPart_) * partPaths_;
+  undone_ -= double(nextPart_) * partPaths_;
+  wantLight();
 }
 
 uint32_t FrameSchedule::upcoming() const {
@@ -135,13 +174,18 @@ void FrameSchedule::giveBlock(Job& job, OutstandingJob out, uint32_t tile, uint3
   const bool pilot = out.stage == Stage::pilot;
   out.job.number = tile;
   out.job.first = from;
-  out.job.count = blockFrom(from, end, largest);
   out.job.centred = out.until == 1 && !frame_.jitter && (pilot || !rounds_);
   if (pilot)
     out.job.replicates = replicatesOf(
         frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
   else
     out.job.replicates = timed_ ? replicates_ : replicatesOf(frame_, out.until, frame_.seed);
+  if (!known_) {
+    out.job.count = blockFrom(from, end, largest);
+  } else if (!(out.job.count = known_->countAt(tile, out.job.replicates, from))) {
+    const uint32_t gap = std::min(end, known_->nextAfter(tile, out.job.replicates, from));
+    out.job.count = treeBlockFrom(from, gap, largest, frame_.samples);
+  }
   from += out.job.count;
   give(out, job, now);
 }
@@ -174,9 +218,23 @@ uint32_t FrameSchedule::endOf(uint32_t tile) const {
   return rounds_ ? std::min(first_ + samples_, all) : all;
 }
 
+// Returns the replicates of a tile's samples, or of its first pilot in the stage of pilots.
+Replicates FrameSchedule::replicatesOfTile(uint32_t tile) const {
+  return pilot_ ? replicatesOf(frame_, pilotSamples_, hash(frame_.seed, pilotSeed))
+                : replicatesOf(frame_, wanted_[tile], frame_.seed);
+}
+
+// Returns the first sample of a tile in this round: known blocks may reach over several rounds.
+uint32_t FrameSchedule::beginOf(uint32_t tile) const {
+  return known_ && first_ > 0 ? known_->endOf(tile, replicatesOfTile(tile), first_) : first_;
+}
+
 // Advances to the next tile that has samples left in this round.
 void FrameSchedule::skipTiles() {
-  for (; nextTile_ < tiles_ && from_ >= endOf(tileAt(nextTile_)); from_ = first_) nextTile_++;
+  while (nextTile_ < tiles_ && from_ >= endOf(tileAt(nextTile_))) {
+    nextTile_++;
+    from_ = nextTile_ < tiles_ ? beginOf(tileAt(nextTile_)) : first_;
+  }
 }
 
 std::optional<FrameSchedule::OutstandingJob> FrameSchedule::claim(const Job& job) {
@@ -233,14 +291,14 @@ bool FrameSchedule::endRound(double now) {
     return false;
   ended_ = !(timed_ ? endTimed(now) : endProgressive());
   if (ended_) return false;
-  if (earlyUntil_ == 0 && partsUntil_ == 0)
+  if (earlyUntil_ == 0 && partsUntil_ == 0 && !lightComplete_)
     earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round is shown without light paths
   wantLight();
   outBefore_ = outNow_;
   outNow_ = 0;
   round_++;
   nextTile_ = 0;
-  from_ = first_;
+  from_ = beginOf(tileAt(0));
   skipTiles();
   return true;
 }
@@ -293,7 +351,7 @@ void FrameSchedule::wantLight() {
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
   const bool whole = !rounds_ || timed_ || first_ + samples_ >= all;
   const auto share = uint32_t(double(first_) / most_ * parts_);
-  partsUntil_ = whole ? parts_ : std::clamp(share, partsUntil_, parts_);
+  partsUntil_ = whole ? parts_ : std::clamp(share, std::max(partsUntil_, nextPart_), parts_);
 }
 
 float FrameSchedule::progress(double now) const {

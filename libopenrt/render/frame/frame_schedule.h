@@ -10,13 +10,32 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
 #include "render/frame/frame_work.h"
 
 namespace openrt {
+
+// The blocks of samples that a frame continues from, by tile and replicates.
+class KnownBlocks {
+ public:
+  void add(uint32_t tile, const Replicates& replicates, uint32_t first, uint32_t count);
+  // Returns the size of the block that begins at a sample; 0 if there is none.
+  uint32_t countAt(uint32_t tile, const Replicates& replicates, uint32_t first) const;
+  // Returns where the first block behind a sample begins; ~0u if there is none.
+  uint32_t nextAfter(uint32_t tile, const Replicates& replicates, uint32_t first) const;
+  // Returns the end of the block that has begun before a sample and contains it; or the sample.
+  uint32_t endOf(uint32_t tile, const Replicates& replicates, uint32_t at) const;
+
+ private:
+  using Ranges = std::map<uint32_t, uint32_t>; // count by first sample
+  std::map<std::tuple<uint32_t, uint32_t, uint32_t>, Ranges> tiles_;
+  const Ranges* find(uint32_t tile, const Replicates& replicates) const;
+};
 
 class FrameSchedule {
  public:
@@ -42,6 +61,9 @@ class FrameSchedule {
   // Sets the order of the tiles. Only before the first job, and only for frames that are not shown
   // before they are finished.
   void order(std::vector<uint32_t> tiles);
+  // The sums of the frame are kept: jobs are blocks of the tree, and known blocks are handed out as
+  // they are. `lightParts` parts of light tracing are done. Only before the first job.
+  void keep(KnownBlocks known, uint32_t lightParts);
   // Returns the tile that next() will hand out; the number of tiles if there is none or it is not
   // known yet.
   uint32_t upcoming() const;
@@ -88,12 +110,15 @@ class FrameSchedule {
                  uint32_t largest, double now);
   uint32_t endOf(uint32_t tile) const;
   uint32_t tileAt(uint32_t place) const { return order_.empty() ? place : order_[place]; }
+  Replicates replicatesOfTile(uint32_t tile) const;
+  uint32_t beginOf(uint32_t tile) const;
   void skipTiles();
   bool endRound(double now);
   bool endTimed(double now);
   bool endProgressive();
   void wantLight();
 
+  std::optional<KnownBlocks> known_; // none: sums are not kept
   const edit::FrameSettingsT frame_;
   const TileGrid grid_;
   const uint32_t tiles_;

@@ -1,20 +1,25 @@
 // frame_work.cpp: merging of results. Locks: `mutex` guards the schedule and the outstanding jobs.
 // Each tile has a lock for its sums and its place in the film, so that several threads merge and
 // store tiles at once. A tile's lock is never taken while `mutex` is held.
+// Longer than 500 lines because all of it works on one state under these locks.
 #include "render/frame/frame_work.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <shared_mutex>
+#include <tuple>
 
 #include "render/film/error.h"
 #include "render/film/light_image.h"
 #include "render/film/pilots.h"
 #include "render/flush_denormals.h"
 #include "render/frame/frame_schedule.h"
+#include "render/frame/frame_sums.h"
+#include "render/frame/result_codec.h"
 #include "render/path/light_stride.h"
 
 namespace openrt {
@@ -38,27 +43,43 @@ struct TileState {
   TileSums sums; // sums of tiles that are incomplete or wait for light tracing
   Ledger ledger;
   bool shown = false;
+  // Where sums are kept: the blocks of complete stages, the replicates of the stage in `sums`, and
+  // whether that stage is complete, so that its blocks are in `done`.
+  std::vector<KeptBlock> done;
+  Replicates replicates;
+  bool waits = false;
 };
+
+RayTotals totalsOf(const RayCounters& counters) {
+  return {counters.camera, counters.shadow, counters.secondary,
+          counters.faults.count(Fault::notFinite)};
+}
+
+LightImage::Kept keptOf(const edit::FrameSettingsT& frame, bool errors) {
+  return !errors                             ? LightImage::Kept::means
+         : poolingOf(frame) == Pooling::none ? LightImage::Kept::sensors
+                                             : LightImage::Kept::pixels;
+}
 
 } // namespace
 
 struct FrameWork::Impl {
-  Impl(const edit::FrameSettingsT& f, const FrameFacts& facts, uint32_t threadCount)
-      : frame(f), grid(frame), count(facts.camera ? grid.count() : 0),
-        required(requiredSums(frame)),
+  Impl(const edit::FrameSettingsT& f, const FrameFacts& frameFacts, uint32_t threadCount,
+       const KeepSums& keepSums)
+      : frame(f), facts(frameFacts), kept(keepSums), grid(frame),
+        count(facts.camera ? grid.count() : 0), required(requiredSums(frame)),
         film(frame.width, frame.height, frame.channels, errorsOf(frame)),
         tiles(std::make_unique<TileState[]>(count)),
         schedule(frame, facts, grid, threadCount, now()) {
     if (frame.targetError > 0 && count > 0)
       pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
-    const auto kept = film.errors().empty()               ? LightImage::Kept::means
-                      : poolingOf(frame) == Pooling::none ? LightImage::Kept::sensors
-                                                          : LightImage::Kept::pixels;
-    light =
-        std::make_unique<LightImage>(frame.width, frame.height, LightImage::partsOf(frame), kept);
+    const LightImage::Kept keeps = keptOf(frame, !film.errors().empty());
+    const uint32_t parts = LightImage::partsOf(frame);
+    light = std::make_unique<LightImage>(frame.width, frame.height, parts, keeps);
+    lightRays.resize(parts);
     if (schedule.rounds())
-      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts(), kept);
+      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts(), keeps);
   }
 
   bool lightComplete() const { return !light || light->complete(); }
@@ -78,8 +99,16 @@ struct FrameWork::Impl {
   void advance();
   void finishWaitingTiles();
   void notifyChange();
+  void resume();
+  void add(const RayTotals& rays);
+  bool findKnown(const Job& job, KeptBlock& block);
+  void keepBlock(TileState& state, const SumBlock& block) const;
+  KeptBlock encoded(const SumBlock& block, const Replicates& replicates) const;
+  void develop(const FrameSums& sums);
 
   const edit::FrameSettingsT frame;
+  const FrameFacts facts;
+  KeepSums kept;
   const TileGrid grid;
   const uint32_t count; // tiles
   const RequiredSums required;
@@ -96,6 +125,11 @@ struct FrameWork::Impl {
   uint32_t busy = 0;                                 // threads that are merging a result
   bool cancelled = false, finishing = false, over = false, waited = false;
   RayCounters counters;
+  uint64_t faultsBefore = 0; // shader faults of the jobs that the frame continues from
+  // Where sums are kept: rays by part of light tracing, and the blocks that are not used yet.
+  std::vector<RayTotals> lightRays;
+  RayTotals lightRaysBefore;
+  std::map<std::tuple<uint32_t, uint32_t, uint32_t, uint32_t>, KeptBlock> known;
   std::function<void()> changed;
 };
 
@@ -191,13 +225,21 @@ void FrameWork::Impl::addSamples(const FrameSchedule::OutstandingJob& out, JobRe
   const Job& job = out.job;
   TileState& state = tiles[job.number];
   std::lock_guard tileLock(state.mutex);
-  SumBlock block{job.first, job.count, std::move(result.sums), result.ledger}, room;
+  SumBlock block{job.first, job.count, std::move(result.sums), result.ledger,
+                 kept.keep ? totalsOf(result.counters) : RayTotals()};
+  block.rays.faults += result.faultsBefore;
+  SumBlock room;
+  state.replicates = job.replicates;
   state.sums.join(block, required, job.replicates);
   const uint32_t reach = state.sums.reach(&block);
   const bool complete = reach == out.until;
   const bool showsParts = schedule.rounds() && !out.further;
   const SumBlock* all =
       complete || showsParts ? state.sums.fold(&block, room, required, job.replicates) : nullptr;
+  if (complete && kept.keep) {
+    state.sums.forEach(required, [&](const SumBlock& one) { keepBlock(state, one); });
+    keepBlock(state, block);
+  }
   if (complete && lightComplete()) {
     finish(out, *all, state);
     state.sums.clear();
@@ -209,6 +251,7 @@ void FrameWork::Impl::addSamples(const FrameSchedule::OutstandingJob& out, JobRe
     }
     if (complete) state.sums.clear();
     state.sums.keep(complete ? *all : block, required);
+    state.waits = complete;
     if (complete) {
       std::lock_guard lock(mutex);
       waiting.push_back(out);
@@ -217,7 +260,103 @@ void FrameWork::Impl::addSamples(const FrameSchedule::OutstandingJob& out, JobRe
   result.sums = std::move(block.sums); // its memory is reused for the next job
 }
 
+// --- Kept sums ---
+
+KeptBlock FrameWork::Impl::encoded(const SumBlock& block, const Replicates& replicates) const {
+  KeptBlock out{replicates, block.first, block.count, block.rays, nullptr};
+  JobResult result;
+  result.sums = block.sums;
+  result.ledger = block.ledger;
+  out.bytes =
+      std::make_shared<const std::vector<std::byte>>(encodeResult(frame, jobOf(0, out), result));
+  return out;
+}
+
+// Keeps a block of a complete stage. Called under the tile's lock.
+void FrameWork::Impl::keepBlock(TileState& state, const SumBlock& block) const {
+  state.done.push_back(encoded(block, state.replicates));
+}
+
+void FrameWork::Impl::add(const RayTotals& rays) {
+  counters.camera += rays.camera;
+  counters.shadow += rays.shadow;
+  counters.secondary += rays.secondary;
+  faultsBefore += rays.faults;
+}
+
+// Takes the results that the frame continues from. Called before the first job.
+void FrameWork::Impl::resume() {
+  if (frame.timeLimit > 0) throw SumsError("sums of a frame with a time limit cannot be kept");
+  KnownBlocks blocks;
+  uint32_t parts = 0;
+  if (const FrameSums* from = kept.from.get()) {
+    checkContinues(*from, frame, facts, kept.identity);
+    const SeedSums& sums = from->seeds[0];
+    for (uint32_t tile = 0; tile < count; tile++)
+      for (const KeptBlock& block : sums.tiles[tile]) {
+        if (!isBlockOf(block, from->frame.samples, frame.samples)) continue;
+        blocks.add(tile, block.replicates, block.first, block.count);
+        known[{tile, block.replicates.seed, block.replicates.shift, block.first}] = block;
+      }
+    // The number of light paths depends on the samples.
+    if (light && from->frame.samples == frame.samples && sums.light.added > 0) {
+      if (!light->restore(sums.light)) throw SumsError("the kept sums are damaged");
+      parts = sums.light.added;
+      lightRaysBefore = sums.lightRays;
+      add(sums.lightRays);
+    }
+  }
+  kept.from = nullptr;
+  schedule.keep(std::move(blocks), parts);
+  if (parts > 0 && light->complete()) schedule.lightComplete();
+}
+
+// Finds the block of a job among those that the frame continues from. Returns false if there is
+// none. Called under `mutex`.
+bool FrameWork::Impl::findKnown(const Job& job, KeptBlock& block) {
+  if (known.empty() || job.kind != Job::Kind::samples) return false;
+  const auto found = known.find({job.number, job.replicates.seed, job.replicates.shift, job.first});
+  if (found == known.end() || found->second.count != job.count) return false;
+  block = found->second;
+  return true;
+}
+
+// Makes the picture of condensed sums.
+void FrameWork::Impl::develop(const FrameSums& sums) {
+  const FlushDenormals flush;
+  if (!sums.condensed || sums.seeds.empty()) throw SumsError("the sums are not those of a picture");
+  if (light) {
+    LightImage::State all = sums.seeds[0].light;
+    for (size_t i = 1; i < sums.seeds.size(); i++)
+      LightImage::merge(all, sums.seeds[i].light, keptOf(frame, !film.errors().empty()));
+    if (!light->restore(all, true)) throw SumsError("the sums are damaged");
+    early = nullptr;
+  }
+  for (uint32_t tile = 0; tile < count; tile++) {
+    SumBlock all;
+    for (const SeedSums& seeds : sums.seeds) {
+      SumBlock next;
+      decodeSeeds(sums.frame, grid.at(tile), seeds, seeds.tiles[tile].at(0), next);
+      if (all.sums.empty())
+        all = std::move(next);
+      else
+        all.append(next, required, seeds.tiles[tile].at(0).replicates);
+    }
+    store(grid.at(tile), all.sums, sums.seeds[0].tiles[tile].at(0).replicates, true);
+    tiles[tile].ledger = all.ledger;
+    tiles[tile].shown = true;
+    add(all.rays);
+  }
+  for (const SeedSums& seeds : sums.seeds) add(seeds.lightRays);
+  judgeErrors();
+  over = true;
+}
+
 void FrameWork::Impl::addLight(const FrameSchedule::OutstandingJob& out, JobResult& result) {
+  if (kept.keep && out.stage == Stage::light) {
+    std::lock_guard lock(mutex);
+    lightRays[out.job.number] = totalsOf(result.counters);
+  }
   (out.stage == Stage::early ? early : light)->add(out.job.number, std::move(result.light));
   if (!light->complete()) return;
   std::lock_guard lock(mutex);
@@ -240,6 +379,7 @@ void FrameWork::Impl::finishWaitingTiles() {
       state.sums.fold(nullptr, all, required, out.job.replicates);
       finish(out, all, state);
       state.sums.clear();
+      state.waits = false;
     }
     lock.lock();
     busy--;
@@ -298,10 +438,17 @@ void FrameWork::Impl::notifyChange() {
 }
 
 FrameWork::FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts,
-                     uint32_t threadCount)
-    : impl_(std::make_unique<Impl>(settings, facts, threadCount)) {
+                     uint32_t threadCount, const KeepSums& kept)
+    : impl_(std::make_unique<Impl>(settings, facts, threadCount, kept)) {
+  if (kept.keep) impl_->resume();
   impl_->advance();
 }
+
+FrameWork::FrameWork(const FrameSums& sums)
+    : impl_(std::make_unique<Impl>(sums.frame, sums.facts, 1, KeepSums())) {
+  impl_->develop(sums);
+}
+
 FrameWork::~FrameWork() = default;
 
 FrameWork::Next FrameWork::next(Job& job, uint32_t largest) {
@@ -313,8 +460,22 @@ FrameWork::Next FrameWork::next(Job& job, uint32_t largest) {
     m.advance();
     lock.lock();
   }
+  KeptBlock block;
+  while (!m.over && !m.cancelled && m.schedule.next(job, largest, now())) {
+    if (!m.findKnown(job, block)) return Next::job;
+    lock.unlock();
+    JobResult result;
+    if (!decodeResult(m.frame, job, m.grid.at(job.number), *block.bytes, result))
+      throw SumsError("the kept sums are damaged");
+    result.counters.camera = block.rays.camera;
+    result.counters.shadow = block.rays.shadow;
+    result.counters.secondary = block.rays.secondary;
+    result.faultsBefore = block.rays.faults;
+    take(job, std::move(result));
+    lock.lock();
+    m.known.erase({job.number, job.replicates.seed, job.replicates.shift, job.first});
+  }
   if (m.over) return Next::over;
-  if (!m.cancelled && m.schedule.next(job, largest, now())) return Next::job;
   m.waited = true;
   return Next::wait;
 }
@@ -346,10 +507,12 @@ bool FrameWork::take(const Job& job, JobResult&& result) {
     out = m.schedule.claim(job);
     if (!out) return false;
     m.busy++;
-    m.counters.camera += result.counters.camera;
-    m.counters.shadow += result.counters.shadow;
-    m.counters.secondary += result.counters.secondary;
     m.counters.faults.add(result.counters.faults);
+    // The rays of early light depend on the number of threads. They would make the statistics of a
+    // frame that is continued differ from those of one that was not interrupted.
+    RayTotals rays = totalsOf(result.counters);
+    rays.faults = result.faultsBefore;
+    if (!m.kept.keep || out->stage != Stage::early) m.add(rays);
   }
   const FlushDenormals flush;
   if (job.kind == Job::Kind::light)
@@ -409,9 +572,58 @@ bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {
 
 const Film& FrameWork::film() const { return impl_->film; }
 
+std::shared_ptr<FrameSums> FrameWork::sums() const {
+  const Impl& m = *impl_;
+  if (!m.kept.keep) return nullptr;
+  auto out = std::make_shared<FrameSums>();
+  out->frame = m.frame;
+  out->facts = m.facts;
+  out->identity = m.kept.identity;
+  SeedSums& sums = out->seeds.emplace_back();
+  sums.first = m.frame.seed;
+  // Blocks that wait to be handed out go before those that are done: no block may get lost between.
+  std::map<uint32_t, std::vector<KeptBlock>> waiting;
+  {
+    std::lock_guard lock(m.mutex);
+    out->complete = m.over && !m.cancelled;
+    for (const auto& [key, block] : m.known) waiting[std::get<0>(key)].push_back(block);
+  }
+  sums.tiles.resize(m.count);
+  for (uint32_t i = 0; i < m.count; i++) {
+    TileState& state = m.tiles[i];
+    std::lock_guard lock(state.mutex);
+    std::vector<KeptBlock>& blocks = sums.tiles[i] = state.done;
+    if (!state.waits)
+      state.sums.forEach(m.required, [&](const SumBlock& one) {
+        blocks.push_back(m.encoded(one, state.replicates));
+      });
+    const auto overlaps = [&](const KeptBlock& block) {
+      return std::any_of(blocks.begin(), blocks.end(), [&](const KeptBlock& b) {
+        return b.replicates == block.replicates && b.first < block.first + block.count &&
+               block.first < b.first + b.count;
+      });
+    };
+    for (KeptBlock& block : waiting[i])
+      if (!overlaps(block)) blocks.push_back(std::move(block));
+  }
+  if (m.light) {
+    sums.light = m.light->state();
+    std::lock_guard lock(m.mutex);
+    sums.lightRays = m.lightRaysBefore;
+    for (uint32_t i = 0; i < std::min<size_t>(sums.light.added, m.lightRays.size()); i++)
+      sums.lightRays.add(m.lightRays[i]);
+  }
+  return out;
+}
+
 RayCounters FrameWork::counters() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->counters;
+}
+
+uint64_t FrameWork::shaderFaults() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->counters.faults.count(Fault::notFinite) + impl_->faultsBefore;
 }
 
 void FrameWork::describeError(RTstats& stats) const {

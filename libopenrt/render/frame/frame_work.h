@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "render/film/film.h"
 #include "render/frame/job.h"
@@ -21,13 +22,41 @@ namespace openrt {
 struct FrameFacts {
   bool camera = false; // the scene has a camera
   bool lamps = false;  // light tracing is needed
+  // Tells how many photons guide the paths, which depends on the number of samples. 0: none do.
+  uint64_t guide = 0;
+  static constexpr uint64_t unknownGuide = ~uint64_t(0);
+};
+
+struct FrameSums;
+
+// What the samples of a frame depend on besides its settings.
+struct SumsIdentity {
+  uint64_t world = 0, view = 0;     // digests (scene/scene_digest.h)
+  std::string version, isa, kernel; // of the library; of its ray kernels
+  bool operator==(const SumsIdentity&) const = default;
+};
+
+inline std::string versionText() {
+  return std::to_string(OPENRT_VERSION_MAJOR) + "." + std::to_string(OPENRT_VERSION_MINOR) + "." +
+         std::to_string(OPENRT_VERSION_PATCH);
+}
+
+// Asks for the sums of a frame to be kept beside its picture.
+struct KeepSums {
+  bool keep = false;
+  SumsIdentity identity;
+  std::shared_ptr<const FrameSums> from; // the sums to continue from; null: none
 };
 
 class FrameWork {
  public:
   // settings: with the transport that was chosen. threadCount: approximate number of threads that
   // work on the frame; it has no influence on the picture.
-  FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t threadCount);
+  // Throws SumsError if the frame cannot be kept, or cannot continue from the sums.
+  FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t threadCount,
+            const KeepSums& kept = {});
+  // Makes the picture of condensed sums; there are no jobs. Throws SumsError.
+  explicit FrameWork(const FrameSums& sums);
   ~FrameWork();
 
   enum class Next : uint8_t {
@@ -60,7 +89,10 @@ class FrameWork {
   float progress() const;
   bool snapshot(uint32_t channel, std::span<float> out) const;
   const Film& film() const; // valid once over() is true
+  // Returns the results so far of a frame whose sums are kept; null for another one.
+  std::shared_ptr<FrameSums> sums() const;
   RayCounters counters() const;
+  uint64_t shaderFaults() const; // hits at which a shader returned numbers that are not finite
   void describeError(RTstats& stats) const;  // valid once over() is true
   void describeLedger(RTstats& stats) const; // valid once over() is true
 

@@ -35,6 +35,7 @@ struct JobResult {
   std::vector<float> light; // rgb of the whole picture, row by row
   Ledger ledger;
   RayCounters counters;
+  uint64_t faultsBefore = 0; // shader faults of a result that another process has made
   double seconds = 0; // time that it took on one thread
 };
 

@@ -11,6 +11,7 @@
 #include "render/flush_denormals.h"
 #include "render/frame/frame_work.h"
 #include "render/path/light_tracer.h"
+#include "render/path/photon_pass.h"
 #include "render/path/tile.h"
 
 namespace openrt {
@@ -24,7 +25,8 @@ double now() {
 
 FrameFacts factsOf(const RenderScene& scene) {
   return {.camera = scene.camera.shader.shaderClass != nullptr,
-          .lamps = scene.lightSources != nullptr};
+          .lamps = scene.lightSources != nullptr,
+          .guide = scene.photonGuide || scene.lightPathFlux > 0 ? photonsOf(scene.frame) : 0};
 }
 
 struct JobRunner::Impl {

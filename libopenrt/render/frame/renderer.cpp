@@ -27,8 +27,9 @@ uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t 
 
 } // namespace
 
-Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads)
-    : scene_(std::move(scene)), work_(scene_->frame, factsOf(*scene_), threads), started_(now()) {
+Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads, const KeepSums& kept)
+    : scene_(std::move(scene)), work_(scene_->frame, factsOf(*scene_), threads, kept),
+      started_(now()) {
   work_.onChange([this] {
     {
       std::lock_guard lock(mutex_);

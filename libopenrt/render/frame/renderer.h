@@ -20,7 +20,7 @@ namespace openrt {
 class Frame {
  public:
   // Starts rendering at once. The scene must not change until the frame is waited for.
-  Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads);
+  Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads, const KeepSums& kept = {});
   ~Frame(); // cancels and waits
   void wait();
   void cancel();                                                // [any]

@@ -29,6 +29,15 @@ uint64_t cameraPathsOf(const edit::FrameSettingsT& frame) {
   return uint64_t(frame.width) * frame.height * frame.samples;
 }
 
+uint64_t pathsOf(const edit::FrameSettingsT& frame) {
+  return std::clamp(cameraPathsOf(frame) / cameraPaths, fewestPaths, mostPaths);
+}
+
+uint64_t blocksOf(const edit::FrameSettingsT& frame) {
+  return std::clamp(cameraPathsOf(frame) / (trialShare * blockEdge * blockEdge * trialSamples),
+                    fewestBlocks, mostBlocks);
+}
+
 // Returns block i of a low-discrepancy sequence over the picture (M. Roberts, "The Unreasonable
 // Effectiveness of Quasirandom Sequences", 2018).
 Tile trialBlock(const edit::FrameSettingsT& frame, uint32_t i) {
@@ -51,9 +60,7 @@ std::vector<float> tryGuide(RenderScene& scene, const std::atomic<bool>& stop) {
   TileRenderer renderer(scene);
   renderer.observe(&trial);
   const Replicates replicates{hash(settings.seed, trialSeed)};
-  const uint64_t blocks =
-      std::clamp(cameraPathsOf(settings) / (trialShare * blockEdge * blockEdge * trialSamples),
-                 fewestBlocks, mostBlocks);
+  const uint64_t blocks = blocksOf(settings);
   std::vector<PixelSums> sums;
   for (uint32_t b = 0; b < blocks && !stop; b++) {
     const Tile tile = trialBlock(settings, b);
@@ -67,6 +74,10 @@ std::vector<float> tryGuide(RenderScene& scene, const std::atomic<bool>& stop) {
 
 } // namespace
 
+uint64_t photonsOf(const edit::FrameSettingsT& frame) {
+  return pathsOf(frame) << 32 | blocksOf(frame);
+}
+
 bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.photonGuide = nullptr;
   scene.lightPathFlux = 0;
@@ -77,7 +88,7 @@ bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
     return true;
   const LightSources sources(scene, &scene, LightSources::Kind::emitters);
   if (sources.empty()) return true;
-  const uint64_t paths = std::clamp(cameraPathsOf(frame) / cameraPaths, fewestPaths, mostPaths);
+  const uint64_t paths = pathsOf(frame);
   LightTracer tracer(scene, sources);
   std::vector<Photon> photons =
       tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed), stop);

@@ -18,4 +18,7 @@ namespace openrt {
 // returns false if it was set. Then there is no guide.
 bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop);
 
+// Returns a number for the size of the pass, which depends on the samples of a frame.
+uint64_t photonsOf(const edit::FrameSettingsT& frame);
+
 } // namespace openrt

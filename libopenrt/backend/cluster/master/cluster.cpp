@@ -1,6 +1,7 @@
 // cluster.cpp: the backend that renders with remote workers. One thread, the network thread, owns
 // the Wire and the Master. The local worker (WorkerCore) has its own threads. Other threads post
-// functions to the network thread and wait if they need an answer.
+// functions to the network thread and wait if they need an answer. Longer than 500 lines because
+// all of it is one backend, whose threads share its members.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -19,6 +20,7 @@
 #include "backend/cluster/net/greeting.h"
 #include "backend/surface_queries.h"
 #include "render/frame/threads.h"
+#include "scene/sums_error.h"
 
 namespace openrt {
 namespace {
@@ -114,6 +116,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     master.require = cluster.require;
     master.session = uint64_t(std::random_device()()) << 32 | 1;
     master.self = identity(self);
+    identity_ = {0, 0, versionText(), self.isa, self.kernel};
     master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
     master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
       std::vector<ThreadPool::Task> task{taskFor(std::move(heavy), std::move(then))};
@@ -142,6 +145,20 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     commitSeconds_ = clockNow() - begin;
   }
 
+  bool keepSums(const SumsRequest& request) override {
+    keep_ = request;
+    return true;
+  }
+
+  std::shared_ptr<FrameSums> sums() const override {
+    std::shared_ptr<FrameWork> work;
+    {
+      const std::lock_guard lock(mutex_);
+      work = framesInFlight_.empty() ? finished_.state.work : framesInFlight_.front().state.work;
+    }
+    return work ? work->sums() : nullptr;
+  }
+
   void start() override {
     if (unsent_.empty()) unsent_.push_back(std::make_shared<Commit>());
     FrameInFlight flight;
@@ -167,6 +184,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     const Master::FrameState& state = finished_.state;
     if (state.failure.empty()) return;
     if (state.missing) throw ClusterError(state.failure);
+    if (state.sumsWrong) throw SumsError(state.failure);
     throw std::runtime_error(state.failure);
   }
 
@@ -215,7 +233,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       s.cameraRays = counters.camera;
       s.shadowRays = counters.shadow;
       s.secondaryRays = counters.secondary;
-      s.shaderFaults = counters.faults.count(Fault::notFinite);
+      s.shaderFaults = state.work->shaderFaults();
       s.renderSeconds = finished_.ended - finished_.begun;
       s.transport = state.prepared.frame.transport;
       state.work->describeError(s);
@@ -294,10 +312,13 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
 
   // Posts the commits to the network thread. If `frame`, the last one starts a frame.
   void postCommits(bool frame) {
+    KeepSums kept{keep_.keep, identity_, frame ? std::exchange(keep_.from, nullptr) : nullptr};
+    kept.identity.world = keep_.scene.world;
+    kept.identity.view = keep_.scene.view;
     while (!unsent_.empty()) {
       const bool last = unsent_.size() == 1;
-      post([this, epoch = ++epoch_, commit = std::move(unsent_.front()),
-            render = frame && last](double now) { master_->commit(epoch, commit, render, now); });
+      post([this, epoch = ++epoch_, commit = std::move(unsent_.front()), render = frame && last,
+            kept](double now) { master_->commit(epoch, commit, render, now, kept); });
       unsent_.pop_front();
     }
   }
@@ -455,6 +476,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   std::deque<std::shared_ptr<const Commit>> unsent_;
   Epoch epoch_ = 0;
   FrameInFlight finished_;
+  SumsRequest keep_;
+  SumsIdentity identity_; // without the scene
   double commitSeconds_ = 0;
 
   mutable std::mutex mutex_; // guards the members up to totalsAt_

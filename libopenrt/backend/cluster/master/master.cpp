@@ -124,7 +124,8 @@ void Master::localDone(Epoch epoch, const LeasedJob& job, JobResult&& result, do
   m.startMerge(*entry, incoming, now);
 }
 
-void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now) {
+void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now,
+                    const KeepSums& kept) {
   Impl& m = *impl_;
   m.firstCommit = std::min(m.firstCommit, now);
   for (const auto& entry : commit->edits.edits)
@@ -133,6 +134,7 @@ void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool fram
   if (frame) {
     FrameEntry& entry = m.frames[epoch];
     entry.settings = m.scenes.frame();
+    entry.kept = kept;
     m.largestResult = std::max(m.largestResult, largestResultOf(entry.settings));
     m.joinLocal(now);
     m.scheduler.announce(epoch, now);

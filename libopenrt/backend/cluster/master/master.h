@@ -54,7 +54,9 @@ class Master {
 
   // Calls of the application. Commits come in order with ascending epochs. The frame of a commit
   // starts once a worker has prepared it.
-  void commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now);
+  // kept: whether the sums of the frame are kept, and with what it begins.
+  void commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now,
+              const KeepSums& kept = {});
   void cancel(Epoch epoch, double now); // cancels this frame and all before
   // Hands out jobs and sends messages. Returns the latest time for the next call.
   double advance(double now);
@@ -70,6 +72,7 @@ class Master {
     Prepared prepared;
     std::string failure;  // reason why the frame cannot be rendered; empty if it can
     bool missing = false; // the reason is missing workers
+    bool sumsWrong = false; // the reason is that it cannot continue from its sums
     bool over = false;    // finished, failed or cancelled
   };
   FrameState frame(Epoch epoch) const;

@@ -5,6 +5,7 @@
 #include "backend/cluster/master/frame_source.h"
 #include "backend/cluster/master/master_state.h"
 #include "render/frame/result_codec.h"
+#include "scene/sums_error.h"
 
 namespace openrt::cluster {
 namespace {
@@ -91,8 +92,15 @@ void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch,
   for (const auto& [id, peer] : peers) totalThreads += remotes.at(peer).facts.threads;
   entry->preparedBy = who;
   entry->state.prepared = prepared;
-  entry->state.work =
-      std::make_shared<FrameWork>(prepared.frame, facts, std::max(totalThreads, 1u));
+  try {
+    FrameFacts known = facts;
+    known.guide = FrameFacts::unknownGuide; // workers do not tell
+    entry->state.work = std::make_shared<FrameWork>(prepared.frame, known,
+                                                    std::max(totalThreads, 1u), entry->kept);
+  } catch (const SumsError& error) {
+    entry->state.sumsWrong = true;
+    return fail(epoch, error.what(), false);
+  }
   scheduler.frame(epoch, std::make_shared<FrameSource>(entry->state.work), now);
   endIfComplete(epoch); // there may be no jobs at all
 }

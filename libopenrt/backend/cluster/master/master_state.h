@@ -44,6 +44,7 @@ struct Remote {
 
 struct FrameEntry {
   edit::FrameSettingsT settings;
+  KeepSums kept;
   Master::FrameState state;
   std::string preparedBy;             // the worker that prepared it first
   std::set<WorkerId> preparedWorkers; // workers that have prepared it

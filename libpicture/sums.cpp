@@ -1,0 +1,259 @@
+// sums.cpp: Files of sums. Little-endian:
+//   "VVSUMS1\n"; 8 bytes: length of the facts; 8 bytes: FNV-1a of the facts; the facts
+//   twice (done, current): 8 bytes for the length, bytes of rtWriteSums; a length of 0: none
+// Behind an OpenEXR file, 8 bytes with the length of all this and "VVSUMS1\n" follow.
+// The facts: 4 bytes of channels, a byte for linear, one for the kind of the background, three
+// floats of its colour, 4 bytes for the number of names, and each name with 4 bytes for its length.
+#include "libpicture/sums.h"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "libpicture/renderer.h"
+
+namespace picture {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+constexpr std::string_view magic = "VVSUMS1\n", exrMagic = "\x76\x2f\x31\x01";
+
+uint64_t checksum(std::string_view bytes) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : bytes) hash = (hash ^ uint8_t(c)) * 0x100000001b3u;
+  return hash;
+}
+
+template <class T> void put(std::string& out, T value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+struct Damaged : std::runtime_error {
+  using runtime_error::runtime_error;
+};
+
+class Source {
+ public:
+  explicit Source(std::string_view bytes) : left_(bytes) {}
+  std::string_view take(uint64_t size) {
+    if (size > left_.size()) throw Damaged("it is damaged: it ends too early");
+    const std::string_view taken = left_.substr(0, size_t(size));
+    left_.remove_prefix(size_t(size));
+    return taken;
+  }
+  template <class T> T number() {
+    T value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  bool empty() const { return left_.empty(); }
+  size_t left() const { return left_.size(); }
+
+ private:
+  std::string_view left_;
+};
+
+std::string encodeFacts(const SumsFacts& facts) {
+  std::string out;
+  put(out, facts.channels);
+  put(out, uint8_t(facts.linear));
+  put(out, uint8_t(facts.background.kind));
+  for (const float c : facts.background.colour) put(out, c);
+  put(out, uint32_t(facts.names.size()));
+  for (const std::string& name : facts.names) {
+    put(out, uint32_t(name.size()));
+    out += name;
+  }
+  return out;
+}
+
+SumsFacts decodeFacts(std::string_view bytes) {
+  Source source(bytes);
+  SumsFacts facts;
+  facts.channels = source.number<uint32_t>();
+  facts.linear = source.number<uint8_t>() != 0;
+  const auto kind = source.number<uint8_t>();
+  if (kind > uint8_t(Background::Kind::file)) throw Damaged("it is damaged: its background");
+  facts.background.kind = Background::Kind(kind);
+  for (float& c : facts.background.colour) c = source.number<float>();
+  const auto names = source.number<uint32_t>();
+  if (names > source.left() / sizeof(uint32_t)) throw Damaged("it is damaged: it ends too early");
+  for (uint32_t i = 0; i < names; i++)
+    facts.names.emplace_back(source.take(source.number<uint32_t>()));
+  return facts;
+}
+
+int append(const void* data, size_t size, void* to) {
+  try {
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data), size);
+    return 1;
+  } catch (const std::bad_alloc&) { return 0; }
+}
+
+void putSums(std::string& out, const Sums& sums) {
+  const size_t at = out.size();
+  put(out, uint64_t(0));
+  if (!sums) return;
+  if (!rtWriteSums(sums.get(), append, &out)) {
+    while (rtGetError() != RT_NO_ERROR) {}
+    throw std::bad_alloc();
+  }
+  const uint64_t size = out.size() - at - sizeof(uint64_t);
+  std::memcpy(out.data() + at, &size, sizeof size);
+}
+
+// Returns what went wrong in the last call of the engine, without the name of the call.
+std::string whyNot() {
+  const RTenum code = rtGetError();
+  if (code == RT_OUT_OF_MEMORY) throw std::bad_alloc();
+  const std::string message = rtGetErrorMessage();
+  const size_t colon = message.find(": ");
+  return message.starts_with("rt") && colon != message.npos ? message.substr(colon + 2) : message;
+}
+
+Sums takeSums(Source& source) {
+  const std::string_view bytes = source.take(source.number<uint64_t>());
+  if (bytes.empty()) return {};
+  const RTsums sums = rtReadSums(bytes.data(), bytes.size());
+  if (!sums) throw Damaged(whyNot());
+  return Sums(sums);
+}
+
+SumsFile decode(std::string_view bytes) {
+  Source source(bytes);
+  if (source.take(std::min(magic.size(), bytes.size())) != magic)
+    throw Damaged("it is not a file of sums");
+  SumsFile file;
+  const auto size = source.number<uint64_t>(), check = source.number<uint64_t>();
+  const std::string_view facts = source.take(size);
+  if (checksum(facts) != check) throw Damaged("it is damaged: its checksum differs");
+  file.facts = decodeFacts(facts);
+  file.done = takeSums(source);
+  file.current = takeSums(source);
+  if (!source.empty()) throw Damaged("it is damaged: more follows than was expected");
+  if (!file.done && !file.current) throw Damaged("it is damaged: it holds no sums");
+  return file;
+}
+
+// Returns the sums behind an OpenEXR file.
+std::string_view behindExr(std::string_view bytes) {
+  constexpr size_t tail = sizeof(uint64_t);
+  if (!bytes.ends_with(magic) || bytes.size() < magic.size() + tail)
+    throw Damaged("it has no sums, only rounded means; --sums puts sums into a file");
+  uint64_t size = 0;
+  std::memcpy(&size, bytes.data() + bytes.size() - magic.size() - tail, sizeof size);
+  bytes.remove_suffix(magic.size() + tail);
+  if (size > bytes.size()) throw Damaged("it is damaged: its sums are not complete");
+  return bytes.substr(bytes.size() - size_t(size));
+}
+
+std::string contentsOf(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) throw Damaged("it is a folder");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes;
+  if (file) {
+    const auto size = std::filesystem::file_size(path, error);
+    if (!error) bytes.reserve(size_t(size));
+    char block[65536];
+    while (file.read(block, sizeof block) || file.gcount() > 0)
+      bytes.append(block, size_t(file.gcount()));
+  }
+  if (!file.eof() || file.bad()) throw Damaged(errno ? std::strerror(errno) : "it is unreadable");
+  return bytes;
+}
+
+[[noreturn]] void failed() { throw RenderError(whyNot(), RT_SUMS_ERROR); }
+
+} // namespace
+
+RTsumsInfo Sums::info() const {
+  RTsumsInfo info{};
+  info.size = sizeof info;
+  rtGetSumsInfo(get(), &info);
+  return info;
+}
+
+SumsFacts factsOf(const RenderSettings& settings, uint32_t channels,
+                  const std::vector<std::string>& names) {
+  SumsFacts facts{channels, settings.linear, settings.background, names};
+  facts.background.file.clear();
+  return facts;
+}
+
+std::string encodeSums(const SumsFile& file) {
+  std::string out(magic);
+  const std::string facts = encodeFacts(file.facts);
+  put(out, uint64_t(facts.size()));
+  put(out, checksum(facts));
+  out += facts;
+  putSums(out, file.done);
+  putSums(out, file.current);
+  return out;
+}
+
+SumsFile readSums(const std::string& path) {
+  try {
+    const std::string bytes = contentsOf(path);
+    return decode(bytes.starts_with(exrMagic) ? behindExr(bytes) : std::string_view(bytes));
+  } catch (const Damaged& error) { throw InputError(path, error.what()); }
+}
+
+void appendSums(std::string& exr, const SumsFile& file) {
+  const std::string bytes = encodeSums(file);
+  exr += bytes;
+  put(exr, uint64_t(bytes.size()));
+  exr += magic;
+}
+
+Sums mergeSums(const Sums& a, const Sums& b) {
+  if (!a || !b) return condensed(a ? a : b);
+  const RTsums merged = rtMergeSums(a.get(), b.get());
+  if (!merged) failed();
+  return Sums(merged);
+}
+
+Sums condensed(const Sums& sums) {
+  const RTsums made = rtMergeSums(sums.get(), nullptr);
+  if (!made) failed();
+  return Sums(made);
+}
+
+Picture pictureOf(const Sums& sums, const SumsFacts& facts) {
+  const RTsumsInfo info = sums.info();
+  Picture picture;
+  picture.width = info.width;
+  picture.height = info.height;
+  picture.linear = facts.linear;
+  picture.transparent = facts.background.kind == Background::Kind::none;
+  picture.names = facts.names;
+  for (const Channel& channel : channelTable()) {
+    if (!(info.channels & channel.bit)) continue;
+    std::vector<float>& plane = picture.planes[channel.bit];
+    plane.resize(size_t(info.width) * size_t(info.height) * size_t(channel.components));
+    if (!rtReadSumsPixels(sums.get(), channel.bit, plane.data(), plane.size())) failed();
+  }
+  // Sums do not hold a picture that is the background.
+  if (const auto rgba = picture.planes.find(RT_RGBA);
+      rgba != picture.planes.end() && facts.background.kind != Background::Kind::file)
+    BackgroundLayer(facts.background, facts.linear)
+        .compositeOver(rgba->second, picture.width, picture.height);
+  return picture;
+}
+
+RTstats statsOf(const Sums& sums) {
+  RTstats stats{};
+  stats.size = sizeof stats;
+  if (!rtGetSumsStats(sums.get(), &stats)) failed();
+  return stats;
+}
+
+} // namespace picture

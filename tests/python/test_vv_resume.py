@@ -1,0 +1,240 @@
+"""Tests pictures that survive: --resume after every kind of interruption, and vv merge."""
+import json
+import signal
+import time
+
+import pytest
+
+ROOM = """#VRML V2.0 utf8
+NavigationInfo { headlight FALSE }
+Viewpoint { position 0 1 6 }
+DEF Floor Transform { translation 0 -1 0 children Shape {
+  appearance Appearance { material Material { diffuseColor .7 .6 .5 } }
+  geometry Box { size 8 .1 8 } } }
+DEF Ball Shape { appearance Appearance { material Material { diffuseColor .2 .4 .8 } }
+  geometry Sphere { } }
+DEF Lamp Transform { translation 0 3 0 children Shape {
+  appearance Appearance { material Material { diffuseColor 0 0 0 emissiveColor 8 8 8 } }
+  geometry Box { size 2 .1 2 } } }
+"""
+PATHS = ("--transport", "path", "--size", "96x64", "--isa", "sse2")
+ERRORS = ("--channels", "rgba,z,error,variance,trust,samples,id")
+SEEDS = ("-q", *PATHS, "--spp", "32", *ERRORS)
+
+
+@pytest.fixture
+def room(vv):
+    vv.write("room.wrl", ROOM)
+    return vv
+
+
+def contents(vv, name):
+    return (vv.folder / name).read_bytes()
+
+
+def made(vv, *arguments, world="room.wrl"):
+    done = vv(world, *arguments)
+    assert done.returncode == 0, done.talk
+    return done
+
+
+def numbers(vv, name):
+    """Returns the statistics that a picture has, without times and machines."""
+    json_ = json.loads(contents(vv, name))
+    rays = {key: json_["rays"][key] for key in ("camera", "shadow", "secondary")}
+    return json_["error"], json_["left_out"], rays, json_["image"]
+
+
+# Resuming ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("how", [("--spp", "48"), ("--spp", "100", *ERRORS), ("--spp", "8"),
+                                 ("--spp", "512", "--error", "8%", *ERRORS)])
+def test_a_run_that_is_killed_again_and_again_gets_the_same_bytes(room, how):
+    made(room, *PATHS, *how, "-o", "whole.exr", "--stats", "whole.json")
+    for i in range(200):
+        run = room.start("room.wrl", *PATHS, *how, "-q", "-o", "part.exr", "--stats", "part.json",
+                         "--resume", "part.sums", "--resume-every", "0.01", "--threads",
+                         str(1 + i % 2))
+        try:
+            run.wait(timeout=0.25 + 0.05 * i)
+        except Exception:
+            run.kill()
+        talk = run.communicate()[1].decode()
+        assert run.returncode in (0, -signal.SIGKILL), talk
+        if run.returncode == 0:
+            break
+    assert run.returncode == 0
+    assert contents(room, "part.exr") == contents(room, "whole.exr")
+    # The file stays: the same command makes the picture again at once.
+    again = ("-o", "again.exr", "--stats", "again.json", "--resume", "part.sums")
+    made(room, *PATHS, *how, *again)
+    assert contents(room, "again.exr") == contents(room, "whole.exr")
+    assert numbers(room, "part.json") == numbers(room, "again.json")
+    assert numbers(room, "whole.json")[0] == numbers(room, "again.json")[0]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_save_the_samples(room, number):
+    how = (*PATHS, "--spp", "4096")
+    run = room.start("room.wrl", *how, "-o", "part.exr", "--resume", "part.sums", "--resume-every",
+                     "1000")
+    time.sleep(1.5)
+    run.send_signal(number)
+    assert run.wait(timeout=60) == 130
+    assert "the same command continues the picture" in run.communicate()[1].decode()
+    assert (room.folder / "part.sums").stat().st_size > 1000
+
+
+def test_a_time_limit_ends_the_run_and_not_the_picture(room):
+    how = (*PATHS, "--spp", "96", *ERRORS)
+    made(room, *how, "-o", "whole.exr")
+    for _ in range(100):
+        done = room("room.wrl", *how, "-o", "part.exr", "--resume", "part.sums", "--time-limit", "1",
+                    "--size", "96x64")
+        assert done.returncode in (0, 75), done.talk
+        if done.returncode == 0:
+            break
+        assert "the time limit is reached; the same command continues" in done.talk
+    assert contents(room, "part.exr") == contents(room, "whole.exr")
+
+
+def test_a_picture_gets_more_samples(room):
+    made(room, *PATHS, "--spp", "64", "-o", "short.exr", "--resume", "a.sums")
+    made(room, *PATHS, "--spp", "160", "-o", "long.exr", "--resume", "a.sums")
+    made(room, *PATHS, "--spp", "160", "-o", "whole.exr")
+    assert contents(room, "long.exr") == contents(room, "whole.exr")
+    before = contents(room, "a.sums")
+    done = room("room.wrl", *PATHS, "--spp", "64", "-o", "x.exr", "--resume", "a.sums")
+    assert done.returncode == 2 and "cannot get fewer" in done.talk
+    assert contents(room, "a.sums") == before
+
+
+def test_files_of_something_else_are_refused_and_left_alone(room):
+    made(room, *PATHS, "--spp", "32", "-o", "a.exr", "--resume", "a.sums")
+    kept = contents(room, "a.sums")
+    room.write("other.wrl", ROOM.replace(".2 .4 .8", ".2 .5 .8"))
+
+    def refused(code, text, *arguments, world="room.wrl"):
+        done = room(world, "-o", "b.exr", *PATHS, "--spp", "32", "--resume", "a.sums", *arguments)
+        assert done.returncode == code and text in done.talk, done.talk
+        assert done.talk.count("error:") == 1 and "left as it is" in done.talk
+        assert not (room.folder / "b.exr").exists()
+
+    refused(2, "another world", world="other.wrl")
+    refused(2, "another view", "--camera", "1,1,6:0,0,0")
+    refused(2, "width", "--size", "48x32")
+    refused(2, "another --channels", "--channels", "rgba,z")
+    refused(2, "the seed 0, and the seed 1", "--seed", "1")
+    refused(2, "transport", "--transport", "direct")
+    refused(2, "--background", "--background", "white")
+    assert contents(room, "a.sums") == kept
+    for damaged in (b"", b"VVSUMS1\n", kept[:-1], kept[:100], kept + b"x", b"#VRML V2.0 utf8\n",
+                    kept[:2000] + bytes([kept[2000] ^ 1]) + kept[2001:]):
+        room.write("a.sums", damaged)
+        refused(3, "cannot read a.sums")
+        assert contents(room, "a.sums") == damaged
+
+
+def test_options_that_do_not_go_together(room):
+
+    def refused(text, *arguments):
+        done = room("room.wrl", *arguments)
+        assert done.returncode == 2 and text in done.talk, done.talk
+
+    refused("for one picture", "-o", "a.png", "--resume", "a.sums", "--frames", "0-3")
+    refused("for one picture", "-o", "a.png", "--resume", "a.sums", "--viewpoint", "all")
+    refused("need -o", "--resume", "a.sums", "--check")
+    refused("--sums needs -o with an EXR file", "-o", "a.png", "--sums")
+    refused("--error cannot be used", "-o", "a.exr", "--sums", "--error", "5%")
+    refused("--time-limit", "-o", "a.exr", "--seed", "0-3", "--time-limit", "1")
+    for wrong in ("3-1", "0-", "-1", "0-99999", "a"):
+        refused("--seed", "-o", "a.exr", "--seed=" + wrong)
+
+
+# Adding --------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def parts(room):
+    for seed in range(4):
+        made(room, *SEEDS, "--sums", "--seed", str(seed), "-o", f"{seed}.exr")
+    return room
+
+
+def merged(vv, out, *files, stats=None):
+    done = vv("merge", *files, "-o", out, "--sums", *(("--stats", stats) if stats else ()))
+    assert done.returncode == 0, done.talk
+    return contents(vv, out)
+
+
+def test_seeds_add_up_to_one_longer_run_in_any_order(parts):
+    made(parts, *SEEDS, "--sums", "--seed", "0-3", "-o", "whole.exr", "--stats", "whole.json")
+    whole = contents(parts, "whole.exr")
+    assert merged(parts, "all.exr", "0.exr", "1.exr", "2.exr", "3.exr", stats="all.json") == whole
+    assert merged(parts, "back.exr", "3.exr", "1.exr", "2.exr", "0.exr") == whole
+    merged(parts, "odd.exr", "3.exr", "1.exr")
+    merged(parts, "even.exr", "0.exr", "2.exr")
+    assert merged(parts, "again.exr", "odd.exr", "even.exr") == whole
+    one, all_ = numbers(parts, "whole.json"), numbers(parts, "all.json")
+    assert one[0] == all_[0] and one[2] == all_[2] and all_[3]["spp"] == 128
+    # Without --sums the pictures are the same, and as small as usual.
+    made(parts, *SEEDS, "--seed", "0-3", "-o", "plain.exr")
+    done = parts("merge", "0.exr", "1.exr", "2.exr", "3.exr", "-o", "small.exr")
+    assert done.returncode == 0 and "added 4 seeds of 32 samples per pixel" in done.talk
+    assert contents(parts, "plain.exr") == contents(parts, "small.exr")
+    assert whole.startswith(contents(parts, "plain.exr"))
+
+
+def test_files_of_resume_can_be_added(parts):
+    made(parts, *SEEDS, "--seed", "1", "-o", "x.exr", "--resume", "1.sums")
+    assert merged(parts, "a.exr", "0.exr", "1.sums") == merged(parts, "b.exr", "0.exr", "1.exr")
+
+
+def test_several_seeds_survive_a_kill(parts):
+    made(parts, *SEEDS, "--seed", "0-3", "-o", "whole.exr")
+    for i in range(100):
+        run = parts.start("room.wrl", *SEEDS, "--seed", "0-3", "-o", "part.exr", "--resume", "p.sums",
+                          "--resume-every", "0.01")
+        try:
+            run.wait(timeout=0.3 + 0.1 * i)
+        except Exception:
+            run.kill()
+        run.communicate()
+        if run.returncode == 0:
+            break
+    assert contents(parts, "part.exr") == contents(parts, "whole.exr")
+
+
+def test_what_cannot_be_added(parts):
+
+    def refused(code, text, *files):
+        done = parts("merge", *files, "-o", "x.exr")
+        assert done.returncode == code and text in done.talk, done.talk
+        assert not (parts.folder / "x.exr").exists()
+
+    made(parts, *SEEDS, "--seed", "9", "-o", "plain.exr")
+    made(parts, *SEEDS, "--sums", "--seed", "9", "--spp", "64", "-o", "longer.exr")
+    made(parts, *SEEDS, "--sums", "--seed", "9", "--size", "48x32", "-o", "smaller.exr")
+    made(parts, *SEEDS, "--sums", "--seed", "9", "--fov", "20", "-o", "view.exr")
+    made(parts, *SEEDS, "--sums", "--seed", "9", "--background", "white", "-o", "white.exr")
+    made(parts, *SEEDS, "--sums", "--seed", "9", "-D", "Floor.translation=0 -2 0", "-o", "other.exr")
+    refused(3, "only rounded means; --sums", "0.exr", "plain.exr")
+    refused(2, "both have the seed 0", "0.exr", "1.exr", "0.exr")
+    refused(2, "samples a pixel", "0.exr", "longer.exr")
+    refused(2, "width", "0.exr", "smaller.exr")
+    refused(2, "view", "0.exr", "view.exr")
+    refused(2, "--background", "0.exr", "white.exr")
+    refused(2, "another world", "0.exr", "other.exr")
+    refused(3, "cannot read none.exr", "0.exr", "none.exr")
+    refused(3, "not a file of sums", "0.exr", "room.wrl")
+    whole = contents(parts, "1.exr")
+    for damaged in (whole[:-1], whole[:-20], whole[:3000] + whole[3001:],
+                    whole[:-500] + bytes([whole[-500] ^ 1]) + whole[-499:]):
+        parts.write("damaged.exr", damaged)
+        refused(3, "damaged.exr", "0.exr", "damaged.exr")
+    done = parts("merge", "0.exr", "-o", "0.exr")
+    assert done.returncode != 0 and contents(parts, "0.exr").startswith(b"\x76\x2f\x31\x01")
+    for wrong in (("merge", "-o", "x.exr"), ("merge", "0.exr"),
+                  ("merge", "0.exr", "-o", "x.exr", "--spp", "3")):
+        assert parts(*wrong).returncode == 2
