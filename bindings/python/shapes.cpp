@@ -82,22 +82,30 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
     for (size_t i = 0; i < 16; ++i) camera[i] = rows.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
   }
   std::vector<PlacedShape> shapes;
-  std::map<const Node*, Arrays> made;
+  std::map<const Node*, Arrays> made; // of geometries that ClipPlanes leave whole
+  std::vector<Arrays> arraysOf;       // by shape
   World& world = self->graph();
   {
     const auto lock = self->lockGraph();
     const ReleaseGil release;
     shapes = placedShapes(world, view.is_none() ? nullptr : camera.data());
     for (const PlacedShape& shape : shapes) {
+      if (!shape.kept.empty()) {
+        arraysOf.push_back(
+            std::make_shared<GeometryArrays>(geometryArrays(shape, spheres, world.options.limits)));
+        continue;
+      }
       Arrays& arrays = made[shape.geometry.get()];
       if (!arrays)
         arrays = std::make_shared<GeometryArrays>(
             geometryArrays(*shape.geometry, spheres, world.options.limits));
+      arraysOf.push_back(arrays);
     }
   }
   py::list out;
-  for (const PlacedShape& shape : shapes) {
-    const Arrays& arrays = made[shape.geometry.get()];
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    const PlacedShape& shape = shapes[i];
+    const Arrays& arrays = arraysOf[i];
     if (arrays->kind == GeometryArrays::Kind::empty) continue;
     std::array<double, 16> matrix;
     std::memcpy(matrix.data(), shape.matrix, sizeof matrix);

@@ -7,6 +7,7 @@
 
 #include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
+#include "geometry/half_space.h"
 #include "geometry/mesh.h"
 #include "graph/inline_node.h"
 #include "nodes/visible.h"
@@ -34,7 +35,25 @@ void appendVisibleChildren(Node& node, const Matrix& toWorld, const Matrix& view
   }
 }
 
-void cutSphere(GeometryArrays& arrays, int steps) {
+// A half-space of world coordinates in those of a shape.
+std::array<double, 4> keptInside(const HalfSpace& halfSpace, const Matrix& toWorld) {
+  const HalfSpace local = inside(halfSpace, toWorld);
+  return {local.normal.x, local.normal.y, local.normal.z, local.offset};
+}
+
+// Appends what the ClipPlanes among the children leave, in world coordinates. toWorld: matrix of
+// the children.
+void appendHalfSpaces(const std::vector<Node*>& children, const Matrix& toWorld, HalfSpaces& kept) {
+  for (Node* child : children) {
+    const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
+    const auto left = plane ? halfSpaceOf(*plane) : std::nullopt;
+    Matrix toLocal;
+    if (left && kept.size() < maximumClipPlanes && invert(toWorld, toLocal))
+      kept.push_back(inside(*left, toLocal));
+  }
+}
+
+void makeFacets(GeometryArrays& arrays, int steps) {
   const float radius = arrays.radius;
   const uint32_t rings = uint32_t(steps), around = 2 * rings;
   for (uint32_t r = 0; r <= rings; ++r)
@@ -73,10 +92,14 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
   std::vector<Visit> open;
   std::vector<Matrix> ancestors; // world matrices from a root down to the current node
   std::vector<Node*> path;       // the nodes of `ancestors`
+  std::vector<HalfSpaces> kept;  // what ClipPlanes leave below them, in world coordinates
   std::vector<Node*> parts;
   const auto& roots = world.scope.roots;
   for (size_t i = roots.size(); i-- > 0;)
     if (roots[i]) open.push_back({roots[i].get(), none});
+  HalfSpaces ofRoots;
+  for (const NodeRef& root : roots) parts.push_back(root.get());
+  appendHalfSpaces(parts, Matrix(), ofRoots);
   for (size_t visits = 0; !open.empty(); ++visits) {
     if (visits == maximumVisits)
       throw std::length_error("the world has more than 4,000,000 nodes where they are drawn");
@@ -84,6 +107,8 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
     open.pop_back();
     ancestors.resize(visit.parent + 1); // none + 1 is 0
     path.resize(visit.parent + 1);
+    kept.resize(visit.parent + 1);
+    const HalfSpaces& above = visit.parent == none ? ofRoots : kept[visit.parent];
     const Matrix outside = visit.parent == none ? Matrix() : ancestors[visit.parent];
     if (!isVisible(*visit.node)) continue;
     // A program may have made a node that contains itself; it is skipped.
@@ -93,6 +118,8 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
       if (!geometry) continue;
       shapes.push_back({NodeRef(shape), NodeRef(geometry), {}});
       toArray(outside, shapes.back().matrix);
+      for (const HalfSpace& halfSpace : above)
+        shapes.back().kept.push_back(keptInside(halfSpace, outside));
       continue;
     }
     Matrix inner;
@@ -100,17 +127,18 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
     parts.clear();
     appendVisibleChildren(*visit.node, outside, viewer, parts);
     const auto index = uint32_t(ancestors.size());
+    HalfSpaces below = above;
+    appendHalfSpaces(parts, inner, below);
     ancestors.push_back(inner);
     path.push_back(visit.node);
+    kept.push_back(std::move(below));
     for (size_t i = parts.size(); i-- > 0;)
       if (parts[i]) open.push_back({parts[i], index});
   }
   return shapes;
 }
 
-GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& limits) {
-  const Mesh mesh =
-      buildMesh(geometry, {.needTexCoords = true, .limits = &limits, .diagnostics = nullptr});
+static GeometryArrays arraysOf(const Mesh& mesh, int sphereSteps) {
   GeometryArrays arrays;
   arrays.kind = GeometryArrays::Kind(mesh.kind);
   static_assert(int(GeometryArrays::Kind::sphere) == int(Mesh::Kind::sphere));
@@ -123,8 +151,30 @@ GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& lim
   arrays.ccw = mesh.ccw;
   arrays.radius = mesh.radius;
   if (arrays.kind == GeometryArrays::Kind::sphere && sphereSteps > 1)
-    cutSphere(arrays, sphereSteps);
+    makeFacets(arrays, sphereSteps);
   return arrays;
+}
+
+static Mesh wholeMesh(Node& geometry, const Limits& limits) {
+  return buildMesh(geometry, {.needTexCoords = true, .limits = &limits, .diagnostics = nullptr});
+}
+
+GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& limits) {
+  return arraysOf(wholeMesh(geometry, limits), sphereSteps);
+}
+
+GeometryArrays geometryArrays(const PlacedShape& shape, int sphereSteps, const Limits& limits) {
+  const Mesh whole = wholeMesh(*shape.geometry, limits);
+  HalfSpaces kept;
+  for (const auto& [a, b, c, d] : shape.kept) kept.push_back({Vector(a, b, c), d});
+  Mesh rest;
+  switch (cut(whole, kept, limits.triangles, rest)) {
+  case Cut::whole: return arraysOf(whole, sphereSteps);
+  case Cut::part: return arraysOf(rest, sphereSteps);
+  case Cut::nothing:
+  case Cut::tooLarge: break;
+  }
+  return {};
 }
 
 } // namespace xvrml

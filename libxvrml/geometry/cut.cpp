@@ -1,5 +1,6 @@
 // cut.cpp: cuts meshes at planes: each triangle as a polygon at one plane after the other
 // (I. Sutherland, G. Hodgman: Reentrant Polygon Clipping, Communications of the ACM 17(1), 1974).
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/half_space.h"
@@ -50,32 +51,51 @@ class Cutter {
     out_.ccw = mesh.ccw;
   }
 
-  // Returns false if the result would be too large.
-  bool run(Mesh& result) {
+  Cut run(Mesh& result) {
     const uint32_t corners = mesh_.kind == Mesh::Kind::triangles ? 3
                              : mesh_.kind == Mesh::Kind::lines   ? 2
                                                                  : 1;
+    findOutside();
+    if (std::none_of(mesh_.indices.begin(), mesh_.indices.end(),
+                     [&](uint32_t i) { return i < outside_.size() && outside_[i] != 0; }))
+      return Cut::whole;
     for (size_t first = 0; first + corners <= mesh_.indices.size(); first += corners) {
-      if (!load(mesh_.indices.subspan(first, corners))) continue;
-      for (const HalfSpace& halfSpace : halfSpaces_) cutPolygon(halfSpace);
+      const std::span<const uint32_t> part = mesh_.indices.subspan(first, corners);
+      uint32_t some = 0, all = ~0u; // half-spaces that some or all corners are outside of
+      for (const uint32_t i : part) {
+        const uint32_t outside = i < outside_.size() ? outside_[i] : ~0u; // builders check
+        some |= outside;
+        all &= outside;
+      }
+      if (all != 0) continue;
+      load(part);
+      if (some != 0)
+        for (const HalfSpace& halfSpace : halfSpaces_) cutPolygon(halfSpace);
       if (polygon_.size() < corners) continue;
       const uint64_t pieces = corners == 3 ? polygon_.size() - 2 : 1;
-      if (out_.ownIndices.size() / corners + pieces > most_) return false;
+      if (out_.ownIndices.size() / corners + pieces > most_) return Cut::tooLarge;
       store(corners);
     }
-    if (out_.ownIndices.empty()) return true;
+    if (out_.ownIndices.empty()) return Cut::nothing;
     out_.viewOwn();
     result = std::move(out_);
-    return true;
+    return Cut::part;
   }
 
  private:
   static constexpr uint32_t none = ~0u;
 
-  bool load(std::span<const uint32_t> corners) {
+  // Finds for each point the half-spaces that it is outside of: bit k for half-space k.
+  void findOutside() {
+    outside_.resize(mesh_.points.size());
+    for (size_t i = 0; i < outside_.size(); ++i)
+      for (size_t k = 0; k < halfSpaces_.size(); ++k) // a NaN is outside
+        if (!(halfSpaces_[k].distance(vector(mesh_.points[i])) >= 0)) outside_[i] |= 1u << k;
+  }
+
+  void load(std::span<const uint32_t> corners) {
     polygon_.clear();
     for (const uint32_t i : corners) {
-      if (i >= mesh_.points.size()) return false; // impossible: builders check
       Vertex v;
       v.point = vector(mesh_.points[i]);
       if (!mesh_.normals.empty()) v.normal = vector(mesh_.normals[i]);
@@ -89,7 +109,6 @@ class Cutter {
       v.original = i;
       polygon_.push_back(v);
     }
-    return true;
   }
 
   // Keeps the part of the polygon, line or point that lies in the half-space.
@@ -117,12 +136,7 @@ class Cutter {
       copy = index;
     }
     out_.ownPoints.push_back(toVec3f(v.point));
-    if (!mesh_.normals.empty()) {
-      // Interpolated normals are shorter than 1; opposite ones may vanish.
-      const double length = v.normal.length();
-      out_.ownNormals.push_back(
-          toVec3f(v.original < 0 && length > 0 ? v.normal / length : v.normal));
-    }
+    if (!mesh_.normals.empty()) out_.ownNormals.push_back(toVec3f(v.normal));
     if (!mesh_.texCoords.empty()) out_.ownTexCoords.push_back({float(v.s), float(v.t)});
     if (!mesh_.colors.empty())
       out_.ownColors.push_back({float(v.color.x), float(v.color.y), float(v.color.z)});
@@ -148,42 +162,74 @@ class Cutter {
   const Mesh& mesh_;
   std::span<const HalfSpace> halfSpaces_;
   uint64_t most_;
-  std::vector<uint32_t> copies_; // by vertex of the mesh: its index in the result
+  std::vector<uint32_t> outside_; // by vertex of the mesh: findOutside
+  std::vector<uint32_t> copies_;  // by vertex of the mesh: its index in the result
   std::vector<Vertex> polygon_, next_;
   Mesh out_;
 };
 
-// Returns the facets of a Sphere, with its texture coordinates (clause 6.43).
-Mesh facetsOf(const Mesh& sphere) {
-  Mesh mesh;
-  for (uint32_t row = 0; row <= sphereRows; ++row) {
-    const Vec2f height = aroundAxis(0.5 * row / sphereRows); // (-sine, -cosine) from the bottom up
-    for (uint32_t column = 0; column <= sphereColumns; ++column) {
-      const Vec2f side = aroundAxis(double(column) / sphereColumns);
-      const Vec3f n{-height.x * side.x, height.y, -height.x * side.y};
-      addVertex(mesh, {sphere.radius * n.x, sphere.radius * n.y, sphere.radius * n.z}, n,
-                {float(column) / sphereColumns, float(row) / sphereRows});
+// Returns the facets of a sphere of radius 1, with the texture coordinates of a Sphere
+// (clause 6.43).
+const Mesh& unitFacets() {
+  static const Mesh facets = [] {
+    Mesh mesh;
+    for (uint32_t row = 0; row <= sphereRows; ++row) {
+      const Vec2f height = aroundAxis(0.5 * row / sphereRows); // (-sine, -cosine) from below
+      for (uint32_t column = 0; column <= sphereColumns; ++column) {
+        const Vec2f side = aroundAxis(double(column) / sphereColumns);
+        const Vec3f n{-height.x * side.x, height.y, -height.x * side.y};
+        addVertex(mesh, n, n, {float(column) / sphereColumns, float(row) / sphereRows});
+      }
     }
+    for (uint32_t row = 0; row < sphereRows; ++row)
+      for (uint32_t column = 0; column < sphereColumns; ++column) {
+        const uint32_t low = row * (sphereColumns + 1) + column, high = low + sphereColumns + 1;
+        if (row > 0) addTriangle(mesh, low, low + 1, high + 1);
+        if (row + 1 < sphereRows) addTriangle(mesh, low, high + 1, high);
+      }
+    mesh.kind = Mesh::Kind::triangles;
+    mesh.viewOwn();
+    return mesh;
+  }();
+  return facets;
+}
+
+// Spheres that no plane meets stay spheres, or go, at the cost of a few products.
+Cut cutSphere(const Mesh& sphere, std::span<const HalfSpace> halfSpaces, uint64_t most,
+              Mesh& result) {
+  bool whole = true;
+  for (const HalfSpace& halfSpace : halfSpaces) {
+    const double reach = halfSpace.normal.length() * sphere.radius;
+    if (!(halfSpace.offset >= -reach)) return Cut::nothing; // a NaN leaves nothing
+    whole &= halfSpace.offset >= reach;
   }
-  for (uint32_t row = 0; row < sphereRows; ++row)
-    for (uint32_t column = 0; column < sphereColumns; ++column) {
-      const uint32_t low = row * (sphereColumns + 1) + column, high = low + sphereColumns + 1;
-      if (row > 0) addTriangle(mesh, low, low + 1, high + 1);
-      if (row + 1 < sphereRows) addTriangle(mesh, low, high + 1, high);
-    }
-  mesh.kind = Mesh::Kind::triangles;
-  mesh.solid = sphere.solid;
-  mesh.viewOwn();
-  return mesh;
+  if (whole) return Cut::whole;
+  if (most < uint64_t(2) * sphereColumns * sphereRows) return Cut::tooLarge;
+  const Mesh& unit = unitFacets();
+  Mesh facets;
+  facets.kind = Mesh::Kind::triangles;
+  facets.solid = sphere.solid;
+  facets.points = unit.points;
+  facets.indices = unit.indices;
+  facets.normals = unit.normals;
+  facets.texCoords = unit.texCoords;
+  if (sphere.radius != 1) {
+    for (const Vec3f& p : unit.points)
+      facets.ownPoints.push_back({sphere.radius * p.x, sphere.radius * p.y, sphere.radius * p.z});
+    facets.points = facets.ownPoints;
+  }
+  return Cutter(facets, halfSpaces, most).run(result);
 }
 
 } // namespace
 
-bool cut(const Mesh& mesh, std::span<const HalfSpace> halfSpaces, uint64_t most, Mesh& result) {
+Cut cut(const Mesh& mesh, std::span<const HalfSpace> halfSpaces, uint64_t most, Mesh& result) {
   result = Mesh();
-  if (mesh.kind == Mesh::Kind::empty) return true;
-  if (mesh.kind == Mesh::Kind::sphere) return cut(facetsOf(mesh), halfSpaces, most, result);
-  return Cutter(mesh, halfSpaces, most).run(result);
+  if (mesh.kind == Mesh::Kind::empty) return Cut::nothing;
+  if (halfSpaces.empty()) return Cut::whole;
+  if (most == 0) return Cut::tooLarge;
+  return mesh.kind == Mesh::Kind::sphere ? cutSphere(mesh, halfSpaces, most, result)
+                                         : Cutter(mesh, halfSpaces, most).run(result);
 }
 
 } // namespace xvrml

@@ -34,10 +34,16 @@ std::string faultOf(const nodes::ClipPlane& node);
 // Returns a half-space in the coordinates that `toOutside` maps to those of `outside`.
 HalfSpace inside(const HalfSpace& outside, const Matrix& toOutside);
 
-// Gives what of a mesh lies in all of the half-spaces. Triangles and lines are cut at the planes,
-// with all that is interpolated along their edges; triangles that share an edge still do. Spheres
-// and exact surfaces are cut as facets. Returns false, and gives nothing, if the result would have
-// more than `most` triangles, lines or points.
-bool cut(const Mesh& mesh, std::span<const HalfSpace> halfSpaces, uint64_t most, Mesh& result);
+enum class Cut : uint8_t {
+  whole,   // all of the mesh is left; there is no result, so that the mesh itself is drawn
+  part,    // the result is left
+  nothing, // nothing is left
+  tooLarge // there is no result, because it might have more than `most` parts
+};
+// Finds what of a mesh lies in all of the half-spaces (32 at most). Triangles and lines are cut at
+// the planes, and what is interpolated along their edges stays as it was: new normals are not of
+// unit length. Colours are mixed as they are. Triangles that share an edge still do. Spheres and
+// exact surfaces are cut as facets. most: limit on triangles, lines or points.
+Cut cut(const Mesh& mesh, std::span<const HalfSpace> halfSpaces, uint64_t most, Mesh& result);
 
 } // namespace xvrml

@@ -261,18 +261,22 @@ void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
 
 template <class Visit>
 void Meshes::eachCorner(int32_t mesh, const HalfSpaces& kept, const Visit& visit) {
-  if (kept.empty()) {
-    for (const Vec3f& corner : corners(mesh)) visit(vector(corner));
-    return;
-  }
   Mesh rest;
-  cut(get(mesh), kept, quota_.budget().left() / bytesWhileCut, rest);
-  for (const Vec3f& corner : rest.points) visit(vector(corner));
+  if (cut(get(mesh), kept, quota_.budget().left() / bytesWhileCut, rest) == Cut::whole)
+    for (const Vec3f& corner : corners(mesh)) visit(vector(corner));
+  else
+    for (const Vec3f& corner : rest.points) visit(vector(corner));
+}
+
+// Tells whether a sphere is left whole.
+static bool isWholeSphere(const Mesh& mesh, const HalfSpaces& kept) {
+  Mesh rest;
+  return mesh.kind == Mesh::Kind::sphere && cut(mesh, kept, 1, rest) == Cut::whole;
 }
 
 void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept) {
   const Mesh& m = get(mesh);
-  if (m.kind == Mesh::Kind::sphere && kept.empty()) {
+  if (isWholeSphere(m, kept)) {
     // The extent of an ellipsoid along a world axis is the length of that row of the linear part.
     const Vector center = transformPoint(matrix, Vector(0));
     Vector reach;
@@ -322,7 +326,7 @@ double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from,
                      const HalfSpaces& kept) {
   const Mesh& m = get(mesh);
   double far = 0;
-  if (m.kind == Mesh::Kind::sphere && kept.empty()) {
+  if (isWholeSphere(m, kept)) {
     far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * largestStretch(matrix);
     return std::isfinite(far) ? far : 0;
   }

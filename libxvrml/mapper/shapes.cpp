@@ -20,6 +20,22 @@ RTenum modeOf(Mesh::Kind kind) {
                                       : RT_TRIANGLES;
 }
 
+// Returns the mesh with its colours decoded to linear light, in `storage` if it has any.
+const Mesh& withLinearColors(const Mesh& mesh, Mesh& storage) {
+  if (mesh.colors.empty()) return mesh;
+  storage.kind = mesh.kind;
+  storage.points = mesh.points;
+  storage.indices = mesh.indices;
+  storage.normals = mesh.normals;
+  storage.texCoords = mesh.texCoords;
+  storage.alphas = mesh.alphas;
+  storage.solid = mesh.solid;
+  storage.ccw = mesh.ccw;
+  for (const Color& color : mesh.colors) storage.ownColors.push_back(convert(color, true));
+  storage.colors = storage.ownColors;
+  return storage;
+}
+
 // Draws a surface without facets under the current matrix.
 void drawExact(const ExactSurface& exact) {
   const double* n = exact.numbers.data();
@@ -179,16 +195,27 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   uint64_t primitives = graph_.meshes.extent(mesh).primitives;
   if (primitives == 0) return true;
   Mesh rest;
+  bool part = false, linear = linear_;
   if (!kept.empty()) {
-    if (!cut(graph_.meshes.get(mesh), kept, quota_.budget().left() / bytesWhileCut, rest))
+    Mesh lit; // the mesh with colours that mix as light does
+    const Mesh& whole =
+        linear_ ? withLinearColors(graph_.meshes.get(mesh), lit) : graph_.meshes.get(mesh);
+    switch (cut(whole, kept, quota_.budget().left() / bytesWhileCut, rest)) {
+    case Cut::whole: break;
+    case Cut::part:
+      part = true;
+      linear = false;
+      primitives = primitivesOf(rest);
+      break;
+    case Cut::nothing: return true;
+    case Cut::tooLarge:
       return quota_.take(std::numeric_limits<uint64_t>::max(), graph_.meshes.geometry(mesh).source);
-    primitives = primitivesOf(rest);
-    if (primitives == 0) return true;
+    }
   }
   const uint64_t bytes =
       addSaturating(multiplySaturating(primitives, bytesOfPrimitive), bytesOfShape);
   if (!quota_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
-  const Mesh& m = kept.empty() ? graph_.meshes.get(mesh) : rest;
+  const Mesh& m = part ? rest : graph_.meshes.get(mesh);
   Part& part = parts_[size_t(writing_)];
   part.bytes += bytes;
   part.primitives += primitives;
@@ -207,15 +234,15 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
              m.points.size()) { // several geometries share a Coordinate: each takes its part
     Mesh used;
     compact(m, used);
-    drawArrays(used, surface, textured);
+    drawArrays(used, surface, textured, linear);
   } else {
-    drawArrays(m, surface, textured);
+    drawArrays(m, surface, textured, linear);
   }
   rtBindShader(0);
   return true;
 }
 
-void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {
+void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, bool linear) {
   rtVertexPointer(3, RT_FLOAT, sizeof(Vec3f), m.points.data());
   rtNormalPointer(RT_FLOAT, sizeof(Vec3f), m.normals.empty() ? nullptr : m.normals.data());
   rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
@@ -223,13 +250,13 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {
   // Lines and points use emissiveColor.
   const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles;
   const int components = m.alphas.empty() ? 3 : 4;
-  if (!m.colors.empty() && !linear_ && m.alphas.empty()) {
+  if (!m.colors.empty() && !linear && m.alphas.empty()) {
     rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());
   } else if (!m.colors.empty() || plain) {
     colors_.clear();
     colors_.reserve(size_t(components) * m.points.size());
     for (size_t i = 0; i < m.points.size(); ++i) {
-      const Color c = plain ? surface.lineColor : convert(m.colors[i], linear_);
+      const Color c = plain ? surface.lineColor : convert(m.colors[i], linear);
       colors_.insert(colors_.end(), {c.r, c.g, c.b});
       if (components == 4) colors_.push_back(m.alphas[i]);
     }

@@ -28,7 +28,13 @@ Mesh left(const std::string& geometry, const HalfSpaces& halfSpaces) {
   std::unique_ptr<World> world;
   const Mesh whole = meshOf(geometry, world);
   Mesh rest;
-  EXPECT_TRUE(cut(whole, halfSpaces, many, rest));
+  const Cut left = cut(whole, halfSpaces, many, rest);
+  EXPECT_NE(left, Cut::tooLarge);
+  if (left == Cut::whole) { // the test measures a copy
+    const HalfSpaces far = {{Vector(1, 0, 0), 1e6}};
+    EXPECT_EQ(cut(whole, far, many, rest), Cut::whole);
+    EXPECT_EQ(rest.kind, Mesh::Kind::empty);
+  }
   return rest;
 }
 
@@ -146,7 +152,7 @@ TEST(Cut, RefusesWhatWouldBeTooLarge) {
   const Mesh whole = meshOf("Sphere { }", world);
   Mesh rest;
   const HalfSpaces half = {along(0, 1, 0, 0)};
-  EXPECT_FALSE(cut(whole, half, 100, rest));
+  EXPECT_EQ(cut(whole, half, 100, rest), Cut::tooLarge);
   EXPECT_EQ(rest.kind, Mesh::Kind::empty);
 }
 

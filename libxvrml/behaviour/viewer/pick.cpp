@@ -74,6 +74,16 @@ void shorten(Interval& interval, const std::vector<Node*>& children, const PickR
   }
 }
 
+// Reduces the bounds of children to what ClipPlanes among them leave.
+void cutByClipPlanes(PickBox& box, const std::vector<Node*>& children) {
+  size_t planes = 0;
+  for (Node* child : children) {
+    const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
+    const auto kept = plane ? halfSpaceOf(*plane) : std::nullopt;
+    if (kept && ++planes <= maximumClipPlanes) box.cut(*kept);
+  }
+}
+
 } // namespace
 
 void Picker::changed(Node& first) {
@@ -113,6 +123,7 @@ PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
   }
   for (Node* part : parts)
     if (part) box.extend(entries_[part].bounds);
+  cutByClipPlanes(box, parts);
   if (box.empty()) return box;
   PickBox outer;
   if (hasMatrix(node)) {
@@ -161,8 +172,12 @@ const PickBox& Picker::boundsOf(Node& first) {
 
 PickBox Picker::bounds(const std::vector<NodeRef>& roots) {
   PickBox box;
-  for (const NodeRef& root : roots)
+  std::vector<Node*> parts;
+  for (const NodeRef& root : roots) {
     if (root) box.extend(boundsOf(*root));
+    parts.push_back(root.get());
+  }
+  cutByClipPlanes(box, parts);
   return box;
 }
 

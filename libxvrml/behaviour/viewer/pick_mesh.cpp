@@ -28,6 +28,25 @@ void PickBox::extend(const PickBox& b, const Matrix& m) {
                               corner & 4 ? b.high.z : b.low.z}));
 }
 
+// What is left of a box has its corners at those of the box and where its edges meet the plane.
+void PickBox::cut(const HalfSpace& halfSpace) {
+  if (empty()) return;
+  PickBox left;
+  const auto corner = [&](int i) {
+    return Vector(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+  };
+  for (int i = 0; i < 8; ++i) {
+    const double here = halfSpace.distance(corner(i));
+    if (here >= 0) left.extend(corner(i));
+    for (int bit = 1; bit < 8; bit *= 2) {
+      const double there = halfSpace.distance(corner(i | bit));
+      if ((i & bit) == 0 && ((here > 0 && there < 0) || (here < 0 && there > 0)))
+        left.extend(corner(i) + (corner(i | bit) - corner(i)) * (here / (here - there)));
+    }
+  }
+  *this = left;
+}
+
 void PickBox::pad() {
   if (empty()) return;
   const double size = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x),

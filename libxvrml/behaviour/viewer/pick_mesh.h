@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "geometry/half_space.h"
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
 
@@ -16,6 +17,8 @@ struct PickBox {
   void extend(const Vector& p);
   void extend(const PickBox& b);
   void extend(const PickBox& b, const Matrix& m); // extends by the transformed corners of b
+  // Reduces the box to one around what of it lies in a half-space.
+  void cut(const HalfSpace& halfSpace);
   // Grows the box to allow for rounding.
   void pad();
 };

@@ -2,6 +2,8 @@
 // drawn content of a world as plain arrays. [the thread that owns the world]
 #pragma once
 
+#include <array>
+
 #include <memory>
 #include <vector>
 
@@ -18,6 +20,9 @@ struct PlacedShape {
   NodeRef shape;
   NodeRef geometry;  // the geometry node that is rendered
   double matrix[16]; // local to world, column-major
+  // What ClipPlanes leave of it: points of the shape's coordinates with a x + b y + c z + d >= 0
+  // for each of these. Empty: all.
+  std::vector<std::array<double, 4>> kept = {};
 };
 // Returns the Shapes with a geometry that are drawn for a viewer, in the order of the file. view:
 // camera to world, column-major; null: at the origin. A Shape that is used n times appears n times.
@@ -40,5 +45,7 @@ struct GeometryArrays {
 // Returns the arrays of a geometry node. sphereSteps: number of parts that a Sphere is cut into
 // from pole to pole, with twice as many around; 0 keeps it a sphere.
 GeometryArrays geometryArrays(Node& geometry, int sphereSteps, const Limits& limits = {});
+// Returns the arrays of what ClipPlanes leave of a shape. A Sphere that they cut has facets.
+GeometryArrays geometryArrays(const PlacedShape& shape, int sphereSteps, const Limits& limits = {});
 
 } // namespace xvrml

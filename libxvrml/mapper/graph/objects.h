@@ -112,7 +112,8 @@ class Objects {
   void writeShape(ItemId item, const Matrix& matrix);
   // kept: what ClipPlanes leave of the mesh, in its coordinates.
   bool draw(int32_t mesh, const Surface& surface, bool textured, const HalfSpaces& kept = {});
-  void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
+  // linear: colours of the mesh are still to be decoded to linear light.
+  void drawArrays(const Mesh& mesh, const Surface& surface, bool textured, bool linear);
   void measure(const Matrix& matrix, double reach, const Node* node, bool isShape);
   // number: the number of the shape that the instance draws; 0 if the shapes below have their own.
   RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);

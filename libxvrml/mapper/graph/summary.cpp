@@ -132,7 +132,8 @@ class Summary {
       size_t planes = above[graph_.order[i]];
       for (const ItemId child : item.children)
         if (item.clips && graph_.items[child].kind == Kind::clipPlane)
-          planes += static_cast<nodes::ClipPlane&>(*graph_.items[child].node).enabled;
+          planes +=
+              halfSpaceOf(static_cast<nodes::ClipPlane&>(*graph_.items[child].node)).has_value();
       if (planes > maximumClipPlanes)
         return diagnostics.warn(item.node ? item.node->source : SourcePosition(),
                                 "more than " + std::to_string(maximumClipPlanes) +
