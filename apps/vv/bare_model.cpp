@@ -41,7 +41,7 @@ void chooseBackground(Options& options, const xvrml::World& world) {
   const bool forScreens =
       std::all_of(options.outputs.begin(), options.outputs.end(), [](const Output& output) {
         return output.film != picture::FilmKind::none ||
-               (output.format->appliesCurve && std::string_view(output.format->name) != "ppm");
+               (output.format->appliesCurve && output.format->name != "PPM");
       });
   if (!open || !forScreens || !isBareModel(world)) return;
   options.render.background.kind = picture::Background::Kind::colour;
