@@ -1,7 +1,5 @@
 #include "libpicture/features.h"
 
-#include <sys/prctl.h>
-
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -10,6 +8,7 @@
 
 #include "libpicture/files/film.h"
 #include "libpicture/live/oidn.h"
+#include "system/process.h"
 #include "xvrml/script_engines.h"
 
 namespace picture {
@@ -74,7 +73,7 @@ void addEngines(std::string_view scriptPath, std::vector<Feature>& rows) {
 Feature sandbox() {
   Feature row{.name = "seccomp", .text = "a filter of system calls around Scripts of worlds"};
 #ifdef PICTURE_WITH_SECCOMP
-  row.available = ::prctl(PR_GET_SECCOMP) >= 0;
+  row.available = os::canFilterCalls();
   if (row.available)
     row.detail = "libseccomp";
   else

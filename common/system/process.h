@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -142,6 +143,26 @@ inline bool giveUpPrivileges() {
 #if defined(__linux__)
   return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0;
 #else
+  return true;
+#endif
+}
+
+// Tells whether the system can filter the calls of a process.
+inline bool canFilterCalls() {
+#if defined(__linux__)
+  return prctl(PR_GET_SECCOMP) >= 0;
+#else
+  return false;
+#endif
+}
+
+// Makes a pipe whose ends close in programs that the process starts. Returns false if it cannot.
+inline bool makePipe(int ends[2]) {
+#if defined(__linux__)
+  return pipe2(ends, O_CLOEXEC) == 0;
+#else
+  if (pipe(ends) != 0) return false;
+  for (int i = 0; i < 2; ++i) fcntl(ends[i], F_SETFD, FD_CLOEXEC);
   return true;
 #endif
 }

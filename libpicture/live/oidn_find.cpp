@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/live/oidn.h"
+#include "system/process.h"
 
 namespace picture::live {
 
@@ -168,7 +169,7 @@ std::string problemOf(pid_t child, int pipe) {
 // Returns why the library cannot be used; "": it can, or there is none, or no child can be made.
 std::string tryInChild() {
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return "";
+  if (!os::makePipe(ends)) return "";
   const pid_t child = ::fork();
   if (child == 0) runChild(ends[1]);
   ::close(ends[1]);

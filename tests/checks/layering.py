@@ -123,7 +123,7 @@ TABLE = [
          "script-sdk common system"),
     part("picture", "libpicture/",
          "renders worlds to pictures and writes files; shared by vv and the Python bindings",
-         "api-h xvrml-h mapper-h common"),
+         "api-h xvrml-h mapper-h common system"),
     part("session", "apps/vv/session/",
          "a world that is shown to somebody: input, time, the pace of its pictures",
          "api-h xvrml-h mapper-h app picture common"),

@@ -153,6 +153,8 @@ std::span<const OptionInfo> optionTable();
 std::span<const OptionInfo> qualityOptions(); // the rows of quality settings, group Quality
 std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 
+// Counts the inspections (--info, --list-nodes ...) that are asked for.
+int inspectionsOf(const Options& options);
 // Throws UsageError with one line that names the option and says what was expected.
 Options readCommandLine(int argc, char** argv);
 
