@@ -68,6 +68,10 @@ class OffReader {
         "vertices from 0 on");
     badColors_.report(file_.locator, Severity::warning,
                       "colours are left out: expected three or four numbers");
+    mapped_.report(file_.locator, Severity::warning,
+                   "colours are indices of a map that is not in the file: these faces are grey");
+    opacities_.report(file_.locator, Severity::warning,
+                      "colours have an opacity below 1, which is not used");
     finish();
   }
 
@@ -81,15 +85,21 @@ class OffReader {
                                            "than three dimensions, which cannot be read",
                                            head_.refused)};
     skipComments(text_);
+    if (TextCursor ahead = text_; ahead.word() == "BINARY")
+      throw MeshFault{text_.at(), "binary OFF files cannot be read"};
     for (uint64_t* count : {&vertices_, &faces_, &edges_}) {
       text_.skipBlanks();
       const char* at = text_.at();
+      const TextCursor before = text_;
       double number = 0;
       if (count == &edges_ && !hasMore(text_)) break; // some programs leave it out
-      if (!text_.number(number) || !(number >= 0 && number <= 1e15) || std::floor(number) != number)
+      const bool read = text_.number(number);
+      if (!read || !(number >= 0 && number <= 1e15) || std::floor(number) != number) {
+        text_ = before;
         throw MeshFault{at, fmt::format("expected the numbers of vertices, faces and edges, found "
                                         "{}",
                                         found())};
+      }
       *count = uint64_t(number);
     }
     if (vertices_ > INT32_MAX / 4) throw MeshFault{nullptr, "too many vertices in an OFF file"};
@@ -170,7 +180,10 @@ class OffReader {
       ++count;
     }
     if (count == 0 && !hasMore(text_)) return false;
-    if (count == 1 && whole) return false;
+    if (count == 1 && whole) {
+      mapped_.add(from);
+      return false;
+    }
     if (count < 3) {
       badColors_.add(from);
       return false;
@@ -179,6 +192,7 @@ class OffReader {
       return std::clamp(whole ? parts[i] / 255 : parts[i], 0.f, 1.f);
     };
     color = {part(0), part(1), part(2)};
+    if (count == 4 && part(3) < 1) opacities_.add(from);
     return true;
   }
 
@@ -255,7 +269,7 @@ class OffReader {
   BareShape shape_;
   MFColor faceColors_;
   size_t shown_ = 0; // faces in shape_
-  FaultCount bad_, badColors_;
+  FaultCount bad_, badColors_, mapped_, opacities_;
 };
 
 } // namespace
