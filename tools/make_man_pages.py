@@ -26,7 +26,8 @@ NAMES = {
     "queries": "queries",
     "double": "double_queries",
     "nearest": "nearest_places",
-    "workers": "workers"
+    "workers": "workers",
+    "sums": "sums"
 }
 TITLES = {
     "errors": "errors and messages",
@@ -42,7 +43,8 @@ TITLES = {
     "queries": "ray queries and picking",
     "double_queries": "ray queries in double precision",
     "nearest_places": "the nearest places of a scene",
-    "workers": "the workers of a cluster"
+    "workers": "the workers of a cluster",
+    "sums": "sums of frames, to continue and to add them"
 }
 
 

@@ -195,7 +195,7 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   uint64_t primitives = graph_.meshes.extent(mesh).primitives;
   if (primitives == 0) return true;
   Mesh rest;
-  bool part = false, linear = linear_;
+  bool isCut = false, linear = linear_;
   if (!kept.empty()) {
     Mesh lit; // the mesh with colours that mix as light does
     const Mesh& whole =
@@ -203,7 +203,7 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
     switch (cut(whole, kept, quota_.budget().left() / bytesWhileCut, rest)) {
     case Cut::whole: break;
     case Cut::part:
-      part = true;
+      isCut = true;
       linear = false;
       primitives = primitivesOf(rest);
       break;
@@ -215,7 +215,7 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   const uint64_t bytes =
       addSaturating(multiplySaturating(primitives, bytesOfPrimitive), bytesOfShape);
   if (!quota_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
-  const Mesh& m = part ? rest : graph_.meshes.get(mesh);
+  const Mesh& m = isCut ? rest : graph_.meshes.get(mesh);
   Part& part = parts_[size_t(writing_)];
   part.bytes += bytes;
   part.primitives += primitives;

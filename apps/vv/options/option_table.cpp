@@ -297,10 +297,11 @@ const OptionInfo table[] = {
      "0,1,0. With --fit only the direction is used: the camera moves back until the whole world is "
      "in the picture.",
      [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
-    {"--pose", "[opencv:|opengl:]MATRIX|FILE", "View",
+    {"--pose", "MATRIX|FILE", "View",
      "Look from a camera with this pose: a 4x4 matrix from camera to world, 16 numbers row by row "
-     "with commas, or a file of them. opencv (default): the camera's x points to the right, y down "
-     "and z forward. opengl: y points up and z backward, as in VRML and Blender.",
+     "with commas, or a file of them. The camera's x points to the right, y down and z forward, as "
+     "in OpenCV; after opengl: before the numbers, y points up and z backward, as in VRML and "
+     "Blender.",
      [](Options& o, const std::string& v) {
        if (o.view.lookAt) throw UsageError("only one of --camera and --pose can be used");
        o.view.lookAt = readPose(v, o.poseFile);

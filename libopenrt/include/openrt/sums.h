@@ -11,9 +11,9 @@
 extern "C" {
 #endif
 
-/* Sums: frames that survive their process --------------------------------------------------------
- *
- * A frame adds samples to sums, from which it computes its channels and their errors. A program can
+/* Sums of frames ------------------------------------------------------------------------------- */
+
+/* A frame adds samples to sums, from which it computes its channels and their errors. A program can
  * keep these sums while the frame is made, and store them. Another process continues the frame from
  * them, and the finished frame has the same bytes as one that was not interrupted. Sums of finished
  * frames that differ in RT_SEED alone can be added; the result does not depend on the order.
