@@ -52,6 +52,12 @@ TEST(Off, ColoursOfFacesAreIntegersTo255OrNumbersTo1) {
             (MFColor{{.8f, .8f, .8f}, {1, 0, .2f}, {0, 1, .5f}, {.8f, .8f, .8f}}));
 }
 
+TEST(Off, OpacitiesAreNotUsed) {
+  const auto world = load("OFF 3 1 0\n" + threePoints + "3 0 1 2 255 0 51 128\n");
+  EXPECT_EQ(messages(*world),
+            "a.off:5:9: warning: 1 colours have an opacity below 1, which is not used\n");
+}
+
 TEST(Off, PrefixesSayWhatVerticesHold) {
   const auto world =
       load("STCNOFF\n3 1 0\n0 0 0 0 0 1 1. 0. 0. 1. .25 .5\n1 0 0 0 0 1 0. 1. 0. 1. 0 0\n"
