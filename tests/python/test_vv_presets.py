@@ -326,10 +326,10 @@ def test_set_shader(board):
     assert world.set_shader("material:PIN-*", RED) == 1
     assert world.set_shader("material:IC-*", GREEN) == 1
     assert world.set_shader("*", BLUE) == 1
-    row = world.render(size=(32, 24), samples=1).rgba[12]
+    row = world.render(size=(32, 24), spp=1).array[12]
     assert [tuple(row[x, :3]) for x in (6, 16, 26)] == [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
     assert world.set_shader("material:PIN-01", GREEN) == 1  # in a world that runs
-    row = world.render(size=(32, 24), samples=1).rgba[12]
+    row = world.render(size=(32, 24), spp=1).array[12]
     assert tuple(row[6, :3]) == (0, 1, 0)
     before = len(world.warnings)
     assert world.set_shader("material:none", RED) == 0

@@ -229,7 +229,7 @@ def test_what_cannot_be_added(parts):
     refused(3, "cannot read none.exr", "0.exr", "none.exr")
     refused(3, "not a file of sums", "0.exr", "room.wrl")
     whole = contents(parts, "1.exr")
-    for damaged in (whole[:-1], whole[:-20], whole[:3000] + whole[3001:],
+    for damaged in (whole[:-1], whole[:-20], whole[:-1000] + whole[-999:],
                     whole[:-500] + bytes([whole[-500] ^ 1]) + whole[-499:]):
         parts.write("damaged.exr", damaged)
         refused(3, "damaged.exr", "0.exr", "damaged.exr")
