@@ -150,7 +150,7 @@ void registerTuple(duk_context* ctx, Interpreter& self, XsType type) {
   duk_push_object(ctx);
   keepPrototype(ctx, self, type);
   for (int i = 0; i < components(type); ++i) {
-    char text[8];
+    char text[16];
     std::snprintf(text, sizeof text, "%d", i);
     putComponent(ctx, self, text, i);
     if (components(type) > 4) continue;
