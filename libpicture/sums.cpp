@@ -64,6 +64,7 @@ std::string encodeFacts(const SumsFacts& facts) {
   std::string out;
   put(out, facts.channels);
   put(out, uint8_t(facts.linear));
+  put(out, uint8_t(facts.depthAlongRay));
   put(out, uint8_t(facts.background.kind));
   for (const float c : facts.background.colour) put(out, c);
   put(out, uint32_t(facts.names.size()));
@@ -79,6 +80,7 @@ SumsFacts decodeFacts(std::string_view bytes) {
   SumsFacts facts;
   facts.channels = source.number<uint32_t>();
   facts.linear = source.number<uint8_t>() != 0;
+  facts.depthAlongRay = source.number<uint8_t>() != 0;
   const auto kind = source.number<uint8_t>();
   if (kind > uint8_t(Background::Kind::file)) throw Damaged("it is damaged: its background");
   facts.background.kind = Background::Kind(kind);
@@ -157,13 +159,18 @@ std::string_view behindExr(std::string_view bytes) {
 std::string contentsOf(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw Damaged("it is a folder");
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw Damaged("it is not an ordinary file");
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string bytes;
   if (file) {
-    const auto size = std::filesystem::file_size(path, error);
-    if (!error) bytes.reserve(size_t(size));
     char block[65536];
+    // A large file of something else is not read.
+    file.read(block, std::streamsize(magic.size()));
+    bytes.append(block, size_t(file.gcount()));
+    if (!bytes.starts_with(exrMagic) && bytes != magic)
+      throw Damaged("it is not a file of sums, and no OpenEXR file");
     while (file.read(block, sizeof block) || file.gcount() > 0)
       bytes.append(block, size_t(file.gcount()));
   }
@@ -184,7 +191,9 @@ RTsumsInfo Sums::info() const {
 
 SumsFacts factsOf(const RenderSettings& settings, uint32_t channels,
                   const std::vector<std::string>& names) {
-  SumsFacts facts{channels, settings.linear, settings.background, names};
+  SumsFacts facts{channels, settings.linear,
+                  settings.quality.whole(RT_DEPTH_ALONG) == RT_DEPTH_ALONG_RAY, settings.background,
+                  names};
   facts.background.file.clear();
   return facts;
 }
@@ -233,6 +242,7 @@ Picture pictureOf(const Sums& sums, const SumsFacts& facts) {
   picture.width = info.width;
   picture.height = info.height;
   picture.linear = facts.linear;
+  picture.depthAlongRay = facts.depthAlongRay;
   picture.transparent = facts.background.kind == Background::Kind::none;
   picture.names = facts.names;
   for (const Channel& channel : channelTable()) {

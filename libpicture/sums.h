@@ -35,6 +35,7 @@ class Sums {
 struct SumsFacts {
   uint32_t channels = RT_RGBA; // those of the files; the sums may have more
   bool linear = true;
+  bool depthAlongRay = false; // Picture::depthAlongRay
   Background background;
   std::vector<std::string> names; // of channel id
   bool operator==(const SumsFacts&) const = default;

@@ -26,7 +26,10 @@ std::string seedsOf(uint32_t first, uint32_t last) {
 
 // Writes a file that replaces the old one only when it is on the disk, so that a lost machine
 // leaves one or the other.
-void writeSafely(const std::string& path, const std::string& bytes) {
+void writeSafely(const std::string& name, const std::string& bytes) {
+  std::error_code unresolved; // a link stays, and the file that it leads to is replaced
+  const auto target = std::filesystem::canonical(name, unresolved);
+  const std::string path = unresolved ? name : target.string();
   const std::string fresh = path + ".new";
   picture::writeFile(fresh, bytes);
   const int descriptor = ::open(fresh.c_str(), O_RDONLY | O_CLOEXEC);
@@ -57,7 +60,8 @@ Checkpoint::Checkpoint(const Options& options) : options_(options), savedAt_(sec
   picture::SumsFacts wanted = picture::factsOf(options.render, options.render.channels, {});
   wanted.names = file_.facts.names;
   if (!(wanted == file_.facts))
-    refuse(exitUsage, "its picture has another --channels, --colour or --background");
+    refuse(exitUsage, "its picture has another --channels, --colour, --depth-along or "
+                      "--background");
   const RTsumsInfo current = file_.current.info();
   uint32_t begin = current.firstSeed;
   if (file_.done) {

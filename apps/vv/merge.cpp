@@ -33,8 +33,8 @@ picture::SumsFile addAll(const std::vector<std::string>& paths) {
     try {
       picture::SumsFile part = readPart(path);
       if (all.done && !(part.facts == all.facts))
-        throw picture::RenderError("it was made with another --channels, --colour or --background, "
-                                   "or of another world, than the files before",
+        throw picture::RenderError("it was made with another --channels, --colour, --depth-along "
+                                   "or --background, or of another world, than the files before",
                                    RT_SUMS_ERROR);
       all.facts = part.facts;
       all.done = picture::mergeSums(all.done, part.done);
@@ -68,7 +68,8 @@ int runMerge(const Options& options, const std::string& commandLine) {
     writeText(options.stats, mergedStatsJson(commandLine, all.done, picture::statsOf(all.done)));
   const RTsumsInfo info = all.done.info();
   if (!options.quiet)
-    say(fmt::format("vv: added {} seeds of {} samples per pixel", info.seeds, info.samples));
+    say(fmt::format("vv: added {} {} of {} samples per pixel", info.seeds,
+                    info.seeds == 1 ? "seed" : "seeds", info.samples));
   return exitDone;
 }
 

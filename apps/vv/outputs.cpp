@@ -39,9 +39,9 @@ std::vector<Named> outputsOf(const Options& options) {
       if (options.allViewpoints()) continue;
       const bool film = output.film != picture::FilmKind::none;
       if (!film || view == views[0])
-        all.push_back({output.option(), pathFor(output.path, {view, film || views.size() > 1
-                                                                        ? std::nullopt
-                                                                        : frame})});
+        all.push_back(
+            {output.option(),
+             pathFor(output.path, {view, film || views.size() > 1 ? std::nullopt : frame})});
     }
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--resume", options.resume});

@@ -432,7 +432,7 @@ class Pictures {
                          ? "vv: interrupted; the same command continues the picture"
                          : "vv: interrupted; the picture so far is saved");
     stopped("vv: the time limit is reached; the same command continues the picture");
-    return exitTryAgain;
+    return exitUnfinished;
   }
 
   // Waits for the oldest frame and saves it.

@@ -478,10 +478,11 @@ const OptionInfo table[] = {
     {"--resume", "FILE", "Quality",
      "Keep the samples so far in FILE, and begin with those that it has. However the picture is "
      "interrupted, the same command goes on, and its picture has the same bytes in the end. "
-     "--time-limit then ends this run (exit code 75), not the picture. FILE stays when the picture "
+     "--time-limit then ends this run (exit code 7), not the picture. FILE stays when the picture "
      "is done (docs/long-renders.md).",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
+       if (v == "-") throw UsageError("a file name was expected, not -: the file is read again");
        o.resume = v;
      }},
     {"--resume-every", "SECONDS", "Quality",

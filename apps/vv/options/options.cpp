@@ -133,6 +133,11 @@ void readMerge(Options& options, const std::vector<std::string>& files,
   for (const Output& output : options.outputs)
     if (output.film != picture::FilmKind::none)
       throw UsageError(output.path + ": vv merge makes one picture, not a film");
+  if (options.sums &&
+      std::none_of(options.outputs.begin(), options.outputs.end(), [](const Output& output) {
+        return output.format->encode == picture::encodeExr;
+      }))
+    throw UsageError("--sums needs -o with an EXR file");
   options.merge = files;
 }
 
@@ -290,6 +295,7 @@ std::string helpText() {
          "one\n"
          "  5    under --strict: a plug-in or a texture is missing\n"
          "  6    fewer workers than --require-workers asks for\n"
+         "  7    --time-limit has ended a run with --resume; the same command goes on\n"
          "  75   out of memory or another resource, try again\n"
          "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
          "SIGUSR1 saves and goes on\n";

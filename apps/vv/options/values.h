@@ -23,6 +23,7 @@ enum ExitCode {
   exitProblems = 4,  // --check or --strict found problems
   exitMissing = 5,   // under --strict: a plug-in or a texture is missing
   exitNoWorkers = 6, // there are fewer workers than --require-workers asks for
+  exitUnfinished = 7, // --time-limit has ended a run with --resume
   exitTryAgain = 75, // memory or another resource is exhausted
   exitInterrupted = 130
 };

@@ -41,6 +41,11 @@ constexpr Setting settings[] = {
     {"jitter", text<&F::jitter>},
     {"light stride", text<&F::lightStride>},
     {"measure", text<&F::measure>},
+    {"depth_along", text<&F::depthAlong>},
+    {"x of its rectangle", text<&F::scissorX>},
+    {"y of its rectangle", text<&F::scissorY>},
+    {"width of its rectangle", text<&F::scissorWidth>},
+    {"height of its rectangle", text<&F::scissorHeight>},
 };
 
 void checkIdentity(const SumsIdentity& a, const SumsIdentity& b, const char* here) {
@@ -209,12 +214,13 @@ FrameSumsPtr condense(const FrameSums& sums) {
 
 FrameSumsPtr mergeSums(const FrameSums& first, const FrameSums& second) {
   constexpr const char* here = "the other one";
-  checkIdentity(first.identity, second.identity, here);
-  checkSettings(first.frame, second.frame, here);
+  // Messages speak of the second one, which is added to the first.
+  checkIdentity(second.identity, first.identity, here);
+  checkSettings(second.frame, first.frame, here);
   if (first.frame.samples != second.frame.samples)
-    refuse("it has " + std::to_string(first.frame.samples) + " samples a pixel, the other one " +
-           std::to_string(second.frame.samples));
-  checkScene(first.identity, second.identity, here);
+    refuse("it has " + std::to_string(second.frame.samples) + " samples a pixel, the other one " +
+           std::to_string(first.frame.samples));
+  checkScene(second.identity, first.identity, here);
   const FrameSumsPtr a = condense(first), b = condense(second);
   if (a->facts.camera != b->facts.camera || a->facts.lamps != b->facts.lamps)
     refuse("it is of another world than the other one");
