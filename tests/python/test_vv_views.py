@@ -131,7 +131,7 @@ TRANSPORTS = ("auto", "whitted", "path", "light")
 def test_a_part_has_the_bytes_of_the_whole(room, transport):
     channels = "z,normal,albedo,position,id,samples,variance,error,trust,reflection"
     common = ("room.wrl", *SIZE, "--spp", "36", "--transport", transport, "--channels", channels)
-    made(room, *common, "-o", "whole.exr", "-o", "whole.png")
+    made(room, *common, "-o", "whole.exr", "-o", "whole.ppm")
     made(room, *common, "-o", "part.exr", "-o", "part.ppm", "--crop", "30,20,41x33")
     (whole, planes), (part, cut) = (read_exr((room.folder / f"{n}.exr").read_bytes())
                                     for n in ("whole", "part"))
@@ -141,7 +141,7 @@ def test_a_part_has_the_bytes_of_the_whole(room, transport):
     assert planes.keys() == cut.keys() and len(cut) > 20
     for name, plane in planes.items():
         assert plane[20:53, 30:71].tobytes() == cut[name].tobytes(), name
-    _, _, rows = read_ppm((room.folder / "whole.png").read_bytes())
+    _, _, rows = read_ppm((room.folder / "whole.ppm").read_bytes())
     width, height, few = read_ppm((room.folder / "part.ppm").read_bytes())
     assert (width, height) == (41, 33) and [row[30:71] for row in rows[20:53]] == few
 
