@@ -12,7 +12,7 @@ namespace picture {
 struct Feature {
   std::string name, text; // "denoise"; what it is for, a phrase without a full stop
   bool available = false;
-  // What provides it, with its version; "": nothing to say. If it is not available: why not, if
+  // Says what provides it, with its version; "": nothing to say. If not available: why not, if
   // that is known.
   std::string detail;
   std::string file; // the library's; "": it is part of the program

@@ -118,7 +118,7 @@ void writeOutput(const Output& output, const std::string& path, const std::strin
   }
 }
 
-// Which options' files get a picture.
+// Says the files of which options get a picture.
 enum class Which : uint8_t { all, shown, raw };
 bool isOf(const Output& output, Which only) {
   return only == Which::all || output.raw == (only == Which::raw);

@@ -28,7 +28,8 @@
 
 namespace os {
 
-// What posix_spawnattr_setflags needs so that descriptors from `first` on are closed.
+// Makes the new process close descriptors from `first` on. Returns the flags that
+// posix_spawnattr_setflags needs for it.
 inline short closeFrom(posix_spawn_file_actions_t* actions, int first) {
 #if defined(__linux__)
   posix_spawn_file_actions_addclosefrom_np(actions, first);

@@ -59,7 +59,7 @@ struct ServeOptions {
   bool given = false; // one of these was given
 };
 
-// Which seeds a picture is made of.
+// Says which seeds a picture is made of.
 struct SeedRange {
   uint32_t first = 0, last = 0;
   uint32_t count() const { return last - first + 1; }
@@ -110,11 +110,11 @@ struct Options {
   bool sums = false;              // EXR files get the sums of their pictures
   SeedRange seeds;                // the first one is also in render.quality
   std::vector<std::string> merge; // files whose sums are added (vv merge); empty: none
-  bool denoise = false;     // files and films of -o hold denoised pictures
-  std::string poseFile;     // of --pose; empty: none
-  bool posed = false;       // view.lookAt is that of --pose
-  bool fitExposure = false; // render.view.exposure is chosen by the first picture
-  std::string measure;      // file for the readings of the sensors, .csv or .json; empty: none
+  bool denoise = false;           // files and films of -o hold denoised pictures
+  std::string poseFile;           // of --pose; empty: none
+  bool posed = false;             // view.lookAt is that of --pose
+  bool fitExposure = false;       // render.view.exposure is chosen by the first picture
+  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
 
   bool allViewpoints() const { return viewpoint == "all"; }
   // Tells whether each moment has several pictures, whose names say which.

@@ -51,7 +51,7 @@ RT_API int rtWriteSums(RTsums sums, RTwriteCallback write, void* user);
  * they are not sums, or damaged. [any-thread] */
 RT_API RTsums rtReadSums(const void* data, size_t size);
 
-/* What sums are of. */
+/* Describes what sums are of. */
 typedef struct RTsumsInfo {
   size_t size; /* Set it to sizeof(RTsumsInfo) before the call. */
   int width, height;

@@ -29,7 +29,7 @@ struct FrameFacts {
 
 struct FrameSums;
 
-// What the samples of a frame depend on besides its settings.
+// Holds what the samples of a frame depend on besides its settings.
 struct SumsIdentity {
   uint64_t world = 0, view = 0;     // digests (scene/scene_digest.h)
   std::string version, isa, kernel; // of the library; of its ray kernels
