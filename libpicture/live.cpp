@@ -217,7 +217,7 @@ struct LiveRenderer::Impl {
       flight.map = stage.mapper()->stats();
       flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height,
                        flight.settings.background.kind == Background::Kind::file};
-      if (flight.facts.purpose == Purpose::still && (flight.settings.channels & RT_NAME))
+      if (flight.facts.purpose == Purpose::still && hasNames(flight.settings.channels))
         flight.names = stage.mapper()->names();
     } catch (...) { // the world is only half mapped: the next frame starts with a new context
       stage.close();

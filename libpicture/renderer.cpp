@@ -204,7 +204,7 @@ struct Renderer::Impl {
     FrameInFlight flight;
     flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
     flight.result.map = stage.mapper()->stats();
-    if (stage.settings.channels & RT_NAME) {
+    if (hasNames(stage.settings.channels)) {
       flight.names = stage.mapper()->names();
       flight.result.nodes = stage.mapper()->nodes();
     }
@@ -275,7 +275,7 @@ struct Renderer::Impl {
     stage.readChannels(frame, result.picture);
     rebuild(frame, stage.shown(), std::exchange(otherWorld, false), result);
     stage.describe(frame, result);
-    if (stage.settings.channels & RT_NAME) result.nodes = stage.mapper()->nodes();
+    if (hasNames(stage.settings.channels)) result.nodes = stage.mapper()->nodes();
   }
 };
 

@@ -116,8 +116,8 @@ struct RenderResult {
   std::vector<RTworker> workers;  // workers of the cluster at the end of the picture
   xvrml::CameraSettings camera{}; // camera of the picture; its shader is null
   bool hasCameraShader = false;   // a camera shader generated the rays
-  // With channel RT_NAME: the Shape nodes, indexed by the channel's numbers; [0] is null. Release
-  // them while no thread uses the world.
+  // If hasNames(): the Shape nodes, indexed by the channels' numbers; [0] is null. Release them
+  // while no thread uses the world.
   std::vector<xvrml::NodeRef> nodes;
 };
 

@@ -281,7 +281,7 @@ void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t cha
   picture.view = frame.view;
   picture.depthAlongRay = frame.quality.whole(RT_DEPTH_ALONG) == RT_DEPTH_ALONG_RAY;
   picture.transparent = frame.background.kind == Background::Kind::none;
-  if (channels & RT_NAME) picture.names = mapper_->names();
+  if (hasNames(channels)) picture.names = mapper_->names();
 }
 
 // Keeps the part of a picture that its settings ask for.
@@ -308,7 +308,7 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
 
 void Stage::readChannels(const RenderSettings& frame, Picture& picture,
                          const std::vector<std::string>* names) const {
-  describe(frame, picture, names ? frame.channels & ~uint32_t(RT_NAME) : frame.channels);
+  describe(frame, picture, names ? 0 : frame.channels);
   if (names) picture.names = *names;
   fillChannels(frame, frame.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
     rtReadPixels(channel, plane.data(), plane.size());

@@ -176,14 +176,13 @@ py::tuple pickled(const py::object& self) {
   for (const picture::Channel& channel : picture::channelTable())
     if (object.picture.planes.count(channel.bit))
       planes[py::str(std::string(channel.name))] = floats(self, channel);
-  return py::make_tuple(pickleVersion, object.picture.width, object.picture.height,
-                        object.picture.linear, names(object), object.time, object.stats, planes,
-                        camera(object), object.picture.view.exposure,
-                        std::string(picture::curveName(object.picture.view.curve)),
-                        py::make_tuple(object.picture.wholeWidth, object.picture.wholeHeight,
-                                       object.picture.left, object.picture.top),
-                        object.picture.depthAlongRay, toText(object.picture.note),
-                        toText(object.picture.denoisedBy));
+  return py::make_tuple(
+      pickleVersion, object.picture.width, object.picture.height, object.picture.linear,
+      names(object), object.time, object.stats, planes, camera(object),
+      object.picture.view.exposure, std::string(picture::curveName(object.picture.view.curve)),
+      py::make_tuple(object.picture.wholeWidth, object.picture.wholeHeight, object.picture.left,
+                     object.picture.top),
+      object.picture.depthAlongRay, toText(object.picture.note), toText(object.picture.denoisedBy));
 }
 
 PictureObject unpickled(const py::tuple& state) {
@@ -261,13 +260,13 @@ void definePicture(py::module_& module) {
       .def_property_readonly("channels", channels, "Names of the channels.")
       .def_property_readonly(
           "nodes", nodes,
-          "The Shape for each number of the channel 'id': picture.nodes[picture['id'][row, "
-          "column]]; None for 0. Empty in pictures without this channel and in copied or pickled "
-          "pictures, because nodes belong to the world.")
+          "The Shape for each number of the channels 'id' and 'cryptomatte': "
+          "picture.nodes[picture['id'][row, column]]; None for 0. Empty in pictures without these "
+          "channels and in copied or pickled pictures, because nodes belong to the world.")
       .def_property_readonly(
           "names", names,
-          "A name for each number of the channel 'id': the Shape's DEF name, otherwise that of the "
-          "nearest group above it, otherwise 'Shape'; '' for 0.")
+          "A name for each number of the channels 'id' and 'cryptomatte': the Shape's DEF name, "
+          "otherwise that of the nearest group above it, otherwise 'Shape'; '' for 0.")
       .def_readonly("stats", &PictureObject::stats,
                     "Statistics of the render: counts, seconds and errors.")
       .def_property_readonly(
@@ -300,6 +299,14 @@ void definePicture(py::module_& module) {
           "categories: a dict or a function from the names of Shapes to categories; Shapes without "
           "one are left out; None: the name is the category. compressed: run lengths as "
           "pycocotools packs them in a text. first_id: the number of the first annotation.")
+      .def(
+          "matte",
+          [](const py::object& self, const py::args& names) {
+            return py::module_::import("xvrml._masks").attr("matte")(self, *names);
+          },
+          "matte(*names): returns the share of each pixel that Shapes of these names cover, from "
+          "the channel 'cryptomatte': float32 of shape (height, width), 0 to 1. A share is that of "
+          "the samples that hit such a Shape first, also where it is clear.")
       .def("_repr_png_",
            [](const PictureObject& self) { return py::bytes(picture::encodePng(self.picture)); })
       .def(py::pickle(&pickled, &unpickled))

@@ -14,7 +14,9 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
+#include "libpicture/files/cryptomatte.h"
 #include "libpicture/files/formats.h"
+#include "libpicture/files/json_text.h"
 #include "openrt/openrt.h"
 
 namespace picture {
@@ -39,19 +41,8 @@ class MemoryStream : public Imf::OStream {
 
 std::string nameTable(const std::vector<std::string>& names) {
   std::string text = "{";
-  for (size_t i = 1; i < names.size(); ++i) {
-    text += fmt::format("{}\"{}\":\"", i > 1 ? "," : "", i);
-    for (char c : names[i]) {
-      if (c == '"' || c == '\\') {
-        text += '\\';
-        text += c;
-      } else if (static_cast<unsigned char>(c) < 0x20)
-        text += fmt::format("\\u{:04x}", int(c));
-      else
-        text += c;
-    }
-    text += '"';
-  }
+  for (size_t i = 1; i < names.size(); ++i)
+    text += fmt::format("{}\"{}\":{}", i > 1 ? "," : "", i, jsonText(names[i]));
   return text + "}";
 }
 
@@ -77,6 +68,9 @@ Imf::Header makeHeader(const Picture& picture) {
   if (!picture.note.empty()) Imf::addComments(header, picture.note);
   if (picture.planes.count(RT_NAME))
     header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));
+  if (picture.planes.count(RT_COVERAGE))
+    for (const auto& [key, value] : cryptomatteAttributes(picture))
+      header.insert(key, Imf::StringAttribute(value));
   return header;
 }
 
@@ -87,14 +81,18 @@ std::string encodeExr(const Picture& picture) {
   try {
     Imf::Header header = makeHeader(picture);
     Imf::FrameBuffer frame;
+    std::vector<float> layers; // of Cryptomatte
     for (const Channel& channel : channelTable()) {
       auto plane = picture.planes.find(channel.bit);
       if (plane == picture.planes.end()) continue;
+      const bool isMatte = channel.bit == RT_COVERAGE;
+      if (isMatte) layers = cryptomatteLayers(picture);
+      const std::vector<float>& values = isMatte ? layers : plane->second;
       const size_t pixel = size_t(channel.components) * sizeof(float);
       for (int c = 0; c < channel.components; ++c) {
-        const std::string name(channel.exr[c]);
+        const std::string name = isMatte ? cryptomattePlane(c) : std::string(channel.exr[c]);
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-        char* base = reinterpret_cast<char*>(const_cast<float*>(plane->second.data() + c));
+        char* base = reinterpret_cast<char*>(const_cast<float*>(values.data() + c));
         const size_t row = pixel * size_t(picture.width);
         // OpenEXR addresses pixels relative to the display window.
         base -= picture.left * std::ptrdiff_t(pixel) + picture.top * std::ptrdiff_t(row);

@@ -51,6 +51,11 @@ constexpr Channel table[] = {
      3,
      {"reflection.R", "reflection.G", "reflection.B"},
      "part of the radiance that coats reflect: varnish, lacquer, highlights"},
+    {"cryptomatte",
+     RT_COVERAGE,
+     16,
+     {},
+     "up to eight Shapes in the pixel, each with its share of the samples"},
 };
 
 // Encodes a linear value with the curve of IEC 61966-2-1 (sRGB).
@@ -107,6 +112,8 @@ const Channel* findChannel(std::string_view name) {
     if (channel.name == name) return &channel;
   return nullptr;
 }
+
+bool hasNames(uint32_t channels) { return channels & (RT_NAME | RT_COVERAGE); }
 
 const std::vector<float>& rgbaOf(const Picture& picture) {
   auto found = picture.planes.find(RT_RGBA);

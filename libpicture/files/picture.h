@@ -15,7 +15,7 @@
 namespace picture {
 
 // One channel of a frame: its name on the command line and in Python, OpenRT's bit, and the names
-// of its planes in OpenEXR.
+// of its planes in OpenEXR. Those of the channel cryptomatte are in cryptomatte.h.
 struct Channel {
   std::string_view name;
   uint32_t bit;
@@ -25,6 +25,8 @@ struct Channel {
 };
 std::span<const Channel> channelTable();
 const Channel* findChannel(std::string_view name);
+// Returns whether one of the channels has numbers of Shapes.
+bool hasNames(uint32_t channels);
 
 struct Picture {
   int width = 0, height = 0;
@@ -37,7 +39,7 @@ struct Picture {
   // The picture is a part of a larger one of this size: its left upper corner there. Not of a
   // larger one: 0.
   int wholeWidth = 0, wholeHeight = 0, left = 0, top = 0;
-  std::vector<std::string> names; // names for the numbers of channel id; names[0] is ""
+  std::vector<std::string> names; // names for the numbers of Shapes; names[0] is ""
   // What files of the picture say about it, a line of ASCII; "": nothing. Formats without
   // Format::keepsNote do not say it.
   std::string note;

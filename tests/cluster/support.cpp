@@ -142,7 +142,10 @@ Picture pixels(const FrameOptions& look) {
     if (!(look.channels & channel)) continue;
     constexpr uint32_t vectors =
         RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR;
-    const size_t components = channel == RT_RGBA ? 4 : channel & vectors ? 3 : 1;
+    const size_t components = channel == RT_RGBA       ? 4
+                              : channel == RT_COVERAGE ? 16
+                              : channel & vectors      ? 3
+                                                       : 1;
     const size_t before = all.size();
     all.resize(before + components * n);
     rtReadPixels(channel, all.data() + before, components * n);

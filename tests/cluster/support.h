@@ -20,7 +20,8 @@ using namespace std::chrono_literals;
 
 // All channels that depend on the frame alone; RT_MOTION depends on the one before, too.
 inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
-                                        RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
+                                        RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST |
+                                        RT_COVERAGE;
 
 struct FrameOptions { // settings of a frame
   int width = 61, height = 45;

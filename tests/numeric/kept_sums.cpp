@@ -13,11 +13,12 @@
 namespace numeric {
 namespace {
 
-constexpr std::pair<uint32_t, int> planes[] = {{RT_RGBA, 4},     {RT_DEPTH, 1},   {RT_NORMAL, 3},
-                                               {RT_VARIANCE, 3}, {RT_SAMPLES, 1}, {RT_ERROR, 3},
-                                               {RT_TRUST, 1}};
+constexpr std::pair<uint32_t, int> planes[] = {{RT_RGBA, 4},     {RT_DEPTH, 1},    {RT_NORMAL, 3},
+                                               {RT_VARIANCE, 3}, {RT_SAMPLES, 1},  {RT_ERROR, 3},
+                                               {RT_TRUST, 1},    {RT_COVERAGE, 16}};
 constexpr int width = 48, height = 32;
-constexpr uint32_t channels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_SAMPLES;
+constexpr uint32_t channels =
+    RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_SAMPLES | RT_COVERAGE;
 constexpr uint32_t withErrors = channels | RT_ERROR | RT_TRUST;
 
 struct Delete {
@@ -39,6 +40,7 @@ void defineScene(const Told& told) {
   floor.set("reflectance", {.7, .6, .5});
   lamp.set("emission", {told.brightness, told.brightness, told.brightness});
   const auto square = [](RTid shader, double half, double z, bool down) {
+    rtLoadName(down ? 2 : 1);
     const RTid object = rtBeginObject(0);
     rtBindShader(shader);
     rtBegin(RT_QUADS);

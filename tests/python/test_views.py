@@ -1,5 +1,6 @@
 """Tests exposure, view curves, parts of pictures, depth and COCO masks in Python."""
 import copy
+import json
 import pickle
 
 import pytest
@@ -219,6 +220,51 @@ def unpacked(text):
                 break
         counts.append(value + (counts[-2] if len(counts) > 2 else 0))
     return counts
+
+
+def test_mattes_are_shares_of_pixels():
+    """A square of 2 at the distance 8, seen at 45 degrees across 48 rows: 7.24 pixels each way."""
+    world = xvrml.load(b"""#VRML V2.0 utf8
+Viewpoint { position 0 0 9 }
+DEF Square Shape { appearance Appearance { material Material { } } geometry Box { size 2 2 2 } }""")
+    image = world.render(size=(64, 48), spp=1024, channels="cryptomatte")
+    matte = image.matte("Square")
+    half = 1 / 8 / np.tan(np.pi / 8) * 24
+    assert matte.shape == (48, 64) and matte.dtype == np.float32
+    assert matte.sum() == pytest.approx(4 * half * half, abs=.2)
+    part = half - int(half)
+    assert matte[24, 32 + 7] == pytest.approx(part, abs=.01)
+    assert matte[24 - 8, 32 + 7] == pytest.approx(part * part, abs=.01)
+    assert matte[24, 32] == 1 and matte[0, 0] == 0
+    assert image["cryptomatte"].shape == (48, 64, 16)
+
+
+def test_files_have_the_hashes_of_the_manifest(world, tmp_path):
+    image = world.render(channels="cryptomatte", **SMALL)
+    image.save(tmp_path / "x.exr")
+    header, planes = read_exr((tmp_path / "x.exr").read_bytes())
+    manifest = json.loads(header["cryptomatte/3ae39a5/manifest"][1])
+    assert set(manifest) == {"Cube", "Ball"}
+    hashes = [planes[f"CryptoObject{n:02}.{c}"].view(np.uint32) for n in range(4) for c in "RB"]
+    shares = [planes[f"CryptoObject{n:02}.{c}"] for n in range(4) for c in "GA"]
+    for name, digits in manifest.items():
+        matte = sum(np.where(h == int(digits, 16), s, 0) for h, s in zip(hashes, shares))
+        assert np.array_equal(matte, image.matte(name)) and matte.any()
+
+
+def test_mattes_of_several_shapes_add_up(world):
+    image = world.render(channels=("id", "cryptomatte"), **SMALL)
+    ball, cube = image.matte("Ball"), image.matte("Cube")
+    assert ball.any() and cube.any()
+    assert np.array_equal(image.matte("Ball", "Cube", "Ball"), ball + cube)
+    assert not image.matte().any()
+    assert np.array_equal(pickle.loads(pickle.dumps(image)).matte("Ball"), ball)
+    with pytest.raises(KeyError, match="Bal.*Ball, Cube"):
+        image.matte("Bal")
+    with pytest.raises(TypeError, match="matte"):
+        image.matte(3)
+    with pytest.raises(AttributeError, match="channel cryptomatte"):
+        world.render(**SMALL).matte("Ball")
 
 
 @pytest.mark.parametrize("compressed", [False, True])

@@ -55,11 +55,12 @@ def machines(path, here=False):
 
 
 @pytest.mark.parametrize("quality", [("--spp", 4), ("--spp", 96, "--transport", "path"),
-                                     ("--spp", 64, "--error", "20%")],
-                         ids=["few samples", "many samples", "to an error"])
+                                     ("--spp", 64, "--error", "20%"),
+                                     ("--spp", 33, "--crop", "17,9,30x20")],
+                         ids=["few samples", "many samples", "to an error", "a part"])
 def test_the_same_bytes_with_workers_and_without(room, two, quality):
     outputs = ("-o", "{}.png", "-o", "{}.exr", "--channels",
-               "rgba,z,normal,albedo,position,id,samples,variance")
+               "rgba,z,normal,albedo,position,id,samples,variance,cryptomatte")
     common = ("room.wrl", *SIZE, *quality)
     assert room(*common, *[o.format("alone") for o in outputs], "--threads", 1).returncode == 0
     for name, how in (("both", ()), ("remote", ("--local-threads", 0, "--require-workers", 2))):

@@ -82,6 +82,21 @@ def test_exr_channels(vv):
     assert "chromaticities" not in exr_header(data)
 
 
+def test_cryptomatte_layers(vv):
+    """The hash of the layer's name begins with 3ae39a5 (MurmurHash3_32 of "CryptoObject")."""
+    done = vv("box.wrl", "-o", "out.exr", "--channels", "rgba,cryptomatte", *SMALL)
+    assert done.returncode == 0, done.talk
+    data = (vv.folder / "out.exr").read_bytes()
+    layers = {f"CryptoObject{n:02}.{c}": 2 for n in range(4) for c in "RGBA"}
+    assert exr_channels(data) == {**{name: 2 for name in "RGBA"}, **layers}
+    header = exr_header(data)
+    assert header["cryptomatte/3ae39a5/name"][1] == b"CryptoObject"
+    assert header["cryptomatte/3ae39a5/hash"][1] == b"MurmurHash3_32"
+    assert header["cryptomatte/3ae39a5/conversion"][1] == b"uint32_to_float32"
+    manifest = json.loads(header["cryptomatte/3ae39a5/manifest"][1])
+    assert manifest and all(len(digits) == 8 and int(digits, 16) for digits in manifest.values())
+
+
 def test_same_bytes_for_any_number_of_threads(vv):
     for suffix in ("exr", "png"):
         pictures = []

@@ -19,7 +19,7 @@ DEF Lamp Transform { translation 0 3 0 children Shape {
   geometry Box { size 2 .1 2 } } }
 """
 PATHS = ("--transport", "path", "--size", "96x64", "--isa", "sse2")
-ERRORS = ("--channels", "rgba,z,error,variance,trust,samples,id")
+ERRORS = ("--channels", "rgba,z,error,variance,trust,samples,id,cryptomatte")
 SEEDS = ("-q", *PATHS, "--spp", "32", *ERRORS)
 
 

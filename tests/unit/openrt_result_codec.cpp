@@ -1,5 +1,6 @@
 // openrt_result_codec.cpp: Tests the encoding of job results. Decoding returns exactly what was
 // encoded and refuses anything else.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <random>
@@ -55,6 +56,9 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
                    {number(), number(), number(), number()},
                    job.count};
   result.sums.resize(tile.pixels());
+  for (uint32_t pixel = 0; pixel < tile.pixels() && g.names; pixel++)
+    for (uint64_t k = random() % 4; k > 0; k--) result.hits.add(pixel, uint32_t(random() % 5));
+  result.hits.finish();
   for (PixelSums& s : result.sums) {
     s.samples = job.count;
     for (double& x : s.rgba) x = value();
@@ -107,6 +111,7 @@ TEST(ResultCodec, EveryCombinationOfChannelsComesBackExactly) {
     out.light.resize(5); // left over from an earlier job
     ASSERT_TRUE(decodeResult(frame, job, tile, bytes, out)) << channels;
     ASSERT_TRUE(sameBytes(in.sums, out.sums)) << channels;
+    ASSERT_TRUE(std::ranges::equal(in.hits.all(), out.hits.all())) << channels;
     ASSERT_EQ(std::memcmp(&in.ledger, &out.ledger, sizeof(Ledger)), 0);
     ASSERT_TRUE(out.light.empty());
     ASSERT_EQ(encodeResult(frame, job, out), bytes);

@@ -236,12 +236,12 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.render.crop = readCrop(v); }},
     {"--channels", "LIST", "Picture",
      "Channels of an EXR file, separated by commas: rgba, z, normal, albedo, position, id, "
-     "samples, variance, error, trust, motion, reflection (default rgba). error is the half-width "
-     "of the 95 % "
-     "interval of each colour, trust is 1 where that interval can be trusted. With error or trust, "
-     "other sample positions are used. motion is how far what is seen has moved since the picture "
-     "before. reflection is the part of the light that coats reflect: varnish, lacquer, "
-     "highlights.",
+     "samples, variance, error, trust, motion, reflection, cryptomatte (default rgba). error is "
+     "the half-width of the 95 % interval of each colour, trust is 1 where that interval can be "
+     "trusted. With error or trust, other sample positions are used. motion is how far what is "
+     "seen has moved since the picture before. reflection is the part of the light that coats "
+     "reflect: varnish, lacquer, highlights. cryptomatte tells which Shapes cover a pixel, and "
+     "how much of it each.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light is added linearly, and " +

@@ -1,4 +1,4 @@
-"""Makes the annotations of COCO's data format from the channel id of a Picture."""
+"""Makes masks of the Shapes in a Picture from its channels id and cryptomatte."""
 from . import _arguments
 
 
@@ -34,6 +34,27 @@ def _category(categories, name):
     if found is not None and not isinstance(found, str):
         raise TypeError(f"categories: a text or None expected for {name!r}, not {found!r}")
     return found
+
+
+def matte(picture, *names):
+    """Implements Picture.matte()."""
+    import numpy as np
+    if "cryptomatte" not in picture.channels:
+        raise AttributeError("the picture has no channel cryptomatte: "
+                             "render(channels=('cryptomatte',)) makes it")
+    wanted = np.zeros(len(picture.names), bool)
+    for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f"matte: the name of a Shape expected, not {name!r}")
+        found = [i for i, one in enumerate(picture.names) if i and one == name]
+        if not found:
+            known = sorted(set(picture.names[1:]))
+            shown = ", ".join(known[:20]) + (" ..." if len(known) > 20 else "")
+            raise KeyError(f"no Shape has the name {name}; names are {shown}")
+        wanted[found] = True
+    pairs = picture["cryptomatte"]
+    numbers, shares = pairs[..., 0::2].astype(np.int64), pairs[..., 1::2]
+    return np.where(wanted[numbers], shares, 0).sum(axis=-1, dtype=np.float32)
 
 
 def coco(picture, image_id=1, file_name="", categories=None, compressed=False, first_id=1):

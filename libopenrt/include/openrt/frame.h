@@ -44,7 +44,12 @@ enum {
    * (RtsLobe.coat); with the transport whitted only mirror images, with direct nothing. Light that
    * paths from lamps bring is not part of it, and RT_CLAMP does not change it. For callers that
    * rebuild pictures from few samples. */
-  RT_REFLECTION = 2048
+  RT_REFLECTION = 2048,
+  /* 16: eight pairs of a name (rtLoadName), which is not 0, and the share of the pixel's samples
+   * that hit it first, 0 .. 1; the largest share first, equal shares by name. Pairs that are not
+   * used are 0 0. Of a pixel with more than 64 names, those with the 64 smallest numbers are
+   * counted. */
+  RT_COVERAGE = 4096
 };
 
 /* Settings of rtQuality and rtQualityf. */

@@ -56,6 +56,41 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* li
   if (has(RT_SAMPLES)) plane(RT_SAMPLES)[pixel] = float(s.samples);
 }
 
+namespace {
+
+// Writes the pairs of RT_COVERAGE of a pixel with n samples: the largest shares of `hits`.
+void writeCoverage(std::span<const HitCount> hits, double n, float* out) {
+  std::vector<HitCount> order(hits.begin(), hits.end());
+  const size_t shown = std::min<size_t>(order.size(), coverageNames);
+  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(shown), order.end(),
+                    [](const HitCount& a, const HitCount& b) {
+                      return a.times != b.times ? a.times > b.times : a.name < b.name;
+                    });
+  for (size_t i = 0; i < shown; i++) {
+    out[2 * i] = float(order[i].name);
+    out[2 * i + 1] = float(order[i].times / n);
+  }
+}
+
+} // namespace
+
+void Film::storeHits(const Tile& tile, const HitCounts& hits, std::span<const PixelSums> sums) {
+  if (!has(RT_COVERAGE)) return;
+  const size_t components = channelComponents(RT_COVERAGE);
+  std::span<const HitCount> left = hits.all();
+  uint32_t place = 0;
+  for (uint32_t y = tile.y0; y < tile.y1; y++)
+    for (uint32_t x = tile.x0; x < tile.x1; x++, place++) {
+      float* const out = &plane(RT_COVERAGE)[components * (size_t(y) * width_ + x)];
+      std::fill_n(out, components, 0.0f);
+      size_t count = 0;
+      while (count < left.size() && left[count].pixel == place) count++;
+      // A pixel whose light is not followed has one sample (RT_LIGHT_STRIDE).
+      writeCoverage(left.first(count), std::max(sums[place].samples, 1u), out);
+      left = left.subspan(count);
+    }
+}
+
 void Film::finishErrors() {
   errors_.doubtConstants([this](size_t pixel, const float halfWidth[3], bool known) {
     if (has(RT_ERROR))

@@ -37,6 +37,8 @@ class Film {
   // error: null if the error is unknown.
   void store(uint32_t x, uint32_t y, const PixelSums& sums, const LightSums* light = nullptr,
              const PixelError* error = nullptr);
+  // Stores how many of the samples of a tile's pixels have hit which names. sums: of these pixels.
+  void storeHits(const Tile& tile, const HitCounts& hits, std::span<const PixelSums> sums);
   // Revises the errors of constant pixels beside edges. Call after the last store(), from one
   // thread.
   void finishErrors();

@@ -55,6 +55,7 @@ RequiredSums requiredSums(const edit::FrameSettingsT& frame) {
   g.spread = g.error || (frame.channels & RT_VARIANCE);
   g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO | RT_REFLECTION);
   g.motion = frame.channels & RT_MOTION;
+  g.names = frame.channels & RT_COVERAGE;
   return g;
 }
 
@@ -102,6 +103,7 @@ void PixelSums::merge(const PixelSums& l, const RequiredSums& required, const Re
 void SumBlock::append(const SumBlock& later, const RequiredSums& required,
                       const Replicates& replicates) {
   for (size_t i = 0; i < sums.size(); i++) sums[i].merge(later.sums[i], required, replicates);
+  if (required.names) hits.merge(later.hits);
   ledger.add(later.ledger);
   rays.add(later.rays);
   count += later.count;
@@ -146,6 +148,7 @@ void TileSums::unpack(const StoredBlock& from, SumBlock& to, const RequiredSums&
   to.count = from.count;
   to.ledger = from.ledger;
   to.rays = from.rays;
+  to.hits = from.hits;
   to.sums.resize(from.bytes.size() / bytes);
   for (size_t i = 0; i < to.sums.size(); i++)
     std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
@@ -168,8 +171,8 @@ void TileSums::join(SumBlock& block, const RequiredSums& required, const Replica
 
 void TileSums::keep(const SumBlock& block, const RequiredSums& required) {
   const size_t bytes = keptBytes(required);
-  StoredBlock kept{block.first, block.count, block.ledger, block.rays,
-                   std::vector<std::byte>(block.sums.size() * bytes)};
+  StoredBlock kept{block.first, block.count, block.ledger,
+                   block.rays,  block.hits,  std::vector<std::byte>(block.sums.size() * bytes)};
   for (size_t i = 0; i < block.sums.size(); i++)
     std::memcpy(&kept.bytes[i * bytes], &block.sums[i], bytes);
   const auto place = std::find_if(kept_.begin(), kept_.end(),

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "render/film/hit_counts.h"
 #include "render/film/ledger.h"
 #include "render/path/sampler.h"
 #include "scene/scene.h"
@@ -21,6 +22,7 @@ struct RequiredSums {
   bool surface = false; // true if normal, albedo and reflection are needed
   bool error = false;   // true if all sums are needed
   bool motion = false;  // true if motion is needed
+  bool names = false;   // true if the names of hits are counted
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
@@ -95,6 +97,7 @@ struct SumBlock {
   std::vector<PixelSums> sums; // by pixel, row by row
   Ledger ledger;
   RayTotals rays;
+  HitCounts hits;
   uint32_t end() const { return first + count; }
   void append(const SumBlock& later, const RequiredSums& required, const Replicates& replicates);
 };
@@ -141,6 +144,7 @@ class TileSums {
     uint32_t first, count;
     Ledger ledger;
     RayTotals rays;
+    HitCounts hits;
     std::vector<std::byte> bytes;
   };
   static void unpack(const StoredBlock& from, SumBlock& to, const RequiredSums& required);

@@ -127,6 +127,7 @@ SeedSums append(const FrameSums& of, const SeedSums& a, const SeedSums& b) {
     KeptBlock both{block.replicates, 0, block.count, left.rays, nullptr};
     JobResult result;
     result.sums = std::move(left.sums);
+    result.hits = std::move(left.hits);
     result.ledger = left.ledger;
     both.bytes = std::make_shared<const std::vector<std::byte>>(
         encodeResult(of.frame, jobOf(i, both), result));
@@ -145,7 +146,8 @@ void decodeSeeds(const edit::FrameSettingsT& frame, const Tile& tile, const Seed
                  const KeptBlock& block, SumBlock& out) {
   JobResult result;
   if (!decodeResult(frame, jobOf(0, block), tile, *block.bytes, result)) refuse("it is damaged");
-  out = {block.first, block.count, std::move(result.sums), result.ledger, block.rays};
+  out = {block.first,   block.count, std::move(result.sums),
+         result.ledger, block.rays,  std::move(result.hits)};
   out.ledger.samples *= seeds.count;
   for (PixelSums& s : out.sums) {
     s.samples *= seeds.count;
@@ -204,6 +206,7 @@ FrameSumsPtr condense(const FrameSums& sums) {
     KeptBlock block{blocks[0].replicates, 0, whole->count, whole->rays, nullptr};
     JobResult result;
     result.sums = whole->sums;
+    result.hits = whole->hits;
     result.ledger = whole->ledger;
     block.bytes = std::make_shared<const std::vector<std::byte>>(
         encodeResult(sums.frame, jobOf(i, block), result));

@@ -87,8 +87,8 @@ struct FrameWork::Impl {
   void addSamples(const FrameSchedule::OutstandingJob& out, JobResult& result);
   void addLight(const FrameSchedule::OutstandingJob& out, JobResult& result);
   void finish(const FrameSchedule::OutstandingJob& out, const SumBlock& all, TileState& state);
-  void store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates,
-             bool show, const FrameSchedule::OutstandingJob* pilot = nullptr);
+  void store(const Tile& tile, const SumBlock& block, const Replicates& replicates, bool show,
+             const FrameSchedule::OutstandingJob* pilot = nullptr);
   void decide(const FrameSchedule::OutstandingJob& pilot, const std::vector<PilotPixel>& pixels,
               const std::vector<PixelError>& errors);
   void apply(uint32_t tile, const Pilots::Decision& decision);
@@ -139,11 +139,11 @@ bool FrameWork::Impl::fits(const Job& job, const JobResult& result) const {
   return job.number < count && result.sums.size() == grid.at(job.number).pixels();
 }
 
-// Writes the tile's samples so far, plus the light paths so far, to the film (if `show`). pilot: a
-// complete pilot that decides on the number of samples; else null.
-void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums,
-                            const Replicates& replicates, bool show,
-                            const FrameSchedule::OutstandingJob* pilot) {
+// Writes the tile's samples so far, a block, plus the light paths so far, to the film (if `show`).
+// pilot: a complete pilot that decides on the number of samples; else null.
+void FrameWork::Impl::store(const Tile& tile, const SumBlock& block, const Replicates& replicates,
+                            bool show, const FrameSchedule::OutstandingJob* pilot) {
+  const std::vector<PixelSums>& sums = block.sums;
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
     light->read(tile, lights);
@@ -173,6 +173,7 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
       const bool adds = lamps && !(strides && sums[i].samples > 0);
       if (show) film.store(x, y, sums[i], adds ? &lights[i] : nullptr, error);
     }
+  if (show) film.storeHits(tile, block.hits, sums);
   if (pilot) decide(*pilot, pilotPixels, errors);
 }
 
@@ -213,7 +214,7 @@ void FrameWork::Impl::finish(const FrameSchedule::OutstandingJob& out, const Sum
   const bool pilot = out.stage == Stage::pilot,
              show = !pilot || (schedule.rounds() && !out.further);
   const bool decides = pilot && pilots;
-  store(grid.at(out.job.number), all.sums, out.job.replicates, show, decides ? &out : nullptr);
+  store(grid.at(out.job.number), all, out.job.replicates, show, decides ? &out : nullptr);
   state.shown |= show;
   if (!pilot) state.ledger = all.ledger;
   if (!pilot || decides) return;
@@ -225,8 +226,12 @@ void FrameWork::Impl::addSamples(const FrameSchedule::OutstandingJob& out, JobRe
   const Job& job = out.job;
   TileState& state = tiles[job.number];
   std::lock_guard tileLock(state.mutex);
-  SumBlock block{job.first, job.count, std::move(result.sums), result.ledger,
-                 kept.keep ? totalsOf(result.counters) : RayTotals()};
+  SumBlock block{job.first,
+                 job.count,
+                 std::move(result.sums),
+                 result.ledger,
+                 kept.keep ? totalsOf(result.counters) : RayTotals(),
+                 std::move(result.hits)};
   block.rays.faults += result.faultsBefore;
   SumBlock room;
   state.replicates = job.replicates;
@@ -245,7 +250,7 @@ void FrameWork::Impl::addSamples(const FrameSchedule::OutstandingJob& out, JobRe
     state.sums.clear();
   } else {
     if (all && showsParts) {
-      store(grid.at(job.number), all->sums, job.replicates, true);
+      store(grid.at(job.number), *all, job.replicates, true);
       state.shown = true;
       if (out.stage == Stage::samples) state.ledger = all->ledger;
     }
@@ -266,6 +271,7 @@ KeptBlock FrameWork::Impl::encoded(const SumBlock& block, const Replicates& repl
   KeptBlock out{replicates, block.first, block.count, block.rays, nullptr};
   JobResult result;
   result.sums = block.sums;
+  result.hits = block.hits;
   result.ledger = block.ledger;
   out.bytes =
       std::make_shared<const std::vector<std::byte>>(encodeResult(frame, jobOf(0, out), result));
@@ -342,7 +348,7 @@ void FrameWork::Impl::develop(const FrameSums& sums) {
       else
         all.append(next, required, seeds.tiles[tile].at(0).replicates);
     }
-    store(grid.at(tile), all.sums, sums.seeds[0].tiles[tile].at(0).replicates, true);
+    store(grid.at(tile), all, sums.seeds[0].tiles[tile].at(0).replicates, true);
     tiles[tile].ledger = all.ledger;
     tiles[tile].shown = true;
     add(all.rays);

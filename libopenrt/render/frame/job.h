@@ -32,11 +32,12 @@ struct Job {
 struct JobResult {
   // Sums of a tile, row by row. Fields that the frame does not need are undefined (RequiredSums).
   std::vector<PixelSums> sums;
+  HitCounts hits;           // of the tile's pixels, if they are needed
   std::vector<float> light; // rgb of the whole picture, row by row
   Ledger ledger;
   RayCounters counters;
   uint64_t faultsBefore = 0; // shader faults of a result that another process has made
-  double seconds = 0; // time that it took on one thread
+  double seconds = 0;        // time that it took on one thread
 };
 
 } // namespace openrt

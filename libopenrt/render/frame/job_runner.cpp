@@ -71,13 +71,16 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
     SumBlock leaf{.first = at,
                   .count = leafEnd(at, end, scene->frame.samples) - at,
                   .sums = {},
-                  .ledger = {}};
+                  .ledger = {},
+                  .rays = {},
+                  .hits = {}};
     if (!spare.empty()) {
       leaf.sums = std::move(spare.back());
       spare.pop_back();
     }
     startSums(leaf.sums, tile.pixels(), required);
-    if (!tiles.render(tile, job.replicates, job.centred, leaf.first, leaf.count, leaf.sums, stop))
+    if (!tiles.render(tile, job.replicates, job.centred, leaf.first, leaf.count, leaf.sums, stop,
+                      &leaf.hits))
       return false;
     leaf.ledger = tiles.ledger();
     at += leaf.count;
@@ -91,6 +94,7 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
   }
   for (size_t i = 1; i < stack.size(); i++) append(stack[0], stack[i]);
   result.sums = std::move(stack[0].sums);
+  result.hits = std::move(stack[0].hits);
   result.ledger = stack[0].ledger;
   stack.clear();
   return true;

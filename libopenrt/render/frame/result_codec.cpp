@@ -145,14 +145,32 @@ bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_
   return true;
 }
 
-bool getTile(const edit::FrameSettingsT& frame, Source source, std::vector<PixelSums>* sums,
+// Reads the sums of a tile, and sets `source` to what follows; only validates them if `sums` is
+// null.
+bool getTile(const edit::FrameSettingsT& frame, Source& source, std::vector<PixelSums>* sums,
              size_t pixels) {
   for (const Field& field : fieldsOf(frame))
     for (size_t k = 0; k < field.count; k++)
       if (!getField(source, sums, pixels, field.offset + k * field.bytes, field.bytes,
                     field.offset == offsetof(PixelSums, random)))
         return false;
-  return source.empty();
+  return true;
+}
+
+void putHits(std::vector<std::byte>& out, const HitCounts& hits) {
+  const auto count = uint32_t(hits.all().size());
+  put(out, &count, sizeof count);
+  put(out, hits.all().data(), hits.all().size_bytes());
+}
+
+bool getHits(Source& source, size_t pixels, HitCounts& hits) {
+  uint32_t count = 0;
+  if (!source.get(&count, sizeof count)) return false;
+  const std::byte* const from = source.skip(size_t(count) * sizeof(HitCount));
+  if (!from) return false;
+  std::vector<HitCount> counts(count);
+  if (count > 0) std::memcpy(counts.data(), from, count * sizeof(HitCount));
+  return hits.assign(std::move(counts), uint32_t(pixels));
 }
 
 bool zero(float f) { return std::bit_cast<uint32_t>(f) == 0; }
@@ -214,6 +232,7 @@ std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job
   for (const Field& field : fieldsOf(frame))
     for (size_t k = 0; k < field.count; k++)
       putField(out, result.sums, field.offset + k * field.bytes, field.bytes);
+  if (requiredSums(frame).names) putHits(out, result.hits);
   return out;
 }
 
@@ -231,7 +250,11 @@ bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile&
   }
   const size_t pixels = tile.pixels();
   // Validates before memory is allocated.
-  if (!getTile(frame, source, nullptr, pixels)) return false;
+  Source rest = source;
+  result.hits.clear();
+  if (!getTile(frame, rest, nullptr, pixels) ||
+      (requiredSums(frame).names && !getHits(rest, pixels, result.hits)) || !rest.empty())
+    return false;
   result.ledger.samples = job.count;
   result.light.clear();
   result.sums.assign(pixels, {});

@@ -4,7 +4,8 @@
 // and seconds are not encoded. [any]
 //
 // A tile: 11 doubles (Ledger), then each field of all pixels, row by row: a byte for the form (0:
-// one value; 1: floats; 2: all values as they are) and the values.
+// one value; 1: floats; 2: all values as they are) and the values. With RT_COVERAGE, the number of
+// HitCounts and these follow.
 // Light: 9 doubles, then runs of the picture's numbers: the number of zeros, the number of values
 // that follow, these values. Zeros at the end are left out.
 // Little-endian, not aligned.

@@ -19,7 +19,7 @@ void TileRenderer::startInMedia(const Wave& wave) {
 // comes from there or from the medium.
 void TileRenderer::describeBehindMedia(const Wave& wave, PixelSamples& found) {
   const bool describes = found.normal[0] || found.albedo[0] || found.position[0] ||
-                         found.motion[0] || found.depth || has(RT_NAME);
+                         found.motion[0] || found.depth || has(RT_NAME | RT_COVERAGE);
   const uint32_t n = wave.rays.count;
   if (describes) {
     Wave seen;

@@ -54,20 +54,24 @@ void TileRenderer::listPixels(const Tile& tile) {
 // divided into the same waves.
 bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred,
                           uint32_t first, uint32_t samples, std::span<PixelSums> sums,
-                          const std::atomic<bool>& stop) {
+                          const std::atomic<bool>& stop, HitCounts* hits) {
   begin(tile);
   ledger_ = {};
   replicates_ = replicates;
   centred_ = centred;
   leaf_ = first;
   sums_ = sums;
+  hits_ = required_.names ? hits : nullptr;
+  if (hits_) hits_->clear();
   stop_ = &stop;
   ledger_.samples += samples;
   const auto all = uint32_t(pixels_.size());
   // A pixel without light has its first sample only, so that what it sees and the light of the
   // environment there belong together.
-  return renderPixels({0, lit_, true}, first, samples) &&
-         (first > 0 || renderPixels({lit_, all, false}, 0, 1));
+  const bool done = renderPixels({0, lit_, true}, first, samples) &&
+                    (first > 0 || renderPixels({lit_, all, false}, 0, 1));
+  if (hits_) hits_->finish();
+  return done;
 }
 
 bool TileRenderer::renderPixels(const PixelRange& range, uint32_t first, uint32_t samples) {
@@ -275,10 +279,12 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
   const float clamp = scene_.frame.clamp,
               limit = clamp > 0 ? std::min(clamp, brightest) : brightest;
   for (uint32_t pixel = 0; pixel < range.count(); pixel++) {
-    PixelSums& sums = sums_[places_[range.begin + pixel]];
+    const uint32_t place = places_[range.begin + pixel];
+    PixelSums& sums = sums_[place];
     for (uint32_t s = 0; s < samples; s++) {
       const uint32_t i = pixel * samples + s;
       const bool first = firstSample + s == 0;
+      if (hits_) hits_->add(place, found.name[i]);
       if (found.complete && !found.complete[i]) { // a surface, and no light
         addFirst(found, i, sums);
         continue;

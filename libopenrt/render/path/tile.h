@@ -33,9 +33,11 @@ class TileRenderer {
   explicit TileRenderer(const RenderScene& scene);
   // Adds the samples of one leaf (sums.h) to the sums of the tile's pixels, row by row. centred:
   // takes one sample in the middle of each pixel. Returns false if `stop` was set meanwhile; the
-  // sums must then be discarded.
+  // sums must then be discarded. hits: is given the names that the samples hit, if the frame needs
+  // them; may be null.
   bool render(const Tile& tile, const Replicates& replicates, bool centred, uint32_t first,
-              uint32_t samples, std::span<PixelSums> sums, const std::atomic<bool>& stop);
+              uint32_t samples, std::span<PixelSums> sums, const std::atomic<bool>& stop,
+              HitCounts* hits = nullptr);
   // Maximum number of samples per pixel in a wave.
   static constexpr uint32_t largestWave = 32;
   // Ray counts since the last reset.
@@ -131,6 +133,7 @@ class TileRenderer {
   std::vector<uint32_t> pixels_, places_;
   uint32_t lit_ = 0;
   std::span<PixelSums> sums_;
+  HitCounts* hits_ = nullptr; // null if names are not counted
   Replicates replicates_;
   uint32_t leaf_ = 0; // first sample of the current leaf
   bool centred_ = false;

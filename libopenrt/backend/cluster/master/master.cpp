@@ -11,7 +11,9 @@ namespace openrt::cluster {
 namespace {
 
 uint64_t largestResultOf(const edit::FrameSettingsT& frame) {
-  constexpr uint64_t tile = uint64_t(largestTile) * largestTile * sizeof(PixelSums), beside = 4096;
+  constexpr uint64_t beside = 4096;
+  const uint64_t hits = requiredSums(frame).names ? HitCounts::mostNames * sizeof(HitCount) : 0,
+                 tile = uint64_t(largestTile) * largestTile * (sizeof(PixelSums) + hits);
   // Run-length encoded zeros are shorter than this.
   const uint64_t light = uint64_t(frame.width) * frame.height * 3 * sizeof(float);
   return std::max(tile, light) + beside;

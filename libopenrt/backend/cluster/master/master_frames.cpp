@@ -95,8 +95,8 @@ void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch,
   try {
     FrameFacts known = facts;
     known.guide = FrameFacts::unknownGuide; // workers do not tell
-    entry->state.work = std::make_shared<FrameWork>(prepared.frame, known,
-                                                    std::max(totalThreads, 1u), entry->kept);
+    entry->state.work =
+        std::make_shared<FrameWork>(prepared.frame, known, std::max(totalThreads, 1u), entry->kept);
   } catch (const SumsError& error) {
     entry->state.sumsWrong = true;
     return fail(epoch, error.what(), false);
@@ -162,6 +162,7 @@ void IncomingResult::merge() {
   }
   if (fits) first = work->take(job.job, std::move(result));
   result.sums = {};
+  result.hits = {};
   // Frees the memory on this thread, to relieve the master's thread.
   result.light = {};
 }
