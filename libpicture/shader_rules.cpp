@@ -22,7 +22,6 @@ namespace {
 
 using namespace xvrml;
 
-constexpr const char* form = "SELECTOR=CLASS[:PARAM=VALUE...] was expected";
 constexpr float colourTolerance = 0.03f;
 constexpr size_t rulesFileBytes = 1 << 20; // a longer file is refused
 
@@ -64,7 +63,9 @@ std::array<float, 3> readColour(const std::string& text) {
 std::pair<Selector, std::string> readRule(const std::string& text) {
   using Kind = Selector::Kind;
   const size_t equals = text.find('=');
-  if (equals == text.npos || equals == 0) throw ShaderError(form);
+  if (equals == text.npos || equals == 0)
+    throw ShaderError(
+        fmt::format("SELECTOR=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", text));
   const std::string selector = text.substr(0, equals), shader = text.substr(equals + 1);
   if (selector == "*") return {{Kind::rest, {}, {}}, shader};
   constexpr std::pair<std::string_view, Kind> kinds[] = {{"material:", Kind::material},
@@ -218,14 +219,16 @@ std::vector<ShaderRule> readShaderRules(const std::string& path) {
   std::istringstream lines(text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
+    const std::string where = fmt::format("{}:{}:", path, number);
+    if (line.find('\0') != line.npos)
+      throw std::runtime_error(where + " text was expected, not a byte that is 0");
     const size_t begin = line.find_first_not_of(" \t\r");
     if (begin == line.npos || line[begin] == '#') continue;
     line = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
-    const std::string where = fmt::format("{}:{}:", path, number);
     try {
       checkShaderRule(line);
     } catch (const ShaderError& error) {
-      throw std::runtime_error(fmt::format("{} {}, not \"{}\"", where, error.what(), line));
+      throw std::runtime_error(fmt::format("{} {}", where, error.what()));
     }
     rules.push_back({line, where, {}, false});
   }

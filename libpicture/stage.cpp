@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/cluster.h"
+#include "libpicture/environment_map.h"
 #include "libpicture/files/radiance.h"
 #include "openrt/sums.h"
 
@@ -247,13 +248,8 @@ void Stage::useEnvironment() {
   if (settings.environment.empty()) return;
   if (environment_ == 0) {
     const xvrml::RadianceImage around = readRadiance(settings.environment);
-    rtGenTextures(1, &environmentTexture_);
-    rtBindTexture(environmentTexture_);
-    rtTexImage2D(3, around.width, around.height, RT_FLOAT, around.rgb.data());
-    rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_EDGE);
-    environment_ = rtNewShader(rtNewShaderClass("EnvironmentMap", nullptr));
-    rtBindShader(environment_);
-    rtParameterTexture(rtParameterHandle("texture"), environmentTexture_);
+    environment_ =
+        makeEnvironmentMap(around.width, around.height, around.rgb.data(), environmentTexture_);
     rtParameter1f(rtParameterHandle("intensity"), float(settings.environmentIntensity));
     rtBindShader(0);
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "libpicture/environment_map.h"
+
 namespace picture {
 
 namespace {
@@ -31,8 +33,7 @@ struct SoftBox {
   double radiance;
 };
 // Key from the left, strip from the right, a rim behind; none overhead, where flat models reflect.
-constexpr SoftBox boxes[] = {
-    {-50, 42, 28, 20, 5.0}, {70, 30, 12, 26, 2.2}, {165, 40, 34, 12, 2.8}};
+constexpr SoftBox boxes[] = {{-50, 42, 28, 20, 5.0}, {70, 30, 12, 26, 2.2}, {165, 40, 34, 12, 2.8}};
 
 double smooth(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -143,13 +144,7 @@ void StudioSet::place(const Studio& studio, bool linear, const xvrml::CameraSett
   if (!(made_ == studio) && environment_) clear();
   if (environment_ == 0) {
     const StudioLight light = makeStudioLight(studio.backdrop, linear);
-    rtGenTextures(1, &texture_);
-    rtBindTexture(texture_);
-    rtTexImage2D(3, light.width, light.height, RT_FLOAT, light.rgb.data());
-    rtTexParameteri(RT_TEXTURE_WRAP_T, RT_CLAMP_TO_EDGE);
-    environment_ = rtNewShader(rtNewShaderClass("EnvironmentMap", nullptr));
-    rtBindShader(environment_);
-    rtParameterTexture(rtParameterHandle("texture"), texture_);
+    environment_ = makeEnvironmentMap(light.width, light.height, light.rgb.data(), texture_);
     groundShader_ = rtNewShader(rtNewShaderClass("Diffuse", nullptr));
     rtBindShader(groundShader_);
     const auto& r = light.groundReflectance;

@@ -2,13 +2,16 @@
 //   "VVSUMS1\n"; 8 bytes: length of the facts; 8 bytes: FNV-1a of the facts; the facts
 //   twice (done, current): 8 bytes for the length, bytes of rtWriteSums; a length of 0: none
 // Behind an OpenEXR file, 8 bytes with the length of all this and "VVSUMS1\n" follow.
-// The facts: 4 bytes of channels, a byte for linear, one for the kind of the background, three
-// floats of its colour, 4 bytes for the number of names, and each name with 4 bytes for its length.
+// The facts: 4 bytes of channels, a byte for linear, one for the kind of depths, one for the kind
+// of the background, three floats of its colour; the view: 8 bytes of its exposure, a byte for its
+// curve and one for fits; 4 bytes for the number of names, and each name with 4 bytes for its
+// length.
 #include "libpicture/sums.h"
 
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/files/exr_end.h"
 #include "libpicture/renderer.h"
 
 namespace picture {
@@ -41,11 +45,17 @@ struct Damaged : std::runtime_error {
 
 class Source {
  public:
-  explicit Source(std::string_view bytes) : left_(bytes) {}
+  // at: place of the first byte in the file, for messages
+  Source(std::string_view bytes, uint64_t at) : left_(bytes), at_(at) {}
   std::string_view take(uint64_t size) {
-    if (size > left_.size()) throw Damaged("it is damaged: it ends too early");
+    if (size > left_.size())
+      throw Damaged(
+          fmt::format("it is truncated or damaged: at byte {}, {} bytes were expected, and "
+                      "{} are there",
+                      at_, size, left_.size()));
     const std::string_view taken = left_.substr(0, size_t(size));
     left_.remove_prefix(size_t(size));
+    at_ += size;
     return taken;
   }
   template <class T> T number() {
@@ -55,18 +65,29 @@ class Source {
   }
   bool empty() const { return left_.empty(); }
   size_t left() const { return left_.size(); }
+  uint64_t at() const { return at_; }
 
  private:
   std::string_view left_;
+  uint64_t at_;
 };
 
-std::string encodeFacts(const SumsFacts& facts) {
+// Returns what is wrong with the bytes from `begin` to where the source is.
+Damaged damagedSince(uint64_t begin, const Source& source, std::string_view why) {
+  return Damaged(
+      fmt::format("it is damaged between the bytes {} and {}: {}", begin, source.at(), why));
+}
+
+std::string encodeFacts(const SumsFacts& facts, const SumsView& view) {
   std::string out;
   put(out, facts.channels);
   put(out, uint8_t(facts.linear));
   put(out, uint8_t(facts.depthAlongRay));
   put(out, uint8_t(facts.background.kind));
   for (const float c : facts.background.colour) put(out, c);
+  put(out, view.transform.exposure);
+  put(out, uint8_t(view.transform.curve));
+  put(out, uint8_t(view.fits));
   put(out, uint32_t(facts.names.size()));
   for (const std::string& name : facts.names) {
     put(out, uint32_t(name.size()));
@@ -75,9 +96,19 @@ std::string encodeFacts(const SumsFacts& facts) {
   return out;
 }
 
-SumsFacts decodeFacts(std::string_view bytes) {
-  Source source(bytes);
-  SumsFacts facts;
+SumsView decodeView(Source& source) {
+  SumsView view;
+  view.transform.exposure = source.number<double>();
+  const auto curve = source.number<uint8_t>();
+  if (!(std::abs(view.transform.exposure) <= mostExposure) || curve > uint8_t(ViewCurve::agx))
+    throw Damaged("it is damaged: its exposure or its view");
+  view.transform.curve = ViewCurve(curve);
+  view.fits = source.number<uint8_t>() != 0;
+  return view;
+}
+
+void decodeFacts(std::string_view bytes, uint64_t at, SumsFacts& facts, SumsView& view) {
+  Source source(bytes, at);
   facts.channels = source.number<uint32_t>();
   facts.linear = source.number<uint8_t>() != 0;
   facts.depthAlongRay = source.number<uint8_t>() != 0;
@@ -85,11 +116,11 @@ SumsFacts decodeFacts(std::string_view bytes) {
   if (kind > uint8_t(Background::Kind::file)) throw Damaged("it is damaged: its background");
   facts.background.kind = Background::Kind(kind);
   for (float& c : facts.background.colour) c = source.number<float>();
+  view = decodeView(source);
   const auto names = source.number<uint32_t>();
-  if (names > source.left() / sizeof(uint32_t)) throw Damaged("it is damaged: it ends too early");
+  if (names > source.left() / sizeof(uint32_t)) throw Damaged("it is damaged: its number of names");
   for (uint32_t i = 0; i < names; i++)
     facts.names.emplace_back(source.take(source.number<uint32_t>()));
-  return facts;
 }
 
 int append(const void* data, size_t size, void* to) {
@@ -124,36 +155,63 @@ Sums takeSums(Source& source) {
   const std::string_view bytes = source.take(source.number<uint64_t>());
   if (bytes.empty()) return {};
   const RTsums sums = rtReadSums(bytes.data(), bytes.size());
-  if (!sums) throw Damaged(whyNot());
-  return Sums(sums);
+  if (sums) return Sums(sums);
+  constexpr std::string_view damaged = "it is damaged: ";
+  const std::string why = whyNot();
+  if (why.starts_with(damaged))
+    throw damagedSince(source.at() - bytes.size(), source, why.substr(damaged.size()));
+  throw Damaged(why);
 }
 
-SumsFile decode(std::string_view bytes) {
-  Source source(bytes);
-  if (source.take(std::min(magic.size(), bytes.size())) != magic)
-    throw Damaged("it is not a file of sums");
+// at: place of the first byte in the file
+SumsFile decode(std::string_view bytes, uint64_t at) {
+  Source source(bytes, at);
+  source.take(magic.size());
   SumsFile file;
   const auto size = source.number<uint64_t>(), check = source.number<uint64_t>();
+  const uint64_t begin = source.at();
   const std::string_view facts = source.take(size);
-  if (checksum(facts) != check) throw Damaged("it is damaged: its checksum differs");
-  file.facts = decodeFacts(facts);
+  if (checksum(facts) != check) throw damagedSince(begin, source, "its checksum differs");
+  decodeFacts(facts, begin, file.facts, file.view);
   file.done = takeSums(source);
   file.current = takeSums(source);
-  if (!source.empty()) throw Damaged("it is damaged: more follows than was expected");
-  if (!file.done && !file.current) throw Damaged("it is damaged: it holds no sums");
+  if (!source.empty())
+    throw Damaged(
+        fmt::format("it is damaged: more follows than was expected, {} bytes from byte {} "
+                    "on",
+                    source.left(), source.at()));
+  if (!file.done && !file.current)
+    throw damagedSince(begin + size, source, "the lengths of both sums are 0");
   return file;
 }
 
-// Returns the sums behind an OpenEXR file.
-std::string_view behindExr(std::string_view bytes) {
+// Throws Damaged: these bytes of an OpenEXR file do not end with sums.
+[[noreturn]] void refuseWithoutSums(std::string_view bytes) {
+  uint64_t end = 0;
+  try {
+    end = endOfExr(bytes);
+  } catch (const BrokenExr& error) { throw Damaged(error.what()); }
+  const std::string_view behind = bytes.substr(size_t(end));
+  if (!behind.empty() && magic.starts_with(behind.substr(0, magic.size())))
+    throw Damaged(
+        fmt::format("it is truncated or damaged: its sums begin at byte {}, and their end "
+                    "is not at byte {}, where the file ends",
+                    end, bytes.size()));
+  throw Damaged("it has no sums, only rounded means; --sums puts sums into a file");
+}
+
+SumsFile decodeBehindExr(std::string_view bytes) {
   constexpr size_t tail = sizeof(uint64_t);
-  if (!bytes.ends_with(magic) || bytes.size() < magic.size() + tail)
-    throw Damaged("it has no sums, only rounded means; --sums puts sums into a file");
+  if (!bytes.ends_with(magic) || bytes.size() < magic.size() + tail) refuseWithoutSums(bytes);
   uint64_t size = 0;
   std::memcpy(&size, bytes.data() + bytes.size() - magic.size() - tail, sizeof size);
   bytes.remove_suffix(magic.size() + tail);
-  if (size > bytes.size()) throw Damaged("it is damaged: its sums are not complete");
-  return bytes.substr(bytes.size() - size_t(size));
+  const uint64_t begin = bytes.size() - std::min<uint64_t>(size, bytes.size());
+  const std::string_view sums = bytes.substr(size_t(begin));
+  if (size > bytes.size() || !sums.starts_with(magic))
+    throw Damaged(fmt::format("it is damaged: sums of {} bytes were expected before byte {}", size,
+                              bytes.size()));
+  return decode(sums, begin);
 }
 
 std::string contentsOf(const std::string& path) {
@@ -169,6 +227,8 @@ std::string contentsOf(const std::string& path) {
     // A large file of something else is not read.
     file.read(block, std::streamsize(magic.size()));
     bytes.append(block, size_t(file.gcount()));
+    if (file.eof() && (magic.starts_with(bytes) || exrMagic.starts_with(bytes)) && bytes != magic)
+      throw Damaged(fmt::format("it is truncated: it has {} bytes", bytes.size()));
     if (!bytes.starts_with(exrMagic) && bytes != magic)
       throw Damaged("it is not a file of sums, and no OpenEXR file");
     while (file.read(block, sizeof block) || file.gcount() > 0)
@@ -200,7 +260,7 @@ SumsFacts factsOf(const RenderSettings& settings, uint32_t channels,
 
 std::string encodeSums(const SumsFile& file) {
   std::string out(magic);
-  const std::string facts = encodeFacts(file.facts);
+  const std::string facts = encodeFacts(file.facts, file.view);
   put(out, uint64_t(facts.size()));
   put(out, checksum(facts));
   out += facts;
@@ -212,7 +272,7 @@ std::string encodeSums(const SumsFile& file) {
 SumsFile readSums(const std::string& path) {
   try {
     const std::string bytes = contentsOf(path);
-    return decode(bytes.starts_with(exrMagic) ? behindExr(bytes) : std::string_view(bytes));
+    return bytes.starts_with(exrMagic) ? decodeBehindExr(bytes) : decode(bytes, 0);
   } catch (const Damaged& error) { throw InputError(path, error.what()); }
 }
 

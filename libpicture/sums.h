@@ -11,6 +11,7 @@
 
 #include "libpicture/background.h"
 #include "libpicture/files/picture.h"
+#include "libpicture/files/view_transform.h"
 #include "openrt/openrt.h"
 #include "openrt/sums.h"
 
@@ -41,8 +42,20 @@ struct SumsFacts {
   bool operator==(const SumsFacts&) const = default;
 };
 
+// How a picture is shown on screens. It does not change the sums.
+struct SumsView {
+  ViewTransform transform;
+  bool fits = false; // the exposure is chosen to fit the picture (fittingExposure)
+  // Tells whether pictures are shown in the same way. An exposure that fits is that of each.
+  bool operator==(const SumsView& other) const {
+    return fits == other.fits && transform.curve == other.transform.curve &&
+           (fits || transform.exposure == other.transform.exposure);
+  }
+};
+
 struct SumsFile {
   SumsFacts facts;
+  SumsView view;
   Sums done;    // of all finished seeds before the current one; may be none
   Sums current; // of the seed that is being made, or was the last; may be none
 };

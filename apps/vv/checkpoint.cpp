@@ -24,6 +24,10 @@ std::string seedsOf(uint32_t first, uint32_t last) {
                        : fmt::format("the seeds {}-{}", first, last);
 }
 
+picture::SumsView viewOf(const Options& options) {
+  return {options.render.view, options.fitExposure};
+}
+
 // Writes a file that replaces the old one only when it is on the disk, so that a lost machine
 // leaves one or the other.
 void writeSafely(const std::string& name, const std::string& bytes) {
@@ -43,6 +47,7 @@ void writeSafely(const std::string& name, const std::string& bytes) {
 
 Checkpoint::Checkpoint(const Options& options) : options_(options), savedAt_(secondsSinceStart()) {
   file_.facts = picture::factsOf(options.render, options.render.channels, {});
+  file_.view = viewOf(options);
   std::error_code error;
   if (!writes() || !std::filesystem::exists(options.resume, error)) return;
   const auto refuse = [&](int code, const std::string& why) {
@@ -54,6 +59,7 @@ Checkpoint::Checkpoint(const Options& options) : options_(options), savedAt_(sec
   } catch (const picture::InputError& wrong) {
     throw Failure{exitInput, fmt::format("--resume: {}; the file is left as it is", wrong.what())};
   }
+  file_.view = viewOf(options); // it changes no sums
   const SeedRange& seeds = options.seeds;
   if (!file_.current)
     refuse(exitUsage, "it has the sums of finished pictures alone, with which vv merge works");
@@ -116,7 +122,7 @@ void Checkpoint::nextSeed() {
 
 picture::Sums Checkpoint::all() const { return picture::mergeSums(file_.done, file_.current); }
 
-picture::SumsFile Checkpoint::behindPixels() const { return {file_.facts, all(), {}}; }
+picture::SumsFile Checkpoint::behindPixels() const { return {file_.facts, file_.view, all(), {}}; }
 
 bool Checkpoint::timeIsUp() const {
   return writes() && options_.render.timeLimit > 0 &&

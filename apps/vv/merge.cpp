@@ -5,6 +5,7 @@
 
 #include "checkpoint.h"
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/sums_merge.h"
 #include "outputs.h"
 #include "pictures.h"
 #include "report/audit.h"
@@ -15,44 +16,24 @@ namespace vv {
 
 namespace {
 
-// Reads a file and returns its sums, without what is needed to continue it.
-picture::SumsFile readPart(const std::string& path) {
-  picture::SumsFile file = picture::readSums(path);
-  file.done = picture::mergeSums(file.done, file.current);
-  file.current = {};
-  if (file.facts.background.kind == picture::Background::Kind::file)
-    throw picture::RenderError("its background is a picture, which it does not hold",
-                               RT_SUMS_ERROR);
-  return file;
-}
-
-picture::SumsFile addAll(const std::vector<std::string>& paths) {
-  picture::SumsFile all;
-  std::vector<picture::Sums> waiting;
-  for (const std::string& path : paths) {
-    try {
-      picture::SumsFile part = readPart(path);
-      if (all.done && !(part.facts == all.facts))
-        throw picture::RenderError("it was made with another --channels, --colour, --depth-along "
-                                   "or --background, or of another world, than the files before",
-                                   RT_SUMS_ERROR);
-      all.facts = part.facts;
-      all.done = picture::mergeSums(all.done, part.done);
-    } catch (const picture::InputError& error) {
-      throw Failure{exitInput, fmt::format("vv merge: {}", error.what())};
-    } catch (const picture::RenderError& error) {
-      throw Failure{exitUsage, fmt::format("vv merge: cannot add {}: {}", path, error.what())};
-    }
+picture::MergedPicture addAll(const std::vector<std::string>& paths) {
+  try {
+    return picture::mergePictures(paths);
+  } catch (const picture::InputError& error) {
+    throw Failure{exitInput, fmt::format("vv merge: {}", error.what())};
+  } catch (const picture::RenderError& error) {
+    throw Failure{exitUsage, fmt::format("vv merge: {}", error.what())};
   }
-  return all;
 }
 
 } // namespace
 
 int runMerge(const Options& options, const std::string& commandLine) {
   checkOutputs(options);
-  const picture::SumsFile all = addAll(options.merge);
-  const picture::Picture made = picture::pictureOf(all.done, all.facts);
+  const auto [all, made, warning] = addAll(options.merge);
+  if (!options.quiet && !warning.empty()) sayWarning(warning);
+  if (!options.quiet && all.view.fits)
+    say(fmt::format("vv: --exposure auto is {:g} for this picture", made.view.exposure));
   const picture::Picture wanted = wantedPart(made, all.facts.channels);
   for (const Output& output : options.outputs) {
     std::string bytes = output.format->encode(wanted);

@@ -623,7 +623,8 @@ class Pictures {
                       options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
     if (options_.verbose && done_ == total()) reportLast(result);
-    const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
+    const bool nothing = !options_.quiet && !result.interrupted &&
+                         (showsNothing(result.picture) || showsStudioAlone(result));
     anythingShown_ = anythingShown_ || !nothing;
     // In a sequence, only the last picture prints a hint.
     const bool hints = !options_.isSequence() || (done_ == total() && !anythingShown_);
@@ -643,6 +644,12 @@ class Pictures {
       writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
                 statsJson(options_, commandLine_, running(), result,
                           {startSeconds_, writeSeconds, secondsSinceStart()}));
+  }
+
+  // Tells whether there is nothing in the studio, whose backdrop is seen all the same.
+  bool showsStudioAlone(const picture::RenderResult& result) const {
+    return options_.render.studio.on &&
+           (result.map.shapes == 0 || (inFlight_.empty() && renderer_->bounds().empty));
   }
 
   RunningWorld running() const { return {browser_.world(), browser_.scripts()}; }

@@ -7,6 +7,7 @@
 
 #include "cluster_object.h"
 #include "libpicture/renderer.h"
+#include "merge.h"
 #include "objects.h"
 #include "openrt/openrt.h"
 #include "xvrml/node_plugin.h"
@@ -182,6 +183,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineNode(module);
   definePicture(module);
   defineDenoise(module);
+  defineMerge(module);
   defineFilm(module);
   defineMeasurement(module);
   defineWorld(module);

@@ -9,9 +9,18 @@
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/transport.h"
+#include "merge.h"
 #include "objects.h"
 #include "picture_object.h"
 #include "render_request.h"
+
+const picture::Format& formatFor(const std::string& path) {
+  const picture::Format* const format = picture::formatOf(path);
+  if (!format)
+    throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
+                                      picture::formatSuffixes(), path));
+  return *format;
+}
 
 void describePicture(py::dict& stats, const RTstats& s) {
   stats["transport"] = picture::transportName(s.transport);
@@ -98,18 +107,15 @@ py::array display(const PictureObject& self) {
 
 void save(const PictureObject& self, const py::object& file) {
   const std::string path = toPath(file);
-  const picture::Format* format = picture::formatOf(path);
-  if (!format)
-    throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
-                                      picture::formatSuffixes(), path));
-  if (!self.picture.denoisedBy.empty() && !format->keepsNote)
+  const picture::Format& format = formatFor(path);
+  if (!self.picture.denoisedBy.empty() && !format.keepsNote)
     throw py::value_error(fmt::format("{} files cannot say that they are denoised; {} files can",
-                                      format->name,
+                                      format.name,
                                       picture::formatsWith(&picture::Format::keepsNote)));
   std::string failure;
   {
     const ReleaseGil release;
-    const std::string bytes = format->encode(self.picture);
+    const std::string bytes = format.encode(self.picture);
     try {
       picture::writeFile(path, bytes);
     } catch (const std::runtime_error& error) { failure = error.what(); }

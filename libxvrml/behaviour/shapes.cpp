@@ -2,13 +2,13 @@
 // explicit stack, so nesting costs no C++ stack.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
-#include "geometry/half_space.h"
+#include "geometry/clip_planes.h"
 #include "geometry/mesh.h"
+#include "geometry/sphere_facets.h"
 #include "graph/inline_node.h"
 #include "nodes/visible.h"
 #include "xvrml/build.h"
@@ -44,34 +44,11 @@ std::array<double, 4> keptInside(const HalfSpace& halfSpace, const Matrix& toWor
 // Appends what the ClipPlanes among the children leave, in world coordinates. toWorld: matrix of
 // the children.
 void appendHalfSpaces(const std::vector<Node*>& children, const Matrix& toWorld, HalfSpaces& kept) {
-  for (Node* child : children) {
-    const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
-    const auto left = plane ? halfSpaceOf(*plane) : std::nullopt;
-    Matrix toLocal;
-    if (left && kept.size() < maximumClipPlanes && invert(toWorld, toLocal))
-      kept.push_back(inside(*left, toLocal));
-  }
-}
-
-void makeFacets(GeometryArrays& arrays, int steps) {
-  const float radius = arrays.radius;
-  const uint32_t rings = uint32_t(steps), around = 2 * rings;
-  for (uint32_t r = 0; r <= rings; ++r)
-    for (uint32_t a = 0; a <= around; ++a) {
-      const double up = std::numbers::pi * r / rings, turn = 2 * std::numbers::pi * a / around;
-      const Vec3f n{float(-std::sin(up) * std::sin(turn)), float(-std::cos(up)),
-                    float(-std::sin(up) * std::cos(turn))};
-      arrays.points.push_back({radius * n.x, radius * n.y, radius * n.z});
-      arrays.normals.push_back(n);
-      arrays.texCoords.push_back({float(a) / float(around), float(r) / float(rings)});
-    }
-  for (uint32_t r = 0; r < rings; ++r)
-    for (uint32_t a = 0; a < around; ++a) {
-      const uint32_t low = r * (around + 1) + a, high = low + around + 1;
-      if (r > 0) arrays.indices.insert(arrays.indices.end(), {low, low + 1, high + 1});
-      if (r + 1 < rings) arrays.indices.insert(arrays.indices.end(), {low, high + 1, high});
-    }
-  arrays.kind = GeometryArrays::Kind::triangles;
+  Matrix toLocal;
+  if (!invert(toWorld, toLocal)) return;
+  size_t planes = kept.size();
+  forEachHalfSpace(children, planes,
+                   [&](const HalfSpace& left) { kept.push_back(inside(left, toLocal)); });
 }
 
 } // namespace
@@ -139,6 +116,13 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
 }
 
 static GeometryArrays arraysOf(const Mesh& mesh, int sphereSteps) {
+  if (mesh.kind == Mesh::Kind::sphere && sphereSteps > 1) {
+    Mesh facets = sphereFacets(mesh.radius, uint32_t(sphereSteps));
+    facets.solid = mesh.solid;
+    GeometryArrays arrays = arraysOf(facets, 0);
+    arrays.radius = mesh.radius;
+    return arrays;
+  }
   GeometryArrays arrays;
   arrays.kind = GeometryArrays::Kind(mesh.kind);
   static_assert(int(GeometryArrays::Kind::sphere) == int(Mesh::Kind::sphere));
@@ -150,8 +134,6 @@ static GeometryArrays arraysOf(const Mesh& mesh, int sphereSteps) {
   arrays.solid = mesh.solid;
   arrays.ccw = mesh.ccw;
   arrays.radius = mesh.radius;
-  if (arrays.kind == GeometryArrays::Kind::sphere && sphereSteps > 1)
-    makeFacets(arrays, sphereSteps);
   return arrays;
 }
 

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "geometry/half_space.h"
-#include "geometry/round.h"
+#include "geometry/sphere_facets.h"
 #include "geometry/vector_math.h"
 
 namespace xvrml {
 namespace {
 
 // The facets of a sphere that is cut: its silhouette is off by at most 0.03 % of the radius.
-constexpr uint32_t sphereColumns = 128, sphereRows = 64;
+constexpr uint32_t sphereRows = 64;
 
 struct Vertex {
   Vector point = Vector(0), normal = Vector(0), color = Vector(1);
@@ -168,29 +168,9 @@ class Cutter {
   Mesh out_;
 };
 
-// Returns the facets of a sphere of radius 1, with the texture coordinates of a Sphere
-// (clause 6.43).
+// Returns the facets of a sphere of radius 1.
 const Mesh& unitFacets() {
-  static const Mesh facets = [] {
-    Mesh mesh;
-    for (uint32_t row = 0; row <= sphereRows; ++row) {
-      const Vec2f height = aroundAxis(0.5 * row / sphereRows); // (-sine, -cosine) from below
-      for (uint32_t column = 0; column <= sphereColumns; ++column) {
-        const Vec2f side = aroundAxis(double(column) / sphereColumns);
-        const Vec3f n{-height.x * side.x, height.y, -height.x * side.y};
-        addVertex(mesh, n, n, {float(column) / sphereColumns, float(row) / sphereRows});
-      }
-    }
-    for (uint32_t row = 0; row < sphereRows; ++row)
-      for (uint32_t column = 0; column < sphereColumns; ++column) {
-        const uint32_t low = row * (sphereColumns + 1) + column, high = low + sphereColumns + 1;
-        if (row > 0) addTriangle(mesh, low, low + 1, high + 1);
-        if (row + 1 < sphereRows) addTriangle(mesh, low, high + 1, high);
-      }
-    mesh.kind = Mesh::Kind::triangles;
-    mesh.viewOwn();
-    return mesh;
-  }();
+  static const Mesh facets = sphereFacets(1, sphereRows);
   return facets;
 }
 
@@ -204,7 +184,7 @@ Cut cutSphere(const Mesh& sphere, std::span<const HalfSpace> halfSpaces, uint64_
     whole &= halfSpace.offset >= reach;
   }
   if (whole) return Cut::whole;
-  if (most < uint64_t(2) * sphereColumns * sphereRows) return Cut::tooLarge;
+  if (most < uint64_t(4) * sphereRows * sphereRows) return Cut::tooLarge;
   const Mesh& unit = unitFacets();
   Mesh facets;
   facets.kind = Mesh::Kind::triangles;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include <xxhash.h>
 
@@ -259,35 +260,36 @@ void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
   }
 }
 
+// A sphere that is left whole is visited as a mesh.
 template <class Visit>
 void Meshes::eachCorner(int32_t mesh, const HalfSpaces& kept, const Visit& visit) {
+  const Mesh& m = get(mesh);
+  // A sphere that is left whole is found without memory.
+  const uint64_t most = std::max<uint64_t>(quota_.budget().left() / bytesWhileCut, 1);
   Mesh rest;
-  if (cut(get(mesh), kept, quota_.budget().left() / bytesWhileCut, rest) == Cut::whole)
-    for (const Vec3f& corner : corners(mesh)) visit(vector(corner));
-  else
-    for (const Vec3f& corner : rest.points) visit(vector(corner));
+  const bool whole = cut(m, kept, most, rest) == Cut::whole;
+  if (whole && m.kind == Mesh::Kind::sphere) return visit(m);
+  for (const Vec3f& corner : whole ? std::span<const Vec3f>(corners(mesh)) : rest.points)
+    visit(vector(corner));
 }
 
-// Tells whether a sphere is left whole.
-static bool isWholeSphere(const Mesh& mesh, const HalfSpaces& kept) {
-  Mesh rest;
-  return mesh.kind == Mesh::Kind::sphere && cut(mesh, kept, 1, rest) == Cut::whole;
-}
+// Puts functions together: the one for an argument's type is called.
+template <class... Functions> struct Overloaded : Functions... { using Functions::operator()...; };
 
 void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept) {
-  const Mesh& m = get(mesh);
-  if (isWholeSphere(m, kept)) {
+  const auto sphere = [&](const Mesh& whole) {
     // The extent of an ellipsoid along a world axis is the length of that row of the linear part.
     const Vector center = transformPoint(matrix, Vector(0));
     Vector reach;
     for (int i = 0; i < 3; ++i)
-      reach[i] = m.radius * Vector(matrix.x[0][i], matrix.x[1][i], matrix.x[2][i]).length();
+      reach[i] = whole.radius * Vector(matrix.x[0][i], matrix.x[1][i], matrix.x[2][i]).length();
     growByPoint(bounds, center - reach);
     growByPoint(bounds, center + reach);
-    return;
-  }
-  eachCorner(mesh, kept,
-             [&](const Vector& corner) { growByPoint(bounds, transformPoint(matrix, corner)); });
+  };
+  const auto point = [&](const Vector& corner) {
+    growByPoint(bounds, transformPoint(matrix, corner));
+  };
+  eachCorner(mesh, kept, Overloaded{sphere, point});
 }
 
 // Returns the points that the mesh uses. Those of the last mesh are kept: worlds of many equal
@@ -324,16 +326,18 @@ const std::vector<Vec3f>& Meshes::corners(int32_t mesh) {
 
 double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from,
                      const HalfSpaces& kept) {
-  const Mesh& m = get(mesh);
   double far = 0;
-  if (isWholeSphere(m, kept)) {
-    far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * largestStretch(matrix);
-    return std::isfinite(far) ? far : 0;
-  }
-  eachCorner(mesh, kept, [&](const Vector& corner) {
-    const double length = (transformPoint(matrix, corner) - from).length();
+  const auto use = [&](double length) {
     if (length > far && std::isfinite(length)) far = length;
-  });
+  };
+  const auto sphere = [&](const Mesh& whole) {
+    use((transformPoint(matrix, Vector(0)) - from).length() +
+        whole.radius * largestStretch(matrix));
+  };
+  const auto point = [&](const Vector& corner) {
+    use((transformPoint(matrix, corner) - from).length());
+  };
+  eachCorner(mesh, kept, Overloaded{sphere, point});
   return far;
 }
 

@@ -173,6 +173,13 @@ Sums fromBytes(const std::vector<char>& bytes) {
   return Sums(rtReadSums(bytes.data(), bytes.size()));
 }
 
+RTsumsInfo infoOf(const Sums& sums) {
+  RTsumsInfo info{};
+  info.size = sizeof info;
+  EXPECT_EQ(rtGetSumsInfo(sums.get(), &info), 1);
+  return info;
+}
+
 struct Made {
   std::vector<float> pixels;
   RTstats stats{};
@@ -196,16 +203,20 @@ std::vector<std::vector<char>> moments(const Told& told, const Sums& from = null
   double next = 0;
   while (rtProgress(maker.context) < 1 && next < 1) {
     const Sums sums = maker.sums();
-    RTsumsInfo info{};
-    info.size = sizeof info;
-    EXPECT_EQ(rtGetSumsInfo(sums.get(), &info), 1);
-    if (info.done < next) continue;
+    const double done = infoOf(sums).done;
+    if (done < next) continue;
     out.push_back(bytesOf(sums));
-    next = info.done + .2;
+    next = done + .2;
   }
   rtFinishFrame();
   out.push_back(bytesOf(maker.sums()));
   return out;
+}
+
+// Makes the frame of the maker from sums of an earlier one.
+void renderFrom(const Sums& sums) {
+  rtContinueFrom(sums.get());
+  rtRender();
 }
 
 std::string lastError() {
@@ -249,8 +260,7 @@ TEST(KeptSums, AContinuedFrameHasTheSameBytes) {
         later.threads = 3 - threads;
         later.progressive = 1 - told.progressive; // does not change pictures
         const Maker maker(later);
-        rtContinueFrom(sums.get());
-        rtRender();
+        renderFrom(sums);
         EXPECT_TRUE(equal(pixels(told.channels), plain.pixels));
         expectSameNumbers(statsHere(), plain.stats);
       }
@@ -268,8 +278,7 @@ TEST(KeptSums, AFrameGetsMoreSamples) {
     const Sums sums = fromBytes(moments(told).back());
     ASSERT_TRUE(sums);
     const Maker maker(longer);
-    rtContinueFrom(sums.get());
-    rtRender();
+    renderFrom(sums);
     if (rtGetError() == RTenum(RT_SUMS_ERROR)) { // so small a picture has other photons then
       const std::string why = rtGetErrorMessage();
       EXPECT_NE(why.find("photons"), why.npos) << why;
@@ -285,8 +294,7 @@ TEST(KeptSums, AFrameGetsMoreSamples) {
 std::string refusal(const Told& had, const Told& wanted) {
   const Sums sums = fromBytes(moments(had).front());
   const Maker maker(wanted);
-  rtContinueFrom(sums.get());
-  rtRender();
+  renderFrom(sums);
   return lastError();
 }
 
@@ -330,9 +338,7 @@ TEST(KeptSums, AddUpToTheSameBytesInAnyOrderAndGrouping) {
     EXPECT_TRUE(equal(bytesOf(inOrder), bytesOf(pairs)));
     EXPECT_TRUE(equal(bytesOf(inOrder), bytesOf(fromBytes(bytesOf(pairs)))));
     EXPECT_TRUE(equal(pixelsOf(inOrder, told.channels), pixelsOf(pairs, told.channels)));
-    RTsumsInfo info{};
-    info.size = sizeof info;
-    EXPECT_EQ(rtGetSumsInfo(pairs.get(), &info), 1);
+    const RTsumsInfo info = infoOf(pairs);
     EXPECT_TRUE(info.seeds == 5 && info.firstSeed == 0 && info.lastSeed == 6 && info.complete);
   }
 }
@@ -363,10 +369,7 @@ TEST(KeptSums, ThatDoNotBelongTogetherAreNotAdded) {
   refused(first, finished(1, {.brightness = 2}), "another world");
   refused(first, finished(1, {.channels = withErrors}), "channels");
   const Sums begun = fromBytes(moments({.seed = 1}).front());
-  RTsumsInfo info{};
-  info.size = sizeof info;
-  rtGetSumsInfo(begun.get(), &info);
-  if (!info.complete) refused(first, begun, "not finished");
+  if (!infoOf(begun).complete) refused(first, begun, "not finished");
   const Told adaptive{.samples = 128, .error = .05};
   refused(finished(0, adaptive), finished(1, adaptive), "target error");
 }

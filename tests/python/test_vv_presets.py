@@ -87,7 +87,8 @@ def test_a_rule_that_selects_nothing_is_a_warning(board):
     ("material:=Metal", "rules.txt:1: a name was expected after material:"),
     ("\n\nmaterial:PIN-*=Metall", 'rules.txt:3: Metall: there is no shader class "Metall"'),
     ("material:PIN-*=Metal:rough=1", "Metal has no parameter rough"),
-    (b"\xff\xfe\x00=", "rules.txt:1: "),
+    (b"\xff\xfe\x00=", "rules.txt:1: text was expected, not a byte that is 0"),
+    (b"*=Metal\n# a\x00\n", "rules.txt:2: text was expected"),
     ("long", "too long for rules"),
 ])
 def test_wrong_rules(board, rules, message):
@@ -95,6 +96,7 @@ def test_wrong_rules(board, rules, message):
     done = board("board.wrl", "-o", "x.png", "--shader", "@rules.txt", *SMALL)
     assert done.returncode in (2, 3)
     assert message in done.talk or "no node is called" in done.talk
+    assert done.talk.count(", not ") <= 1
     assert not (board.folder / "x.png").exists()
 
 
@@ -174,7 +176,11 @@ def test_a_file_beside_the_world(board):
     ("[[files]]\nsize = '9000x9000'\n", "at most 4096x4096 pixels"),
     ("[[files]]\nfit = 3\n", "vv.toml:2:7: true or false was expected"),
     ("[[files]]\npreset = 'stud'\n", 'there is no preset "stud" (did you mean studio?)'),
-    ("[[files]]\npreset = 'a'\n[preset.a]\npreset = 'a'\n", "preset a builds on itself"),
+    ("[[files]]\npreset = 'a'\n[preset.a]\npreset = 'a'\n", "vv.toml:4:10: preset a builds on itself"),
+    ("[[files]]\npreset = 'a'\n[preset.a]\npreset = 'b'\n[preset.b]\npreset = 'a'\n",
+     "vv.toml:6:10: preset a builds on itself"),
+    ("[[files]]\npreset = 'a'\n[preset.a]\npreset = 'x'\n", "vv.toml:4:10: there is no preset"),
+    ("[[files]]\npreset = 'a'\n[preset.a]\nspp = 'x'\n", "vv.toml:4:7: spp: a whole number"),
     ("[[files]]\nmatch = 3\n", "vv.toml:2:9: a pattern for file names was expected"),
     ("files = 3\n", "vv.toml:1:9: [[files]] or [preset.NAME] was expected, not files"),
     ("[[file]]\n", "[[files]] or [preset.NAME] was expected, not file"),
@@ -303,6 +309,23 @@ def test_the_studio_turns_with_the_camera(vv):
             assert p[0] == pytest.approx(q[0], rel=.6, abs=.15)
     mean = [sum(p[0] for row in rows for p in row) for rows in quarter]
     assert mean[0] == pytest.approx(mean[1], rel=.02)
+
+
+@pytest.mark.parametrize("arguments", [
+    ("--studio", "#fff"),
+    ("--preset", "product"),
+    ("--preset", "pcb"),
+    ("--preset", "studio", "--turntable", "2"),
+])
+def test_a_studio_with_nothing_in_it_is_a_warning(vv, arguments):
+    vv.write("empty.wrl", HEADER + "Shape { } Shape { geometry IndexedFaceSet { } }")
+    vv.write("ball.wrl", HEADER + "Shape { geometry Sphere { } }")
+
+    def talk(world, *more):
+        return vv(world, "-o", "x%d.png", *arguments, *SMALL, *more).talk
+
+    assert "empty.wrl: no shape to draw; the picture shows only the background" in talk("empty.wrl")
+    assert talk("empty.wrl", "-q") == "" and "no shape" not in talk("ball.wrl")
 
 
 def test_studio_is_the_same_on_any_number_of_threads(board):

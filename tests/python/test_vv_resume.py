@@ -2,6 +2,7 @@
 import json
 import os
 import signal
+import subprocess
 import time
 
 import pytest
@@ -39,6 +40,21 @@ def made(vv, *arguments, world="room.wrl"):
     return done
 
 
+def killed_until_done(vv, *arguments, seconds, threads=lambda i: ()):
+    """Kills a run again and again, later each time, until it ends by itself."""
+    for i in range(200):
+        run = vv.start("room.wrl", *arguments, "-q", "--resume-every", "0.01", *threads(i))
+        try:
+            run.wait(timeout=seconds * (1 + i / 4))
+        except subprocess.TimeoutExpired:
+            run.kill()
+        talk = run.communicate()[1].decode()
+        assert run.returncode in (0, -signal.SIGKILL), talk
+        if run.returncode == 0:
+            return
+    raise AssertionError("the run does not end")
+
+
 def numbers(vv, name):
     """Returns the statistics that a picture has, without times and machines."""
     json_ = json.loads(contents(vv, name))
@@ -53,19 +69,8 @@ def numbers(vv, name):
                                  ("--spp", "512", "--error", "8%", *ERRORS)])
 def test_a_run_that_is_killed_again_and_again_gets_the_same_bytes(room, how):
     made(room, *PATHS, *how, "-o", "whole.exr", "--stats", "whole.json")
-    for i in range(200):
-        run = room.start("room.wrl", *PATHS, *how, "-q", "-o", "part.exr", "--stats", "part.json",
-                         "--resume", "part.sums", "--resume-every", "0.01", "--threads",
-                         str(1 + i % 2))
-        try:
-            run.wait(timeout=0.25 + 0.05 * i)
-        except Exception:
-            run.kill()
-        talk = run.communicate()[1].decode()
-        assert run.returncode in (0, -signal.SIGKILL), talk
-        if run.returncode == 0:
-            break
-    assert run.returncode == 0
+    killed_until_done(room, *PATHS, *how, "-o", "part.exr", "--stats", "part.json", "--resume",
+                      "part.sums", seconds=.25, threads=lambda i: ("--threads", str(1 + i % 2)))
     assert contents(room, "part.exr") == contents(room, "whole.exr")
     # The file stays: the same command makes the picture again at once.
     again = ("-o", "again.exr", "--stats", "again.json", "--resume", "part.sums")
@@ -194,16 +199,8 @@ def test_files_of_resume_can_be_added(parts):
 
 def test_several_seeds_survive_a_kill(parts):
     made(parts, *SEEDS, "--seed", "0-3", "-o", "whole.exr")
-    for i in range(100):
-        run = parts.start("room.wrl", *SEEDS, "--seed", "0-3", "-o", "part.exr", "--resume", "p.sums",
-                          "--resume-every", "0.01")
-        try:
-            run.wait(timeout=0.3 + 0.1 * i)
-        except Exception:
-            run.kill()
-        run.communicate()
-        if run.returncode == 0:
-            break
+    killed_until_done(parts, *SEEDS[1:], "--seed", "0-3", "-o", "part.exr", "--resume", "p.sums",
+                      seconds=.3)
     assert contents(parts, "part.exr") == contents(parts, "whole.exr")
 
 
@@ -220,6 +217,38 @@ def test_depths_are_those_that_were_asked_for(parts):
     made(parts, *SEEDS, "--resume", "z.sums", *depth, "axis", "-o", "z.exr")
     done = parts("room.wrl", *SEEDS, "--resume", "z.sums", *depth, "ray", "-o", "z.exr")
     assert done.returncode == 2 and "--depth-along" in done.talk
+
+
+VIEWS = [("--exposure", "1.5"), ("--exposure", "auto", "--view", "agx"), ("--view", "filmic")]
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_the_sum_is_shown_as_its_parts(room, view):
+    files = ("-o", "same.exr", "-o", "same.png")
+    made(room, *SEEDS, *view, "--seed", "0-1", *files, "--sums")
+    for seed in "01":
+        made(room, *SEEDS, *view, "--seed", seed, "-o", f"{seed}.exr", "--sums", "--resume",
+             f"{seed}.sums")
+    for parts in (("0.exr", "1.exr"), ("1.sums", "0.exr")):
+        done = room("merge", *parts, "-o", "all.exr", "-o", "all.png", "--sums")
+        assert done.returncode == 0 and "warning" not in done.talk
+        for suffix in ("exr", "png"):
+            assert contents(room, "all." + suffix) == contents(room, "same." + suffix)
+    # Another view does not change the sums: the run continues.
+    made(room, *SEEDS, "--seed", "0", "-o", "plain.exr", "-o", "plain.png")
+    made(room, *SEEDS, "--seed", "0", "-o", "again.exr", "-o", "again.png", "--resume", "0.sums")
+    for suffix in ("exr", "png"):
+        assert contents(room, "plain." + suffix) == contents(room, "again." + suffix)
+
+
+def test_parts_that_are_shown_differently(room):
+    for seed, view in enumerate(VIEWS):
+        made(room, *SEEDS, *view, "--seed", str(seed), "-o", f"{seed}.exr", "--sums")
+    made(room, *SEEDS, *VIEWS[2], "--seed", "0-2", "-o", "same.png")
+    done = room("merge", "2.exr", "0.exr", "1.exr", "-o", "all.png")
+    assert done.talk.count("warning") == 1 and contents(room, "all.png") == contents(room, "same.png")
+    assert "warning: 0.exr was made with another --exposure or --view than 2.exr" in done.talk
+    assert room("merge", "2.exr", "0.exr", "-o", "x.exr", "-q").talk == ""
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "pipe"])
@@ -268,6 +297,66 @@ def test_what_cannot_be_added(parts):
         refused(3, "damaged.exr", "0.exr", "damaged.exr")
     done = parts("merge", "0.exr", "-o", "0.exr")
     assert done.returncode != 0 and contents(parts, "0.exr").startswith(b"\x76\x2f\x31\x01")
-    for wrong in (("merge", "-o", "x.exr"), ("merge", "0.exr"),
-                  ("merge", "0.exr", "-o", "x.exr", "--spp", "3")):
-        assert parts(*wrong).returncode == 2
+
+
+@pytest.mark.parametrize("arguments, text", [
+    (("-o", "x.exr"), "files were expected"),
+    (("0.exr", ), "-o FILE was expected, for the picture of all seeds, or --compare REF.exr"),
+    (("0.exr", "-o", "x.exr", "--spp", "3"), "--spp cannot be used with it"),
+    (("0.exr", "-o", "x.mp4"), "one picture, not a film"),
+    (("0.exr", "--compare", "0.exr", "--sums"), "--sums needs -o with an EXR file"),
+    (("0.exr", "-o", "-", "--compare", "0.exr"), "nothing else can go there"),
+    (("0.exr", "-o", "-", "--stats", "-"), "only one thing can go to standard output"),
+])
+def test_options_of_merge(vv, arguments, text):
+    done = vv("merge", *arguments)
+    assert done.returncode == 2 and text in done.talk and done.text == ""
+
+
+def test_the_sum_is_compared_without_a_file(parts):
+    done = parts("merge", "0.exr", "--compare", "0.exr")
+    assert done.returncode == 0 and "rmse      0\n" in done.text
+    assert "rmse      0\n" not in parts("merge", "0.exr", "1.exr", "--compare", "0.exr").text
+
+
+def test_files_that_are_not_complete(room):
+    made(room, *SEEDS, "--sums", "-o", "0.exr", "--resume", "a.sums")
+    made(room, *SEEDS, "-o", "plain.exr")
+    whole, plain, kept = (contents(room, name) for name in ("0.exr", "plain.exr", "a.sums"))
+    end = len(plain)  # of the pixels in both
+    assert whole.startswith(plain)
+
+    def said(name, damaged):
+        room.write(name, damaged)
+        done = room("merge", name, "-o", "x.exr")
+        assert done.returncode == 3 and done.talk.count("cannot read " + name) == 1
+        done = room("room.wrl", *SEEDS, "-o", "x.exr", "--resume", name)
+        assert done.returncode == 3 and f"--resume: cannot read {name}" in done.talk
+        assert contents(room, name) == damaged and not (room.folder / "x.exr").exists()
+        return done.talk
+
+    for size in (0, 3):
+        assert f"it is truncated: it has {size} bytes" in said("t.exr", whole[:size])
+    for size in (5, 100, 300):
+        assert f"truncated: it ends at byte {size}, in its header" in said("t.exr", whole[:size])
+    rows = said("t.exr", whole[:end - 1])
+    assert f"it ends at byte {end - 1}, before the pixels from row 48 on are complete" in rows
+    assert "only rounded means" in said("t.exr", plain)
+    for size in (end + 3, end + 1000, len(whole) - 17, len(whole) - 1):
+        text = said("t.exr", whole[:size])
+        assert f"its sums begin at byte {end}, and their end is not at byte {size}" in text
+    without = said("t.exr", whole[:end + 500] + whole[end + 501:])
+    assert "it is damaged: sums of" in without
+    flipped = whole[:-500] + bytes([whole[-500] ^ 1]) + whole[-499:]
+    assert "it is damaged between the bytes" in said("t.exr", flipped)
+    # a table of blocks that leads nowhere, and one of a file that was not written to its end
+    table = whole.index(b"\0" * 2, whole.index(b"screenWindowWidth")) + 2
+    while int.from_bytes(whole[table:table + 8], "little") not in range(table, table + 1000):
+        table += 1
+    lost = plain[:table] + b"\xff" * 8 + plain[table + 8:]
+    assert f"it is damaged at byte {table}: it does not lead" in said("t.exr", lost)
+    missing = plain[:table + 8] + b"\0" * 8 + plain[table + 16:]
+    assert f"damaged at byte {table + 8}: the pixels from row 16 on" in said("t.exr", missing)
+    assert "it is truncated or damaged: at byte" in said("t.sums", kept[:-1])
+    assert "it is damaged: more follows" in said("t.sums", kept + b"x")
+    assert "not a file of sums, and no OpenEXR file" in said("t.sums", b"hello")

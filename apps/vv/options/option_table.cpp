@@ -198,7 +198,7 @@ void addShader(Options& o, const std::string& value) {
     for (picture::ShaderRule& rule : picture::readShaderRules(value.substr(1)))
       o.shaders.push_back(std::move(rule));
   } catch (const picture::ShaderError& error) {
-    throw UsageError(fmt::format("{}, not \"{}\"", error.what(), value));
+    throw UsageError(error.what());
   } catch (const std::runtime_error& error) {
     throw Failure{exitInput, fmt::format("--shader: {}", error.what())};
   }

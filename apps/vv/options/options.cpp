@@ -129,16 +129,14 @@ void readMerge(Options& options, const std::vector<std::string>& files,
   if (files.empty())
     throw UsageError("vv merge: files were expected: EXR files that were written with --sums, or "
                      "files of --resume");
-  if (options.outputs.empty()) throw UsageError("vv merge needs -o");
+  if (!options.makesPictures())
+    throw UsageError("vv merge: -o FILE was expected, for the picture of all seeds, or --compare "
+                     "REF.exr, to compare it");
   for (const Output& output : options.outputs)
     if (output.film != picture::FilmKind::none)
       throw UsageError(output.path + ": vv merge makes one picture, not a film");
-  if (options.sums &&
-      std::none_of(options.outputs.begin(), options.outputs.end(), [](const Output& output) {
-        return output.format->encode == picture::encodeExr;
-      }))
-    throw UsageError("--sums needs -o with an EXR file");
   options.merge = files;
+  checkTogether(options);
 }
 
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as

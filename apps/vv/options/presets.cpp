@@ -184,7 +184,8 @@ void cover(std::vector<Setting>& settings, std::vector<Setting> layer) {
 // Finds presets in the documents, the user's own first, and follows the presets they build on.
 class Presets {
  public:
-  explicit Presets(std::vector<Document> documents) : documents_(std::move(documents)) {}
+  // The documents must outlive it. Copies of them would not know their lines.
+  explicit Presets(const std::vector<Document>& documents) : documents_(documents) {}
 
   // Puts the settings of a preset over `settings`. `asking` names the place that asks for it.
   void add(const std::string& name, const std::string& asking, std::vector<Setting>& settings) {
@@ -225,7 +226,7 @@ class Presets {
   }
 
  private:
-  std::vector<Document> documents_;
+  const std::vector<Document>& documents_;
   std::set<std::string> open_; // presets that are being read
 };
 
@@ -304,6 +305,7 @@ std::vector<Setting> withPresets(std::vector<Setting> given, const std::string& 
   if (path.empty() && !preset) return given;
 
   std::vector<Document> documents;
+  documents.reserve(2);
   std::vector<Setting> settings;
   if (!path.empty()) {
     documents.push_back(readFile(path));

@@ -201,7 +201,7 @@ constexpr Rule rules[] = {
      "--from"},
     {[](const Options& o) {
        const JobInfo* job = o.job();
-       return o.input.empty() && !o.opensWindow() && (!job || job->needsWorld);
+       return o.input.empty() && o.merge.empty() && !o.opensWindow() && (!job || job->needsWorld);
      },
      "a world (a .wrl file, or - for standard input) was expected; vv --help tells more"},
 };

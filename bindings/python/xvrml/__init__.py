@@ -33,6 +33,7 @@ from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Measureme
 
 load = _arguments.explained(_xvrml.load)
 denoise = _arguments.explained(_xvrml.denoise)
+merge = _arguments.explained(_xvrml.merge)
 for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
@@ -49,7 +50,7 @@ __all__ = [
     "Browser", "Cluster", "ClusterError", "Diagnostic", "Feature", "Film", "LiveView",
     "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
     "ViewpointInfo", "Worker", "World", "denoise", "features", "load", "load_node_plugins", "loads",
-    "__version__", *nodes.__all__
+    "merge", "__version__", *nodes.__all__
 ]
 
 _SUBMODULES = ("control", "dask", "interop", "notebook", "rt")

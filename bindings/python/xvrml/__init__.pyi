@@ -870,6 +870,15 @@ def denoise(
     ...
 
 
+def merge(
+    files: Iterable[_Path],
+    output: Optional[_Path] = ...,
+    *,
+    sums: bool = ...,
+) -> Picture:
+    ...
+
+
 def load(
     source: _Source,
     *,

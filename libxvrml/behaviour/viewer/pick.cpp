@@ -7,7 +7,7 @@
 
 #include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
-#include "geometry/half_space.h"
+#include "geometry/clip_planes.h"
 #include "geometry/node_matrix.h"
 #include "nodes/visible.h"
 #include "xvrml/browser.h"
@@ -58,30 +58,24 @@ struct Interval {
 // children.
 void shorten(Interval& interval, const std::vector<Node*>& children, const PickRay& ray,
              const Matrix& toWorld) {
-  for (Node* child : children) {
-    const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
-    const auto kept = plane ? halfSpaceOf(*plane) : std::nullopt;
-    Matrix toLocal;
-    if (!kept || ++interval.planes > maximumClipPlanes || !invert(toWorld, toLocal)) continue;
-    const double distance = kept->distance(transformPoint(toLocal, ray.origin));
-    const double approach = kept->normal.dot(transformDirection(toLocal, ray.direction));
+  Matrix toLocal;
+  if (!invert(toWorld, toLocal)) return;
+  forEachHalfSpace(children, interval.planes, [&](const HalfSpace& kept) {
+    const double distance = kept.distance(transformPoint(toLocal, ray.origin));
+    const double approach = kept.normal.dot(transformDirection(toLocal, ray.direction));
     if (approach > 0)
       interval.nearest = std::max(interval.nearest, -distance / approach);
     else if (approach < 0)
       interval.farthest = std::min(interval.farthest, -distance / approach);
     else if (distance < 0)
       interval.farthest = -1;
-  }
+  });
 }
 
 // Reduces the bounds of children to what ClipPlanes among them leave.
 void cutByClipPlanes(PickBox& box, const std::vector<Node*>& children) {
   size_t planes = 0;
-  for (Node* child : children) {
-    const auto* plane = nodeCast<nodes::ClipPlane>(renderedNode(child));
-    const auto kept = plane ? halfSpaceOf(*plane) : std::nullopt;
-    if (kept && ++planes <= maximumClipPlanes) box.cut(*kept);
-  }
+  forEachHalfSpace(children, planes, [&](const HalfSpace& kept) { box.cut(kept); });
 }
 
 } // namespace

@@ -1,0 +1,21 @@
+// exr_end.h: Finds where an OpenEXR file ends, by its table of blocks. Programs may put bytes of
+// their own behind it. Pure functions. [any thread]
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+
+namespace picture {
+
+// A file that is not complete. The text says where: "it is truncated: it ends at byte 9, ...".
+struct BrokenExr : std::runtime_error {
+  using runtime_error::runtime_error;
+};
+
+// Returns the number of bytes of the OpenEXR file that these bytes begin with. The pixels are not
+// looked at. All bytes count as its own if it has tiles, several parts or deep pixels. Throws
+// BrokenExr.
+uint64_t endOfExr(std::string_view bytes);
+
+} // namespace picture
