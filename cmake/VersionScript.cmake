@@ -20,11 +20,14 @@ function(openrt_version_script target node)
   endif()
   set(script ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)
   set(maker ${PROJECT_SOURCE_DIR}/cmake/tools/make_version_script.py)
-  if(arg_PRIVATE AND OPENRT_TESTS)
-    set(private --private ${arg_PRIVATE} --private-all xvrml)
-  elseif(arg_SIBLINGS)
+  if(arg_SIBLINGS)
     list(TRANSFORM arg_SIBLINGS PREPEND --siblings=)
     set(private --private ${arg_PRIVATE} --of ${CMAKE_CURRENT_SOURCE_DIR} ${arg_SIBLINGS})
+    # what ctest check_private_symbols asks for
+    set_target_properties(${target} PROPERTIES OPENRT_SCRIPT_WITHOUT_TESTS "--of;${CMAKE_CURRENT_SOURCE_DIR};${arg_SIBLINGS};${arg_HEADERS}")
+  endif()
+  if(arg_PRIVATE AND OPENRT_TESTS)
+    set(private --private ${arg_PRIVATE} --private-all xvrml)
   endif()
   add_custom_command(OUTPUT ${script}
                      COMMAND ${Python3_EXECUTABLE} ${maker} --output ${script} --version ${node} ${private} ${arg_HEADERS}
