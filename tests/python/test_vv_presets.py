@@ -129,6 +129,28 @@ def test_built_in_presets(board, name):
             assert min(corner) > .8
 
 
+def test_technical_keeps_parallel_edges_parallel(vv):
+    near_and_far = HEADER + "".join("""Transform { translation %s 0 %s children Shape {
+  appearance Appearance { material Material {} } geometry Box { size 1 1 1 } } }
+""" % place for place in (("-1", "-2"), ("1", "2")))
+    vv.write("two.wrl", near_and_far)
+
+    def widths(*options):
+        rows = vv.picture("--from", "front", "--size", "96x64", "--spp", "4", *options,
+                          world="two.wrl")
+        row = [min(p) < 250 for p in rows[32]]
+        return sum(row[:48]), sum(row[48:])
+
+    far, near = widths("--preset", "technical")
+    assert abs(far - near) <= 1 and far > 20
+    far, near = widths("--preset", "technical", "--fov", "45")
+    assert near > 1.3 * far
+    # its angle is not for other views
+    eye = ("--camera", "0,0,20:0,0,0")
+    assert vv.picture("--preset", "technical", *eye, world="two.wrl") == vv.picture(
+        *eye, "--background", "white", "--spp", "32", world="two.wrl")
+
+
 def test_options_win_over_presets(board):
     plain = floats(board, "--from", "top", "--background", "none")
     assert floats(board, "--preset", "product", "--from", "top", "--background", "none") == plain

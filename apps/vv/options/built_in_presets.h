@@ -15,8 +15,10 @@ clamp = 10
 preset = "studio"
 studio = "white"
 
+# From so far that parallel edges stay parallel, as in a drawing.
 [preset.technical]
 from = "three-quarter"
+fov = 0.5
 background = "white"
 spp = 32
 
