@@ -11,9 +11,9 @@ namespace vv {
 // light, and no ORT node that shows or lights it. Cameras of glTF files do not count.
 bool isBareModel(const xvrml::World& world);
 
-// Sets the background of such a model, or a studio of that colour if a PhysicalMaterial is metal, if the pictures are made for screens and the options leave
-// the background open. EXR and PPM files, which programs read, and comparisons keep the world as it
-// is.
+// Sets the background of such a model, or a studio of that colour if a PhysicalMaterial is metal.
+// The pictures must be made for screens, and the options leave the background open. EXR and PPM
+// files, which programs read, and comparisons keep the world as it is.
 void chooseBackground(Options& options, const xvrml::World& world);
 
 } // namespace vv

@@ -35,27 +35,22 @@ inline Channel channel(float c, float r, float g, float b, float transparency) {
   const double colour = inside(c), brightest = inside(std::fmax(r, std::fmax(g, b)));
   const auto slope = [](double of) { return (1 / of - of) / 2; };
   // The inverse of T for the brightest channel.
-  const double thickness = (std::asinh(slope(brightest) / std::sqrt(share)) + std::log(brightest)) /
-                           slope(brightest);
+  const double thickness =
+      (std::asinh(slope(brightest) / std::sqrt(share)) + std::log(brightest)) / slope(brightest);
   const double x = slope(colour) * std::fmax(0.0, thickness), e = std::exp(-2 * x),
                below = 1 - e * colour * colour;
   const double through = std::exp(-x) * (1 - colour * colour) / below,
-               passes = std::min(1.0, through * through),
-               reflected = colour * (1 - e) / below;
+               passes = std::min(1.0, through * through), reflected = colour * (1 - e) / below;
   return {static_cast<float>(passes),
           static_cast<float>(std::min(1.0, reflected / std::fmax(1e-9, 1 - passes)))};
 }
 
-template <class F> struct Layer {
-  rts::ColorOf<F> passes, body;
-};
+template <class F> struct Layer { rts::ColorOf<F> passes, body; };
 template <class F> Layer<F> layer(rts::ColorOf<F> colour, float transparency) {
   const auto each = [&](F c, auto part) {
-    return rts::eachLane(
-        [&](float own, float r, float g, float b) {
-          return channel(own, r, g, b, transparency).*part;
-        },
-        c, colour.r, colour.g, colour.b);
+    return rts::eachLane([&](float own, float r, float g,
+                             float b) { return channel(own, r, g, b, transparency).*part; },
+                         c, colour.r, colour.g, colour.b);
   };
   const auto all = [&](auto part) {
     return rts::ColorOf<F>{each(colour.r, part), each(colour.g, part), each(colour.b, part)};

@@ -148,7 +148,7 @@ def test_technical_keeps_parallel_edges_parallel(vv):
     # its angle is not for other views
     eye = ("--camera", "0,0,20:0,0,0")
     assert vv.picture("--preset", "technical", *eye, world="two.wrl") == vv.picture(
-        *eye, "--background", "white", "--spp", "32", world="two.wrl")
+        *eye, "--background", "white", world="two.wrl")
 
 
 def test_options_win_over_presets(board):

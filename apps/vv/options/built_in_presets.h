@@ -23,13 +23,13 @@ background = "white"
 spp = 32
 
 # Materials of KiCad's library have names. The layers of its exporter have colours alone, and a
-# shininess by the layer: .9 finish of the copper, .7 solder, .01 board (decision 75). Solder mask
+# shininess by the layer: .9 finish of the copper, .7 solder, .01 board (decision 76). Solder mask
 # keeps its transparency.
 [preset.pcb]
 from = "above"
 studio = "#c8cacc"
 clamp = 4
-spp = 12
+spp = 16
 shader = [
   "colour:.72,.46,.21=Metal:n=.21,1.04,1.18:k=3.67,2.58,2.21:roughness=.5",
   "colour:.75,.72,.66=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.4",
