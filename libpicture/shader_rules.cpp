@@ -1,11 +1,9 @@
 #include "libpicture/shader_rules.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -22,14 +20,14 @@ namespace {
 
 using namespace xvrml;
 
-constexpr float colourTolerance = 0.03f;
+constexpr float colourTolerance = 0.03f, shininessTolerance = 0.02f;
 constexpr size_t rulesFileBytes = 1 << 20; // a longer file is refused
 
 // What a rule selects.
 struct Selector {
   enum class Kind : uint8_t { rest, name, material, appearance, shape, colour } kind;
   std::string pattern;
-  std::array<float, 3> colour{};
+  std::vector<float> colour; // red, green, blue, and the shininess if it counts
 };
 
 // The nodes of an appearance, as written in the file.
@@ -45,18 +43,21 @@ Parts partsOf(Node* appearance) {
   return {};
 }
 
-std::array<float, 3> readColour(const std::string& text) {
-  std::array<float, 3> out{};
+std::vector<float> readColour(const std::string& text) {
+  std::vector<float> out;
   const char *at = text.data(), *end = text.data() + text.size();
-  for (size_t k = 0; k < 3; ++k) {
-    const auto read = std::from_chars(at, end, out[k]);
-    const bool follows = k < 2 ? read.ptr != end && *read.ptr == ',' : read.ptr == end;
-    if (read.ec != std::errc() || !follows || !(out[k] >= 0 && out[k] <= 1))
-      throw ShaderError(fmt::format(
-          "colour: R,G,B from 0 to 1, as in diffuseColor, was expected, not \"{}\"", text));
-    at = read.ptr + 1;
+  for (;; ++at) {
+    float value = 0;
+    const auto read = std::from_chars(at, end, value);
+    at = read.ptr;
+    if (read.ec != std::errc() || !(value >= 0 && value <= 1) || out.size() == 4) break;
+    out.push_back(value);
+    if (at == end && out.size() >= 3) return out;
+    if (at == end || *at != ',') break;
   }
-  return out;
+  throw ShaderError(fmt::format("colour: R,G,B from 0 to 1, as in diffuseColor, with or without "
+                                "the shininess behind, was expected, not \"{}\"",
+                                text));
 }
 
 // Splits a rule into its selector and the text of its shader.
@@ -98,21 +99,25 @@ Node& findNode(const std::string& name, const World& world) {
                                       near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
-std::optional<std::array<float, 3>> colourOf(const Node* material) {
-  if (!material) return {};
-  for (const char* name : {"diffuseColor", "baseColor"})
-    if (const FieldInfo* field = material->type().find(name);
-        field && field->type == FieldType::SFColor && holdsValue(*field)) {
-      const auto& c = *static_cast<const SFColor*>(material->storage(*field));
-      return std::array{float(c.r), float(c.g), float(c.b)};
-    }
-  return {};
-}
-
-bool isNear(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+// Returns whether a material has the numbers of a rule for colours.
+bool hasColour(const Node* material, const std::vector<float>& wanted) {
+  if (!material) return false;
+  const auto find = [&](const char* name, FieldType type) {
+    const FieldInfo* field = material->type().find(name);
+    return field && field->type == type && holdsValue(*field) ? material->storage(*field) : nullptr;
+  };
+  const auto near = [](float a, float b, float within) { return std::abs(a - b) <= within; };
+  const void* colour = find("diffuseColor", FieldType::SFColor);
+  if (!colour) colour = find("baseColor", FieldType::SFColor);
+  if (!colour) return false;
+  const auto& c = *static_cast<const SFColor*>(colour);
+  const float own[] = {float(c.r), float(c.g), float(c.b)};
   for (size_t k = 0; k < 3; ++k)
-    if (!(std::abs(a[k] - b[k]) <= colourTolerance)) return false;
-  return true;
+    if (!near(own[k], wanted[k], colourTolerance)) return false;
+  if (wanted.size() == 3) return true;
+  const void* shininess = find("shininess", FieldType::SFFloat);
+  return shininess &&
+         near(float(*static_cast<const SFFloat*>(shininess)), wanted[3], shininessTolerance);
 }
 
 // Returns whether a node that is written, or the one drawn in its place, has a matching DEF name.
@@ -135,10 +140,7 @@ std::vector<nodes::Shape*> shapesOf(const World& world, const Selector& selector
     case Kind::material: return isNamed(parts.material.get(), material, selector.pattern);
     case Kind::appearance: return isNamed(shape.appearance.get(), appearance, selector.pattern);
     case Kind::shape: return matchesGlob(selector.pattern, shape.defName);
-    case Kind::colour: {
-      const auto colour = colourOf(material);
-      return colour && isNear(*colour, selector.colour);
-    }
+    case Kind::colour: return hasColour(material, selector.colour);
     default:
       return below.contains(&shape) || below.contains(shape.appearance.get()) ||
              below.contains(appearance) || below.contains(parts.material.get());

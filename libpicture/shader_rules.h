@@ -18,7 +18,8 @@ namespace picture {
 //  - a DEF name of the world's own file: a Shape, an appearance, a Material, or a node above shapes
 //  - material:GLOB, appearance:GLOB, shape:GLOB: shapes whose Material, appearance or own node has
 //    such a DEF name, also in Inlines and prototypes. * stands for any letters, ? for one.
-//  - colour:R,G,B: shapes whose Material has this diffuseColor or baseColor, within 0.03
+//  - colour:R,G,B or colour:R,G,B,SHININESS: shapes whose Material has this diffuseColor or
+//    baseColor, within 0.03, and this shininess, within 0.02
 //  - *: shapes that have no shader yet
 struct ShaderRule {
   std::string text;

@@ -23,13 +23,13 @@ MATERIALS = {  # materials of the models, named as in KiCad's libraries
     "LED-RED": "ambientIntensity 0.789 diffuseColor 0.7 0.1 0.05 specularColor 0.33 0.24 0.2 shininess 0.5 transparency 0.1",
     "MET-ALUMINUM": "ambientIntensity 0.256 diffuseColor 0.372 0.322 0.373 specularColor 0.556 0.554 0.556 shininess 0.127",
 }
-LAYERS = {  # colours of the board's layers; the layers have no names
-    "body": "diffuseColor 0.41 0.38 0.22 specularColor 0.09 0.05 0.03 shininess 0.1",
-    "copper": "diffuseColor 0.72 0.47 0.22 specularColor 0.6 0.4 0.3 shininess 0.3",
-    "mask": "diffuseColor 0.03 0.27 0.11 specularColor 0.1 0.2 0.1 shininess 0.4",
-    "trace": "diffuseColor 0.05 0.36 0.15 specularColor 0.1 0.2 0.1 shininess 0.4",
-    "paste": "diffuseColor 0.75 0.72 0.66 specularColor 0.6 0.6 0.6 shininess 0.4",
-    "silk": "diffuseColor 0.9 0.9 0.88 specularColor 0.1 0.1 0.1 shininess 0.1",
+# The layers of the board have colours and no names. These are the numbers of KiCad 6 to 9.
+LAYERS = {
+    "body": "diffuseColor 0.43 0.45 0.3 specularColor 0.487 0.505 0.37 shininess 0.01",
+    "copper": "diffuseColor 0.75 0.61 0.23 specularColor 0.9 0.844 0.692 shininess 0.9",
+    "mask": "diffuseColor 0.0784 0.2 0.141 specularColor 0.355 0.44 0.399 transparency 0.17 shininess 0.3",
+    "paste": "diffuseColor 0.5 0.5 0.5 specularColor 0.8 0.8 0.8 shininess 0.7",
+    "silk": "diffuseColor 0.961 0.961 0.961 specularColor 0.965 0.965 0.965 shininess 0.02",
 }
 
 
@@ -195,13 +195,13 @@ TRACKS = [[(-16, 3.81), (-11, 3.81), (-9.6, 2.9), (-5.7, 2.9)],
 
 def board():
     outline = rounded(WIDTH, HEIGHT, 2.5)
-    body, mask, copper, tracks, paste, silk = (Faces() for _ in range(6))
+    body, mask, copper, paste, silk = (Faces() for _ in range(5))
     body.prism(outline, -THICK / 2, THICK / 2)
-    for low, high in ((THICK / 2, THICK / 2 + .02), (-THICK / 2 - .02, -THICK / 2)):
-        mask.prism(outline, low, high)
     top = THICK / 2 + .02
-    for way in TRACKS:
-        tracks.track(way, .5, top, top + .03)
+    mask.prism(outline, THICK / 2, top, bottom=False)  # seen from outside alone
+    mask.prism(outline, -top, -THICK / 2, top=False)
+    for way in TRACKS:  # below the mask
+        copper.track(way, .5, THICK / 2, THICK / 2 + .01)
     for i in range(4):  # the rings of the header and the LED, the holes in the corners
         copper.disc(-16, 3.81 - 2.54 * i, .85, top, top + .04)
     for y in (3.73, 6.27):
@@ -230,8 +230,7 @@ def board():
                                                                               (2.6, -1.6),
                                                                               (2.6, -9.4)]):
         silk.track(outline_of, .2, top, top + .025)
-    layers = layer("body", body, False) + layer("mask", mask, False) + layer(
-        "trace", tracks) + layer("copper", copper)
+    layers = layer("body", body, False) + layer("mask", mask, False) + layer("copper", copper)
     return layers + layer("paste", paste) + layer("silk", silk)
 
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "libpicture/walk.h"
+#include "xvrml/nodes.h"
 
 namespace vv {
 
@@ -20,12 +21,27 @@ bool decidesTheLook(std::string_view type) {
          type == "ORTLight" || type == "ORTSensor" || type == "Script";
 }
 
+// Returns whether a part is metal, which shows what is around it and little else.
+bool hasMetal(const xvrml::World& world) {
+  bool metal = false;
+  const auto visit = [&](const xvrml::Node& node) {
+    const auto* material =
+        xvrml::nodeCast<xvrml::nodes::PhysicalMaterial>(const_cast<xvrml::Node*>(&node));
+    metal = metal || (material && material->metallic > 0);
+  };
+  picture::walkInto(world.scope, visit, [](const xvrml::Scope&) {});
+  return metal;
+}
+
 } // namespace
 
 bool isBareModel(const xvrml::World& world) {
+  // Modellers write the camera of their window into glTF files. It does not say what is around.
+  const bool camerasSayNothing = world.head.version.encoding == xvrml::Encoding::gltf;
   bool bare = true;
   const auto visit = [&](const xvrml::Node& node) {
-    bare = bare && !decidesTheLook(node.type().name);
+    const std::string_view type = node.type().name;
+    bare = bare && (!decidesTheLook(type) || (camerasSayNothing && type.ends_with("Viewpoint")));
   };
   picture::walkInto(world.scope, visit, [](const xvrml::Scope&) {});
   return bare;
@@ -44,6 +60,10 @@ void chooseBackground(Options& options, const xvrml::World& world) {
                (output.format->appliesCurve && output.format->name != "PPM");
       });
   if (!open || !forScreens || !isBareModel(world)) return;
+  if (hasMetal(world) && render.linear && !options.measures()) {
+    options.render.studio = {true, neutral};
+    return;
+  }
   options.render.background.kind = picture::Background::Kind::colour;
   options.render.background.colour = neutral;
 }

@@ -75,16 +75,18 @@ template <class F> rts::ColorOf<F> colour(rts::ColorOf<F> albedo, float index) {
           rts::eachLane(channel, albedo.b)};
 }
 
-// Adds a diffuse base under a smooth coat with this index of refraction; up to 1: no coat.
-template <class F>
-void add(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out, rts::ColorOf<F> albedo, float index) {
+// Adds a diffuse base under a smooth coat with this index of refraction; up to 1: no coat. `shown`
+// is the share of the surface, by colour, that is there.
+template <class F> void add(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out,
+                            rts::ColorOf<F> albedo, float index,
+                            rts::ColorOf<F> shown = {1, 1, 1}) {
   out.albedo(albedo);
-  if (!(index > 1.001f)) return out.diffuse(albedo);
+  if (!(index > 1.001f)) return out.diffuse(shown * albedo);
   const F f = 1 - rts::eachLane([index](float c) { return transmittance(c, index); }, hit.cosine());
   out.coat();
-  out.reflection({f, f, f});
+  out.reflection(shown * rts::ColorOf<F>{f, f, f});
   out.coat(false);
-  out.custom(colour(albedo, index), CoatedDiffuse::of(index));
+  out.custom(shown * colour(albedo, index), CoatedDiffuse::of(index));
 }
 
 } // namespace coat

@@ -1,9 +1,10 @@
 // plastic.cpp: the surface shader Plastic, a coloured diffuse base under a clear boundary, smooth
-// or rough. [render]
+// or rough. With `transparency` the base is a layer of lacquer that shows what is below. [render]
 #include <algorithm>
 #include <array>
 
 #include "coat.h"
+#include "lacquer.h"
 #include "microfacet.h"
 
 namespace {
@@ -82,8 +83,13 @@ struct Plastic : rts::Surface<Plastic> {
                           3};
   rts::Param<float> roughness{
       "roughness", 0, "width of the distribution of slopes (alpha of GGX); 0: smooth", 0, 1};
+  rts::Param<float> transparency{"transparency", 0,
+                                 "share of what is behind that shows through the body, in the "
+                                 "brightest channel of color",
+                                 0, 1};
   rts::Param<rts::Texture> texture{"texture", "multiplies color"};
 
+  bool transmits() const { return transparency > 0; }
   uint32_t needs() const {
     if (!(index > 1.001f)) return 0;
     return rough() ? RTS_GLOSSY : RTS_SPECULAR | RTS_GLOSSY;
@@ -112,18 +118,35 @@ struct Plastic : rts::Surface<Plastic> {
     return nullptr;
   }
   template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
-    const rts::Vec4Of<F> t = hit.sample(texture, hit.uv);
-    const rts::ColorOf<F> albedo = *color * rts::ColorOf<F>{t.x, t.y, t.z} *
-                                   rts::ColorOf<F>{hit.color.x, hit.color.y, hit.color.z};
-    if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
-    out.albedo(albedo);
-    out.coat();
-    out.custom({1, 1, 1}, microfacet::MicrofacetLobe<Boundary>{roughness, {index}});
-    out.coat(false);
-    out.custom(coat::colour(albedo, index), body_);
+    const rts::ColorOf<F> albedo = colourAt(hit);
+    if (!(transparency > 0)) {
+      if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
+      return addRough(out, albedo, rts::ColorOf<F>{1, 1, 1});
+    }
+    const lacquer::Layer<F> layer = lacquer::layer<F>(albedo, transparency);
+    const rts::ColorOf<F> shown{1 - layer.passes.r, 1 - layer.passes.g, 1 - layer.passes.b};
+    out.transparent(layer.passes);
+    if (rough() && body_.mean > 0) return addRough(out, layer.body, shown);
+    coat::add(hit, out, layer.body, index, shown);
+  }
+  template <class F> rts::ColorOf<F> transmit(const rts::HitOf<F>& hit) const {
+    return lacquer::layer<F>(colourAt(hit), transparency).passes;
   }
 
  private:
+  template <class F> rts::ColorOf<F> colourAt(const rts::HitOf<F>& hit) const {
+    const rts::Vec4Of<F> t = hit.sample(texture, hit.uv);
+    return *color * rts::ColorOf<F>{t.x, t.y, t.z} *
+           rts::ColorOf<F>{hit.color.x, hit.color.y, hit.color.z};
+  }
+  template <class F>
+  void addRough(rts::ClosuresOf<F>& out, rts::ColorOf<F> albedo, rts::ColorOf<F> shown) const {
+    out.albedo(albedo);
+    out.coat();
+    out.custom(shown, microfacet::MicrofacetLobe<Boundary>{roughness, {index}});
+    out.coat(false);
+    out.custom(shown * coat::colour(albedo, index), body_);
+  }
   bool rough() const { return roughness > microfacet::minAlpha && index > 1.001f; }
   static float albedoOf(const microfacet::MicrofacetLobe<Boundary>& boundary, rts::Vec3 o) {
     constexpr int around = 40; // samples of half of the circle; the other half is symmetric

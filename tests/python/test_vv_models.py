@@ -227,6 +227,24 @@ def png(vv, *arguments, world="sky.wrl", spp="1"):
     return read_png(done.stdout)[2:]
 
 
+def test_a_model_of_metal_has_a_studio_to_reflect(vv):
+    ball = """#X3D V4.0 utf8
+PROFILE Interchange
+Shape { appearance Appearance { material PhysicalMaterial { metallic %s roughness .2 } }
+  geometry Sphere {} }
+"""
+    vv.write("metal.x3dv", ball % "1")
+    vv.write("paint.x3dv", ball % "0")
+    rows = png(vv, world="metal.x3dv", spp="16")[1]
+    middle = [sum(rows[y][x]) / 3 for y in (10, 12, 14) for x in (13, 16, 19)]
+    assert min(middle) > 60 and max(middle) - min(middle) > 10  # not black, not flat
+    assert min(rows[0][0]) > 100
+    neutral = (158, 166, 173)  # decision 40
+    assert png(vv, world="paint.x3dv")[1][0][0] == neutral
+    assert png(vv, "--background", "black", world="metal.x3dv")[1][0][0] == (0, 0, 0)
+    assert png(vv, "--colour", "vrml97", world="metal.x3dv")[1][0][0] == neutral
+
+
 def test_background_none(vv):
     components, rows = png(vv, "--background", "none", spp="16")
     assert components == 4 and rows[0][0] == (0, 0, 0, 0) and rows[12][16][3] == 255

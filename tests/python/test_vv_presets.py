@@ -60,6 +60,7 @@ def colours(vv, *arguments):
     (["material:IC-BODY-*=" + GREEN], "-g-"),
     (["colour:.72,.47,.19=" + BLUE], "--b"),
     (["color:0,0,1=" + BLUE], "b--"),
+    (["colour:0,0,1,.7=" + RED, "colour:.72,.45,.2,.2=" + BLUE], "--b"),
     (["Chip=" + BLUE], "-b-"),
     (["material:*-01=" + RED, "material:PIN-01=" + BLUE], "br-"),
     (["material:PIN-01=" + BLUE, "material:*-01=" + RED], "rr-"),
@@ -84,6 +85,9 @@ def test_a_rule_that_selects_nothing_is_a_warning(board):
 @pytest.mark.parametrize("rules, message", [
     ("material:PIN-*=Metal\nPIN Metal\n", "rules.txt:2: SELECTOR=CLASS[:PARAM=VALUE...] was"),
     ("colour:1,2=Metal", "rules.txt:1: colour: R,G,B from 0 to 1"),
+    ("colour:1,1,1,1,1=Metal", "rules.txt:1: colour: R,G,B from 0 to 1"),
+    ("colour:1,1,1,=Metal", "rules.txt:1: colour: R,G,B from 0 to 1"),
+    ("colour:1,1,1,-.1=Metal", "rules.txt:1: colour: R,G,B from 0 to 1"),
     ("material:=Metal", "rules.txt:1: a name was expected after material:"),
     ("\n\nmaterial:PIN-*=Metall", 'rules.txt:3: Metall: there is no shader class "Metall"'),
     ("material:PIN-*=Metal:rough=1", "Metal has no parameter rough"),
@@ -125,6 +129,28 @@ def test_built_in_presets(board, name):
     if name in ("product", "technical"):  # the corners are the white backdrop
         for corner in (rows[0][0], rows[0][-1]):
             assert min(corner) > .8
+
+
+def test_technical_keeps_parallel_edges_parallel(vv):
+    near_and_far = HEADER + "".join("""Transform { translation %s 0 %s children Shape {
+  appearance Appearance { material Material {} } geometry Box { size 1 1 1 } } }
+""" % place for place in (("-1", "-2"), ("1", "2")))
+    vv.write("two.wrl", near_and_far)
+
+    def widths(*options):
+        rows = vv.picture("--from", "front", "--size", "96x64", "--spp", "4", *options,
+                          world="two.wrl")
+        row = [min(p) < 250 for p in rows[32]]
+        return sum(row[:48]), sum(row[48:])
+
+    far, near = widths("--preset", "technical")
+    assert abs(far - near) <= 1 and far > 20
+    far, near = widths("--preset", "technical", "--fov", "45")
+    assert near > 1.3 * far
+    # its angle is not for other views
+    eye = ("--camera", "0,0,20:0,0,0")
+    assert vv.picture("--preset", "technical", *eye, world="two.wrl") == vv.picture(
+        *eye, "--background", "white", world="two.wrl")
 
 
 def test_options_win_over_presets(board):
@@ -329,14 +355,72 @@ def test_a_studio_with_nothing_in_it_is_a_warning(vv, arguments):
 
 
 def test_studio_is_the_same_on_any_number_of_threads(board):
-    assert floats(board, "--preset", "pcb", "--threads", "1") == floats(
-        board, "--preset", "pcb", "--threads", "3")
+    board.write("mask.wrl", HEADER + "".join(
+        LAYER % (0, z, *layer)
+        for z, layer in ((-.1, ("0.427 0.455 0.294", ".01", 0.034)),
+                         (-.05, ("0.75 0.61 0.23", ".9", 0)), (0, ("0.08 0.2 0.14", ".3", .17)))))
+    for world in ("board.wrl", "mask.wrl"):
+        assert floats(board, "--preset", "pcb", "--threads", "1", world=world) == floats(
+            board, "--preset", "pcb", "--threads", "3", world=world)
 
 
 def test_the_preset_knows_the_boards_materials(vv):
     done = vv(ROOT / "examples/kicad/blinker.wrl", "--preset", "pcb", "--write", "out.wrl")
     assert done.returncode == 0, done.talk
     assert 'name "Metal"' in (vv.folder / "out.wrl").read_text()
+
+
+# The materials that KiCad's exporter writes for the layers of a board: diffuse colour, shininess,
+# transparency. 6 to 9 write the colours of the stackup; an unset one of the board is black.
+LAYER = """Transform { translation %g 0 %g children Shape {
+  appearance Appearance { material Material { diffuseColor %s shininess %s transparency %s } }
+  geometry IndexedFaceSet { coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] }
+    coordIndex [ 0 1 2 3 ] } } }
+"""
+GOLD, COPPER, SILVER, TIN = "n .143", "n .21", "n .05", "n 1.48"
+
+
+@pytest.mark.parametrize("name, colour, shininess, what", [
+    ("6 to 9, no finish", "0.75 0.61 0.23", "0.9", GOLD),
+    ("6 to 9, ENIG", "0.698 0.612 0", "0.9", GOLD),
+    ("6 to 9, OSP", "0.722 0.451 0.196", "0.9", COPPER),
+    ("6 to 9, silver", "0.83529413 0.83529413 0.83529413", "0.89999998", SILVER),
+    ("6 to 9, HASL", "0.627 0.627 0.627", "0.9", TIN),
+    ("6 to 9, paste", "0.5 0.5 0.5", "0.7", TIN),
+    ("5, pads", "0.749 0.756 0.761", "0.8", TIN),
+    ("a part that is as grey as HASL", "0.627 0.627 0.627", "0.1", "Plastic"),
+    ("a part that is as grey as paste", "0.5 0.5 0.5", "0.2", "Plastic"),
+    ("6 to 9, board without a colour", "0 0 0", "0.01", "color .43 .45 .3"),
+    ("a black part", "0 0 0", "0.1", "roughness .2"),
+    ("6 to 9, silkscreen", "0.961 0.961 0.961", "0.02", "Plastic"),
+])
+def test_the_preset_knows_the_layers_of_each_kicad(vv, name, colour, shininess, what):
+    vv.write("layer.wrl", HEADER + LAYER % (0, 0, colour, shininess, 0))
+    assert vv("layer.wrl", "--preset", "pcb", "--write", "out.wrl").returncode == 0, name
+    text = (vv.folder / "out.wrl").read_text()
+    assert what in text.replace(" 0.", " ."), text
+
+
+@pytest.mark.parametrize("mask", ["0.0784 0.2 0.141", "0.71 0.0745 0.0824", "0.00784 0.231 0.635"])
+def test_tracks_show_through_solder_mask(vv, mask):
+    body = LAYER % (0, -.1, "0.427 0.455 0.294", ".01", 0)
+    track = LAYER % (1, -.05, "0.75 0.61 0.23", ".9", 0)
+    over = [LAYER % (0, 0, mask, ".3", alpha) for alpha in ("0.17", "0")]
+    view = HEADER + "Viewpoint { position 0 0 6 fieldOfView .3 }\n"
+
+    def left_and_right(text):
+        vv.write("mask.wrl", view + text)
+        rows = floats(vv, "--preset", "pcb", "--viewpoint", "0", "--spp", "64", world="mask.wrl")
+        middle = rows[4:12]
+        return [[sum(row[x][c] for row in middle for x in part) / 8 / len(part) for c in range(3)]
+                for part in (range(7, 10), range(14, 17))]
+
+    board, copper = left_and_right(body + track + over[0])
+    strongest = max(range(3), key=lambda c: float(mask.split()[c]))
+    assert copper[strongest] > 1.15 * board[strongest]  # a brighter shade of the mask
+    assert max(copper) == copper[strongest]
+    board, copper = left_and_right(body + track + over[1])
+    assert copper == pytest.approx(board, rel=.1)
 
 
 # Python -----------------------------------------------------------------------------------------

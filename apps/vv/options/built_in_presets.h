@@ -15,26 +15,37 @@ clamp = 10
 preset = "studio"
 studio = "white"
 
+# From so far that parallel edges stay parallel, as in a drawing.
 [preset.technical]
 from = "three-quarter"
+fov = 0.5
 background = "white"
 spp = 32
 
-# Materials of KiCad's library have names; the layers of its exporter have colours alone.
+# Materials of KiCad's library have names. The layers of its exporter have colours alone, and a
+# shininess by the layer: .9 finish of the copper, .7 solder, .01 board (decision 76). Solder mask
+# keeps its transparency.
 [preset.pcb]
 from = "above"
 studio = "#c8cacc"
 clamp = 4
-spp = 12
+spp = 16
 shader = [
-  "colour:.72,.46,.21=Metal:n=.2,.92,1.1:k=3.9,2.45,2.14:roughness=.3",
-  "colour:.4,.4,.4=Metal:roughness=.3",
-  "colour:.75,.72,.66=Metal:roughness=.3",
+  "colour:.72,.46,.21=Metal:n=.21,1.04,1.18:k=3.67,2.58,2.21:roughness=.5",
+  "colour:.75,.72,.66=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.4",
+  "colour:.75,.61,.23,.9=Metal:n=.143,.375,1.442:k=3.983,2.386,1.603:roughness=.4",
+  "colour:.7,.61,0,.9=Metal:n=.143,.375,1.442:k=3.983,2.386,1.603:roughness=.4",
+  "colour:.84,.84,.84,.9=Metal:n=.05,.06,.04:k=4.21,3.59,2.66:roughness=.4",
+  "colour:.63,.63,.63,.9=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.4",
+  "colour:.5,.5,.5,.7=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.5",
+  "colour:.4,.4,.4,.8=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.5",
+  "colour:.75,.76,.76,.8=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.4",
+  "colour:0,0,0,.01=Plastic:color=.43,.45,.3:roughness=.4",
   "material:PIN-*=Metal:roughness=.25",
   "material:PIN-02=Metal:n=.143,.375,1.442:k=3.983,2.386,1.603:roughness=.25",
   "material:MET-*=Metal:roughness=.3",
-  "material:MET-COPPER=Metal:n=.2,.92,1.1:k=3.9,2.45,2.14:roughness=.3",
-  "material:MET-BRONZE=Metal:n=.2,.92,1.1:k=3.9,2.45,2.14:roughness=.4",
+  "material:MET-COPPER=Metal:n=.21,1.04,1.18:k=3.67,2.58,2.21:roughness=.4",
+  "material:MET-BRONZE=Metal:n=.21,1.04,1.18:k=3.67,2.58,2.21:roughness=.5",
   "material:IC-BODY-*=Plastic:roughness=.45",
   "material:IC-LABEL-*=Diffuse",
   "material:PLASTIC-*=Plastic:roughness=.35",

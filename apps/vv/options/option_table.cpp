@@ -433,10 +433,11 @@ const OptionInfo table[] = {
      "Replace the surface shader of shapes: Ball=Glass:index=1.33, material:PIN-*=Metal. SELECTOR "
      "is a DEF name (of a shape, an appearance, a Material or a group), or material:GLOB, "
      "appearance:GLOB or shape:GLOB for all nodes with such DEF names, also in Inlines and "
-     "prototypes, or colour:R,G,B for Materials of about this diffuseColor, or * for all shapes "
-     "that have no shader yet. CLASS is LIBRARY/CLASS for a class of a plug-in. The VALUE of a "
-     "texture is a file name; @FILE as VALUE reads a text from a file. --shader @FILE reads rules, "
-     "one a line. May be given several times; the last rule that selects a shape wins.",
+     "prototypes, or colour:R,G,B[,SHININESS] for Materials of about this diffuseColor (and "
+     "shininess), or * for all shapes that have no shader yet. CLASS is LIBRARY/CLASS for a "
+     "class of a plug-in. The VALUE of a texture is a file name; @FILE as VALUE reads a text from "
+     "a file. --shader @FILE reads rules, one a line. May be given several times; the last rule "
+     "that selects a shape wins.",
      addShader, true},
     {"--studio", "COLOUR", "Change",
      "Light a model as in a studio: soft boxes that stand where the camera stands, a ground that "

@@ -172,8 +172,16 @@ bool replaces(const Setting& later, const Setting& earlier) {
   return false;
 }
 
-// Puts a layer over those below it.
+// Puts a layer over those below it. A field of view that was chosen for the sides of `from` goes
+// with them.
 void cover(std::vector<Setting>& settings, std::vector<Setting> layer) {
+  const auto names = [](const std::vector<Setting>& all, std::string_view name) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Setting& one) { return isFor(*one.option, name); });
+  };
+  const bool otherView = names(layer, "viewpoint") || names(layer, "camera") || names(layer, "fit");
+  if (otherView && names(settings, "from"))
+    std::erase_if(settings, [](const Setting& one) { return isFor(*one.option, "fov"); });
   std::erase_if(settings, [&](const Setting& earlier) {
     return std::any_of(layer.begin(), layer.end(),
                        [&](const Setting& later) { return replaces(later, earlier); });

@@ -30,6 +30,8 @@
 //                                                    unlit
 //     Color transmit(const Hit&) const               optional: transmittance (0..1) for shadow
 //                                                    rays; without it the surface is opaque
+//     bool transmits() const                         optional, with `transmit`: it may be above 0;
+//                                                    without it shadow rays always call `transmit`
 //     bool emits() const                             optional: emission may be above 0; without it
 //                                                    no light samples are taken on the surface, and
 //                                                    path tracing finds its light only by chance

@@ -22,6 +22,7 @@ template <class T> uint32_t surfaceTraits(const void* params) {
   uint32_t t = HasTransmit<T>::value ? uint32_t(RTS_TRANSPARENT) : 0u;
   const T* shader = static_cast<const T*>(params);
   (void)shader;
+  if constexpr (HasTransmits<T>::value) t = shader->transmits() ? t : 0u;
   if constexpr (HasEmits<T>::value) t |= shader->emits() ? uint32_t(RTS_EMISSIVE) : 0u;
   if constexpr (HasEmitsUniformly<T>::value)
     t |= (t & RTS_EMISSIVE) && shader->emitsUniformly() ? uint32_t(RTS_UNIFORM_EMISSION) : 0u;

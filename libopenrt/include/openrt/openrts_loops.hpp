@@ -20,6 +20,7 @@ RTS_DETECT(HasShade, std::declval<const T&>().shade(std::declval<const Hit&>()))
 RTS_DETECT(HasReflect, std::declval<const T&>().reflect(std::declval<const Hit&>(),
                                                         std::declval<const Light&>()));
 RTS_DETECT(HasTransmit, std::declval<const T&>().transmit(std::declval<const Hit&>()));
+RTS_DETECT(HasTransmits, std::declval<const T&>().transmits());
 RTS_DETECT(HasSurface,
            std::declval<const T&>().surface(std::declval<const Hit&>(), std::declval<Closures&>()));
 // The same functions for several hits at once.

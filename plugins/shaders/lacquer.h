@@ -1,0 +1,61 @@
+// lacquer.h: how much of what is below a layer of pigmented lacquer shows. Used by Plastic. Pure
+// functions. [render]
+//
+// The layer scatters and absorbs light by P. Kubelka and F. Munk ("Ein Beitrag zur Optik der
+// Farbanstriche", 1931). A layer too thick to see through reflects c. With x = (1/c - c) / 2 times
+// the optical thickness s, and E = exp(-2x), a layer reflects and transmits
+//   R = c (1 - E) / (1 - E c^2),  T = exp(-x) (1 - c^2) / (1 - E c^2).
+// All colours scatter alike, so s is the same for them: dark colours pass less, and what shows
+// through has the colour of the lacquer.
+//
+// Light that shows what is below has passed twice, in and out. A sheet of an export is one-sided:
+// only its front is hit. So one hit stands for both, and passes T^2. R + T <= 1 holds for each
+// colour, and so does R + T^2 <= 1.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "openrt/openrts.hpp"
+
+namespace lacquer {
+
+// A channel of a layer. `body` is what the layer reflects of the light that does not pass.
+struct Channel {
+  float passes, body;
+};
+
+// Returns a channel of a layer of the colours `colour`, in the channel c, through which the share
+// `transparency` passes in its brightest channel.
+inline Channel channel(float c, float r, float g, float b, float transparency) {
+  const auto inside = [](float value) {
+    return std::clamp(double(value), 1e-6, 1 - 1e-6); // where the formulas are finite
+  };
+  const double share = std::clamp(double(transparency), 1e-9, 1 - 1e-9);
+  const double colour = inside(c), brightest = inside(std::fmax(r, std::fmax(g, b)));
+  const auto slope = [](double of) { return (1 / of - of) / 2; };
+  // The inverse of T for the brightest channel.
+  const double thickness =
+      (std::asinh(slope(brightest) / std::sqrt(share)) + std::log(brightest)) / slope(brightest);
+  const double x = slope(colour) * std::fmax(0.0, thickness), e = std::exp(-2 * x),
+               below = 1 - e * colour * colour;
+  const double through = std::exp(-x) * (1 - colour * colour) / below,
+               passes = std::min(1.0, through * through), reflected = colour * (1 - e) / below;
+  return {static_cast<float>(passes),
+          static_cast<float>(std::min(1.0, reflected / std::fmax(1e-9, 1 - passes)))};
+}
+
+template <class F> struct Layer { rts::ColorOf<F> passes, body; };
+template <class F> Layer<F> layer(rts::ColorOf<F> colour, float transparency) {
+  const auto each = [&](F c, auto part) {
+    return rts::eachLane([&](float own, float r, float g,
+                             float b) { return channel(own, r, g, b, transparency).*part; },
+                         c, colour.r, colour.g, colour.b);
+  };
+  const auto all = [&](auto part) {
+    return rts::ColorOf<F>{each(colour.r, part), each(colour.g, part), each(colour.b, part)};
+  };
+  return {all(&Channel::passes), all(&Channel::body)};
+}
+
+} // namespace lacquer
