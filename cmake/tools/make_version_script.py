@@ -179,7 +179,7 @@ def sibling_patterns(options):
     names, classes = set(), set()
     sources = [
         f for folder in options.siblings for kind in ("*.cpp", "*.h")
-        for f in sorted(folder.glob(kind))
+        for f in sorted(folder.rglob(kind))
     ]
     for header in private_headers(options.of, sources):
         n, c = scan(tokens(header.read_text()))
