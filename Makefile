@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel cross-aarch64 bench-board
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -73,6 +73,14 @@ test-embree4:
 ##                   qemu-user-static it draws a picture there
 cross-aarch64: packages
 	@PYTHON=$(PYTHON) tools/cross-aarch64.sh build/aarch64 $(JOBS)
+
+## make cross-wheel-aarch64  the Python distribution for 64-bit ARM, build/aarch64/xvrml-*_aarch64.whl (needs the same)
+cross-wheel-aarch64: packages
+	@PYTHON=$(PYTHON) tools/cross-wheel-aarch64.sh build/aarch64 $(JOBS)
+
+## make test-wheel-aarch64   installs that into a bare Debian for 64-bit ARM and draws with it by qemu (needs root, debootstrap)
+test-wheel-aarch64:
+	@tools/test-wheel.sh $(firstword $(wildcard build/aarch64/xvrml-*.whl) build/aarch64/xvrml.whl) build/aarch64/wheel-test
 
 ## make bench         benchmarks, JSON into build/bench; bench_live prints what the window does
 bench: build

@@ -28,6 +28,12 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
   # (docs/decisions/0074).
   set_property(TARGET PkgConfig::HWY APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS
                "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+  # Highway compiles NEON with the cryptography extension, and GCC 12 does not give the pragma of a
+  # target to constructors that it makes itself. It then refuses to inline what they call. With the
+  # option both agree; no code uses the extension.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT CMAKE_CXX_FLAGS MATCHES "-march=|-mcpu=")
+    set_property(TARGET PkgConfig::HWY APPEND PROPERTY INTERFACE_COMPILE_OPTIONS -march=armv8-a+crypto)
+  endif()
 endif()
 if(OPENRT_FILMS)
   # films; without them MovieTextures show a still picture

@@ -3,13 +3,19 @@
 # in FOLDER, and uses it there: pictures with text by the command vv and by Python, Scripts of all
 # engines, two workers. No warning may occur. The pictures stay in FOLDER/pictures. Nothing of this
 # system is mounted there. NUMPY: the version of numpy ("numpy<2"). Needs root, debootstrap, pip
-# (which downloads numpy) and Debian's mirror.
+# (which downloads numpy) and Debian's mirror. A wheel for another processor (_aarch64.whl) needs
+# qemu-user-static, whose programs the kernel must start (binfmt_misc); all of it is then slow.
 set -euo pipefail
-wheel=$(realpath "$1") folder=$(realpath -m "$2") here=$(realpath "$(dirname "$0")/..") machine=$(uname -m)
+wheel=$(realpath "$1") folder=$(realpath -m "$2") here=$(realpath "$(dirname "$0")/..")
+case $wheel in *_x86_64.whl) machine=x86_64 debian=amd64 ;; *_aarch64.whl) machine=aarch64 debian=arm64 ;;
+  *) echo "test-wheel: $wheel: a wheel for x86_64 or aarch64 was expected" >&2; exit 1 ;; esac
 root=$folder/root
+if [ "$machine" != "$(uname -m)" ] && ! grep -qs enabled /proc/sys/fs/binfmt_misc/qemu-$machine; then
+  echo "test-wheel: the kernel does not start programs for $machine: install qemu-user-static and binfmt-support" >&2; exit 1
+fi
 if [ ! -e "$root/debootstrap-done" ]; then
   mkdir -p "$root"
-  debootstrap --variant=minbase --include=python3,python3-venv,python3-pip bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+  debootstrap --arch=$debian --variant=minbase --include=python3,python3-venv,python3-pip bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
   touch "$root/debootstrap-done"
 fi
 rm -rf "$root/try" "$folder/wheels" && mkdir -p "$root/try" "$folder/pictures" "$folder/wheels"

@@ -1,0 +1,28 @@
+#!/bin/bash
+# make-aarch64-root.sh FOLDER: unpacks a Debian 12 for 64-bit ARM into FOLDER, with the packages that
+# the project links. It is never run, and this system's package manager learns nothing of the other
+# architecture. Needs root, Debian's mirror and mmdebstrap.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$(realpath -m "$1")
+command -v mmdebstrap >/dev/null || { echo "make-aarch64-root: mmdebstrap is not installed" >&2; exit 1; }
+
+# The packages that are linked. Tools of the build are this machine's. A stamp is written last, so
+# that an interrupted root is made again.
+tools='g\+\+|make|cmake|ninja-build|ccache|pkg-config|git|ca-certificates|flatbuffers-compiler'
+packages=$(tools/install-packages.sh --list | grep -vxE "$tools" | paste -sd,)
+[ "$(cat "$root/packages" 2>/dev/null)" != "$packages" ] || exit 0
+rm -rf "$root" && mkdir -p "$root"
+mmdebstrap --variant=extract --architectures=arm64 --include="$packages,libc6-dev,libstdc++-12-dev,libgtest-dev,librapidcheck-dev" \
+  bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+rm -f "$root"/var/cache/apt/archives/*.deb
+# Links are made relative, as those that begin at the root would lead into this system.
+find "$root" -xdev -type l -lname '/*' -print0 | while IFS= read -r -d '' link; do
+  to=$root$(readlink "$link")
+  if [ -e "$to" ]; then ln -sfnr "$to" "$link"; fi
+done
+# numpy's libraries have places that Debian's alternatives choose at installation.
+for library in blas/libblas.so.3 lapack/liblapack.so.3; do
+  if [ -e "$root/usr/lib/aarch64-linux-gnu/$library" ]; then ln -sfn "$library" "$root/usr/lib/aarch64-linux-gnu/"; fi
+done
+echo "$packages" >"$root/packages"
