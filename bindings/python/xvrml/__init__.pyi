@@ -425,6 +425,9 @@ class Picture:
     ) -> Dict[str, Any]:
         ...
 
+    def matte(self, *names: str) -> np.ndarray:
+        ...
+
     def _repr_png_(self) -> bytes:
         ...
 
