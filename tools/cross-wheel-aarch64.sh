@@ -17,7 +17,7 @@ python=$folder/venv/bin/python
 rm -f "$folder"/xvrml-*.whl
 # The folders of libraries are those where auditwheel looks; the programs of this machine skip
 # libraries for another one.
-LD_LIBRARY_PATH=$root/usr/lib/aarch64-linux-gnu _PYTHON_HOST_PLATFORM=linux-aarch64 CMAKE_BUILD_PARALLEL_LEVEL=$jobs \
+LD_LIBRARY_PATH=$root/usr/lib/aarch64-linux-gnu:$root/lib/aarch64-linux-gnu _PYTHON_HOST_PLATFORM=linux-aarch64 CMAKE_BUILD_PARALLEL_LEVEL=$jobs \
   CMAKE_ARGS="-DCMAKE_TOOLCHAIN_FILE=$PWD/cmake/toolchains/aarch64-linux-gnu.cmake -DOPENRT_SYSROOT=$root \
   -DPython_INCLUDE_DIR=$(echo "$root"/usr/include/python3.*) -Dpybind11_DIR=$("$python" -m pybind11 --cmakedir)" \
   PATH="$folder/venv/bin:$PATH" "$python" -m pip wheel . --no-deps --no-build-isolation --config-settings=build-dir="$folder/wheel" -w "$folder"

@@ -9,7 +9,8 @@ set -euo pipefail
 wheel=$(realpath "$1") folder=$(realpath -m "$2") here=$(realpath "$(dirname "$0")/..")
 case $wheel in *_x86_64.whl) machine=x86_64 debian=amd64 ;; *_aarch64.whl) machine=aarch64 debian=arm64 ;;
   *) echo "test-wheel: $wheel: a wheel for x86_64 or aarch64 was expected" >&2; exit 1 ;; esac
-root=$folder/root
+root=$folder/root picture="--size 640x480 --spp 16" small="--size 320x240 --spp 16" emulated=
+[ "$machine" = "$(uname -m)" ] || picture="--size 120x90 --spp 4" small=$picture emulated=--emulated
 if [ "$machine" != "$(uname -m)" ] && ! grep -qs enabled /proc/sys/fs/binfmt_misc/qemu-$machine; then
   echo "test-wheel: the kernel does not start programs for $machine: install qemu-user-static and binfmt-support" >&2; exit 1
 fi
@@ -37,12 +38,12 @@ inside() {
 inside 'if ls /usr/lib/*-linux-gnu | grep -E "embree|tbb|OpenEXR|libX11|libglib|libtcl"; then echo "the root is not bare"; exit 1; fi
         if [ -e /usr/share/fonts ] || [ -e /etc/fonts ]; then echo "the root has fonts"; exit 1; fi'
 inside 'python3 -m venv v && v/bin/pip install -q --no-index --find-links=. xvrml-*.whl && v/bin/pip list'
-inside '{ v/bin/vv still_life.wrl -o vv.png --size 640x480 --spp 16 --strict
-          v/bin/vv text.wrl -o text.png --size 320x240 --spp 16 --strict
+inside '{ v/bin/vv still_life.wrl -o vv.png '"$picture"' --strict
+          v/bin/vv text.wrl -o text.png '"$small"' --strict
           v/bin/vv scenes/glass_ball.wrl -o glass.png --size 160x120 --spp 4 --strict
-          v/bin/python try_wheel.py tried; v/bin/vv --list-engines; v/bin/vv --version; v/bin/openrt-replay --help >/dev/null; } 2>errors
+          v/bin/python try_wheel.py tried '$emulated'; v/bin/vv --list-engines; v/bin/vv --version; v/bin/openrt-replay --help >/dev/null; } 2>errors
         v/bin/openrt-worker --connect 127.0.0.1:7447 2>/dev/null & v/bin/openrt-worker --connect 127.0.0.1:7447 2>/dev/null &
-        v/bin/vv still_life.wrl -o cluster.png --size 640x480 --spp 16 --local-threads 0 --listen-workers 127.0.0.1:7447 --require-workers 2 2>errors.cluster
+        v/bin/vv still_life.wrl -o cluster.png '"$picture"' --local-threads 0 --listen-workers 127.0.0.1:7447 --require-workers 2 2>errors.cluster
         kill %1 %2; cmp vv.png cluster.png; echo "two workers: the same picture"' || { cat "$root"/try/errors* >&2; exit 1; }
 if grep -v '^vv: *[0-9]* %' "$root/try/errors" | grep -q .; then echo "test-wheel: warnings:" >&2; cat "$root/try/errors" >&2; exit 1; fi
 cp "$root"/try/*.png "$folder/pictures/" && cp "$root/try/tried/python.png" "$folder/pictures/"
