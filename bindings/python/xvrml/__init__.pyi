@@ -425,7 +425,7 @@ class Picture:
     ) -> Dict[str, Any]:
         ...
 
-    def matte(self, *names: str) -> np.ndarray:
+    def matte(self, *names: str) -> npt.NDArray[np.float32]:
         ...
 
     def _repr_png_(self) -> bytes:
