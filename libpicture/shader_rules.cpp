@@ -20,7 +20,7 @@ namespace {
 
 using namespace xvrml;
 
-constexpr float colourTolerance = 0.03f, shininessTolerance = 0.02f;
+constexpr float colourTolerance = 0.03f, shininessTolerance = 0.0201f;
 constexpr size_t rulesFileBytes = 1 << 20; // a longer file is refused
 
 // What a rule selects.

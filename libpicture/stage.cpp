@@ -5,6 +5,8 @@
 #include <new>
 #include <numbers>
 #include <set>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,6 +41,19 @@ template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t
     if (!fill(channel.bit, plane)) return false;
   }
   return true;
+}
+
+} // namespace
+
+namespace {
+
+// Returns the first number of each number's name: Shapes of one name are one object.
+std::vector<uint32_t> unitedNames(const std::vector<std::string>& names) {
+  std::unordered_map<std::string_view, uint32_t> first;
+  std::vector<uint32_t> united;
+  for (const std::string& name : names)
+    united.push_back(first.try_emplace(name, uint32_t(united.size())).first->second);
+  return united;
 }
 
 } // namespace
@@ -260,6 +275,10 @@ void Stage::useEnvironment() {
 
 void Stage::setUpFrame(const RenderSettings& frame) {
   rtFrameBuffer(frame.width, frame.height, frame.channels);
+  if (frame.channels & RT_COVERAGE) {
+    const std::vector<uint32_t> united = unitedNames(mapper_->names());
+    rtUniteNames(united.data(), united.size());
+  }
   rtScissor(frame.crop.x, frame.crop.y, frame.crop.width, frame.crop.height);
   QualityValues quality = frame.quality;
   quality.set(RT_SAMPLES_PER_PIXEL, frame.samples);

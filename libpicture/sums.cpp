@@ -27,7 +27,7 @@ namespace picture {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-constexpr std::string_view magic = "VVSUMS1\n", exrMagic = "\x76\x2f\x31\x01";
+constexpr std::string_view magic = "VVSUMS2\n", exrMagic = "\x76\x2f\x31\x01";
 
 uint64_t checksum(std::string_view bytes) {
   uint64_t hash = 0xcbf29ce484222325u;
@@ -197,6 +197,8 @@ SumsFile decode(std::string_view bytes, uint64_t at) {
         fmt::format("it is truncated or damaged: its sums begin at byte {}, and their end "
                     "is not at byte {}, where the file ends",
                     end, bytes.size()));
+  if (behind.starts_with(magic.substr(0, 6)))
+    throw Damaged("its sums were made by another version");
   throw Damaged("it has no sums, only rounded means; --sums puts sums into a file");
 }
 
@@ -229,6 +231,8 @@ std::string contentsOf(const std::string& path) {
     bytes.append(block, size_t(file.gcount()));
     if (file.eof() && (magic.starts_with(bytes) || exrMagic.starts_with(bytes)) && bytes != magic)
       throw Damaged(fmt::format("it is truncated: it has {} bytes", bytes.size()));
+    if (bytes.starts_with(magic.substr(0, 6)) && bytes != magic)
+      throw Damaged("it was made by another version");
     if (!bytes.starts_with(exrMagic) && bytes != magic)
       throw Damaged("it is not a file of sums, and no OpenEXR file");
     while (file.read(block, sizeof block) || file.gcount() > 0)

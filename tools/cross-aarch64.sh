@@ -4,8 +4,9 @@
 # (make-aarch64-root.sh). OPTIONS: further options of cmake. Needs root, Debian's mirror, and the
 # packages g++-aarch64-linux-gnu and mmdebstrap; the picture needs qemu-user-static, too.
 set -euo pipefail
+folder=$(realpath -m "$1")
 cd "$(dirname "$0")/.."
-folder=$(realpath -m "$1") jobs=${2:-2}
+jobs=${2:-2}
 shift $(($# < 2 ? $# : 2))
 targets=("$@")
 [ $# -gt 0 ] || targets=(vv openrt-worker openrt-replay shaders scripts xvrml_python)

@@ -14,10 +14,13 @@ root=$folder/root picture="--size 640x480 --spp 16" small="--size 320x240 --spp 
 if [ "$machine" != "$(uname -m)" ] && ! grep -qs enabled /proc/sys/fs/binfmt_misc/qemu-$machine; then
   echo "test-wheel: the kernel does not start programs for $machine: install qemu-user-static and binfmt-support" >&2; exit 1
 fi
+if [ -e "$root" ] && [ "$(cat "$root/debootstrap-done" 2>/dev/null)" != "$machine" ]; then
+  echo "test-wheel: $root is no finished Debian for $machine: remove it, or name another folder" >&2; exit 1
+fi
 if [ ! -e "$root/debootstrap-done" ]; then
   mkdir -p "$root"
   debootstrap --arch=$debian --variant=minbase --include=python3,python3-venv,python3-pip bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
-  touch "$root/debootstrap-done"
+  echo "$machine" >"$root/debootstrap-done"
 fi
 rm -rf "$root/try" "$folder/wheels" && mkdir -p "$root/try" "$folder/pictures" "$folder/wheels"
 "${PYTHON:-python3}" -m pip download -q --only-binary=:all: --python-version "$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')" \

@@ -395,7 +395,10 @@ void raiseOsError(const std::string& failure) {
 std::string toPath(const py::handle& path) {
   auto text = py::reinterpret_steal<py::object>(PyOS_FSPath(path.ptr()));
   if (!text) throw py::error_already_set();
-  return py::isinstance<py::bytes>(text) ? std::string(py::bytes(text)) : fromText(text);
+  std::string name =
+      py::isinstance<py::bytes>(text) ? std::string(py::bytes(text)) : fromText(text);
+  if (name.find('\0') != name.npos) throw py::value_error("embedded null byte in a file name");
+  return name;
 }
 
 py::object toPython(const Value& value, const WorldPtr& world) {

@@ -49,6 +49,17 @@ void setScissor(Context& c, int x, int y, int width, int height) {
   c.scene.frameDirty = true;
 }
 
+void uniteNames(Context& c, const uint32_t* names, size_t count) {
+  constexpr size_t most = size_t(1) << 24;
+  require(names || count == 0, RT_INVALID_VALUE, "names is NULL, and count is not 0");
+  require(count <= most, RT_INVALID_VALUE, "more than 2^24 names");
+  std::vector<uint32_t> united;
+  if (count > 0) united.assign(names, names + count);
+  if (united == c.scene.frame.unitedNames) return;
+  c.scene.frame.unitedNames = std::move(united);
+  c.scene.frameDirty = true;
+}
+
 // real: the caller is rtQualityf.
 void setQuality(Context& c, RTenum name, double value, bool real) {
   const QualitySetting* setting = findQuality(name);
@@ -146,6 +157,10 @@ void requireNoDefinition(Context& c) {
 
 void rtFrameBuffer(int width, int height, uint32_t channels) {
   guarded("rtFrameBuffer", [&](Context& c) { setFrameBuffer(c, width, height, channels); });
+}
+
+void rtUniteNames(const uint32_t* names, size_t count) {
+  guarded("rtUniteNames", [&](Context& c) { uniteNames(c, names, count); });
 }
 
 void rtScissor(int x, int y, int width, int height) {

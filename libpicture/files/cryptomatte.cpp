@@ -37,7 +37,7 @@ uint32_t murmurHash3(std::string_view bytes) {
 
 // Returns the name of a number; where the picture has no names, the number itself.
 std::string nameOf(const Picture& picture, size_t number) {
-  return number < picture.names.size() ? picture.names[number] : std::to_string(number);
+  return number < picture.names.size() ? asUtf8(picture.names[number]) : std::to_string(number);
 }
 
 } // namespace
@@ -54,7 +54,7 @@ std::string cryptomattePlane(int component) {
 std::vector<float> cryptomatteLayers(const Picture& picture) {
   std::vector<float> hashes; // by number
   for (size_t i = 0; i < picture.names.size(); ++i)
-    hashes.push_back(std::bit_cast<float>(cryptomatteHash(picture.names[i])));
+    hashes.push_back(std::bit_cast<float>(cryptomatteHash(nameOf(picture, i))));
   const auto hashOf = [&](float number) {
     const auto i = size_t(number);
     return i < hashes.size() ? hashes[i]
@@ -87,7 +87,8 @@ std::vector<float> cryptomatteLayers(const Picture& picture) {
 }
 
 std::vector<std::pair<std::string, std::string>> cryptomatteAttributes(const Picture& picture) {
-  std::set<std::string> names(picture.names.begin(), picture.names.end());
+  std::set<std::string> names;
+  for (size_t i = 0; i < picture.names.size(); ++i) names.insert(nameOf(picture, i));
   if (picture.names.empty()) {
     const std::vector<float>& plane = picture.planes.at(RT_COVERAGE);
     std::set<float> numbers;

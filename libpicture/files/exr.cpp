@@ -42,7 +42,7 @@ class MemoryStream : public Imf::OStream {
 std::string nameTable(const std::vector<std::string>& names) {
   std::string text = "{";
   for (size_t i = 1; i < names.size(); ++i)
-    text += fmt::format("{}\"{}\":{}", i > 1 ? "," : "", i, jsonText(names[i]));
+    text += fmt::format("{}\"{}\":{}", i > 1 ? "," : "", i, jsonText(asUtf8(names[i])));
   return text + "}";
 }
 

@@ -6,10 +6,22 @@
 
 #include <fmt/format.h>
 
+#include "printable.h"
+
 namespace picture {
 
-// Returns a text in quotes. Bytes that are not UTF-8 stay as they are, as names of the world may
-// have them.
+// Returns the text with U+FFFD for each byte that is not UTF-8, as names of a world may have them.
+inline std::string asUtf8(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const size_t length = printable_text::utf8Length(text);
+    out += length > 0 ? text.substr(0, length) : "\xef\xbf\xbd";
+    text.remove_prefix(length > 0 ? length : 1);
+  }
+  return out;
+}
+
+// Returns a text of UTF-8 in quotes.
 inline std::string jsonText(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {

@@ -9,8 +9,13 @@
 // through has the colour of the lacquer.
 //
 // Light that shows what is below has passed twice, in and out. A sheet of an export is one-sided:
-// only its front is hit. So one hit stands for both, and passes T^2. R + T <= 1 holds for each
-// colour, and so does R + T^2 <= 1.
+// only its front is hit. So one hit stands for both, and passes T^2.
+//
+// Of the rest, the layer sends c back: all that a thick layer would. Kubelka and Munk's R is less
+// for light colours, because light that is scattered downwards is lost to it; over a surface of the
+// reflectance g it comes back in parts, T^2 g / (1 - R g), and more of it the lighter both are.
+// Paths pass the back of a sheet freely and do not find these. For dark colours R / (1 - T^2) is c
+// nearly.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +25,9 @@
 
 namespace lacquer {
 
-// A channel of a layer. `body` is what the layer reflects of the light that does not pass.
-struct Channel {
-  float passes, body;
-};
-
-// Returns a channel of a layer of the colours `colour`, in the channel c, through which the share
+// Returns the share that passes a layer of the colour r, g, b in the channel c, if the share
 // `transparency` passes in its brightest channel.
-inline Channel channel(float c, float r, float g, float b, float transparency) {
+inline float passing(float c, float r, float g, float b, float transparency) {
   const auto inside = [](float value) {
     return std::clamp(double(value), 1e-6, 1 - 1e-6); // where the formulas are finite
   };
@@ -39,23 +39,17 @@ inline Channel channel(float c, float r, float g, float b, float transparency) {
       (std::asinh(slope(brightest) / std::sqrt(share)) + std::log(brightest)) / slope(brightest);
   const double x = slope(colour) * std::fmax(0.0, thickness), e = std::exp(-2 * x),
                below = 1 - e * colour * colour;
-  const double through = std::exp(-x) * (1 - colour * colour) / below,
-               passes = std::min(1.0, through * through), reflected = colour * (1 - e) / below;
-  return {static_cast<float>(passes),
-          static_cast<float>(std::min(1.0, reflected / std::fmax(1e-9, 1 - passes)))};
+  const double through = std::exp(-x) * (1 - colour * colour) / below;
+  return static_cast<float>(std::min(1.0, through * through));
 }
 
-template <class F> struct Layer { rts::ColorOf<F> passes, body; };
-template <class F> Layer<F> layer(rts::ColorOf<F> colour, float transparency) {
-  const auto each = [&](F c, auto part) {
-    return rts::eachLane([&](float own, float r, float g,
-                             float b) { return channel(own, r, g, b, transparency).*part; },
-                         c, colour.r, colour.g, colour.b);
+template <class F> rts::ColorOf<F> passing(rts::ColorOf<F> colour, float transparency) {
+  const auto each = [&](F c) {
+    return rts::eachLane(
+        [&](float own, float r, float g, float b) { return passing(own, r, g, b, transparency); },
+        c, colour.r, colour.g, colour.b);
   };
-  const auto all = [&](auto part) {
-    return rts::ColorOf<F>{each(colour.r, part), each(colour.g, part), each(colour.b, part)};
-  };
-  return {all(&Channel::passes), all(&Channel::body)};
+  return {each(colour.r), each(colour.g), each(colour.b)};
 }
 
 } // namespace lacquer

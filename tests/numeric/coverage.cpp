@@ -88,6 +88,14 @@ TEST_F(Coverage, OneSampleHasOneName) {
   EXPECT_EQ(see(64, RT_COVERAGE)[0], std::make_pair(4.f, 1.f));
 }
 
+TEST_F(Coverage, ManySmallOnesDoNotHideALargeOne) {
+  for (RTid i = 0; i < 90; i++) strip(100 + i, -1 + i / 900.0, -1 + (i + 1) / 900.0);
+  strip(900, -.9, 1);
+  const Pairs pairs = see(8192);
+  EXPECT_EQ(pairs[0].first, 900);
+  EXPECT_NEAR(pairs[0].second, .95, .003);
+}
+
 TEST_F(Coverage, APixelCountsEightNames) {
   for (RTid i = 0; i < 12; i++) strip(100 + i, -1 + i / 6.0, -1 + (i + 1) / 6.0);
   const Pairs pairs = see(4096);
@@ -104,6 +112,31 @@ TEST_F(Coverage, APixelCountsEightNames) {
     sum += double(pairs[i].second);
   }
   EXPECT_NEAR(sum, 8.0 / 12, .01);
+}
+
+// A thing of many parts has one share, whatever is beside it.
+TEST_F(Coverage, UnitedNamesAreOne) {
+  for (RTid i = 0; i < 40; i++) strip(100 + i, -1 + i / 40.0, -1 + (i + 1) / 40.0);
+  strip(7, 0, 1);
+  std::vector<uint32_t> united(200);
+  for (uint32_t i = 0; i < united.size(); i++) united[i] = i < 100 ? i : 100 + i % 2;
+  rtUniteNames(united.data(), united.size());
+  Pairs pairs = see(4096);
+  EXPECT_EQ(pairs[0].first, 7);
+  EXPECT_NEAR(pairs[0].second, .5, .005);
+  for (size_t i = 1; i < 3; i++) {
+    EXPECT_TRUE(pairs[i].first == 100 || pairs[i].first == 101);
+    EXPECT_NEAR(pairs[i].second, .25, .005);
+  }
+  EXPECT_EQ(pairs[3].second, 0);
+  united.assign(200, 0); // none of them counts, and those beyond the table are themselves
+  united.resize(101);
+  rtUniteNames(united.data(), united.size());
+  pairs = see(4096);
+  EXPECT_NEAR(pairs[0].second, 1.0 / 80, .005);
+  EXPECT_GE(pairs[0].first, 101);
+  rtUniteNames(nullptr, 0);
+  EXPECT_EQ(see(64)[0].first, 7);
 }
 
 TEST_F(Coverage, LightChangesNothing) {

@@ -40,6 +40,25 @@ double thicknessFor(double c, double share) {
 
 class Lacquers : public Scene {};
 
+// White over white is white. The sheet is one-sided, as those of an export are.
+TEST_F(Lacquers, KeepWhatIsLight) {
+  Shader sky("VRML97Environment");
+  sky.setList("skyColor", {1, 1, 1});
+  rtUseEnvironment(sky);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  place(square(Shader("Diffuse").set("reflectance", {.9, .9, .9})));
+  rtPushMatrix();
+  rtTranslated(0, 0, .01);
+  rtEnable(RT_CULL_FACE);
+  place(square(
+      Shader("Plastic").set("color", {.9, .9, .9}).set("index", {1}).set("transparency", {.17})));
+  rtDisable(RT_CULL_FACE);
+  rtPopMatrix();
+  const Rgba seen = look();
+  EXPECT_NEAR(seen.g, .9, .01);
+}
+
 TEST_F(Lacquers, ShowWhatIsBelowByKubelkaAndMunk) {
   for (const double share : {.17, .6})
     for (const std::array<double, 3>& colour :
@@ -59,7 +78,9 @@ TEST_F(Lacquers, ShowWhatIsBelowByKubelkaAndMunk) {
       for (size_t k = 0; k < 3; k++) {
         SCOPED_TRACE(testing::Message() << share << " " << k);
         const Layer layer = layerOf(colour[k], s);
-        const double all = layer.reflects + layer.passes * layer.passes;
+        const double passes = layer.passes * layer.passes, all = (1 - passes) * colour[k] + passes;
+        EXPECT_LE(layer.reflects, (1 - passes) * colour[k] + 1e-3) << "what is lost downwards";
+        if (colour[k] < .25) { EXPECT_NEAR(layer.reflects, (1 - passes) * colour[k], .01); }
         EXPECT_NEAR(double(k == 0 ? seen.r : k == 1 ? seen.g : seen.b), all, 4e-3);
       }
     }

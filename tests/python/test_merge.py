@@ -40,6 +40,14 @@ def test_files_have_the_bytes_of_vv_merge(parts):
     assert np.array_equal(again.array, image.array)
 
 
+def test_sums_of_another_version_are_called_so(parts):
+    data = contents(parts, "0.exr")
+    assert data.count(b"VVSUMS2\n") == 2
+    (parts.folder / "old.exr").write_bytes(data.replace(b"VVSUMS2\n", b"VVSUMS1\n"))
+    with pytest.raises(Exception, match="made by another version"):
+        xvrml.merge(["old.exr"])
+
+
 def test_a_picture_without_a_file(parts):
     one, other = xvrml.merge(["0.exr"]), xvrml.merge(["1.exr"])
     both = xvrml.merge(["0.exr", "1.exr"])
@@ -59,6 +67,7 @@ def test_another_exposure_is_a_warning(parts):
     (TypeError, (3, ), "files: a list of file names was expected, not int"),
     (TypeError, ([3], ), "int"),
     (ValueError, ([], ), "not an empty one"),
+    (ValueError, (["0.exr"], "x\0.png"), "null byte"),
     (OSError, (["none.exr"], ), "cannot read none.exr"),
     (OSError, (["0.exr", "box.wrl"], ), "not a file of sums"),
     (OSError, (["0.exr", "short.exr"], ), "short.exr: it is truncated: it ends at byte 300"),

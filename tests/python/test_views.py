@@ -252,6 +252,25 @@ def test_files_have_the_hashes_of_the_manifest(world, tmp_path):
         assert np.array_equal(matte, image.matte(name)) and matte.any()
 
 
+def test_shapes_of_one_name_have_one_matte():
+    """However many they are, and however few pixels they share with whatever else."""
+    boxes = "".join(f"Transform {{ translation {i / 20 - .975} 0 0 children Shape {{ "
+                    "geometry Box { size .05 2 .1 } } } " for i in range(40))
+    world = xvrml.loads("#VRML V2.0 utf8\nViewpoint { position 0 0 5 fieldOfView .3 } "
+                        f"DEF Grass Group {{ children [ {boxes} ] }} DEF Wall Transform {{ "
+                        "translation 0 0 -1 children Shape { geometry Box { size 9 9 .1 } } }")
+    for size in ((1, 1), (4, 4), (16, 16)):
+        image = world.render(size=size, spp=64, channels="cryptomatte")
+        assert np.allclose(image.matte("Grass"), 1), size
+    assert image.names.count("Grass") == 40
+
+
+def test_mattes_need_names():
+    context = xvrml.rt.Context()
+    with pytest.raises(AttributeError, match="no names"):
+        context.render(size=(4, 4), spp=1, channels="cryptomatte").matte("3")
+
+
 def test_mattes_of_several_shapes_add_up(world):
     image = world.render(channels=("id", "cryptomatte"), **SMALL)
     ball, cube = image.matte("Ball"), image.matte("Cube")

@@ -131,6 +131,17 @@ def test_built_in_presets(board, name):
             assert min(corner) > .8
 
 
+def test_a_camera_of_ones_own_wins_over_the_preset(vv):
+    """--pose is a view as --camera is, and --intrinsics say what --fov says."""
+    vv.write("box.wrl", HEADER + "Shape { geometry Box { } }")
+    pose = ("--pose", "1,0,0,0,0,-1,0,0,0,0,-1,5,0,0,0,1")
+    inside = ("--intrinsics", "60,60,15.5,11.5")
+    for preset in ("technical", "studio", "product", "pcb"):
+        for own in (pose, inside, pose + inside):
+            done = vv("box.wrl", "--preset", preset, *own, "-o", "x.png", "--size", "32x24", "--spp", 1)
+            assert done.returncode == 0, (preset, own, done.talk)
+
+
 def test_technical_keeps_parallel_edges_parallel(vv):
     near_and_far = HEADER + "".join("""Transform { translation %s 0 %s children Shape {
   appearance Appearance { material Material {} } geometry Box { size 1 1 1 } } }
@@ -417,7 +428,7 @@ def test_tracks_show_through_solder_mask(vv, mask):
 
     board, copper = left_and_right(body + track + over[0])
     strongest = max(range(3), key=lambda c: float(mask.split()[c]))
-    assert copper[strongest] > 1.15 * board[strongest]  # a brighter shade of the mask
+    assert copper[strongest] > 1.12 * board[strongest]  # a brighter shade of the mask
     assert max(copper) == copper[strongest]
     board, copper = left_and_right(body + track + over[1])
     assert copper == pytest.approx(board, rel=.1)

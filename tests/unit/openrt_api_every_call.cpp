@@ -167,6 +167,7 @@ const Named needContext[] = {
     CALL(rtTexParameterfv, RT_TEXTURE_BORDER_COLOR, colour),
     CALL(rtFrameBuffer, 4, 4, RT_RGBA),
     CALL(rtScissor, 0, 0, 2, 2),
+    CALL(rtUniteNames, nullptr, 0),
     CALL(rtQuality, RT_SEED, 1),
     CALL(rtQualityf, RT_TARGET_ERROR, 0),
     CALL(rtSwapBuffers),
@@ -396,7 +397,7 @@ const Wrong wrong[] = {
     WRONG(OPERATION, Outside, rtTexParameterfv, RT_TEXTURE_BORDER_COLOR, colour),
     // Frames and queries.
     WRONG(VALUE, Outside, rtFrameBuffer, 0, 1, RT_RGBA),
-    WRONG(VALUE, Outside, rtScissor, -1, 0, 1, 1),
+    WRONG(VALUE, Outside, rtScissor, -1, 0, 1, 1), WRONG(VALUE, Outside, rtUniteNames, nullptr, 1),
     WRONG(VALUE, Outside, rtFrameBuffer, 65537, 1, RT_RGBA),
     WRONG(VALUE, Outside, rtFrameBuffer, 65536, 65536, RT_RGBA),
     WRONG(VALUE, Outside, rtFrameBuffer, 1, 1, 0),

@@ -96,6 +96,16 @@ TEST(Cryptomatte, AttributesNameTheLayerAndEachShape) {
       << found[key + "manifest"];
 }
 
+// U+FFFD stands for each byte that is none.
+TEST(Cryptomatte, NamesAreUtf8) {
+  const Picture picture = pictureOf({{1, 1}}, {"", "W\xfcrfel \xc3\xbc"});
+  EXPECT_EQ(cryptomatteLayers(picture)[0], asFloat("W\xef\xbf\xbdrfel \xc3\xbc"));
+  for (const auto& [key, value] : cryptomatteAttributes(picture))
+    if (key.ends_with("manifest")) {
+      EXPECT_TRUE(value.starts_with("{\"W\xef\xbf\xbdrfel \xc3\xbc\":\"")) << value;
+    }
+}
+
 TEST(Cryptomatte, ShapesWithoutNamesAreCalledByTheirNumbers) {
   const Picture picture = pictureOf({{42, 1}}, {});
   EXPECT_EQ(cryptomatteLayers(picture)[0], asFloat("42"));

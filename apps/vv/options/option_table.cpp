@@ -393,7 +393,7 @@ const OptionInfo table[] = {
      }},
     {"--preset", "NAME", "Change",
      "Use the options of a preset, unless others are given: studio (soft light, grey backdrop), "
-     "product (the same before white), technical (even light without shadows, white), pcb (a "
+     "product (the same before white), technical (the light of the camera, white), pcb (a "
      "studio for KiCad's boards, with materials by their names), or one of a vv.toml.",
      [](Options&, const std::string&) {}},
     {"--config", "FILE|none", "Change",

@@ -39,9 +39,11 @@ constexpr std::string_view allowed[] = {
     "roulette",   "denoise",   "exposure",  "view"};
 
 // Options for the same purpose: one in a later layer replaces the others of earlier layers.
-constexpr std::array<std::string_view, 4> groups[] = {{"viewpoint", "camera", "from", "fit"},
-                                                      {"environment", "studio", "background", ""},
-                                                      {"spp", "error", "time-limit", ""}};
+constexpr std::array<std::string_view, 5> groups[] = {
+    {"viewpoint", "camera", "from", "fit", "pose"},
+    {"environment", "studio", "background", "", ""},
+    {"spp", "error", "time-limit", "", ""},
+    {"fov", "intrinsics", "", "", ""}};
 
 struct Document {
   std::string name;   // for messages
@@ -179,7 +181,8 @@ void cover(std::vector<Setting>& settings, std::vector<Setting> layer) {
     return std::any_of(all.begin(), all.end(),
                        [&](const Setting& one) { return isFor(*one.option, name); });
   };
-  const bool otherView = names(layer, "viewpoint") || names(layer, "camera") || names(layer, "fit");
+  const bool otherView = names(layer, "viewpoint") || names(layer, "camera") ||
+                         names(layer, "fit") || names(layer, "pose");
   if (otherView && names(settings, "from"))
     std::erase_if(settings, [](const Setting& one) { return isFor(*one.option, "fov"); });
   std::erase_if(settings, [&](const Setting& earlier) {

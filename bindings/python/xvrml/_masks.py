@@ -42,6 +42,9 @@ def matte(picture, *names):
     if "cryptomatte" not in picture.channels:
         raise AttributeError("the picture has no channel cryptomatte: "
                              "render(channels=('cryptomatte',)) makes it")
+    if not picture.names:
+        raise AttributeError("the picture knows no names: those of a Context are numbers, with "
+                             "their shares in picture['cryptomatte']")
     wanted = np.zeros(len(picture.names), bool)
     for name in names:
         if not isinstance(name, str):

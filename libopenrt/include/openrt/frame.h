@@ -23,7 +23,8 @@ enum {
                            is hit */
   RT_ALBEDO = 8,     /* 3: mean surface colour as the shader reports it */
   RT_POSITION = 16,  /* 3: world-space position of the hit, first sample */
-  RT_NAME = 32,      /* 1: name (rtLoadName) of the hit, first sample; 0 if nothing is hit */
+  RT_NAME = 32,      /* 1: name (rtLoadName) of the hit, first sample; 0 if nothing is hit. Names
+                           above 2^24 are rounded to floats, also in RT_COVERAGE */
   RT_SAMPLES = 64,   /* 1: number of samples taken */
   RT_VARIANCE = 128, /* 3: sample variance of radiance; divided by the number of samples it is the
                            variance of the mean */
@@ -47,8 +48,8 @@ enum {
   RT_REFLECTION = 2048,
   /* 16: eight pairs of a name (rtLoadName), which is not 0, and the share of the pixel's samples
    * that hit it first, 0 .. 1; the largest share first, equal shares by name. Pairs that are not
-   * used are 0 0. Of a pixel with more than 64 names, those with the 64 smallest numbers are
-   * counted. */
+   * used are 0 0. rtUniteNames makes several names one. Of a pixel with more than 1,024 names,
+   * those with the smallest numbers are counted. */
   RT_COVERAGE = 4096
 };
 
@@ -85,12 +86,12 @@ enum {
   /* Edge of tiles in pixels, 4 .. 128; 0 (default): chosen by picture size and samples. Errors are
    * judged tile by tile. */
   RT_TILE_SIZE = 13,
-  /* 0 (default) or 1: RT_DEPTH, RT_NORMAL, RT_ALBEDO, RT_POSITION, RT_NAME and RT_MOTION tell about
-   * what is seen in mirrors and through smooth glass instead of about the mirror or the glass. The
-   * position is then that of the image: on the ray of the camera, as far away as the light has
-   * travelled. Normal and motion are those of the image, the name is that of the shape that is
-   * seen, and the albedo is multiplied by what the mirrors and the glass let through. For callers
-   * that rebuild pictures from few samples. It changes no other channel. */
+  /* 0 (default) or 1: RT_DEPTH, RT_NORMAL, RT_ALBEDO, RT_POSITION, RT_NAME, RT_MOTION and
+   * RT_COVERAGE tell about what is seen in mirrors and through smooth glass instead of about the
+   * mirror or the glass. The position is then that of the image: on the ray of the camera, as far
+   * away as the light has travelled. Normal and motion are those of the image, the name is that of
+   * the shape that is seen, and the albedo is multiplied by what the mirrors and the glass let
+   * through. For callers that rebuild pictures from few samples. It changes no other channel. */
   RT_FOLLOW_IMAGES = 14,
   /* 0 (default) or 1: a picture with one sample per pixel takes it anywhere in the pixel, as chosen
    * by the seed, and not in the middle. For callers that combine frames of several seeds. */
@@ -221,6 +222,11 @@ RT_API int rtGetTransportInfo(RTenum transport, RTtransportInfo* info);
 /* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
  * follow. [context-thread] */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
+/* Unites names in the channel RT_COVERAGE of the frames that follow, so that a thing of many parts
+ * has one share: name i counts as names[i], and is not counted if that is 0. Names from count on
+ * count as themselves. It changes no other channel. The array is copied; count 0 (the default):
+ * none are united. count: at most 2^24. [context-thread] */
+RT_API void rtUniteNames(const uint32_t* names, size_t count);
 /* Limits the frames that follow to a rectangle of their pixels, rows from the top. Its pixels are
  * those of the whole frame in every channel, and take their share of the time (paths from lamps are
  * traced for the whole frame). What the channels hold outside of it is undefined. The rectangle is

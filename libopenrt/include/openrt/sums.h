@@ -24,10 +24,11 @@ typedef struct RTsumsObject* RTsums;
 /* An error as those of openrt/context.h: sums are damaged, not finished, or of something else. */
 enum { RT_SUMS_ERROR = 0x0515 };
 
-/* 1: the sums of the frames that follow are kept, which takes 60 to 320 bytes a pixel, and as much
- * again with RT_TARGET_ERROR. 0 (default): they are not. Frames with RT_TIME_LIMIT cannot be kept.
- * Call it before anything is committed: sums know by all commits what they show. RT_SUMS_ERROR if
- * the backend keeps no sums, or something was committed. [context-thread] */
+/* 1: the sums of the frames that follow are kept, which takes 10 to 320 bytes a pixel (and 12 for
+ * each name in it with RT_COVERAGE), and as much again with RT_TARGET_ERROR. 0 (default): they are
+ * not. Frames with RT_TIME_LIMIT cannot be kept. Call it before anything is committed: sums know by
+ * all commits what they show. RT_SUMS_ERROR if the backend keeps no sums, or something was
+ * committed. [context-thread] */
 RT_API void rtKeepSums(int keep);
 /* Returns the sums so far of the oldest frame in flight, or else of the finished frame; NULL if
  * none are kept. Delete them with rtDeleteSums. [any-thread] */

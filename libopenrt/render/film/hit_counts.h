@@ -21,7 +21,7 @@ class HitCounts {
   // Of a pixel with more names, those with the smallest numbers are counted. A count that is kept
   // is complete, because a name is not among so many of all samples if it is not among those of
   // some.
-  static constexpr uint32_t mostNames = 64;
+  static constexpr uint32_t mostNames = 1024;
 
   void clear() { counts_.clear(); }
   bool empty() const { return counts_.empty(); }

@@ -6,6 +6,8 @@
 #include <functional>
 #include <iterator>
 
+#include <xxhash.h>
+
 #include "render/film/error.h"
 #include "render/flush_denormals.h"
 #include "render/frame/result_codec.h"
@@ -23,6 +25,11 @@ struct Setting {
 };
 template <auto member> std::string text(const edit::FrameSettingsT& frame) {
   return std::to_string(frame.*member);
+}
+// Names are not told in messages, as there may be many: their hash is.
+std::string textOfNames(const edit::FrameSettingsT& frame) {
+  const std::vector<uint32_t>& names = frame.unitedNames;
+  return std::to_string(XXH3_64bits(names.data(), names.size() * sizeof(uint32_t)));
 }
 using F = edit::FrameSettingsT;
 constexpr Setting settings[] = {
@@ -46,6 +53,7 @@ constexpr Setting settings[] = {
     {"y of its rectangle", text<&F::scissorY>},
     {"width of its rectangle", text<&F::scissorWidth>},
     {"height of its rectangle", text<&F::scissorHeight>},
+    {"table of united names", textOfNames},
 };
 
 void checkIdentity(const SumsIdentity& a, const SumsIdentity& b, const char* here) {

@@ -284,7 +284,11 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
     for (uint32_t s = 0; s < samples; s++) {
       const uint32_t i = pixel * samples + s;
       const bool first = firstSample + s == 0;
-      if (hits_) hits_->add(place, found.name[i]);
+      if (hits_) {
+        const std::vector<uint32_t>& united = scene_.frame.unitedNames;
+        const uint32_t name = found.name[i];
+        hits_->add(place, name < united.size() ? united[name] : name);
+      }
       if (found.complete && !found.complete[i]) { // a surface, and no light
         addFirst(found, i, sums);
         continue;
