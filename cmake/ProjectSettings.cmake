@@ -46,7 +46,10 @@ include(CheckPIESupported)
 check_pie_supported(LANGUAGES C CXX)
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-fcf-protection OPENRT_HAS_CF_PROTECTION)
-check_cxx_compiler_flag(-mbranch-protection=standard OPENRT_HAS_BRANCH_PROTECTION)
+# Clang takes this option for any processor, and then warns of it.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
+  check_cxx_compiler_flag(-mbranch-protection=standard OPENRT_HAS_BRANCH_PROTECTION)
+endif()
 check_cxx_compiler_flag(-fstack-clash-protection OPENRT_HAS_STACK_CLASH_PROTECTION)
 add_compile_options(-fstack-protector-strong $<$<BOOL:${OPENRT_HAS_CF_PROTECTION}>:-fcf-protection>
                     $<$<BOOL:${OPENRT_HAS_BRANCH_PROTECTION}>:-mbranch-protection=standard>
