@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "backend/local/accel/bake.h"
@@ -12,8 +11,6 @@
 
 namespace openrt {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Vec3d cornerOf(const Record& r, uint32_t triangle, int k) { return Vec3d(r.corner(triangle, k)); }
 
