@@ -155,18 +155,24 @@ std::vector<nodes::Shape*> shapesOf(const World& world, const Selector& selector
   return shapes;
 }
 
-void give(const std::vector<nodes::Shape*>& shapes, const NodeRef& shader, World& world,
-          const SetAppearance& set) {
-  const NodeType& type = *findNodeType("ORTAppearance");
+NodeRef makeNode(const char* typeName) {
+  const NodeType& type = *findNodeType(typeName);
+  return NodeRef(type.create(type));
+}
+
+// Gives shapes an appearance with this shader. addMaterial: one without a material gets a Material,
+// so that its colour is not the shader's default.
+void give(const std::vector<nodes::Shape*>& shapes, const NodeRef& shader, bool addMaterial,
+          World& world, const SetAppearance& set) {
   std::map<const Node*, NodeRef> made; // keeps shared appearances shared
   for (nodes::Shape* shape : shapes) {
     Node* before = renderedNode(shape->appearance.get());
     NodeRef& appearance = made[before];
     if (!appearance) {
-      appearance = NodeRef(type.create(type));
+      appearance = makeNode("ORTAppearance");
       auto& own = static_cast<nodes::ORTAppearance&>(*appearance);
       const Parts parts = partsOf(before);
-      own.material = parts.material;
+      own.material = parts.material || !addMaterial ? parts.material : makeNode("Material");
       own.texture = parts.texture;
       own.textureTransform = parts.textureTransform;
       own.shader = shader;
@@ -276,7 +282,7 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
     if (shapes.empty() && selector.kind != Kind::rest)
       world.diagnostics.warn(
           {}, fmt::format("{} {}: no shape of the world matches", rule.where, rule.text));
-    give(shapes, shader, world, set);
+    give(shapes, shader, selector.kind == Kind::rest, world, set);
     given += shapes.size();
   }
   return given;

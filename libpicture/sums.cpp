@@ -9,7 +9,6 @@
 #include "libpicture/sums.h"
 
 #include <algorithm>
-#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -19,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/files/byte_reader.h"
 #include "libpicture/files/exr_end.h"
 #include "libpicture/renderer.h"
 
@@ -26,8 +26,13 @@ namespace picture {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view magic = "VVSUMS2\n", exrMagic = "\x76\x2f\x31\x01";
+
+// Returns whether another version of this project wrote the file of sums, or the sums, that begin
+// with these bytes.
+bool isOtherVersion(std::string_view bytes) {
+  return bytes.starts_with(magic.substr(0, 6)) && !bytes.starts_with(magic);
+}
 
 uint64_t checksum(std::string_view bytes) {
   uint64_t hash = 0xcbf29ce484222325u;
@@ -39,43 +44,10 @@ template <class T> void put(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-struct Damaged : std::runtime_error {
-  using runtime_error::runtime_error;
-};
-
-class Source {
- public:
-  // at: place of the first byte in the file, for messages
-  Source(std::string_view bytes, uint64_t at) : left_(bytes), at_(at) {}
-  std::string_view take(uint64_t size) {
-    if (size > left_.size())
-      throw Damaged(
-          fmt::format("it is truncated or damaged: at byte {}, {} bytes were expected, and "
-                      "{} are there",
-                      at_, size, left_.size()));
-    const std::string_view taken = left_.substr(0, size_t(size));
-    left_.remove_prefix(size_t(size));
-    at_ += size;
-    return taken;
-  }
-  template <class T> T number() {
-    T value;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
-  }
-  bool empty() const { return left_.empty(); }
-  size_t left() const { return left_.size(); }
-  uint64_t at() const { return at_; }
-
- private:
-  std::string_view left_;
-  uint64_t at_;
-};
-
-// Returns what is wrong with the bytes from `begin` to where the source is.
-Damaged damagedSince(uint64_t begin, const Source& source, std::string_view why) {
-  return Damaged(
-      fmt::format("it is damaged between the bytes {} and {}: {}", begin, source.at(), why));
+// Returns what is wrong with the bytes from `begin` to where the reader is.
+BrokenFile damagedSince(uint64_t begin, const ByteReader& reader, std::string_view why) {
+  return BrokenFile(
+      fmt::format("it is damaged between the bytes {} and {}: {}", begin, reader.at(), why));
 }
 
 std::string encodeFacts(const SumsFacts& facts, const SumsView& view) {
@@ -96,31 +68,32 @@ std::string encodeFacts(const SumsFacts& facts, const SumsView& view) {
   return out;
 }
 
-SumsView decodeView(Source& source) {
+SumsView decodeView(ByteReader& reader) {
   SumsView view;
-  view.transform.exposure = source.number<double>();
-  const auto curve = source.number<uint8_t>();
+  view.transform.exposure = reader.number<double>();
+  const auto curve = reader.number<uint8_t>();
   if (!(std::abs(view.transform.exposure) <= mostExposure) || curve > uint8_t(ViewCurve::agx))
-    throw Damaged("it is damaged: its exposure or its view");
+    throw BrokenFile("it is damaged: its exposure or its view");
   view.transform.curve = ViewCurve(curve);
-  view.fits = source.number<uint8_t>() != 0;
+  view.fits = reader.number<uint8_t>() != 0;
   return view;
 }
 
 void decodeFacts(std::string_view bytes, uint64_t at, SumsFacts& facts, SumsView& view) {
-  Source source(bytes, at);
-  facts.channels = source.number<uint32_t>();
-  facts.linear = source.number<uint8_t>() != 0;
-  facts.depthAlongRay = source.number<uint8_t>() != 0;
-  const auto kind = source.number<uint8_t>();
-  if (kind > uint8_t(Background::Kind::file)) throw Damaged("it is damaged: its background");
+  ByteReader reader(bytes, at);
+  facts.channels = reader.number<uint32_t>();
+  facts.linear = reader.number<uint8_t>() != 0;
+  facts.depthAlongRay = reader.number<uint8_t>() != 0;
+  const auto kind = reader.number<uint8_t>();
+  if (kind > uint8_t(Background::Kind::file)) throw BrokenFile("it is damaged: its background");
   facts.background.kind = Background::Kind(kind);
-  for (float& c : facts.background.colour) c = source.number<float>();
-  view = decodeView(source);
-  const auto names = source.number<uint32_t>();
-  if (names > source.left() / sizeof(uint32_t)) throw Damaged("it is damaged: its number of names");
+  for (float& c : facts.background.colour) c = reader.number<float>();
+  view = decodeView(reader);
+  const auto names = reader.number<uint32_t>();
+  if (names > reader.left() / sizeof(uint32_t))
+    throw BrokenFile("it is damaged: its number of names");
   for (uint32_t i = 0; i < names; i++)
-    facts.names.emplace_back(source.take(source.number<uint32_t>()));
+    facts.names.emplace_back(reader.take(reader.number<uint32_t>()));
 }
 
 int append(const void* data, size_t size, void* to) {
@@ -151,55 +124,51 @@ std::string whyNot() {
   return message.starts_with("rt") && colon != message.npos ? message.substr(colon + 2) : message;
 }
 
-Sums takeSums(Source& source) {
-  const std::string_view bytes = source.take(source.number<uint64_t>());
+Sums takeSums(ByteReader& reader) {
+  const std::string_view bytes = reader.take(reader.number<uint64_t>());
   if (bytes.empty()) return {};
   const RTsums sums = rtReadSums(bytes.data(), bytes.size());
   if (sums) return Sums(sums);
   constexpr std::string_view damaged = "it is damaged: ";
   const std::string why = whyNot();
   if (why.starts_with(damaged))
-    throw damagedSince(source.at() - bytes.size(), source, why.substr(damaged.size()));
-  throw Damaged(why);
+    throw damagedSince(reader.at() - bytes.size(), reader, why.substr(damaged.size()));
+  throw BrokenFile(why);
 }
 
 // at: place of the first byte in the file
 SumsFile decode(std::string_view bytes, uint64_t at) {
-  Source source(bytes, at);
-  source.take(magic.size());
+  ByteReader reader(bytes, at);
+  reader.take(magic.size());
   SumsFile file;
-  const auto size = source.number<uint64_t>(), check = source.number<uint64_t>();
-  const uint64_t begin = source.at();
-  const std::string_view facts = source.take(size);
-  if (checksum(facts) != check) throw damagedSince(begin, source, "its checksum differs");
+  const auto size = reader.number<uint64_t>(), check = reader.number<uint64_t>();
+  const uint64_t begin = reader.at();
+  const std::string_view facts = reader.take(size);
+  if (checksum(facts) != check) throw damagedSince(begin, reader, "its checksum differs");
   decodeFacts(facts, begin, file.facts, file.view);
-  file.done = takeSums(source);
-  file.current = takeSums(source);
-  if (!source.empty())
-    throw Damaged(
+  file.done = takeSums(reader);
+  file.current = takeSums(reader);
+  if (!reader.empty())
+    throw BrokenFile(
         fmt::format("it is damaged: more follows than was expected, {} bytes from byte {} "
                     "on",
-                    source.left(), source.at()));
+                    reader.left(), reader.at()));
   if (!file.done && !file.current)
-    throw damagedSince(begin + size, source, "the lengths of both sums are 0");
+    throw damagedSince(begin + size, reader, "the lengths of both sums are 0");
   return file;
 }
 
-// Throws Damaged: these bytes of an OpenEXR file do not end with sums.
+// Throws BrokenFile: these bytes of an OpenEXR file do not end with sums.
 [[noreturn]] void refuseWithoutSums(std::string_view bytes) {
-  uint64_t end = 0;
-  try {
-    end = endOfExr(bytes);
-  } catch (const BrokenExr& error) { throw Damaged(error.what()); }
+  const uint64_t end = endOfExr(bytes);
   const std::string_view behind = bytes.substr(size_t(end));
   if (!behind.empty() && magic.starts_with(behind.substr(0, magic.size())))
-    throw Damaged(
+    throw BrokenFile(
         fmt::format("it is truncated or damaged: its sums begin at byte {}, and their end "
                     "is not at byte {}, where the file ends",
                     end, bytes.size()));
-  if (behind.starts_with(magic.substr(0, 6)))
-    throw Damaged("its sums were made by another version");
-  throw Damaged("it has no sums, only rounded means; --sums puts sums into a file");
+  if (isOtherVersion(behind)) throw BrokenFile("its sums were made by another version");
+  throw BrokenFile("it has no sums, only rounded means; --sums puts sums into a file");
 }
 
 SumsFile decodeBehindExr(std::string_view bytes) {
@@ -211,16 +180,16 @@ SumsFile decodeBehindExr(std::string_view bytes) {
   const uint64_t begin = bytes.size() - std::min<uint64_t>(size, bytes.size());
   const std::string_view sums = bytes.substr(size_t(begin));
   if (size > bytes.size() || !sums.starts_with(magic))
-    throw Damaged(fmt::format("it is damaged: sums of {} bytes were expected before byte {}", size,
-                              bytes.size()));
+    throw BrokenFile(fmt::format("it is damaged: sums of {} bytes were expected before byte {}",
+                                 size, bytes.size()));
   return decode(sums, begin);
 }
 
 std::string contentsOf(const std::string& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) throw Damaged("it is a folder");
+  if (std::filesystem::is_directory(path, error)) throw BrokenFile("it is a folder");
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    throw Damaged("it is not an ordinary file");
+    throw BrokenFile("it is not an ordinary file");
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string bytes;
@@ -230,15 +199,15 @@ std::string contentsOf(const std::string& path) {
     file.read(block, std::streamsize(magic.size()));
     bytes.append(block, size_t(file.gcount()));
     if (file.eof() && (magic.starts_with(bytes) || exrMagic.starts_with(bytes)) && bytes != magic)
-      throw Damaged(fmt::format("it is truncated: it has {} bytes", bytes.size()));
-    if (bytes.starts_with(magic.substr(0, 6)) && bytes != magic)
-      throw Damaged("it was made by another version");
+      throw BrokenFile(fmt::format("it is truncated: it has {} bytes", bytes.size()));
+    if (isOtherVersion(bytes)) throw BrokenFile("it was made by another version");
     if (!bytes.starts_with(exrMagic) && bytes != magic)
-      throw Damaged("it is not a file of sums, and no OpenEXR file");
+      throw BrokenFile("it is not a file of sums, and no OpenEXR file");
     while (file.read(block, sizeof block) || file.gcount() > 0)
       bytes.append(block, size_t(file.gcount()));
   }
-  if (!file.eof() || file.bad()) throw Damaged(errno ? std::strerror(errno) : "it is unreadable");
+  if (!file.eof() || file.bad())
+    throw BrokenFile(errno ? std::strerror(errno) : "it is unreadable");
   return bytes;
 }
 
@@ -277,7 +246,7 @@ SumsFile readSums(const std::string& path) {
   try {
     const std::string bytes = contentsOf(path);
     return bytes.starts_with(exrMagic) ? decodeBehindExr(bytes) : decode(bytes, 0);
-  } catch (const Damaged& error) { throw InputError(path, error.what()); }
+  } catch (const BrokenFile& error) { throw InputError(path, error.what()); }
 }
 
 void appendSums(std::string& exr, const SumsFile& file) {

@@ -623,8 +623,9 @@ class Pictures {
                       options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
     if (options_.verbose && done_ == total()) reportLast(result);
-    const bool nothing = !options_.quiet && !result.interrupted &&
-                         (showsNothing(result.picture) || showsStudioAlone(result));
+    const bool nothing =
+        !options_.quiet && !result.interrupted &&
+        (showsNothing(result.picture) || showsStudioAlone(result) || mayBeUnlit(options_, result));
     anythingShown_ = anythingShown_ || !nothing;
     // In a sequence, only the last picture prints a hint.
     const bool hints = !options_.isSequence() || (done_ == total() && !anythingShown_);

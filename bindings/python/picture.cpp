@@ -311,8 +311,9 @@ void definePicture(py::module_& module) {
             return py::module_::import("xvrml._masks").attr("matte")(self, *names);
           },
           "matte(*names): returns the share of each pixel that Shapes of these names cover, from "
-          "the channel 'cryptomatte': float32 of shape (height, width), 0 to 1. A share is that of "
-          "the samples that hit such a Shape first, also where it is clear.")
+          "the channel 'cryptomatte': float32 of shape (height, width), 0 to 1. In pictures of a "
+          "Context, names are numbers. A share is that of the samples that hit such a Shape first, "
+          "also where it is clear.")
       .def("_repr_png_",
            [](const PictureObject& self) { return py::bytes(picture::encodePng(self.picture)); })
       .def(py::pickle(&pickled, &unpickled))

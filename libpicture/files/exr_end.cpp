@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/files/byte_reader.h"
+
 namespace picture {
 
 namespace {
@@ -20,86 +22,57 @@ struct Header {
   bool known = false; // the layout is that of scan lines, with one of the compressions above
 };
 
-class HeaderReader {
- public:
-  explicit HeaderReader(std::string_view bytes) : bytes_(bytes) {}
+[[noreturn]] void damaged(uint64_t at, std::string_view why) {
+  throw BrokenFile(fmt::format("it is damaged at byte {}: {}", at, why));
+}
 
-  Header read() {
-    take(4); // what an OpenEXR file begins with
-    const auto flags = number<uint32_t>();
-    if ((flags & versionBits) != version || (flags & otherLayouts)) return {};
-    Header header;
-    bool window = false, compression = false;
-    for (std::string_view name = text(); !name.empty(); name = text()) {
-      text(); // its type
-      const auto size = number<int32_t>();
-      if (size < 0) damaged(at_ - sizeof size, "a length is negative");
-      const size_t begin = at_;
-      const std::string_view value = take(size_t(size));
-      if (name == "dataWindow" && value.size() == 16) {
-        int32_t box[4];
-        std::memcpy(box, value.data(), sizeof box);
-        header.firstRow = box[1];
-        header.rows = int64_t(box[3]) - box[1] + 1;
-        if (header.rows < 1) damaged(begin, "the picture has no rows");
-        window = true;
-      } else if (name == "compression" && value.size() == 1) {
-        const auto kind = uint8_t(value[0]);
-        if (kind >= rowsOfBlock.size()) return {};
-        header.rowsAtOnce = rowsOfBlock[kind];
-        compression = true;
-      }
+[[noreturn]] void truncated(std::string_view bytes, std::string_view where) {
+  throw BrokenFile(fmt::format("it is truncated: it ends at byte {}, {}", bytes.size(), where));
+}
+
+Header readHeader(ByteReader& reader) {
+  reader.take(4); // what an OpenEXR file begins with
+  const auto flags = reader.number<uint32_t>();
+  if ((flags & versionBits) != version || (flags & otherLayouts)) return {};
+  Header header;
+  bool window = false, compression = false;
+  for (auto name = reader.textBeforeZero(); !name.empty(); name = reader.textBeforeZero()) {
+    reader.textBeforeZero(); // its type
+    const auto size = reader.number<int32_t>();
+    const uint64_t begin = reader.at();
+    if (size < 0) damaged(begin - sizeof size, "a length is negative");
+    const std::string_view value = reader.take(uint64_t(size));
+    if (name == "dataWindow" && value.size() == 16) {
+      int32_t box[4];
+      std::memcpy(box, value.data(), sizeof box);
+      header.firstRow = box[1];
+      header.rows = int64_t(box[3]) - box[1] + 1;
+      if (header.rows < 1) damaged(begin, "the picture has no rows");
+      window = true;
+    } else if (name == "compression" && value.size() == 1) {
+      const auto kind = uint8_t(value[0]);
+      if (kind >= rowsOfBlock.size()) return {};
+      header.rowsAtOnce = rowsOfBlock[kind];
+      compression = true;
     }
-    if (!window || !compression)
-      damaged(at_,
-              fmt::format("the header before has no {}", window ? "compression" : "dataWindow"));
-    header.known = true;
-    return header;
   }
-
-  size_t position() const { return at_; }
-
-  [[noreturn]] static void damaged(uint64_t at, std::string_view why) {
-    throw BrokenExr(fmt::format("it is damaged at byte {}: {}", at, why));
-  }
-
- private:
-  std::string_view take(size_t size) {
-    if (size > bytes_.size() - at_)
-      throw BrokenExr(
-          fmt::format("it is truncated: it ends at byte {}, in its header", bytes_.size()));
-    const std::string_view taken = bytes_.substr(at_, size);
-    at_ += size;
-    return taken;
-  }
-  template <class T> T number() {
-    T value;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
-  }
-  std::string_view text() {
-    const size_t end = std::min(bytes_.find('\0', at_), bytes_.size());
-    const std::string_view found = take(end - at_);
-    take(1);
-    return found;
-  }
-
-  std::string_view bytes_;
-  size_t at_ = 0;
-};
+  if (!window || !compression)
+    damaged(reader.at(),
+            fmt::format("the header before has no {}", window ? "compression" : "dataWindow"));
+  header.known = true;
+  return header;
+}
 
 } // namespace
 
 uint64_t endOfExr(std::string_view bytes) {
-  HeaderReader reader(bytes);
-  const Header header = reader.read();
+  ByteReader reader(bytes);
+  const Header header = readHeader(reader);
   if (!header.known) return bytes.size();
   const uint64_t blocks = uint64_t((header.rows + header.rowsAtOnce - 1) / header.rowsAtOnce),
-                 table = reader.position();
+                 table = reader.at();
   uint64_t end = table + blocks * sizeof(uint64_t);
-  if (end > bytes.size())
-    throw BrokenExr(
-        fmt::format("it is truncated: it ends at byte {}, before its pixels", bytes.size()));
+  if (end > bytes.size()) truncated(bytes, "before its pixels");
   const uint64_t pixels = end;
   for (uint64_t i = 0; i < blocks; ++i) {
     constexpr uint64_t head = 2 * sizeof(int32_t); // the number of the first row, and a length
@@ -107,21 +80,18 @@ uint64_t endOfExr(std::string_view bytes) {
     const uint64_t entry = table + i * sizeof(uint64_t);
     uint64_t place = 0;
     std::memcpy(&place, bytes.data() + entry, sizeof place);
-    if (place == 0)
-      reader.damaged(entry, fmt::format("the pixels from row {} on are missing", row));
+    if (place == 0) damaged(entry, fmt::format("the pixels from row {} on are missing", row));
     if (place < pixels || place > UINT64_MAX / 2)
-      reader.damaged(entry, fmt::format("it does not lead to the pixels of row {}", row));
+      damaged(entry, fmt::format("it does not lead to the pixels of row {}", row));
     int32_t is[2] = {};
     if (place + head <= bytes.size()) {
       std::memcpy(is, bytes.data() + place, sizeof is);
       if (is[0] != row || is[1] < 0)
-        reader.damaged(place, fmt::format("the pixels of row {} were expected", row));
+        damaged(place, fmt::format("the pixels of row {} were expected", row));
     }
     const uint64_t last = place + head + uint64_t(is[1]);
     if (last > bytes.size())
-      throw BrokenExr(fmt::format("it is truncated: it ends at byte {}, before the pixels from row "
-                                  "{} on are complete",
-                                  bytes.size(), row));
+      truncated(bytes, fmt::format("before the pixels from row {} on are complete", row));
     end = std::max(end, last);
   }
   return end;

@@ -3,19 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string_view>
 
 namespace picture {
 
-// A file that is not complete. The text says where: "it is truncated: it ends at byte 9, ...".
-struct BrokenExr : std::runtime_error {
-  using runtime_error::runtime_error;
-};
-
 // Returns the number of bytes of the OpenEXR file that these bytes begin with. The pixels are not
 // looked at. All bytes count as its own if it has tiles, several parts or deep pixels. Throws
-// BrokenExr.
+// BrokenFile (byte_reader.h) if it is not complete.
 uint64_t endOfExr(std::string_view bytes);
 
 } // namespace picture

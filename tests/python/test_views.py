@@ -265,10 +265,18 @@ def test_shapes_of_one_name_have_one_matte():
     assert image.names.count("Grass") == 40
 
 
-def test_mattes_need_names():
+def test_mattes_of_a_context_have_numbers():
+    """Two triangles that share a square's diagonal, each half of the picture."""
     context = xvrml.rt.Context()
-    with pytest.raises(AttributeError, match="no names"):
-        context.render(size=(4, 4), spp=1, channels="cryptomatte").matte("3")
+    for name, corner in ((3, (-1, 1, 0)), (7, (1, -1, 0))):
+        context.instance(context.mesh([(-1, -1, 0), (1, 1, 0), corner], [(0, 1, 2)], name=name))
+    context.camera((0, 0, 5), (0, 0, 0), height=2)
+    image = context.render(size=(16, 16), spp=64, channels="cryptomatte")
+    for names, share in (((3, ), .5), ((7, ), .5), ((3, 7), 1), ((), 0), ((4, ), 0)):
+        assert image.matte(*names).mean() == pytest.approx(share, abs=.01), names
+    for name, error in (("3", TypeError), (.5, TypeError), (0, ValueError), (1 << 32, ValueError)):
+        with pytest.raises(error, match="matte: a name of a Context"):
+            image.matte(name)
 
 
 def test_mattes_of_several_shapes_add_up(world):

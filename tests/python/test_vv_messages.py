@@ -93,8 +93,9 @@ def test_help_and_version(vv):
                    "--shader-path", "--quiet", "--verbose", "--version"):
         assert option in done.text
     assert max(map(len, done.text.splitlines())) <= 130
-    assert vv("-h").text == done.text
+    assert vv("-h").text == vv("merge", "--help").text == done.text
     version = vv("--version")
+    assert vv("merge", "--version").text == version.text
     assert version.returncode == 0 and version.text.startswith("vv ")
 
 

@@ -74,6 +74,15 @@ def test_rules_select(board, rules, seen):
     assert colours(board, "--shader", "@rules.txt") == seen
 
 
+def test_shapes_without_a_material_are_grey_for_the_rest(vv):
+    """The default colour of Plastic is dark red."""
+    vv.write("bare.wrl", HEADER + "Viewpoint { position 0 0 3 }\nDEF Bare Shape { geometry Box { } }")
+    rest = vv.picture("--shader", "*=Plastic", world="bare.wrl")[12][16]
+    assert max(rest) - min(rest) <= 1 and max(rest) > 100
+    named = vv.picture("--shader", "Bare=Plastic", world="bare.wrl")[12][16]
+    assert named[0] > 1.5 * named[1]
+
+
 def test_a_rule_that_selects_nothing_is_a_warning(board):
     done = board("board.wrl", "-o", "x.png", "--shader", "material:PIN=" + RED, *SMALL)
     assert done.returncode == 0

@@ -52,6 +52,14 @@ def test_hints_for_pictures_that_show_nothing(vv):
     talk = vv("dark.wrl", "-o", "x.png", *SMALL).talk
     assert talk == "vv: the picture is black: the world has no light and its headlight is off; --headlight on\n"
     assert vv("dark.wrl", "-o", "x.png", "--headlight", "on", *SMALL).talk == ""
+    # a silhouette before a background that an option gives
+    silhouette = "vv: all shapes in view are black: the world has no light and its headlight is off; --headlight on\n"
+    vv.write("small.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } geometry Box { } }")
+    for look in (("--preset", "technical"), ("--background", "white")):
+        assert vv("small.wrl", "-o", "x.png", *look, *SMALL).talk == silhouette
+        assert vv("small.wrl", "-o", "x.png", "--headlight", "on", *look, *SMALL).talk == ""
+    vv.write("lamp.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { emissiveColor 1 1 1 } } geometry Box { } }")
+    assert vv("lamp.wrl", "-o", "x.png", "--background", "red", *SMALL).talk == ""
     vv.write("away.wrl",
              HEADER + "Viewpoint { orientation 0 1 0 3.14159 }\nShape { geometry Box { } }")
     assert vv("away.wrl", "-o", "x.png",

@@ -200,13 +200,13 @@ Options readCommandLine(int argc, char** argv) {
                        {},
                        false});
   }
-  if (merges && options.jobs.empty()) {
+  if (merges) {
     std::vector<std::string> names;
     for (const Setting& setting : given) {
       names.push_back(shownName(*setting.option));
       apply(setting, options);
     }
-    readMerge(options, inputs, names);
+    if (!options.has(Job::help) && !options.has(Job::version)) readMerge(options, inputs, names);
     return options;
   }
   for (const Setting& setting : withPresets(std::move(given), options.input))

@@ -9,8 +9,6 @@ namespace vv {
 
 namespace {
 
-constexpr const char* black = "the picture is black: ";
-
 using Headlight = xvrml::MapOptions::Headlight;
 
 // Renders a picture with one sample per pixel, then restores the renderer's settings.
@@ -34,16 +32,22 @@ picture::RenderResult probe(const Options& options, const picture::View& view,
   return result;
 }
 
-bool isBlack(const picture::Picture& picture) {
-  const std::vector<uint8_t> bytes = picture::displayBytes(picture);
-  return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte <= 1; });
-}
+struct Seen {
+  bool anything = true; // some pixel shows a shape
+  bool black = true;    // no pixel that shows a shape is brighter than black
+};
 
-bool anythingInView(const picture::RenderResult& probe) {
+Seen lookAt(const picture::RenderResult& probe) {
   const auto depth = probe.picture.planes.find(RT_DEPTH);
-  if (probe.interrupted || depth == probe.picture.planes.end()) return true;
-  return std::any_of(depth->second.begin(), depth->second.end(),
-                     [](float d) { return std::isfinite(d); });
+  if (probe.interrupted || depth == probe.picture.planes.end()) return {true, false};
+  const std::vector<uint8_t> bytes = picture::displayBytes(probe.picture);
+  Seen seen{false, true};
+  for (size_t i = 0; i < depth->second.size(); ++i) {
+    if (!std::isfinite(depth->second[i])) continue;
+    seen.anything = true;
+    for (size_t k = 3 * i; k < 3 * i + 3; ++k) seen.black = seen.black && bytes[k] <= 1;
+  }
+  return seen;
 }
 
 } // namespace
@@ -54,6 +58,11 @@ bool showsNothing(const picture::Picture& picture) {
   for (size_t i = 3; i < bytes.size(); ++i)
     if (std::abs(int(bytes[i]) - int(bytes[i - 3])) > 1) return false;
   return !bytes.empty();
+}
+
+bool mayBeUnlit(const Options& options, const picture::RenderResult& result) {
+  return result.stats.lights == 0 && result.picture.planes.contains(RT_RGBA) &&
+         options.render.background.kind == picture::Background::Kind::colour;
 }
 
 std::string hintFor(const Options& options, const picture::View& view,
@@ -69,7 +78,8 @@ std::string hintFor(const Options& options, const picture::View& view,
   // The mapper has warned of a camera that stands too far away (OpenRTMapper::Impl::useCamera).
   const double* place = result.camera.matrix + 12;
   if (!(std::hypot(place[0], place[1], place[2]) <= 1e17)) return {};
-  if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
+  const Seen seen = lookAt(probe(options, view, renderer, options.render.headlight));
+  if (!seen.anything) {
     if (isPoint) // a point of a PointSet, or spheres without a size
       return "all of the world is at one point, and nothing of it is in view from here";
     const size_t viewpoints = renderer.viewpoints().size();
@@ -77,13 +87,13 @@ std::string hintFor(const Options& options, const picture::View& view,
         "nothing is in view from here: --fit shows all of the world{}",
         viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");
   }
-  // A black picture may be intended: suggest an option only if it makes the picture brighter.
-  if (!isBlack(result.picture) || isBlack(probe(options, view, renderer, Headlight::on).picture))
-    return {};
+  // Black shapes may be intended: suggest an option only if it makes them brighter.
+  if (!seen.black || lookAt(probe(options, view, renderer, Headlight::on)).black) return {};
+  const std::string black =
+      showsNothing(result.picture) ? "the picture is black: " : "all shapes in view are black: ";
   if (result.stats.lights == 0)
-    return std::string(black) + "the world has no light and its headlight is off; --headlight on";
-  return std::string(black) +
-         "no light reaches what is in view; --headlight on adds one at the camera";
+    return black + "the world has no light and its headlight is off; --headlight on";
+  return black + "no light reaches what is in view; --headlight on adds one at the camera";
 }
 
 } // namespace vv

@@ -425,7 +425,7 @@ class Picture:
     ) -> Dict[str, Any]:
         ...
 
-    def matte(self, *names: str) -> npt.NDArray[np.float32]:
+    def matte(self, *names: Union[str, int]) -> npt.NDArray[np.float32]:
         ...
 
     def _repr_png_(self) -> bytes:

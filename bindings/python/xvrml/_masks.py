@@ -36,16 +36,11 @@ def _category(categories, name):
     return found
 
 
-def matte(picture, *names):
-    """Implements Picture.matte()."""
-    import numpy as np
-    if "cryptomatte" not in picture.channels:
-        raise AttributeError("the picture has no channel cryptomatte: "
-                             "render(channels=('cryptomatte',)) makes it")
-    if not picture.names:
-        raise AttributeError("the picture knows no names: those of a Context are numbers, with "
-                             "their shares in picture['cryptomatte']")
-    wanted = np.zeros(len(picture.names), bool)
+def _numbers(picture, names):
+    """Returns the numbers that stand for these names in the channel cryptomatte."""
+    if not picture.names:  # of a Context, whose names are numbers
+        return {_arguments.whole("matte: a name of a Context", name, 1, 0xffffffff) for name in names}
+    numbers = set()
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"matte: the name of a Shape expected, not {name!r}")
@@ -54,10 +49,20 @@ def matte(picture, *names):
             known = sorted(set(picture.names[1:]))
             shown = ", ".join(known[:20]) + (" ..." if len(known) > 20 else "")
             raise KeyError(f"no Shape has the name {name}; names are {shown}")
-        wanted[found] = True
+        numbers.update(found)
+    return numbers
+
+
+def matte(picture, *names):
+    """Implements Picture.matte()."""
+    import numpy as np
+    if "cryptomatte" not in picture.channels:
+        raise AttributeError("the picture has no channel cryptomatte: "
+                             "render(channels=('cryptomatte',)) makes it")
+    wanted = np.array(sorted(_numbers(picture, names)), np.float32)
     pairs = picture["cryptomatte"]
-    numbers, shares = pairs[..., 0::2].astype(np.int64), pairs[..., 1::2]
-    return np.where(wanted[numbers], shares, 0).sum(axis=-1, dtype=np.float32)
+    numbers, shares = pairs[..., 0::2], pairs[..., 1::2]
+    return np.where(np.isin(numbers, wanted), shares, 0).sum(axis=-1, dtype=np.float32)
 
 
 def coco(picture, image_id=1, file_name="", categories=None, compressed=False, first_id=1):

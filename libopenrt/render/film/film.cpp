@@ -3,6 +3,7 @@
 #include "render/film/film.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -60,15 +61,15 @@ namespace {
 
 // Writes the pairs of RT_COVERAGE of a pixel with n samples: the largest shares of `hits`.
 void writeCoverage(std::span<const HitCount> hits, double n, float* out) {
-  std::vector<HitCount> order(hits.begin(), hits.end());
-  const size_t shown = std::min<size_t>(order.size(), coverageNames);
-  std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(shown), order.end(),
-                    [](const HitCount& a, const HitCount& b) {
-                      return a.times != b.times ? a.times > b.times : a.name < b.name;
-                    });
-  for (size_t i = 0; i < shown; i++) {
-    out[2 * i] = float(order[i].name);
-    out[2 * i + 1] = float(order[i].times / n);
+  std::array<HitCount, coverageNames> largest;
+  const auto end =
+      std::partial_sort_copy(hits.begin(), hits.end(), largest.begin(), largest.end(),
+                             [](const HitCount& a, const HitCount& b) {
+                               return a.times != b.times ? a.times > b.times : a.name < b.name;
+                             });
+  for (auto hit = largest.begin(); hit != end; ++hit) {
+    *out++ = float(hit->name);
+    *out++ = float(hit->times / n);
   }
 }
 
