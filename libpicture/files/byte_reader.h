@@ -26,9 +26,8 @@ class ByteReader {
   std::string_view take(uint64_t size) {
     if (size > left_.size())
       throw BrokenFile(
-          fmt::format("it is truncated or damaged: at byte {}, {} bytes were expected, and {} are "
-                      "there",
-                      at_, size, left_.size()));
+          fmt::format("it is truncated or damaged: from byte {} on, {} of {} bytes are there", at_,
+                      left_.size(), size));
     const std::string_view taken = left_.substr(0, size_t(size));
     left_.remove_prefix(size_t(size));
     at_ += size;

@@ -70,7 +70,7 @@ def test_another_exposure_is_a_warning(parts):
     (ValueError, (["0.exr"], "x\0.png"), "null byte"),
     (OSError, (["none.exr"], ), "cannot read none.exr"),
     (OSError, (["0.exr", "box.wrl"], ), "not a file of sums"),
-    (OSError, (["0.exr", "short.exr"], ), "short.exr: it is truncated: it ends at byte 300"),
+    (OSError, (["0.exr", "short.exr"], ), "short.exr: it is truncated or damaged: from byte"),
     (OSError, (["0.exr"], "none/x.exr"), "none"),
     (ValueError, (["0.exr"], "x.wrl"), "suffixes"),
     (ValueError, (["0.exr", "1.exr"], "./0.exr"), "0.exr is one of the files"),
