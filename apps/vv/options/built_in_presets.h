@@ -24,7 +24,8 @@ spp = 32
 
 # Materials of KiCad's library have names. The layers of its exporter have colours alone, and a
 # shininess by the layer: .9 finish of the copper, .7 solder, .01 board (decision 76). Solder mask
-# keeps its transparency.
+# keeps its transparency. Cans and shields (MET-*) have the n and k of iron at 630, 532 and 465 nm,
+# because aluminium would be white under a soft box.
 [preset.pcb]
 from = "above"
 studio = "#c8cacc"
@@ -43,7 +44,7 @@ shader = [
   "colour:0,0,0,.01=Plastic:color=.43,.45,.3:roughness=.4",
   "material:PIN-*=Metal:roughness=.25",
   "material:PIN-02=Metal:n=.143,.375,1.442:k=3.983,2.386,1.603:roughness=.25",
-  "material:MET-*=Metal:roughness=.3",
+  "material:MET-*=Metal:n=2.91,2.95,2.58:k=3.09,2.93,2.77:roughness=.35",
   "material:MET-COPPER=Metal:n=.21,1.04,1.18:k=3.67,2.58,2.21:roughness=.4",
   "material:MET-BRONZE=Metal:n=.21,1.04,1.18:k=3.67,2.58,2.21:roughness=.5",
   "material:IC-BODY-*=Plastic:roughness=.45",
