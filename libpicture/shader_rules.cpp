@@ -1,5 +1,6 @@
 #include "libpicture/shader_rules.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -20,8 +21,9 @@ namespace {
 
 using namespace xvrml;
 
-constexpr float colourTolerance = 0.03f, shininessTolerance = 0.0201f;
+constexpr float colourTolerance = 0.03f, shininessTolerance = 0.0051f;
 constexpr size_t rulesFileBytes = 1 << 20; // a longer file is refused
+constexpr std::string_view blanks = " \t\r", byteOrderMark = "\xef\xbb\xbf";
 
 // What a rule selects.
 struct Selector {
@@ -60,6 +62,11 @@ std::vector<float> readColour(const std::string& text) {
                                 text));
 }
 
+std::string trimmed(std::string_view text) {
+  const size_t begin = std::min(text.find_first_not_of(blanks), text.size());
+  return std::string(text.substr(begin, text.find_last_not_of(blanks) + 1 - begin));
+}
+
 // Splits a rule into its selector and the text of its shader.
 std::pair<Selector, std::string> readRule(const std::string& text) {
   using Kind = Selector::Kind;
@@ -67,7 +74,8 @@ std::pair<Selector, std::string> readRule(const std::string& text) {
   if (equals == text.npos || equals == 0)
     throw ShaderError(
         fmt::format("SELECTOR=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", text));
-  const std::string selector = text.substr(0, equals), shader = text.substr(equals + 1);
+  const std::string selector = trimmed(text.substr(0, equals)),
+                    shader = trimmed(text.substr(equals + 1));
   if (selector == "*") return {{Kind::rest, {}, {}}, shader};
   constexpr std::pair<std::string_view, Kind> kinds[] = {{"material:", Kind::material},
                                                          {"appearance:", Kind::appearance},
@@ -223,6 +231,7 @@ std::vector<ShaderRule> readShaderRules(const std::string& path) {
   if (text.size() > rulesFileBytes)
     throw std::runtime_error(
         fmt::format("{} is longer than {} bytes, too long for rules", path, rulesFileBytes));
+  if (text.starts_with(byteOrderMark)) text.erase(0, byteOrderMark.size());
   std::vector<ShaderRule> rules;
   std::istringstream lines(text);
   std::string line;
@@ -230,9 +239,8 @@ std::vector<ShaderRule> readShaderRules(const std::string& path) {
     const std::string where = fmt::format("{}:{}:", path, number);
     if (line.find('\0') != line.npos)
       throw std::runtime_error(where + " text was expected, not a byte that is 0");
-    const size_t begin = line.find_first_not_of(" \t\r");
-    if (begin == line.npos || line[begin] == '#') continue;
-    line = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
+    line = trimmed(line);
+    if (line.empty() || line[0] == '#') continue;
     try {
       checkShaderRule(line);
     } catch (const ShaderError& error) {
@@ -251,7 +259,7 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
   // Rules for the rest come last. The last one of them gets all that is left.
   std::vector<ShaderRule> rules, rest;
   for (const ShaderRule& rule : written) {
-    if (rule.text.starts_with("*="))
+    if (trimmed(rule.text.substr(0, rule.text.find('='))) == "*")
       rest.insert(rest.begin(), rule);
     else
       rules.push_back(rule);
@@ -274,8 +282,11 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
     const std::vector<nodes::Shape*> shapes = shapesOf(world, selector, below);
     if (shapes.empty() && rule.mayMatchNothing) continue;
     NodeRef& shader = shaders[shaderText + '\n' + rule.folder];
-    if (!shader)
-      shader = readShader(shaderText, rule.where.c_str(), RT_SURFACE, shaderPath, rule.folder);
+    if (!shader) {
+      std::string where = rule.where; // a place in a file, with a colon behind, or an option
+      if (where.ends_with(':')) where.pop_back();
+      shader = readShader(shaderText, where.c_str(), RT_SURFACE, shaderPath, rule.folder);
+    }
     if (shapes.empty() && selector.kind == Kind::name)
       throw wrong(
           fmt::format("{} is not part of a shape, and no shape is below it", selector.pattern));

@@ -171,7 +171,7 @@ class Pictures {
                                      : chooseJobs(options_, renderer.viewpoints(), i == 0);
       views_ = jobs.size();
       for (Job& job : jobs) {
-        job.turns = !turnsOneOfSeveral() || &job == &jobs.front();
+        job.turns = !turnsFirstSide() || &job == &jobs.front();
         job.isStill = i == 0 || !turnsIntoFilm();
         if (job.turns && !turnsIntoFilm()) job.name.frame = moment.frame;
         job.view.turn = moment.turn;
@@ -189,16 +189,16 @@ class Pictures {
   }
 
  private:
-  // Tells whether the turntable goes round from one of several sides.
-  bool turnsOneOfSeveral() const { return options_.from.size() > 1 && options_.turntable > 0; }
+  // Tells whether the turntable goes round from the first side of --from.
+  bool turnsFirstSide() const { return !options_.from.empty() && options_.turntable > 0; }
   // Tells whether it does so for films only; other files then get the picture at its beginning.
   bool turnsIntoFilm() const {
-    return turnsOneOfSeveral() &&
+    return turnsFirstSide() &&
            std::any_of(options_.outputs.begin(), options_.outputs.end(),
                        [](const Output& output) { return output.film != picture::FilmKind::none; });
   }
   size_t total() const {
-    return turnsOneOfSeveral() ? options_.from.size() + moments_ - 1 : moments_ * views_;
+    return turnsFirstSide() ? options_.from.size() + moments_ - 1 : moments_ * views_;
   }
 
   // Warns if no output file keeps the requested transparency.

@@ -15,15 +15,24 @@ if [ $# -lt 2 ]; then
 fi
 board=$1 output=$2
 shift 2
-views=${VIEWS:-above,top,bottom} size=${SIZE:-800x600} turntable=${TURNTABLE:-0}
-mkdir -p "$(dirname "$output")"
+views=${VIEWS:-above,top,bottom}
+views=${views// /} size=${SIZE:-800x600} turntable=${TURNTABLE:-0}
+if [ ! -f "$board" ]; then
+  echo "$0: $board: there is no such board" >&2
+  exit 3
+fi
+mkdir -p -- "$(dirname -- "$output")"
 
+options=()
 case $board in
 *.kicad_pcb)
   scratch=$(mktemp -d)
   trap 'rm -rf "$scratch"' EXIT
   kicad-cli pcb export vrml --units mm --models-dir shapes3D --models-relative \
     -o "$scratch/board.wrl" "$board"
+  # A vv.toml beside the board is for its exports, too.
+  config=$(dirname -- "$board")/vv.toml
+  if [ -f "$config" ]; then options+=(--config "$config"); fi
   board=$scratch/board.wrl
   ;;
 esac
@@ -32,4 +41,4 @@ outputs=(-o "$output")
 if [ "$turntable" != 0 ]; then
   outputs+=(-o "${output%.*}.gif" --turntable "$turntable")
 fi
-vv "$board" --preset pcb --from "$views" --size "$size" "${outputs[@]}" "$@"
+vv "$board" "${options[@]}" --preset pcb --from "$views" --size "$size" "${outputs[@]}" "$@"

@@ -9,13 +9,14 @@
 // through has the colour of the lacquer.
 //
 // Light that shows what is below has passed twice, in and out. A sheet of an export is one-sided:
-// only its front is hit. So one hit stands for both, and passes T^2.
+// only its front is hit, so this hit stands for both and passes T^2; its back, which only some
+// shadow rays hit, passes everything. Each hit of a sheet with two sides passes T.
 //
 // Of the rest, the layer sends c back: all that a thick layer would. Kubelka and Munk's R is less
 // for light colours, because light that is scattered downwards is lost to it; over a surface of the
 // reflectance g it comes back in parts, T^2 g / (1 - R g), and more of it the lighter both are.
-// Paths pass the back of a sheet freely and do not find these. For dark colours R / (1 - T^2) is c
-// nearly.
+// Paths pass the back of a one-sided sheet freely and do not find these. For dark colours
+// R / (1 - T^2) is c nearly.
 #pragma once
 
 #include <algorithm>
@@ -25,9 +26,9 @@
 
 namespace lacquer {
 
-// Returns the share that passes a layer of the colour r, g, b in the channel c, if the share
-// `transparency` passes in its brightest channel.
-inline float passing(float c, float r, float g, float b, float transparency) {
+// Returns the share that passes a layer of the colour r, g, b twice, in the channel c, if the share
+// `transparency` does so in its brightest channel.
+inline float passingTwice(float c, float r, float g, float b, float transparency) {
   const auto inside = [](float value) {
     return std::clamp(double(value), 1e-6, 1 - 1e-6); // where the formulas are finite
   };
@@ -43,11 +44,15 @@ inline float passing(float c, float r, float g, float b, float transparency) {
   return static_cast<float>(std::min(1.0, through * through));
 }
 
-template <class F> rts::ColorOf<F> passing(rts::ColorOf<F> colour, float transparency) {
+// Returns what passes at this hit.
+template <class F>
+rts::ColorOf<F> passing(const rts::HitOf<F>& hit, rts::ColorOf<F> colour, float transparency) {
   const auto each = [&](F c) {
-    return rts::eachLane(
-        [&](float own, float r, float g, float b) { return passing(own, r, g, b, transparency); },
-        c, colour.r, colour.g, colour.b);
+    const F twice = rts::eachLane([&](float own, float r, float g,
+                                      float b) { return passingTwice(own, r, g, b, transparency); },
+                                  c, colour.r, colour.g, colour.b);
+    const F oneSided = rts::select(hit.back(), F(1), twice);
+    return rts::select(hit.oneSided(), oneSided, rts::squareRoot(twice));
   };
   return {each(colour.r), each(colour.g), each(colour.b)};
 }

@@ -123,14 +123,14 @@ struct Plastic : rts::Surface<Plastic> {
       if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
       return addRough(out, albedo, rts::ColorOf<F>{1, 1, 1});
     }
-    const rts::ColorOf<F> passes = lacquer::passing<F>(albedo, transparency);
+    const rts::ColorOf<F> passes = lacquer::passing<F>(hit, albedo, transparency);
     const rts::ColorOf<F> shown{1 - passes.r, 1 - passes.g, 1 - passes.b};
     out.transparent(passes);
     if (rough() && body_.mean > 0) return addRough(out, albedo, shown);
     coat::add(hit, out, albedo, index, shown);
   }
   template <class F> rts::ColorOf<F> transmit(const rts::HitOf<F>& hit) const {
-    return lacquer::passing<F>(colourAt(hit), transparency);
+    return lacquer::passing<F>(hit, colourAt(hit), transparency);
   }
 
  private:

@@ -59,6 +59,47 @@ TEST_F(Lacquers, KeepWhatIsLight) {
   EXPECT_NEAR(seen.g, .9, .01);
 }
 
+// A sheet with one side or two shows as much of what is below by every kind of light.
+TEST_F(Lacquers, ShowTheSameInEveryLight) {
+  constexpr double share = .3, colour = .001, below = .6;
+  Shader sky("VRML97Environment");
+  sky.setList("skyColor", {1, 1, 1});
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  place(square(matt(below)));
+  RTid sheets[2];
+  for (const bool oneSided : {false, true}) {
+    if (oneSided) rtEnable(RT_CULL_FACE);
+    sheets[oneSided] = placeAt(.01, square(Shader("Plastic")
+                                               .set("color", {colour, colour, colour})
+                                               .set("index", {1})
+                                               .set("transparency", {share})));
+    rtDisable(RT_CULL_FACE);
+  }
+  const auto lookAt = [&](const char* light) {
+    const std::string name = light;
+    if (name == "sky") rtUseEnvironment(sky);
+    const RTid lamp = name == "directional" ? use(tilted(20))
+                      : name == "point"     ? use(point({0, 0, 3}, {1, 0, 0}))
+                                            : 0;
+    const Rgba seen = look();
+    if (lamp) rtRemoveLight(lamp);
+    rtUseEnvironment(0);
+    return seen.g;
+  };
+  for (const char* light : {"sky", "directional", "point"}) {
+    for (const RTid sheet : sheets) rtInstanceVisible(sheet, 0);
+    const double without = lookAt(light);
+    for (const bool oneSided : {false, true}) {
+      SCOPED_TRACE(testing::Message() << light << (oneSided ? ", one side" : ", two sides"));
+      rtInstanceVisible(sheets[oneSided], 1);
+      const double once = oneSided ? share : std::sqrt(share);
+      EXPECT_NEAR(lookAt(light) / without, share + (1 - once) * colour / below, 5e-3);
+      rtInstanceVisible(sheets[oneSided], 0);
+    }
+  }
+}
+
 TEST_F(Lacquers, ShowWhatIsBelowByKubelkaAndMunk) {
   for (const double share : {.17, .6})
     for (const std::array<double, 3>& colour :
@@ -68,10 +109,12 @@ TEST_F(Lacquers, ShowWhatIsBelowByKubelkaAndMunk) {
       rtUseEnvironment(sky);
       rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
       rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
+      rtEnable(RT_CULL_FACE);
       const RTid plane = place(square(Shader("Plastic")
                                           .set("color", {colour[0], colour[1], colour[2]})
                                           .set("index", {1})
                                           .set("transparency", {share})));
+      rtDisable(RT_CULL_FACE);
       const Rgba seen = look();
       rtDeleteInstance(plane);
       const double s = thicknessFor(*std::max_element(colour.begin(), colour.end()), share);

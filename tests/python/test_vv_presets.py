@@ -33,7 +33,10 @@ def written(text):
     """Replaces words that stand for what is too large for a test's name."""
     if isinstance(text, bytes):
         return text
-    return text.replace("deep", "[" * 5000).replace("long", "#" * (1 << 20) + "##")
+    chain = "[[files]]\npreset = 'p0'\n" + "".join(f"[preset.p{i}]\npreset = 'p{i + 1}'\n"
+                                                   for i in range(18)) + "[preset.p18]\nspp = 1\n"
+    return text.replace("deep", "[" * 5000).replace("long", "#" * (1 << 20) + "##").replace(
+        "chain", chain)
 
 
 RED, GREEN, BLUE = glow("1,0,0"), glow("0,1,0"), glow("0,0,1")
@@ -70,7 +73,8 @@ def colours(vv, *arguments):
 def test_rules_select(board, rules, seen):
     arguments = [word for rule in rules for word in ("--shader", rule)]
     assert colours(board, *arguments) == seen
-    board.write("rules.txt", "# a comment\n\n" + "\r\n".join("  " + rule for rule in rules))
+    board.write("rules.txt", "\ufeff# a comment\n\n" +
+                "\r\n".join("  " + rule.replace("=", " = ", 1) for rule in rules))
     assert colours(board, "--shader", "@rules.txt") == seen
 
 
@@ -236,6 +240,11 @@ def test_a_file_beside_the_world(board):
     ("[[files]]\nshader = '@/etc/passwd'\n", "a file inside"),
     ("[[files]]\nshader = '*=VRML97:texture=../x.png'\n", "a file inside"),
     ("[[files]]\nshader = '*=Marble:x=@/etc/passwd'\n", "Marble has no parameter x"),
+    ("[[files]]\nturntable = 361\n", "at most 360 can be set here"),
+    ("[[files]]\nroulette = 'off'\n", "there is no option roulette"),
+    ("[[files]]\nshader = '@fifo'\n", '"fifo" is not an ordinary file'),
+    ("[[files]]\nenvironment = 'fifo'\n", "not"),
+    ("chain", "more than 16 presets build on each other"),
     ("deep", "vv.toml:1:"),
     ("a = deep", "vv.toml:1:"),
     (b"\xff\xfe\x01", "vv.toml:1:"),
@@ -243,6 +252,7 @@ def test_a_file_beside_the_world(board):
 ])
 def test_hostile_files(board, text, message):
     board.write("vv.toml", written(text))
+    os.mkfifo(board.folder / "fifo")
     done = board("board.wrl", "-o", "x.png")
     assert done.returncode in (2, 3), done.talk
     errors = [line for line in done.talk.splitlines() if "--config none" not in line]
@@ -321,6 +331,19 @@ def test_several_sides_and_a_turntable_in_one_call(vv):
               "--size", "8x6", "--spp", "1")
     made = sorted(p.name for p in vv.folder.iterdir() if p.name[:2] in ("fr", "ba"))
     assert made == ["back.png", "front-0000.png", "front-0001.png"]
+
+
+def test_one_side_and_a_turntable_with_a_film(vv):
+    vv.write("cube.wrl", CUBE)
+    done = vv("cube.wrl", "--from", "top", "--turntable", "3", "-o", "a.png", "-o", "a.gif",
+              "--size", "8x6", "--spp", "1")
+    assert done.returncode == 0, done.talk
+    assert sorted(p.name for p in vv.folder.glob("a*")) == ["a.gif", "a.png"]
+    film = (vv.folder / "a.gif").read_bytes()
+    assert film.count(b"\x21\xf9\x04") == 3  # a control block for each picture
+    assert vv("cube.wrl", "--from", "top", "--turntable", "3", "-o", "b.png", "--size", "8x6",
+              "--spp", "1").returncode == 0
+    assert len(list(vv.folder.glob("b-*.png"))) == 3
 
 
 WHITE = HEADER + """Shape { appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" } }
@@ -410,8 +433,10 @@ GOLD, COPPER, SILVER, TIN = "n .143", "n .21", "n .05", "n 1.48"
     ("5, pads", "0.749 0.756 0.761", "0.8", TIN),
     ("a part that is as grey as HASL", "0.627 0.627 0.627", "0.1", "Plastic"),
     ("a part that is as grey as paste", "0.5 0.5 0.5", "0.2", "Plastic"),
-    ("6 to 9, board without a colour", "0 0 0", "0.01", "color .43 .45 .3"),
+    ("6 to 9, board without a colour", "0 0 0", "0.01", "color .155 .171 .073"),
     ("a black part", "0 0 0", "0.1", "roughness .2"),
+    ("a black part that does not shine", "0 0 0", "0", "roughness .2"),
+    ("black silkscreen", "0 0 0", "0.02", "roughness .2"),
     ("6 to 9, silkscreen", "0.961 0.961 0.961", "0.02", "Plastic"),
 ])
 def test_the_preset_knows_the_layers_of_each_kicad(vv, name, colour, shininess, what):
@@ -419,6 +444,27 @@ def test_the_preset_knows_the_layers_of_each_kicad(vv, name, colour, shininess, 
     assert vv("layer.wrl", "--preset", "pcb", "--write", "out.wrl").returncode == 0, name
     text = (vv.folder / "out.wrl").read_text()
     assert what in text.replace(" 0.", " ."), text
+
+
+def test_a_board_without_a_colour_is_as_bright_as_one_of_fr4(vv):
+    """Which is .43 .45 .3 in the colours of a Material."""
+    grey = []
+    for colour in ("0 0 0", "0.43 0.45 0.3"):
+        vv.write("layer.wrl", HEADER + "Viewpoint { position 0 0 9 }\n" + LAYER % (0, 0, colour, .01, 0))
+        grey.append(sum(vv.picture("--preset", "pcb", "--viewpoint", "0", "--spp", "64",
+                                   world="layer.wrl")[12][16]))
+    assert grey[0] == pytest.approx(grey[1], rel=.1)
+
+
+@pytest.mark.parametrize("place", ["0 0 0", "20 10 0", "150 -100 3"])
+def test_boards_lie_wherever_their_origin_is(vv, place):
+    """KiCad's exports have z up, and say so nowhere. A file of glTF has y up."""
+    vv.write("board.wrl", HEADER + f"Transform {{ translation {place} children Shape {{ "
+             "appearance Appearance { material Material { } } geometry Box { size 40 20 1.6 } } }")
+    top = floats(vv, "--preset", "pcb", "--from", "top", "--channels", "z", world="board.wrl")
+    wide = [sum(v[0] < 1e6 for v in row) for row in top]
+    tall = sum(n > 0 for n in wide)
+    assert max(wide) / tall == pytest.approx(2, abs=.4)
 
 
 @pytest.mark.parametrize("mask", ["0.0784 0.2 0.141", "0.71 0.0745 0.0824", "0.00784 0.231 0.635"])

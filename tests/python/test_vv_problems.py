@@ -65,6 +65,9 @@ def test_hints_for_pictures_that_show_nothing(vv):
     assert vv("away.wrl", "-o", "x.png",
               *SMALL).talk == "vv: nothing is in view from here: --fit shows all of the world\n"
     assert vv("away.wrl", "-o", "x.png", "--fit", *SMALL).talk == ""
+    vv.write("wide.wrl", HEADER + "Transform { translation 1e5 0 0 children DEF A Shape { geometry Sphere { } } } Transform { translation -1e5 1e4 0 children USE A }")
+    for look in ((), ("--fit", ), ("--from", "front")):
+        assert "smaller than a pixel from here" in vv("wide.wrl", "-o", "x.png", *look, *SMALL).talk
     vv.write("empty.wrl", HEADER)
     assert vv(
         "empty.wrl", "-o", "x.png", *SMALL

@@ -28,6 +28,7 @@ spp = 32
 # because aluminium would be white under a soft box.
 [preset.pcb]
 from = "above"
+up = "z"
 studio = "#c8cacc"
 clamp = 4
 spp = 16
@@ -41,7 +42,7 @@ shader = [
   "colour:.5,.5,.5,.7=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.5",
   "colour:.4,.4,.4,.8=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.5",
   "colour:.75,.76,.76,.8=Metal:n=1.48,1.48,1.48:k=5.25,5.25,5.25:roughness=.4",
-  "colour:0,0,0,.01=Plastic:color=.43,.45,.3:roughness=.4",
+  "colour:0,0,0,.01=Plastic:color=.155,.171,.073:roughness=.4",
   "material:PIN-*=Metal:roughness=.25",
   "material:PIN-02=Metal:n=.143,.375,1.442:k=3.983,2.386,1.603:roughness=.25",
   "material:MET-*=Metal:n=2.91,2.95,2.58:k=3.09,2.93,2.77:roughness=.35",

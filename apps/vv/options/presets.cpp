@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 constexpr size_t fileBytes = 1 << 20; // a longer file is refused
 constexpr int mostPixels = 4096;      // of each side of a picture
 constexpr int mostSamples = 4096;
+constexpr int mostTurns = 360;     // pictures of a turntable
+constexpr size_t mostPresets = 16; // that build on each other
 
 // The options that a preset may set. A vv.toml may come with a world from somewhere: no option here
 // writes files, reads files elsewhere, runs programs, trusts a world more, or uses the network.
@@ -36,7 +38,7 @@ constexpr std::string_view allowed[] = {
     "fov",        "headlight", "fps",       "camera-shader", "turntable",    "compat",
     "old-world",  "shader",    "studio",    "exact-shapes",  "environment",  "spp",
     "error",      "depth",     "transport", "energy-cut",    "clamp",        "shadows",
-    "roulette",   "denoise",   "exposure",  "view"};
+    "denoise",    "exposure",  "view"};
 
 // Options for the same purpose: one in a later layer replaces the others of earlier layers.
 constexpr std::array<std::string_view, 5> groups[] = {
@@ -202,24 +204,18 @@ class Presets {
   void add(const std::string& name, const std::string& asking, std::vector<Setting>& settings) {
     if (!open_.insert(name).second)
       throw Failure{exitInput, fmt::format("{}: preset {} builds on itself", asking, name)};
-    std::vector<std::string> known;
+    if (open_.size() > mostPresets + 1)
+      throw Failure{exitInput, fmt::format("{}: more than {} presets build on each other", asking,
+                                           mostPresets)};
     for (const Document& document : documents_) {
       const toml::table* presets = document.root["preset"].as_table();
-      if (!presets) continue;
-      for (const auto& [key, node] : *presets) known.emplace_back(key.str());
-      if (const toml::node* found = presets->get(name)) {
+      if (const toml::node* found = presets ? presets->get(name) : nullptr) {
         addTable(document, *found, settings);
         open_.erase(name);
         return;
       }
     }
-    const std::string near = nearest::word(name, known);
-    const std::string text =
-        fmt::format("{}: there is no preset \"{}\"{}; the presets are {}", asking, name,
-                    near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
-                    fmt::format("{}", fmt::join(known, ", ")));
-    if (asking == "--preset") throw UsageError(text);
-    throw Failure{exitInput, text};
+    refuseUnknown(name, asking);
   }
 
   // Puts the options of a table over `settings`, and below them those of its preset.
@@ -237,6 +233,20 @@ class Presets {
   }
 
  private:
+  [[noreturn]] void refuseUnknown(const std::string& name, const std::string& asking) const {
+    std::vector<std::string> known;
+    for (const Document& document : documents_)
+      if (const toml::table* presets = document.root["preset"].as_table())
+        for (const auto& [key, node] : *presets) known.emplace_back(key.str());
+    const std::string near = nearest::word(name, known);
+    const std::string text =
+        fmt::format("{}: there is no preset \"{}\"{}; the presets are {}", asking, name,
+                    near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
+                    fmt::format("{}", fmt::join(known, ", ")));
+    if (asking == "--preset") throw UsageError(text);
+    throw Failure{exitInput, text};
+  }
+
   const std::vector<Document>& documents_;
   std::set<std::string> open_; // presets that are being read
 };
@@ -295,6 +305,8 @@ std::string inside(const std::string& folder, const std::string& path) {
                  relative = place.lexically_relative(root);
   if (error || fs::path(path).is_absolute() || relative.empty() || *relative.begin() == "..")
     throw UsageError(fmt::format("a file inside {} was expected, not \"{}\"", folder, path));
+  if (fs::exists(place, error) && !fs::is_regular_file(place, error))
+    throw UsageError(fmt::format("\"{}\" is not an ordinary file", path));
   return place.string();
 }
 
@@ -342,6 +354,12 @@ std::vector<Setting> withPresets(std::vector<Setting> given, const std::string& 
     presets.add(*preset, "--preset", layer);
     cover(settings, std::move(layer));
   }
+  // glTF says itself that y is up (glTF 2.0, 3.4).
+  if (const std::string type = fs::path(world).extension().string();
+      type == ".glb" || type == ".gltf")
+    std::erase_if(settings, [](const Setting& setting) {
+      return setting.builtIn && isFor(*setting.option, "up");
+    });
   cover(settings, std::move(given));
   return settings;
 }
@@ -379,6 +397,9 @@ void applyConfined(const Setting& setting, Options& options) {
   if (options.samples.value_or(0) > mostSamples)
     throw UsageError(
         fmt::format("at most {} can be set here; --spp has no such limit", mostSamples));
+  if (options.turntable > mostTurns)
+    throw UsageError(
+        fmt::format("at most {} can be set here; --turntable has no such limit", mostTurns));
 }
 
 } // namespace vv

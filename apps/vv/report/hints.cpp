@@ -83,6 +83,11 @@ std::string hintFor(const Options& options, const picture::View& view,
     if (isPoint) // a point of a PointSet, or spheres without a size
       return "all of the world is at one point, and nothing of it is in view from here";
     const size_t viewpoints = renderer.viewpoints().size();
+    const bool chosen = view.lookAt || view.pinhole || viewpoints > 0;
+    if (view.fit || view.side || !chosen)
+      return "nothing is in view, although all of the world is: its shapes are smaller than a "
+             "pixel "
+             "from here; --camera looks from nearer";
     return fmt::format(
         "nothing is in view from here: --fit shows all of the world{}",
         viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");

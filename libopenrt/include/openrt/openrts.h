@@ -83,7 +83,10 @@ enum {
   RTS_HIT_BACK = 1,
   RTS_HIT_COLOR = 2,    /* the geometry has colours; `color` is interpolated (else 1 1 1 1) */
   RTS_HIT_TEXCOORD = 4, /* the geometry has texture coordinates (else uv is 0) */
-  RTS_HIT_LINE = 8      /* the hit is on a line or a point, not on a surface */
+  RTS_HIT_LINE = 8,     /* the hit is on a line or a point, not on a surface */
+  /* The geometry has RT_CULL_FACE: the rays of paths pass its back, and only shadow rays to lights
+   * without a surface hit it (older hosts: never set). */
+  RTS_HIT_ONE_SIDED = 16
 };
 
 /* The hits of a batch: all have the same class, but not always the same parameter values. */

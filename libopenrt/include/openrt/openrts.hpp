@@ -166,6 +166,7 @@ template <> struct HitOf<float> : Tracer, HitNumbers<float> {
 
   bool back() const { return (flags & RTS_HIT_BACK) != 0; }
   bool line() const { return (flags & RTS_HIT_LINE) != 0; }
+  bool oneSided() const { return (flags & RTS_HIT_ONE_SIDED) != 0; }
   // Returns the cosine between the reversed ray and the shading normal, 0..1.
   float cosine() const { return std::fmin(1.0f, std::fmax(0.0f, -dot(direction, normal))); }
   // Returns the filtered texel (linear rgba) at texture coordinates; white if there is no texture.
@@ -220,6 +221,7 @@ template <> struct HitOf<Lanes> : HitNumbers<Lanes> {
 
   Mask back() const { return has(RTS_HIT_BACK); }
   Mask line() const { return has(RTS_HIT_LINE); }
+  Mask oneSided() const { return has(RTS_HIT_ONE_SIDED); }
   Lanes cosine() const { return smaller(1, larger(0, -dot(direction, normal))); }
   Vec4Of<Lanes> sample(Texture texture, Vec2Of<Lanes> place) const;
   LocalOf<Lanes> local() const;

@@ -149,13 +149,15 @@ void computeBlock(const RenderScene& scene, const Rays& rays, const RayHits& hit
                   const uint32_t (&hitLanes)[lanes], const PointArrays& out, uint32_t i) {
   PointBlock block;
   block.attributes = 0;
-  uint32_t others = 0; // hits that are not triangles, as bits
+  uint32_t oneSided[lanes]; // RTS_HIT_ONE_SIDED or 0
+  uint32_t others = 0;      // hits that are not triangles, as bits
   for (uint32_t to = 0; to < lanes; to++) {
     const uint32_t lane = hitLanes[to];
     const Record& r = scene.records[hits.record[lane]];
     store(load(rays.dir, lane), block.direction, to);
     store(load(hits.ng, lane), block.ng, to);
     block.flipped[to] = r.flip ? ~0u : 0;
+    oneSided[to] = r.cull ? RTS_HIT_ONE_SIDED : 0;
     if (r.primitive == edit::Primitive::Triangles) {
       gatherTriangle(r, hits, lane, block, to);
       continue;
@@ -175,6 +177,7 @@ void computeBlock(const RenderScene& scene, const Rays& rays, const RayHits& hit
                                                                   : computeThin;
     compute(r, rays, hits, lane, block, to);
   }
+  for (uint32_t to = 0; to < lanes; to++) block.flags[to] |= oneSided[to];
   finishPoints(block, out, i);
 }
 
