@@ -13,7 +13,7 @@ build=(
   libexpat1-dev                                                 # X3D in XML
   libflatbuffers-dev flatbuffers-compiler # scene edits
   libzmq3-dev cppzmq-dev liblz4-dev       # the cluster
-  libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
+  libfast-float-dev libfmt-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev
   libavcodec-dev libavformat-dev libswscale-dev # films; optional
   libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons
   python3 python3-dev python3-numpy python3-venv pybind11-dev

@@ -1,13 +1,8 @@
 #include "checkpoint.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
 #include "report/progress.h"
@@ -26,21 +21,6 @@ std::string seedsOf(uint32_t first, uint32_t last) {
 
 picture::SumsView viewOf(const Options& options) {
   return {options.render.view, options.fitExposure};
-}
-
-// Writes a file that replaces the old one only when it is on the disk, so that a lost machine
-// leaves one or the other.
-void writeSafely(const std::string& name, const std::string& bytes) {
-  std::error_code unresolved; // a link stays, and the file that it leads to is replaced
-  const auto target = std::filesystem::canonical(name, unresolved);
-  const std::string path = unresolved ? name : target.string();
-  const std::string fresh = path + ".new";
-  picture::writeFile(fresh, bytes);
-  const int descriptor = ::open(fresh.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool there = descriptor >= 0 && ::fsync(descriptor) == 0;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!there || std::rename(fresh.c_str(), path.c_str()) != 0)
-    throw std::runtime_error(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
 }
 
 } // namespace
@@ -107,7 +87,8 @@ void Checkpoint::save(const picture::Sums& sums, const std::vector<std::string>&
   if (!writes()) return;
   const double begin = secondsSinceStart();
   try {
-    writeSafely(options_.resume, picture::encodeSums(file_));
+    // A lost machine leaves the old file or the new one.
+    picture::writeFile(options_.resume, picture::encodeSums(file_), picture::Wait::disk);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("--resume: {}", error.what()));
   }

@@ -299,13 +299,24 @@ class Pictures {
     return interrupted() || (checkpoint_ && checkpoint_->timeIsUp());
   }
 
-  // Writes the file of --resume. A failure does not stop the picture, unless it is the last write.
+  // Writes the file of --resume. A failure does not stop the picture.
   void saveSums() {
     try {
       checkpoint_->save(renderer_->sums(), names_);
     } catch (const std::runtime_error& error) {
       if (progress_) progress_->clear();
       if (!std::exchange(saveFailed_, true)) sayWarning(error.what());
+    }
+  }
+  // Writes it with the sums of a seed that has ended. Returns false, with a message, if it cannot
+  // be written; the pictures can be written all the same.
+  bool saveEnded(const picture::Sums& sums, const std::vector<std::string>& names) {
+    try {
+      checkpoint_->save(sums, names);
+      return true;
+    } catch (const std::runtime_error& error) {
+      sayError(error.what());
+      return false;
     }
   }
 
@@ -380,11 +391,11 @@ class Pictures {
         return result.missing ? exitMissing : exitProblems;
       }
       const picture::Sums sums = renderer_->sums();
-      checkpoint_->save(sums, result.picture.names);
+      const bool saved = saveEnded(sums, result.picture.names);
       if (result.interrupted) {
         // A picture that had not begun does not replace the one of an earlier run.
         if (sums && seeds.count() == 1) finish(job, moment, result);
-        return endUnfinished();
+        return saved ? endUnfinished() : exitRender;
       }
       if (seed < seeds.last) {
         checkpoint_->nextSeed();
@@ -402,6 +413,7 @@ class Pictures {
         useStatsOf(all, result.stats);
       }
       finish(job, moment, result);
+      if (!saved) return exitRender;
     }
     return exitDone;
   }

@@ -15,6 +15,7 @@ class Openrt < Formula
   depends_on "ninja" => :build
   depends_on "nlohmann-json" => :build
   depends_on "pkgconf" => :build
+  depends_on "tomlplusplus" => :build
   depends_on "duktape"
   depends_on "embree"
   depends_on "ffmpeg"
@@ -32,7 +33,6 @@ class Openrt < Formula
   depends_on "mesa-glu"
   depends_on "openexr"
   depends_on "sdl2"
-  depends_on "spdlog"
   depends_on "tbb"
   depends_on "xxhash"
   depends_on "zeromq"

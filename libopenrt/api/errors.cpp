@@ -62,7 +62,9 @@ void recordCurrentException(ErrorState& errors, const char* function) noexcept {
   } catch (const OptionError& e) {
     errors.record(RT_INVALID_VALUE, function, e.what());
   } catch (const std::system_error& e) {
-    errors.record(RT_IO_ERROR, function, e.what());
+    // A thread cannot be started, for example.
+    const bool exhausted = e.code() == std::errc::resource_unavailable_try_again;
+    errors.record(exhausted ? RT_OUT_OF_MEMORY : RT_IO_ERROR, function, e.what());
   } catch (const std::exception& e) {
     errors.record(RT_INVALID_OPERATION, function, e.what());
   } catch (...) { errors.record(RT_INVALID_OPERATION, function, "an unknown exception"); }

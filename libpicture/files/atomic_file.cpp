@@ -3,8 +3,8 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
-#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -50,13 +50,18 @@ std::string folderOf(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// Resolves symbolic links, so that the link stays and its target is replaced.
+// Resolves symbolic links, so that the link stays and its target is replaced or made.
 std::string followLinks(const std::string& path) {
-  char* real = ::realpath(path.c_str(), nullptr);
-  if (!real) return path;
-  std::string result(real);
-  std::free(real);
-  return result;
+  namespace fs = std::filesystem;
+  constexpr int mostLinks = 40; // as in Linux
+  fs::path at = path;
+  std::error_code error;
+  for (int i = 0; i < mostLinks && fs::is_symlink(at, error); ++i) {
+    const fs::path to = fs::read_symlink(at, error);
+    if (error) break;
+    at = at.parent_path() / to; // an absolute one replaces the folder
+  }
+  return at.string();
 }
 
 void writeDirectly(const std::string& path, std::string_view bytes) {
@@ -98,6 +103,10 @@ class Temporary {
   Temporary& operator=(const Temporary&) = delete;
 
   int descriptor() const { return descriptor_; }
+  // Waits until the bytes are on the disk. Throws std::runtime_error.
+  void sync() {
+    if (::fsync(descriptor_) != 0) fail(path_, errno);
+  }
   // Closes the file and gives it the name of the target. Throws std::runtime_error.
   void moveTo(const std::string& target) {
     if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno);
@@ -135,7 +144,7 @@ void writeDescriptor(int descriptor, std::string_view bytes, const std::string& 
   }
 }
 
-void writeFile(const std::string& path, std::string_view bytes) {
+void writeFile(const std::string& path, std::string_view bytes, Wait wait) {
   const std::string target = followLinks(path);
   struct stat info;
   const bool exists = ::stat(target.c_str(), &info) == 0;
@@ -149,6 +158,7 @@ void writeFile(const std::string& path, std::string_view bytes) {
   Temporary temporary(path, target, 0666);
   if (exists) (void)!::fchmod(temporary.descriptor(), info.st_mode & 0777);
   writeDescriptor(temporary.descriptor(), bytes, path);
+  if (wait == Wait::disk) temporary.sync();
   temporary.moveTo(target);
 }
 

@@ -3,14 +3,20 @@
 // of those that write the same file, the last one wins. [any thread]
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace picture {
 
-// Writes a file. The previous file stays until the new content is complete. Devices and pipes are
-// written directly. Throws std::runtime_error naming the file and the reason.
-void writeFile(const std::string& path, std::string_view bytes);
+// disk: the bytes are on the disk before the file is replaced, so that a machine that loses its
+// power has the old file or the new one.
+enum class Wait : uint8_t { no, disk };
+
+// Writes a file. The previous file stays until the new content is complete. A link stays, too: the
+// file that it leads to is replaced or made. Devices and pipes are written directly. Throws
+// std::runtime_error naming the file and the reason.
+void writeFile(const std::string& path, std::string_view bytes, Wait wait = Wait::no);
 
 // Writes all bytes to an open descriptor; `name` is for the message. Throws std::runtime_error.
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name);

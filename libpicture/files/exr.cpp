@@ -42,7 +42,8 @@ class MemoryStream : public Imf::OStream {
 std::string nameTable(const std::vector<std::string>& names) {
   std::string text = "{";
   for (size_t i = 1; i < names.size(); ++i)
-    text += fmt::format("{}\"{}\":{}", i > 1 ? "," : "", i, jsonText(asUtf8(names[i])));
+    if (!names[i].empty()) // the number belongs to no Shape
+      text += fmt::format("{}\"{}\":{}", text.size() > 1 ? "," : "", i, jsonText(asUtf8(names[i])));
   return text + "}";
 }
 

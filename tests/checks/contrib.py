@@ -251,6 +251,52 @@ formulas = set(re.findall(r'(?:depends_on|uses_from_macos) "([^"]+)"', text))
 libraries = contrib / "homebrew/libraries.txt"
 for name in set(libraries.read_text().split()) - formulas:
     complain(libraries, f"the formula does not need {name}")
+# Names of what the build needs in Debian, conda-forge and Homebrew; "" where a recipe leaves it out.
+NAMES = {
+    "libembree-dev": ("embree", "embree"),
+    "libtbb-dev": ("tbb-devel", "tbb"),
+    "libhwy-dev": ("libhwy", "highway"),
+    "libimath-dev": ("imath", "imath"),
+    "libopenexr-dev": ("openexr", "openexr"),
+    "libpng-dev": ("libpng", "libpng"),
+    "libjpeg-dev": ("libjpeg-turbo", "jpeg-turbo"),
+    "libgif-dev": ("giflib", "giflib"),
+    "zlib1g-dev": ("zlib", "zlib"),
+    "libzstd-dev": ("zstd", "zstd"),
+    "libxxhash-dev": ("xxhash", "xxhash"),
+    "libexpat1-dev": ("libexpat", "expat"),
+    "libflatbuffers-dev": ("flatbuffers", "flatbuffers"),
+    "libzmq3-dev": ("zeromq", "zeromq"),
+    "cppzmq-dev": ("cppzmq", "cppzmq"),
+    "liblz4-dev": ("lz4-c", "lz4"),
+    "libfast-float-dev": ("fast_float", "fast_float"),
+    "libfmt-dev": ("fmt", "fmt"),
+    "libcli11-dev": ("cli11", "cli11"),
+    "nlohmann-json3-dev": ("nlohmann_json", "nlohmann-json"),
+    "libtomlplusplus-dev": ("tomlplusplus", "tomlplusplus"),
+    "libavcodec-dev": ("ffmpeg", "ffmpeg"),
+    "libavformat-dev": ("ffmpeg", "ffmpeg"),
+    "libswscale-dev": ("ffmpeg", "ffmpeg"),
+    "libfreetype-dev": ("freetype", "freetype"),
+    "libharfbuzz-dev": ("harfbuzz", "harfbuzz"),
+    "libfontconfig-dev": ("fontconfig", "fontconfig"),
+    "libglu1-mesa-dev": ("libglu", "mesa-glu"),
+    "python3-dev": ("python", "python"),
+    "pybind11-dev": ("pybind11", ""),
+    "duktape-dev": ("", "duktape"),
+    "tcl-dev": ("tk", ""),
+    "tk-dev": ("tk", ""),
+    "libffi-dev": ("libffi", ""),
+    "libseccomp-dev": ("", "libseccomp"),
+    "libsdl2-dev": ("sdl2", "sdl2"),
+    "libwebsockets-dev": ("libwebsockets", "libwebsockets"),
+}
+packages = run(root / "tools/install-packages.sh", "--list").stdout.split()
+needed = {name for name in packages if name.endswith("-dev")}
+for name in needed ^ set(NAMES):
+    complain(root / "tools/install-packages.sh", f"its libraries differ from those of this check: {name}")
+for name in {brew for _, brew in NAMES.values() if brew} - formulas:
+    complain(formula, f"does not need {name}, which the build does")
 components = set(re.findall(r"COMPONENT (\w+)", (root / "cmake/Install.cmake").read_text())) | {"dev"}
 for path in (formula, build_script):
     parts = re.search(r"(?:%w\[|for part in )([\w ]+)", path.read_text()).group(1).split()
@@ -261,6 +307,9 @@ if yaml:
     recipe = yaml.safe_load(recipe_path.read_text())
     if recipe["context"]["version"] != version:
         complain(recipe_path, f"is not of version {version}")
+    host = {word.split()[0] for word in recipe["requirements"]["host"]}
+    for name in {conda for conda, _ in NAMES.values() if conda} - host:
+        complain(recipe_path, f"does not need {name}, which the build does")
     for test in recipe["tests"]:
         for command in test.get("script", []):
             check_command(recipe_path, shlex.split(command))

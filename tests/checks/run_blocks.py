@@ -164,7 +164,15 @@ class Runner:
         ]
         program = source.with_suffix("")
         return self.call([compiler, *flags, "-Werror", source, "-o", program, *libraries],
-                         folder) or self.call([program], folder)
+                         folder) or self.call([program], folder) or self.black(folder)
+
+    def black(self, folder):
+        """Returns which picture that a program has written is black."""
+        for picture in folder.glob("*.ppm"):
+            content = picture.read_bytes()
+            if max(content[content.index(b"255\n") + 4:]) < 64:
+                return f"{picture.name} is black"
+        return ""
 
     def vrml(self, block, folder):
         world = folder / f"block{block.line}.wrl"

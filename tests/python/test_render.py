@@ -68,6 +68,19 @@ def test_channels(box):
     assert w.render(size=(4, 3), spp=1, channels="z")["z"].shape == (3, 4)
 
 
+def test_a_shape_in_place_of_another_is_new():
+    """It has not moved from there."""
+    shape = "Transform { translation %d 0 0 children Shape { geometry Box { } } }"
+    world = xvrml.loads("#VRML V2.0 utf8\nViewpoint { position 0 0 9 } DEF G Group { children " +
+                        shape % 2 + " }")
+    frames = world.animate(0, 0.3, fps=10, size=(16, 12), spp=1, channels=("id", "motion"))
+    for i, frame in enumerate(frames):
+        hit = frame["id"] != 0
+        assert hit.any() and np.isnan(frame["motion"][hit]).all() == (i < 2), i
+        if i == 0:
+            world["G"].children = [xvrml.loads("#VRML V2.0 utf8\n" + shape % -2).roots[0]]
+
+
 def test_motion():
     world = xvrml.loads("""#VRML V2.0 utf8
         Viewpoint { position 0 0 8 }

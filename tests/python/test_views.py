@@ -274,6 +274,9 @@ def test_mattes_of_a_context_have_numbers():
     image = context.render(size=(16, 16), spp=64, channels="cryptomatte")
     for names, share in (((3, ), .5), ((7, ), .5), ((3, 7), 1), ((), 0), ((4, ), 0)):
         assert image.matte(*names).mean() == pytest.approx(share, abs=.01), names
+    found = context.render(size=(16, 16), spp=1, channels="id").coco()
+    assert [one["name"] for one in found["categories"]] == ["3", "7"]
+    assert sum(one["area"] for one in found["annotations"]) == 256
     for name, error in (("3", TypeError), (.5, TypeError), (0, ValueError), (1 << 32, ValueError)):
         with pytest.raises(error, match="matte: a name of a Context"):
             image.matte(name)
@@ -288,6 +291,8 @@ def test_mattes_of_several_shapes_add_up(world):
     assert np.array_equal(pickle.loads(pickle.dumps(image)).matte("Ball"), ball)
     with pytest.raises(KeyError, match="Bal.*Ball, Cube"):
         image.matte("Bal")
+    with pytest.raises(KeyError, match="there is none"):
+        xvrml.loads("#VRML V2.0 utf8").render(channels="cryptomatte", **SMALL).matte("Ball")
     with pytest.raises(TypeError, match="matte"):
         image.matte(3)
     with pytest.raises(AttributeError, match="channel cryptomatte"):

@@ -204,3 +204,16 @@ def test_limits(vv):
     assert vv("deep.wrl", "--check").returncode == 0
     done = vv("deep.wrl", "--check", "--limit", "nesting=10")
     assert done.returncode in (3, 4) and "nesting" in done.talk
+
+
+@pytest.mark.parametrize("megabytes", [300, 500, 700])
+def test_exit_code_without_memory(vv, megabytes):
+    """Whatever fails first."""
+    limit = megabytes << 20
+    done = subprocess.run(
+        [vv.program, "box.wrl", "-o", "x.exr", "--size", "9000x9000", "--spp", "1", "--channels", "rgba,z,normal,position"],
+        cwd=vv.folder,
+        capture_output=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+    assert done.returncode == 75, done.stderr
+    assert not (vv.folder / "x.exr").exists()

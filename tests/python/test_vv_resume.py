@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import resource
 import signal
 import subprocess
 import time
@@ -104,6 +105,31 @@ def test_a_time_limit_ends_the_run_and_not_the_picture(room):
             break
         assert "the time limit is reached; the same command continues" in done.talk
     assert contents(room, "part.exr") == contents(room, "whole.exr")
+
+
+@pytest.mark.parametrize("every", [(), ("--resume-every", "0.01")])
+def test_a_picture_is_written_even_if_its_sums_cannot_be(room, every):
+    """The disk has room for the picture alone."""
+    limit = 32 * 1024
+    done = subprocess.run(
+        [room.program, "room.wrl", "-o", "a.png", "--stats", "a.json", *PATHS, "--spp", "4", *every, "--resume", "a.sums"],
+        cwd=room.folder,
+        capture_output=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+    talk = done.stderr.decode()
+    assert done.returncode == 1 and "--resume: cannot write a.sums: File too large" in talk
+    assert not (room.folder / "a.sums").exists() and not room.leftovers()
+    made(room, "-o", "b.png", *PATHS, "--spp", "4", "-q")
+    assert contents(room, "a.png") == contents(room, "b.png")
+    assert (room.folder / "a.json").exists()
+
+
+def test_the_file_of_resume_is_all_that_is_written(room):
+    room.write("a.sums.new", "important")
+    os.symlink("kept.sums", room.folder / "a.sums")
+    made(room, "-o", "a.exr", *PATHS, "--spp", "2", "-q", "--resume", "a.sums")
+    assert contents(room, "a.sums.new") == b"important"
+    assert (room.folder / "a.sums").is_symlink() and (room.folder / "kept.sums").exists()
 
 
 def test_a_picture_gets_more_samples(room):

@@ -77,9 +77,10 @@ void joinCluster(Options& options) {
 }
 
 int exitCodeOf(const picture::RenderError& error) {
-  return error.code == RT_CLUSTER_ERROR ? exitNoWorkers
-         : error.code == RT_SUMS_ERROR  ? exitUsage
-                                        : exitRender;
+  return error.code == RT_CLUSTER_ERROR   ? exitNoWorkers
+         : error.code == RT_SUMS_ERROR    ? exitUsage
+         : error.code == RT_OUT_OF_MEMORY ? exitTryAgain
+                                          : exitRender;
 }
 
 std::string workersText(const std::vector<RTworker>& workers) {

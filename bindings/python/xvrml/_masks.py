@@ -44,11 +44,12 @@ def _numbers(picture, names):
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"matte: the name of a Shape expected, not {name!r}")
-        found = [i for i, one in enumerate(picture.names) if i and one == name]
+        found = [i for i, one in enumerate(picture.names) if one and one == name]
         if not found:
-            known = sorted(set(picture.names[1:]))
+            known = sorted(set(picture.names) - {""})
             shown = ", ".join(known[:20]) + (" ..." if len(known) > 20 else "")
-            raise KeyError(f"no Shape has the name {name}; names are {shown}")
+            raise KeyError(f"no Shape has the name {name!r}; " +
+                           (f"names are {shown}" if known else "there is none"))
         numbers.update(found)
     return numbers
 
@@ -78,16 +79,19 @@ def coco(picture, image_id=1, file_name="", categories=None, compressed=False, f
         raise AttributeError("the picture has no channel id: render(channels=('id',)) makes it")
     ids = picture["id"]
     height, width = ids.shape
-    kinds = [_category(categories, name) if i else None for i, name in enumerate(picture.names)]
+    seen = [i for i in np.unique(ids).tolist() if i]
+    # A number without a name belongs to no Shape. In pictures of a Context, names are the numbers.
+    names = dict(enumerate(picture.names)) if picture.names else {i: str(i) for i in seen}
+    kinds = {i: _category(categories, name) for i, name in names.items() if name}
     # A dict numbers its categories alike in all pictures, whatever they show.
-    listed = categories.values() if hasattr(categories, "values") else kinds
+    listed = categories.values() if hasattr(categories, "values") else kinds.values()
     numbers = {}
     for kind in listed:
         if kind is not None:
             numbers.setdefault(kind, len(numbers) + 1)
     annotations = []
-    for i in np.unique(ids).tolist():
-        if not 0 < i < len(kinds) or kinds[i] is None:
+    for i in seen:
+        if kinds.get(i) is None:
             continue
         mask = ids == i
         rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))

@@ -176,7 +176,7 @@ void Graph::drop(ItemId id) {
   if (item.mesh != none) meshes.drop(item.mesh);
   if (item.number != 0) {
     shapes[item.number] = 0;
-    freeNumbers_.push_back(item.number);
+    freedNumbers_.push_back(item.number);
   }
   const int32_t part = item.part; // Objects removes it later
   item = Item();
@@ -205,8 +205,8 @@ void Graph::linkParents() {
       if (child != 0) parents[items[child].firstParent + items[child].parentCount++] = id;
 }
 
-// A shape keeps its number for its lifetime. New shapes are numbered in file order and take free
-// numbers first.
+// A shape keeps its number for its lifetime. New shapes are numbered in file order and take numbers
+// that were free before this update first.
 void Graph::numberShapes() {
   std::sort(freeNumbers_.begin(), freeNumbers_.end(), std::greater<>());
   for (const ItemId id : order) {
@@ -221,6 +221,8 @@ void Graph::numberShapes() {
       shapes[item.number] = id;
     }
   }
+  freeNumbers_.insert(freeNumbers_.end(), freedNumbers_.begin(), freedNumbers_.end());
+  freedNumbers_.clear();
 }
 
 std::vector<std::string> Graph::shapeNames() const {

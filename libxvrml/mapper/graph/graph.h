@@ -209,7 +209,9 @@ class Graph {
   NodeMap<ItemId> known_;
   std::unordered_map<std::string, uint32_t> nameIds_;
   std::vector<ItemId> pending_, free_, dropped_, replanned_;
-  std::vector<uint32_t> freeNumbers_; // free shape numbers
+  // Free shape numbers, and those that became free in this update. A new shape must not take one of
+  // the latter: it would seem to have moved from the place of the old one.
+  std::vector<uint32_t> freeNumbers_, freedNumbers_;
   std::vector<NodeRef> roots_;
 };
 

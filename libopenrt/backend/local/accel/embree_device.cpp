@@ -2,6 +2,7 @@
 // frames.
 #include "backend/local/accel/embree_device.h"
 
+#include <new>
 #include <stdexcept>
 #include <string_view>
 
@@ -56,6 +57,7 @@ EmbreeDevice::EmbreeDevice(uint32_t threads, const std::string& wanted) {
   }
   const bool lacksIsa = error == RTC_ERROR_NONE || error == RTC_ERROR_UNSUPPORTED_CPU;
   if (!device && wanted != automaticIsa && lacksIsa) refuse(wanted);
+  if (!device && error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!device)
     throw std::runtime_error("the ray kernels (Embree) do not start: error " +
                              std::to_string(error));
