@@ -282,11 +282,8 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
     const std::vector<nodes::Shape*> shapes = shapesOf(world, selector, below);
     if (shapes.empty() && rule.mayMatchNothing) continue;
     NodeRef& shader = shaders[shaderText + '\n' + rule.folder];
-    if (!shader) {
-      std::string where = rule.where; // a place in a file, with a colon behind, or an option
-      if (where.ends_with(':')) where.pop_back();
-      shader = readShader(shaderText, where.c_str(), RT_SURFACE, shaderPath, rule.folder);
-    }
+    if (!shader)
+      shader = readShader(shaderText, rule.where.c_str(), RT_SURFACE, shaderPath, rule.folder);
     if (shapes.empty() && selector.kind == Kind::name)
       throw wrong(
           fmt::format("{} is not part of a shape, and no shape is below it", selector.pattern));

@@ -255,7 +255,10 @@ xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum ro
     shader.name = written.name;
     shader.file = written.library;
     shader.options = optionsOf(written, role, shaderPath, folder);
-    shader.source.file = std::make_shared<std::string>(option);
+    // The option, or a place in a file with a colon behind it.
+    std::string where = option;
+    if (where.ends_with(':')) where.pop_back();
+    shader.source.file = std::make_shared<std::string>(std::move(where));
     return node;
   } catch (const ShaderError& error) {
     throw ShaderError(fmt::format("{} {}: {}", option, text, error.what()));

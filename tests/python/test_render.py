@@ -78,7 +78,8 @@ def test_a_shape_in_place_of_another_is_new():
         hit = frame["id"] != 0
         assert hit.any() and np.isnan(frame["motion"][hit]).all() == (i < 2), i
         if i == 0:
-            world["G"].children = [xvrml.loads("#VRML V2.0 utf8\n" + shape % -2).roots[0]]
+            world["G"].children = []
+            world.add(xvrml.Transform(translation=(-2, 0, 0), children=[xvrml.Shape(geometry=xvrml.Box())]))
 
 
 def test_motion():

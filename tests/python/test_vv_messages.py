@@ -1,5 +1,7 @@
 """Tests exit codes and messages of the program vv on the command line."""
 import os
+import resource
+import subprocess
 
 import pytest
 from conftest import HEADER, SMALL

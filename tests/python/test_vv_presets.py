@@ -461,8 +461,8 @@ def test_boards_lie_wherever_their_origin_is(vv, place):
     """KiCad's exports have z up, and say so nowhere. A file of glTF has y up."""
     vv.write("board.wrl", HEADER + f"Transform {{ translation {place} children Shape {{ "
              "appearance Appearance { material Material { } } geometry Box { size 40 20 1.6 } } }")
-    top = floats(vv, "--preset", "pcb", "--from", "top", "--channels", "z", world="board.wrl")
-    wide = [sum(v[0] < 1e6 for v in row) for row in top]
+    top = floats(vv, "--preset", "pcb", "--from", "top", "--shader", "*=" + RED, world="board.wrl")
+    wide = [sum(v[0] > 2 * v[1] for v in row) for row in top]
     tall = sum(n > 0 for n in wide)
     assert max(wide) / tall == pytest.approx(2, abs=.4)
 
