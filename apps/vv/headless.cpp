@@ -31,9 +31,9 @@ namespace vv {
 
 namespace {
 
-// Seconds from the first SIGINT or SIGTERM until the process ends, even if a shader hangs.
-// Supervisors wait about as long (docker stop: 10).
-constexpr unsigned interruptSeconds = 9;
+// Seconds that saving what there is may take when a shader hangs after the first SIGINT or SIGTERM;
+// then the process ends. With a small picture, supervisors wait about as long (docker stop: 10).
+constexpr int savingSeconds = 5;
 
 class Headless {
  public:
@@ -83,7 +83,7 @@ class Headless {
     if (options_.job()) inspect(options_.job()->job);
     int code = exitDone;
     if (options_.makesPictures()) {
-      deferInterrupt(true, interruptSeconds);
+      deferInterrupt(true, unsigned(stuckSeconds(options_.render) + savingSeconds));
       code = makePictures(options_, commandLine_, *browser_, problems_, startSeconds);
     }
     if (code == exitDone) problems_.reportEnd(browser_->world());

@@ -44,9 +44,6 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// seconds between an interrupt and giving up a render that does not stop
-constexpr int stuckSeconds = 4;
-
 // A picture to render: its camera, and the name that identifies it.
 struct Job {
   picture::View view;
@@ -295,7 +292,7 @@ class Pictures {
       saveWanted_ = false;
       savePart(inFlight_.front().job, soFar);
     }
-    if (secondsInterrupted() >= stuckSeconds) giveUp(soFar);
+    if (secondsInterrupted() >= stuckSeconds(options_.render)) giveUp(soFar);
     return interrupted() || (checkpoint_ && checkpoint_->timeIsUp());
   }
 
@@ -332,7 +329,8 @@ class Pictures {
     try {
       finishSequence();
     } catch (const std::exception& error) { sayWarning(error.what()); }
-    sayError(fmt::format("a shader did not stop within {} s of the interrupt; {}", stuckSeconds,
+    sayError(fmt::format("a shader did not stop within {} s of the interrupt; {}",
+                         secondsInterrupted(),
                          saved ? "the picture so far is saved" : "there is no picture yet"));
     picture::removeTemporaries();
     ::_exit(exitInterrupted);
@@ -780,6 +778,11 @@ void writeText(const std::string& path, const std::string& text) {
     writeData(text);
   else
     picture::writeFile(path, text);
+}
+
+int stuckSeconds(const picture::RenderSettings& render) {
+  constexpr int64_t pixelsOfSecond = 500000, most = 120;
+  return 4 + int(std::min(int64_t(render.width) * render.height / pixelsOfSecond, most));
 }
 
 } // namespace vv

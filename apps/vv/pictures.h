@@ -12,6 +12,10 @@ namespace vv {
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
                  Problems& problems, double startSeconds);
 
+// Returns the seconds between an interrupt and giving up a render that does not stop: a shader may
+// hang, but a large picture takes some time to end.
+int stuckSeconds(const picture::RenderSettings& render);
+
 // Returns the requested channels, without those that only the statistics need.
 picture::Picture wantedPart(const picture::Picture& made, uint32_t channels);
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
@@ -23,11 +24,18 @@ void writeError(const std::string& text) {
   (void)!::write(STDERR_FILENO, text.data(), text.size());
 }
 
+constexpr size_t barWidth = 30;
+
 std::string bar(float fraction, bool colour) {
-  constexpr int width = 30;
-  const int done = std::clamp(int(fraction * width), 0, width);
-  return fmt::format("{}{}{}{}", colour ? "\x1b[32m" : "", std::string(size_t(done), '#'),
-                     colour ? "\x1b[0m" : "", std::string(size_t(width - done), '.'));
+  const size_t done = std::min(size_t(fraction * barWidth), barWidth);
+  return fmt::format("{}{}{}{} ", colour ? "\x1b[32m" : "", std::string(done, '#'),
+                     colour ? "\x1b[0m" : "", std::string(barWidth - done, '.'));
+}
+
+// Returns how many characters fit into a line of the terminal.
+size_t lineWidth() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1u : 79u;
 }
 
 } // namespace
@@ -60,7 +68,12 @@ bool Progress::due() const { return !quiet_ && Clock::now() >= next_; }
 
 void Progress::print(const std::string& bar, const std::string& text) {
   if (terminal_) {
-    writeError(fmt::format("\r{}{}{}\x1b[K", what_.empty() ? "" : what_ + " ", bar, text));
+    // A longer line would wrap, and each update would leave a line behind.
+    const std::string name = what_.empty() ? "" : what_ + " ";
+    const size_t width = lineWidth();
+    const bool fits = name.size() + barWidth + 1 + text.size() <= width;
+    writeError(fits ? fmt::format("\r{}{}{}\x1b[K", name, bar, text)
+                    : fmt::format("\r{}\x1b[K", (name + text).substr(0, width)));
     next_ = Clock::now() + 100ms;
   } else {
     say(fmt::format("vv: {}{}", what_.empty() ? "" : what_ + ": ", text));
@@ -77,7 +90,7 @@ void Progress::show(float fraction, const std::string& more) {
   if (fraction > 0.01f)
     text += fmt::format(", about {} to go", duration(elapsed / fraction * (1 - fraction)));
   if (!more.empty()) text += ", " + more;
-  print(bar(fraction, colour_) + " ", text);
+  print(bar(fraction, colour_), text);
 }
 
 void Progress::showStage(const std::string& stage) {
