@@ -75,6 +75,12 @@ class Vv:
         assert done.returncode == 0, done.talk
         return read_ppm(done.stdout)[2]
 
+    def floats(self, *arguments, world="board.wrl"):
+        """Renders a small picture; returns its rows of linear (r, g, b)."""
+        done = self(world, "-o", "pfm:-", "--size", "24x16", "--spp", "4", *arguments)
+        assert done.returncode == 0, done.talk
+        return read_pfm(done.stdout)[2]
+
     def leftovers(self):
         return [p.name for p in self.folder.iterdir() if p.name.startswith(".vv-")]
 

@@ -127,15 +127,9 @@ def test_a_glob_of_stars_ends(board):
 # Presets ----------------------------------------------------------------------------------------
 
 
-def floats(vv, *arguments, world="board.wrl"):
-    done = vv(world, "-o", "pfm:-", "--size", "24x16", "--spp", "4", *arguments)
-    assert done.returncode == 0, done.talk
-    return read_pfm(done.stdout)[2]
-
-
 @pytest.mark.parametrize("name", ["studio", "product", "technical", "pcb"])
 def test_built_in_presets(board, name):
-    rows = floats(board, "--preset", name)
+    rows = board.floats("--preset", name)
     seen = [pixel for row in rows for pixel in row]
     assert all(0 <= value < 30 for pixel in seen for value in pixel)
     assert len(set(map(tuple, seen))) > 4
@@ -178,11 +172,11 @@ def test_technical_keeps_parallel_edges_parallel(vv):
 
 
 def test_options_win_over_presets(board):
-    plain = floats(board, "--from", "top", "--background", "none")
-    assert floats(board, "--preset", "product", "--from", "top", "--background", "none") == plain
+    plain = board.floats("--from", "top", "--background", "none")
+    assert board.floats("--preset", "product", "--from", "top", "--background", "none") == plain
     assert board("board.wrl", "--preset", "pcb", "--viewpoint", "0", "-o", "x.png",
                  *SMALL).returncode == 0
-    red = floats(board, "--preset", "pcb", "--background", "#ff0000")
+    red = board.floats("--preset", "pcb", "--background", "#ff0000")
     assert red[0][0][0] > .9 and red[0][0][1] < .1
 
 
@@ -313,7 +307,7 @@ CUBE = HEADER + "NavigationInfo { headlight FALSE }\n" + "".join(
                                          ("top", .5), ("bottom", .6)])
 def test_sides(vv, side, value):
     vv.write("cube.wrl", CUBE)
-    rows = floats(vv, "--from", side, "--up", "z", world="cube.wrl")
+    rows = vv.floats("--from", side, "--up", "z", world="cube.wrl")
     assert rows[8][12][0] == pytest.approx(value)
 
 
@@ -370,7 +364,7 @@ def test_ground_and_backdrop_of_a_studio_have_one_colour(vv):
 def test_the_studio_turns_with_the_camera(vv):
     vv.write("box.wrl", WHITE)
     quarter = [
-        floats(vv, "--studio", "white", "--camera", camera, world="box.wrl")
+        vv.floats("--studio", "white", "--camera", camera, world="box.wrl")
         for camera in ("0,3,8:0,0,0", "8,3,0:0,0,0")
     ]  # a box looks the same from both sides, if the light comes along
     for a, b in zip(*quarter):
@@ -403,90 +397,13 @@ def test_studio_is_the_same_on_any_number_of_threads(board):
         for z, layer in ((-.1, ("0.427 0.455 0.294", ".01", 0.034)),
                          (-.05, ("0.75 0.61 0.23", ".9", 0)), (0, ("0.08 0.2 0.14", ".3", .17)))))
     for world in ("board.wrl", "mask.wrl"):
-        assert floats(board, "--preset", "pcb", "--threads", "1", world=world) == floats(
-            board, "--preset", "pcb", "--threads", "3", world=world)
+        assert board.floats("--preset", "pcb", "--threads", "1", world=world) == board.floats("--preset", "pcb", "--threads", "3", world=world)
 
 
 def test_the_preset_knows_the_boards_materials(vv):
     done = vv(ROOT / "examples/kicad/blinker.wrl", "--preset", "pcb", "--write", "out.wrl")
     assert done.returncode == 0, done.talk
     assert 'name "Metal"' in (vv.folder / "out.wrl").read_text()
-
-
-# The materials that KiCad's exporter writes for the layers of a board: diffuse colour, shininess,
-# transparency. 6 to 9 write the colours of the stackup; an unset one of the board is black.
-LAYER = """Transform { translation %g 0 %g children Shape {
-  appearance Appearance { material Material { diffuseColor %s shininess %s transparency %s } }
-  geometry IndexedFaceSet { coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] }
-    coordIndex [ 0 1 2 3 ] } } }
-"""
-GOLD, COPPER, SILVER, TIN = "n .143", "n .21", "n .05", "n 1.48"
-
-
-@pytest.mark.parametrize("name, colour, shininess, what", [
-    ("6 to 9, no finish", "0.75 0.61 0.23", "0.9", GOLD),
-    ("6 to 9, ENIG", "0.698 0.612 0", "0.9", GOLD),
-    ("6 to 9, OSP", "0.722 0.451 0.196", "0.9", COPPER),
-    ("6 to 9, silver", "0.83529413 0.83529413 0.83529413", "0.89999998", SILVER),
-    ("6 to 9, HASL", "0.627 0.627 0.627", "0.9", TIN),
-    ("6 to 9, paste", "0.5 0.5 0.5", "0.7", TIN),
-    ("5, pads", "0.749 0.756 0.761", "0.8", TIN),
-    ("a part that is as grey as HASL", "0.627 0.627 0.627", "0.1", "Plastic"),
-    ("a part that is as grey as paste", "0.5 0.5 0.5", "0.2", "Plastic"),
-    ("6 to 9, board without a colour", "0 0 0", "0.01", "color .155 .171 .073"),
-    ("a black part", "0 0 0", "0.1", "roughness .2"),
-    ("a black part that does not shine", "0 0 0", "0", "roughness .2"),
-    ("black silkscreen", "0 0 0", "0.02", "roughness .2"),
-    ("6 to 9, silkscreen", "0.961 0.961 0.961", "0.02", "Plastic"),
-])
-def test_the_preset_knows_the_layers_of_each_kicad(vv, name, colour, shininess, what):
-    vv.write("layer.wrl", HEADER + LAYER % (0, 0, colour, shininess, 0))
-    assert vv("layer.wrl", "--preset", "pcb", "--write", "out.wrl").returncode == 0, name
-    text = (vv.folder / "out.wrl").read_text()
-    assert what in text.replace(" 0.", " ."), text
-
-
-def test_a_board_without_a_colour_is_as_bright_as_one_of_fr4(vv):
-    """Which is .43 .45 .3 in the colours of a Material."""
-    grey = []
-    for colour in ("0 0 0", "0.43 0.45 0.3"):
-        vv.write("layer.wrl", HEADER + "Viewpoint { position 0 0 9 }\n" + LAYER % (0, 0, colour, .01, 0))
-        grey.append(sum(vv.picture("--preset", "pcb", "--viewpoint", "0", "--spp", "64",
-                                   world="layer.wrl")[12][16]))
-    assert grey[0] == pytest.approx(grey[1], rel=.1)
-
-
-@pytest.mark.parametrize("place", ["0 0 0", "20 10 0", "150 -100 3"])
-def test_boards_lie_wherever_their_origin_is(vv, place):
-    """KiCad's exports have z up, and say so nowhere. A file of glTF has y up."""
-    vv.write("board.wrl", HEADER + f"Transform {{ translation {place} children Shape {{ "
-             "appearance Appearance { material Material { } } geometry Box { size 40 20 1.6 } } }")
-    top = floats(vv, "--preset", "pcb", "--from", "top", "--shader", "*=" + RED, world="board.wrl")
-    wide = [sum(v[0] > 2 * v[1] for v in row) for row in top]
-    tall = sum(n > 0 for n in wide)
-    assert max(wide) / tall == pytest.approx(2, abs=.4)
-
-
-@pytest.mark.parametrize("mask", ["0.0784 0.2 0.141", "0.71 0.0745 0.0824", "0.00784 0.231 0.635"])
-def test_tracks_show_through_solder_mask(vv, mask):
-    body = LAYER % (0, -.1, "0.427 0.455 0.294", ".01", 0)
-    track = LAYER % (1, -.05, "0.75 0.61 0.23", ".9", 0)
-    over = [LAYER % (0, 0, mask, ".3", alpha) for alpha in ("0.17", "0")]
-    view = HEADER + "Viewpoint { position 0 0 6 fieldOfView .3 }\n"
-
-    def left_and_right(text):
-        vv.write("mask.wrl", view + text)
-        rows = floats(vv, "--preset", "pcb", "--viewpoint", "0", "--spp", "64", world="mask.wrl")
-        middle = rows[4:12]
-        return [[sum(row[x][c] for row in middle for x in part) / 8 / len(part) for c in range(3)]
-                for part in (range(7, 10), range(14, 17))]
-
-    board, copper = left_and_right(body + track + over[0])
-    strongest = max(range(3), key=lambda c: float(mask.split()[c]))
-    assert copper[strongest] > 1.12 * board[strongest]  # a brighter shade of the mask
-    assert max(copper) == copper[strongest]
-    board, copper = left_and_right(body + track + over[1])
-    assert copper == pytest.approx(board, rel=.1)
 
 
 # Python -----------------------------------------------------------------------------------------
