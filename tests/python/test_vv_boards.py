@@ -76,3 +76,11 @@ def test_tracks_show_through_solder_mask(vv, mask):
     assert max(copper) == copper[strongest]
     board, copper = left_and_right(body + track + over[1])
     assert copper == pytest.approx(board, rel=.1)
+
+
+def test_a_board_is_the_same_on_any_number_of_threads(vv):
+    layers = ((-.1, ("0.427 0.455 0.294", ".01", 0.034)), (-.05, ("0.75 0.61 0.23", ".9", 0)),
+              (0, ("0.08 0.2 0.14", ".3", .17)))
+    vv.write("mask.wrl", HEADER + "".join(LAYER % (0, z, *layer) for z, layer in layers))
+    one, three = (vv.floats("--preset", "pcb", "--threads", n, world="mask.wrl") for n in "13")
+    assert one == three
