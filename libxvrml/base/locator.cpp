@@ -102,6 +102,15 @@ std::string shortened(std::string_view text) {
   return fmt::format("{}...", text.substr(0, cut));
 }
 
+std::string shortenedUrl(std::string_view url) {
+  constexpr size_t shown = 200, behind = 160;
+  if (url.starts_with("data:")) return shortened(url);
+  if (url.size() <= shown) return std::string(url);
+  size_t end = url.size() - behind;
+  while (end < url.size() && isContinuationByte(url[end])) ++end;
+  return shortened(url) + std::string(url.substr(end));
+}
+
 std::string describe(const Name& name) {
   if (name.text.size() == 1 && static_cast<unsigned char>(name.text[0]) < 0x20)
     return fmt::format("the control character 0x{:02x}", static_cast<unsigned>(name.text[0]));

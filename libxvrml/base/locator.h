@@ -58,6 +58,9 @@ class Locator {
 
 // Returns the text, or its first 40 bytes and "..."; it is cut between characters.
 std::string shortened(std::string_view text);
+// The same for a url. One that is no data: url is cut in its middle, and only if it is longer than
+// 200 bytes, because its end is the name of the file.
+std::string shortenedUrl(std::string_view url);
 // Returns the description of a name for messages: 'name'.
 std::string describe(const Name& name);
 

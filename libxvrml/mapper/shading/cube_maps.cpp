@@ -95,7 +95,7 @@ CubeMap CubeMaps::read(const nodes::ImageCubeMapTexture& node) {
         return map;
       } catch (const std::exception& failure) { why = failure.what(); }
     }
-    if (error.empty()) error = shortened(url) + ": " + why;
+    if (error.empty()) error = shortenedUrl(url) + ": " + why;
   }
   if (!node.url.empty())
     world_.diagnostics.warn(node.source, "ImageCubeMapTexture: no picture: " + error);

@@ -186,7 +186,7 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, const Sampling& sa
     if (why.empty())
       if (const RTid id = ofFile(resolved.path, sampling, why)) return id;
     if (error.empty())
-      error = why.find(url) == std::string::npos ? shortened(url) + ": " + why : why;
+      error = why.find(url) == std::string::npos ? shortenedUrl(url) + ": " + why : why;
   }
   if (urls.empty()) return 0;
   ++missing_;

@@ -149,7 +149,7 @@ bool Accessors::readFile(const Item& item, const std::string& uri, Buffer& buffe
     buffer.own.resize(binary.read(0, buffer.own.data(), buffer.own.size()));
     return true;
   } catch (const std::runtime_error& error) {
-    item.error(fmt::format("'{}': {}", shortened(uri), error.what()));
+    item.error(fmt::format("'{}': {}", shortenedUrl(uri), error.what()));
     return false;
   }
 }
