@@ -63,7 +63,7 @@ LookAt lookAtOf(const double rows[16]) {
   }
   if (!(off <= rounding) || !(handed > 0))
     throw std::invalid_argument(
-        "the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
+        "the 4x4 matrix must turn and move only, within 1e-4, with 0 0 0 1 as its last row");
   LookAt camera;
   camera.saysUp = true;
   for (size_t i = 0; i < 3; ++i) {

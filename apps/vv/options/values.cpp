@@ -203,7 +203,7 @@ picture::Intrinsics readIntrinsics(std::string_view text) {
            (i > 1 || numbers[i] >= 1 / most);
   if (!read)
     throw UsageError(
-        fmt::format("FX,FY,CX,CY was expected: focal lengths above 0 and the principal "
+        fmt::format("FX,FY,CX,CY was expected: focal lengths from 1e-6 and the principal "
                     "point, in pixels, up to 1000000, not \"{}\"",
                     text));
   return {numbers[0], numbers[1], numbers[2] + middle, numbers[3] + middle};

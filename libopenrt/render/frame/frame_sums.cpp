@@ -12,6 +12,7 @@
 #include "render/flush_denormals.h"
 #include "render/frame/result_codec.h"
 #include "render/path/light_stride.h"
+#include "scene/transports.h"
 
 namespace openrt {
 namespace {
@@ -31,12 +32,15 @@ std::string textOfNames(const edit::FrameSettingsT& frame) {
   const std::vector<uint32_t>& names = frame.unitedNames;
   return std::to_string(XXH3_64bits(names.data(), names.size() * sizeof(uint32_t)));
 }
+std::string textOfTransport(const edit::FrameSettingsT& frame) {
+  return traitsOf(frame.transport).name;
+}
 using F = edit::FrameSettingsT;
 constexpr Setting settings[] = {
     {"width", text<&F::width>},
     {"height", text<&F::height>},
     {"set of channels", text<&F::channels>},
-    {"transport", text<&F::transport>},
+    {"transport", textOfTransport},
     {"maximum depth", text<&F::depth>},
     {"shadows", text<&F::shadows>},
     {"number of replicates", text<&F::replicates>},
