@@ -46,7 +46,7 @@ std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
 void put(std::vector<std::byte>& out, const void* from, size_t bytes) {
   const size_t at = out.size();
   out.resize(at + bytes);
-  std::memcpy(out.data() + at, from, bytes);
+  if (bytes > 0) std::memcpy(out.data() + at, from, bytes); // `from` may be null
 }
 
 // Returns whether the conversion to float is lossless. Denormal floats are refused, because some
