@@ -239,10 +239,10 @@ size_t setShader(const WorldPtr& self, const std::string& selector, const std::s
   try {
     if (Browser* browser = self->browser())
       self->change([&] {
-        given = picture::applyShaderRules(
-            {rule}, "", world, [&](Node& shape, const NodeRef& appearance) {
-              browser->set(shape, "appearance", appearance);
-            });
+        given = picture::applyShaderRules({rule}, "", world,
+                                          [&](Node& shape, const NodeRef& appearance) {
+                                            browser->set(shape, "appearance", appearance);
+                                          });
       });
     else
       given = picture::applyShaderRules({rule}, "", world);

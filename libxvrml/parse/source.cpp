@@ -33,9 +33,9 @@ std::string readableFormats() {
   std::string text;
   for (int i = 0; i < encodingCount(); ++i)
     text += fmt::format("{}{}",
-                        i == 0                  ? ""
+                        i == 0                    ? ""
                         : i + 1 < encodingCount() ? ", "
-                                                : " and ",
+                                                  : " and ",
                         encodingName(static_cast<Encoding>(i)));
   return text;
 }

@@ -198,14 +198,15 @@ TEST_F(Native, WhatDoesNotFitIsSaid) {
       message("native_test#start: twice(in)"),
       "3: Script S: 'start:' is neither an eventIn of the Script nor initialize, poll or shutdown");
   EXPECT_EQ(message("native_test#twice(&in)"), "3: Script S: '&in': an eventIn cannot be written");
-  EXPECT_EQ(message("native_test#twice(in, texts)"),
-            "3: Script S: 'texts': a function cannot write an SFImage, MFImage or MFString; give it host "
-            "and self");
+  EXPECT_EQ(
+      message("native_test#twice(in, texts)"),
+      "3: Script S: 'texts': a function cannot write an SFImage, MFImage or MFString; give it host "
+      "and self");
   EXPECT_EQ(message("native_test#texts = twice(in)").substr(0, 50),
             "3: Script S: 'texts': a function returns SFBool, S");
-  EXPECT_EQ(
-      message("native_test#twice(double list)"),
-      "3: Script S: 'list': only SFBool, SFDouble, SFFloat, SFInt32 and SFTime can have another type in C");
+  EXPECT_EQ(message("native_test#twice(double list)"),
+            "3: Script S: 'list': only SFBool, SFDouble, SFFloat, SFInt32 and SFTime can have "
+            "another type in C");
   EXPECT_EQ(message("native_test#out = twice(in)"), "2: Script S: native: no function takes list");
 }
 

@@ -1,5 +1,5 @@
-// x3d_navigation.cpp: what X3D adds to viewpoints and navigation (ISO/IEC 19775-1 clause 23), and to
-// LOD and Switch: expectations follow from the clauses.
+// x3d_navigation.cpp: what X3D adds to viewpoints and navigation (ISO/IEC 19775-1 clause 23), and
+// to LOD and Switch: expectations follow from the clauses.
 #include "behaviour/viewer/interaction.h"
 #include "conformance/events/viewing.h"
 #include "xvrml/nodes.h"
@@ -15,8 +15,8 @@ TEST(OrthoViewpoint, ShowsItsExtent) {
   CameraSettings camera = r.browser.camera(2);
   EXPECT_EQ(camera.fovy, 0);
   EXPECT_NEAR(camera.height, 2, 1e-9);
-  EXPECT_NEAR(r.browser.camera(1).height, 4, 1e-9);   // the width decides
-  EXPECT_NEAR(r.browser.camera(4).height, 2, 1e-9);   // the height decides
+  EXPECT_NEAR(r.browser.camera(1).height, 4, 1e-9); // the width decides
+  EXPECT_NEAR(r.browser.camera(4).height, 2, 1e-9); // the height decides
   EXPECT_NEAR(camera.matrix[12], 1, 1e-6);
 }
 
@@ -79,8 +79,9 @@ TEST(CenterOfRotation, IsWhatExamineTurnsAbout) {
 // 23.3.1: retainUserOffsets keeps how far the viewer has gone until the node is bound again.
 TEST(RetainUserOffsets, BringsTheViewerBack) {
   for (const bool retains : {true, false}) {
-    Running r(head + "NavigationInfo { type \"FLY\" speed 1 } DEF A Viewpoint { position 0 0 10 "
-                     "retainUserOffsets " +
+    Running r(head +
+              "NavigationInfo { type \"FLY\" speed 1 } DEF A Viewpoint { position 0 0 10 "
+              "retainUserOffsets " +
               (retains ? "TRUE" : "FALSE") + " } DEF B Viewpoint { position 5 0 0 }");
     r.browser.navigate({.ahead = 1}, 2);
     EXPECT_EQ(eyeOf(r.browser), "0 0 8");

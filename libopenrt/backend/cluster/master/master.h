@@ -70,10 +70,10 @@ class Master {
   struct FrameState {
     std::shared_ptr<FrameWork> work; // null until a worker has prepared it
     Prepared prepared;
-    std::string failure;  // reason why the frame cannot be rendered; empty if it can
-    bool missing = false; // the reason is missing workers
+    std::string failure;    // reason why the frame cannot be rendered; empty if it can
+    bool missing = false;   // the reason is missing workers
     bool sumsWrong = false; // the reason is that it cannot continue from its sums
-    bool over = false;    // finished, failed or cancelled
+    bool over = false;      // finished, failed or cancelled
   };
   FrameState frame(Epoch epoch) const;
   void forget(Epoch epoch); // drops a frame that was read

@@ -9,8 +9,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "backend/cluster/net/libraries.h"
 #include "backend/cluster/messages/messages.h"
+#include "backend/cluster/net/libraries.h"
 #include "scene/commit.h"
 
 namespace openrt {
