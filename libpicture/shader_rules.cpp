@@ -71,7 +71,7 @@ std::string trimmed(std::string_view text) {
 std::pair<Selector, std::string> readRule(const std::string& text) {
   using Kind = Selector::Kind;
   const size_t equals = text.find('=');
-  if (equals == text.npos || equals == 0)
+  if (equals == text.npos || trimmed(text.substr(0, equals)).empty())
     throw ShaderError(
         fmt::format("SELECTOR=CLASS[:PARAM=VALUE...] was expected, not \"{}\"", text));
   const std::string selector = trimmed(text.substr(0, equals)),
@@ -84,7 +84,7 @@ std::pair<Selector, std::string> readRule(const std::string& text) {
                                                          {"color:", Kind::colour}};
   for (const auto& [prefix, kind] : kinds) {
     if (!selector.starts_with(prefix)) continue;
-    std::string pattern = selector.substr(prefix.size());
+    std::string pattern = trimmed(selector.substr(prefix.size()));
     if (kind == Kind::colour) return {{kind, {}, readColour(pattern)}, shader};
     if (pattern.empty())
       throw ShaderError(

@@ -34,14 +34,16 @@ std::vector<Named> outputsOf(const Options& options) {
     views.clear();
     for (const picture::Side side : options.from) views.emplace_back(picture::sideName(side));
   }
+  const auto isFilm = [](const Output& output) { return output.film != picture::FilmKind::none; };
+  const bool turnsIntoFilm = !options.from.empty() && options.turntable > 0 &&
+                             std::any_of(options.outputs.begin(), options.outputs.end(), isFilm);
   for (const Output& output : options.outputs)
     for (const std::string& view : views) {
       if (options.allViewpoints()) continue;
-      const bool film = output.film != picture::FilmKind::none;
+      const bool film = isFilm(output), numbered = !film && views.size() == 1 && !turnsIntoFilm;
       if (!film || view == views[0])
         all.push_back(
-            {output.option(),
-             pathFor(output.path, {view, film || views.size() > 1 ? std::nullopt : frame})});
+            {output.option(), pathFor(output.path, {view, numbered ? frame : std::nullopt})});
     }
   if (!options.allViewpoints() || options.isSequence()) all.push_back({"--stats", options.stats});
   all.push_back({"--resume", options.resume});
@@ -78,7 +80,8 @@ std::vector<Named> inputsOf(const Options& options) {
 std::string placeOf(const std::string& path) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) return "";
-  const fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+  const fs::path place =
+      fs::weakly_canonical(fs::absolute(picture::followLinks(path), error), error);
   return error ? "" : place.string();
 }
 

@@ -393,7 +393,9 @@ class Pictures {
       if (result.interrupted) {
         // A picture that had not begun does not replace the one of an earlier run.
         if (sums && seeds.count() == 1) finish(job, moment, result);
-        return saved ? endUnfinished() : exitRender;
+        if (saved) return endUnfinished();
+        stopped("vv: the picture is not finished");
+        return exitRender;
       }
       if (seed < seeds.last) {
         checkpoint_->nextSeed();
@@ -633,8 +635,9 @@ class Pictures {
                       options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
     if (options_.verbose && done_ == total()) reportLast(result);
+    // A recording has the pictures of the run alone, without those that look for a hint.
     const bool nothing =
-        !options_.quiet && !result.interrupted &&
+        !options_.quiet && !result.interrupted && options_.render.record.empty() &&
         (showsNothing(result.picture) || showsStudioAlone(result) || mayBeUnlit(options_, result));
     anythingShown_ = anythingShown_ || !nothing;
     // In a sequence, only the last picture prints a hint.

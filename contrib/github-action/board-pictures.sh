@@ -28,12 +28,13 @@ case $board in
 *.kicad_pcb)
   scratch=$(mktemp -d)
   trap 'rm -rf "$scratch"' EXIT
+  export=$scratch/$(basename -- "$board" .kicad_pcb).wrl
   kicad-cli pcb export vrml --units mm --models-dir shapes3D --models-relative \
-    -o "$scratch/board.wrl" "$board"
+    -o "$export" "$board"
   # A vv.toml beside the board is for its exports, too.
   config=$(dirname -- "$board")/vv.toml
   if [ -f "$config" ]; then options+=(--config "$config"); fi
-  board=$scratch/board.wrl
+  board=$export
   ;;
 esac
 
@@ -41,4 +42,4 @@ outputs=(-o "$output")
 if [ "$turntable" != 0 ]; then
   outputs+=(-o "${output%.*}.gif" --turntable "$turntable")
 fi
-vv "$board" "${options[@]}" --preset pcb --from "$views" --size "$size" "${outputs[@]}" "$@"
+vv "$board" ${options[@]+"${options[@]}"} --preset pcb --from "$views" --size "$size" "${outputs[@]}" "$@"

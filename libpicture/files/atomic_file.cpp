@@ -50,18 +50,11 @@ std::string folderOf(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// Resolves symbolic links, so that the link stays and its target is replaced or made.
-std::string followLinks(const std::string& path) {
-  namespace fs = std::filesystem;
-  constexpr int mostLinks = 40; // as in Linux
-  fs::path at = path;
-  std::error_code error;
-  for (int i = 0; i < mostLinks && fs::is_symlink(at, error); ++i) {
-    const fs::path to = fs::read_symlink(at, error);
-    if (error) break;
-    at = at.parent_path() / to; // an absolute one replaces the folder
-  }
-  return at.string();
+// Returns whether a path is still a link after followLinks(): the links lead in a circle.
+bool isLink(const std::string& path) {
+  struct stat info;
+  return ::stat(path.c_str(), &info) != 0 && ::lstat(path.c_str(), &info) == 0 &&
+         S_ISLNK(info.st_mode);
 }
 
 void writeDirectly(const std::string& path, std::string_view bytes) {
@@ -134,6 +127,22 @@ class Temporary {
 
 } // namespace
 
+std::string followLinks(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (const fs::path real = fs::canonical(path, error); !error) return real.string();
+  struct stat info;
+  if (::stat(path.c_str(), &info) == 0) return path; // a pipe, whose link in /proc leads nowhere
+  constexpr int mostLinks = 40;                      // as in Linux
+  fs::path at = path;
+  for (int i = 0; i < mostLinks && fs::is_symlink(at, error); ++i) {
+    const fs::path to = fs::read_symlink(at, error);
+    if (error) return path;
+    at = at.parent_path() / to; // an absolute one replaces the folder
+  }
+  return at.string();
+}
+
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name) {
   while (!bytes.empty()) {
     // Linux writes at most 2 GiB in one call.
@@ -148,6 +157,7 @@ void writeFile(const std::string& path, std::string_view bytes, Wait wait) {
   const std::string target = followLinks(path);
   struct stat info;
   const bool exists = ::stat(target.c_str(), &info) == 0;
+  if (isLink(target)) fail(path, ELOOP);
   if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
   if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
   if (exists)
@@ -181,6 +191,7 @@ std::string whyNotWritable(const std::string& path) {
     if (!reason && !S_ISREG(info.st_mode)) return "";
     if (const std::string why = whyProtected(path, info); !reason && !why.empty()) return why;
   }
+  if (!reason && isLink(target)) reason = ELOOP;
   const std::string folder = folderOf(target);
   if (!reason && ::stat(folder.c_str(), &info) == 0 && !S_ISDIR(info.st_mode)) reason = ENOTDIR;
   if (!reason && ::access(folder.c_str(), W_OK | X_OK) != 0) reason = errno;

@@ -18,6 +18,9 @@ enum class Wait : uint8_t { no, disk };
 // std::runtime_error naming the file and the reason.
 void writeFile(const std::string& path, std::string_view bytes, Wait wait = Wait::no);
 
+// Returns the file that a path leads to through symbolic links, whether it exists or not.
+std::string followLinks(const std::string& path);
+
 // Writes all bytes to an open descriptor; `name` is for the message. Throws std::runtime_error.
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name);
 

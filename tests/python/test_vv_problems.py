@@ -67,7 +67,7 @@ def test_hints_for_pictures_that_show_nothing(vv):
     assert vv("away.wrl", "-o", "x.png", "--fit", *SMALL).talk == ""
     vv.write("wide.wrl", HEADER + "Transform { translation 1e5 0 0 children DEF A Shape { geometry Sphere { } } } Transform { translation -1e5 1e4 0 children USE A }")
     for look in ((), ("--fit", ), ("--from", "front")):
-        assert "smaller than a pixel from here" in vv("wide.wrl", "-o", "x.png", *look, *SMALL).talk
+        assert "smaller than a pixel from here, or" in vv("wide.wrl", "-o", "x.png", *look, *SMALL).talk
     vv.write("empty.wrl", HEADER)
     assert vv(
         "empty.wrl", "-o", "x.png", *SMALL
@@ -147,6 +147,22 @@ def test_hints_for_worlds_of_one_point_and_too_far_away(vv):
     vv.write("far.wrl", HEADER + "Shape { geometry Box { size 1e18 1e18 1e18 } }")
     talk = vv("far.wrl", "--fit", "-o", "a.png", *SMALL).talk
     assert "camera stands farther than 1e17" in talk and "--fit shows" not in talk
+
+
+def test_looking_for_a_hint_changes_nothing(vv):
+    """A world that glows has no light: one more frame tells that its shapes are not black."""
+    vv.write("glow.wrl", HEADER + "Shape { appearance Appearance { material Material { emissiveColor 1 1 1 } } geometry Box { } }")
+    run = ("glow.wrl", "-o", "g.png", "--background", "white", "--from", "top,left", "--stats", "g.json", *SMALL)
+    stats = []
+    for quiet in ((), ("-q", )):
+        assert vv(*run, *quiet).returncode == 0
+        one = json.loads((vv.folder / "g-left.json").read_text())["error"]
+        stats.append({key: value for key, value in one.items() if "second" not in key})
+    assert stats[0] == stats[1]
+    for quiet in ((), ("-q", )):
+        vv("glow.wrl", "-o", "g.png", "--background", "white", "--record", "g.rec", *SMALL, *quiet)
+        stats.append(len((vv.folder / "g.rec").read_bytes()))
+    assert abs(stats[2] - stats[3]) < 64
 
 
 def test_hints_are_given_only_if_they_help(vv):

@@ -132,6 +132,21 @@ def test_the_file_of_resume_is_all_that_is_written(room):
     assert (room.folder / "a.sums").is_symlink() and (room.folder / "kept.sums").exists()
 
 
+def test_pipes_and_circles_of_links(room):
+    run = subprocess.run([room.program, "room.wrl", "-q", "-o", "a.png", "--size", "8x6", "--spp", "1", "--stats", "/dev/stdout"],
+                         cwd=room.folder,
+                         capture_output=True)
+    assert run.returncode == 0 and json.loads(run.stdout)["size"]
+    os.symlink("one.png", room.folder / "two.png")
+    os.symlink("two.png", room.folder / "one.png")
+    done = room("room.wrl", "-q", "-o", "one.png", "--size", "8x6", "--spp", "1")
+    assert done.returncode == 1 and "symbolic links" in done.talk
+    assert (room.folder / "one.png").is_symlink()
+    os.symlink("b.png", room.folder / "b.json")
+    done = room("room.wrl", "-q", "-o", "b.png", "--stats", "b.json", "--size", "8x6", "--spp", "1")
+    assert done.returncode == 2 and not (room.folder / "b.png").exists()
+
+
 def test_a_picture_gets_more_samples(room):
     made(room, *PATHS, "--spp", "64", "-o", "short.exr", "--resume", "a.sums")
     made(room, *PATHS, "--spp", "160", "-o", "long.exr", "--resume", "a.sums")

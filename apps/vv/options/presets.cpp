@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -310,6 +311,13 @@ std::string inside(const std::string& folder, const std::string& path) {
   return place.string();
 }
 
+bool isGltf(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  return name.ends_with(".glb") || name.ends_with(".gltf");
+}
+
 } // namespace
 
 std::vector<Setting> withPresets(std::vector<Setting> given, const std::string& world) {
@@ -355,8 +363,7 @@ std::vector<Setting> withPresets(std::vector<Setting> given, const std::string& 
     cover(settings, std::move(layer));
   }
   // glTF says itself that y is up (glTF 2.0, 3.4).
-  if (const std::string type = fs::path(world).extension().string();
-      type == ".glb" || type == ".gltf")
+  if (isGltf(world))
     std::erase_if(settings, [](const Setting& setting) {
       return setting.builtIn && isFor(*setting.option, "up");
     });

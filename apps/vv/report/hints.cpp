@@ -12,9 +12,11 @@ namespace {
 using Headlight = xvrml::MapOptions::Headlight;
 
 // Renders a picture with one sample per pixel, then restores the renderer's settings.
-picture::RenderResult probe(const Options& options, const picture::View& view,
-                            picture::Renderer& renderer, Headlight headlight) {
+picture::RenderResult probe(const picture::View& view, picture::Renderer& renderer,
+                            Headlight headlight) {
+  picture::RenderSettings before;
   renderer.change([&](picture::RenderSettings& s) {
+    before = s;
     s.samples = 1;
     s.error = 0;
     s.preview = false;
@@ -22,13 +24,7 @@ picture::RenderResult probe(const Options& options, const picture::View& view,
     s.headlight = headlight;
   });
   picture::RenderResult result = renderer.render(view);
-  renderer.change([&](picture::RenderSettings& s) {
-    s.samples = options.render.samples;
-    s.error = options.render.error;
-    s.preview = options.render.preview;
-    s.channels = options.render.channels;
-    s.headlight = options.render.headlight;
-  });
+  renderer.change([&](picture::RenderSettings& s) { s = before; });
   return result;
 }
 
@@ -78,22 +74,23 @@ std::string hintFor(const Options& options, const picture::View& view,
   // The mapper has warned of a camera that stands too far away (OpenRTMapper::Impl::useCamera).
   const double* place = result.camera.matrix + 12;
   if (!(std::hypot(place[0], place[1], place[2]) <= 1e17)) return {};
-  const Seen seen = lookAt(probe(options, view, renderer, options.render.headlight));
+  const Seen seen = lookAt(probe(view, renderer, options.render.headlight));
   if (!seen.anything) {
     if (isPoint) // a point of a PointSet, or spheres without a size
       return "all of the world is at one point, and nothing of it is in view from here";
     const size_t viewpoints = renderer.viewpoints().size();
     const bool chosen = view.lookAt || view.pinhole || viewpoints > 0;
+    if (options.render.crop.width > 0) return "nothing is in view in this part of the picture";
     if (view.fit || view.side || !chosen)
-      return "nothing is in view, although all of the world is: its shapes are smaller than a "
-             "pixel "
-             "from here; --camera looks from nearer";
+      return "nothing is in view, although the camera is on all of the world: its shapes are "
+             "smaller "
+             "than a pixel from here, or show only backs, which are not drawn";
     return fmt::format(
         "nothing is in view from here: --fit shows all of the world{}",
         viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");
   }
   // Black shapes may be intended: suggest an option only if it makes them brighter.
-  if (!seen.black || lookAt(probe(options, view, renderer, Headlight::on)).black) return {};
+  if (!seen.black || lookAt(probe(view, renderer, Headlight::on)).black) return {};
   const std::string black =
       showsNothing(result.picture) ? "the picture is black: " : "all shapes in view are black: ";
   if (result.stats.lights == 0)
