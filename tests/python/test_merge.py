@@ -2,12 +2,12 @@
 import pickle
 
 import pytest
-from conftest import SMALL
+from conftest import ISA, SMALL
 
 xvrml = pytest.importorskip("xvrml")
 np = pytest.importorskip("numpy")
 
-PARTS = (*SMALL[:2], "--spp", "32", "--transport", "path", "--isa", "sse2", "-q", "--channels",
+PARTS = (*SMALL[:2], "--spp", "32", "--transport", "path", *ISA, "-q", "--channels",
          "rgba,z,error,trust,id")
 
 

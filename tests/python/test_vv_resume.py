@@ -8,6 +8,7 @@ import subprocess
 import time
 
 import pytest
+from conftest import ISA
 
 ROOM = """#VRML V2.0 utf8
 NavigationInfo { headlight FALSE }
@@ -21,7 +22,7 @@ DEF Lamp Transform { translation 0 3 0 children Shape {
   appearance Appearance { material Material { diffuseColor 0 0 0 emissiveColor 8 8 8 } }
   geometry Box { size 2 .1 2 } } }
 """
-PATHS = ("--transport", "path", "--size", "96x64", "--isa", "sse2")
+PATHS = ("--transport", "path", "--size", "96x64", *ISA)
 ERRORS = ("--channels", "rgba,z,error,variance,trust,samples,id,cryptomatte")
 SEEDS = ("-q", *PATHS, "--spp", "32", *ERRORS)
 

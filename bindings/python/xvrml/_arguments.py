@@ -9,7 +9,7 @@ import operator
 import re
 import types
 
-_OPTIONAL = r"(?:Optional|typing\.Optional)\[(.*)\]"
+_OPTIONAL = r"Optional\[(.*)\]"
 _LIST = r"(?:List|list|Sequence)\[([\w.]+)(?:\[(\d+)\])?\]"
 _PAIR = r"(?:Tuple|tuple)\[int, int\]"
 _MANY = {"int": "whole numbers", "float": "numbers", "str": "texts"}
@@ -25,6 +25,23 @@ _WORDS = {
     "bytes": "bytes",
     "None": "None"
 }
+
+
+# How pybind11 3 writes types, and how pybind11 2 does.
+_NEWER = [(re.compile(pattern), text) for pattern, text in (
+    (r"\b(typing|collections\.abc)\.", ""),
+    (r"SupportsFloat \| SupportsIndex", "float"),
+    (r"SupportsInt \| SupportsIndex", "int"),
+    (r'Annotated\[\w+\[(\w+)\], "FixedSize\((\d+)\)"\]', r"List[\1[\2]]"),
+    (r"^(.*) \| None$", r"Optional[\1]"),
+)]
+
+
+def _plain(kind):
+    """Returns a type as pybind11 2 writes it."""
+    for pattern, text in _NEWER:
+        kind = pattern.sub(text, kind)
+    return kind
 
 
 def _split(text):
@@ -57,7 +74,7 @@ def _signature(doc):
         name, _, kind = part.partition(":")
         kind, default, _ = kind.partition(" = ")
         if not name.startswith("*"):
-            names[name.strip()] = kind.strip()
+            names[name.strip()] = _plain(kind.strip())
         if default:
             optional.add(name.strip())
     return names, optional
@@ -179,7 +196,7 @@ def _wrapped_setter(cls, name, setter):
             if not kind or "incompatible" not in str(error):
                 raise
         raise TypeError(
-            f"{cls.__name__}.{name}: {_describe(kind[1])} expected, not {_short(value)}")
+            f"{cls.__name__}.{name}: {_describe(_plain(kind[1]))} expected, not {_short(value)}")
 
     return assign
 
