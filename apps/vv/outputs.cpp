@@ -34,13 +34,11 @@ std::vector<Named> outputsOf(const Options& options) {
     views.clear();
     for (const picture::Side side : options.from) views.emplace_back(picture::sideName(side));
   }
-  const auto isFilm = [](const Output& output) { return output.film != picture::FilmKind::none; };
-  const bool turnsIntoFilm = !options.from.empty() && options.turntable > 0 &&
-                             std::any_of(options.outputs.begin(), options.outputs.end(), isFilm);
   for (const Output& output : options.outputs)
     for (const std::string& view : views) {
       if (options.allViewpoints()) continue;
-      const bool film = isFilm(output), numbered = !film && views.size() == 1 && !turnsIntoFilm;
+      const bool film = output.film != picture::FilmKind::none,
+                 numbered = !film && views.size() == 1 && !options.turnsIntoFilm();
       if (!film || view == views[0])
         all.push_back(
             {output.option(), pathFor(output.path, {view, numbered ? frame : std::nullopt})});

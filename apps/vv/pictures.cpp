@@ -168,9 +168,9 @@ class Pictures {
                                      : chooseJobs(options_, renderer.viewpoints(), i == 0);
       views_ = jobs.size();
       for (Job& job : jobs) {
-        job.turns = !turnsFirstSide() || &job == &jobs.front();
-        job.isStill = i == 0 || !turnsIntoFilm();
-        if (job.turns && !turnsIntoFilm()) job.name.frame = moment.frame;
+        job.turns = !options_.turnsFirstSide() || &job == &jobs.front();
+        job.isStill = i == 0 || !options_.turnsIntoFilm();
+        if (job.turns && !options_.turnsIntoFilm()) job.name.frame = moment.frame;
         job.view.turn = moment.turn;
         if (const int code = makeOne(job, moment); code != exitDone) return code;
       }
@@ -186,16 +186,8 @@ class Pictures {
   }
 
  private:
-  // Tells whether the turntable goes round from the first side of --from.
-  bool turnsFirstSide() const { return !options_.from.empty() && options_.turntable > 0; }
-  // Tells whether it does so for films only; other files then get the picture at its beginning.
-  bool turnsIntoFilm() const {
-    return turnsFirstSide() &&
-           std::any_of(options_.outputs.begin(), options_.outputs.end(),
-                       [](const Output& output) { return output.film != picture::FilmKind::none; });
-  }
   size_t total() const {
-    return turnsFirstSide() ? options_.from.size() + moments_ - 1 : moments_ * views_;
+    return options_.turnsFirstSide() ? options_.from.size() + moments_ - 1 : moments_ * views_;
   }
 
   // Warns if no output file keeps the requested transparency.

@@ -135,6 +135,14 @@ struct Options {
   // Returns the job to do; null if none was asked for.
   const JobInfo* job() const;
   bool isSequence() const { return frames || turntable > 0; }
+  // Tells whether the turntable goes round from the first side of --from.
+  bool turnsFirstSide() const { return !from.empty() && turntable > 0; }
+  // Tells whether it does so for films only; other files then get the picture at its beginning.
+  bool turnsIntoFilm() const {
+    return turnsFirstSide() &&
+           std::any_of(outputs.begin(), outputs.end(),
+                       [](const Output& output) { return output.film != picture::FilmKind::none; });
+  }
 };
 
 // A row of the table. `argument` is empty for a switch, and in brackets if it is optional; a
