@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-debian-12 test-often campaign fuzz-targets test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -67,7 +67,20 @@ container:
 
 ## make test-embree4  build and all tests against Embree 4, in a Debian 13 of its own below build/ (needs root and debootstrap)
 test-embree4:
-	@tools/test-embree4.sh build/trixie $(JOBS)
+	@tools/test-in-debian.sh trixie build/trixie $(JOBS)
+
+## make test-debian-12  `make test` on a bare Debian 12 of its own below build/, without a compiler cache (needs root and debootstrap)
+test-debian-12:
+	@tools/test-in-debian.sh bookworm build/bookworm $(JOBS)
+
+## make test-often    what has threads, windows, processes or sockets, TIMES (default 20) times: no run may fail
+test-often: build
+	@PYTHON=$(PYTHON) tools/test-often.sh $(R) $(or $(TIMES),20)
+
+## make campaign      all long tests one after the other (hours), results into docs/campaigns.md; goes on where it stopped;
+##                   CAMPAIGN="--list", "--only asan tsan", "--hours 2"
+campaign:
+	@$(PYTHON) tools/campaign.py --jobs $(JOBS) $(CAMPAIGN)
 
 ## make cross-aarch64 for 64-bit ARM on this machine, into build/aarch64 (needs root, mmdebstrap, g++-aarch64-linux-gnu); with
 ##                   qemu-user-static it draws a picture there
@@ -136,10 +149,12 @@ corpus-x3d:
 	@$(PYTHON) tests/corpus/corpus_x3d.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(SHEETS),--sheets)
 
 ## make fuzz          every fuzz target for FUZZ_SECONDS (default 60) each
-fuzz:
+fuzz: fuzz-targets
+	@tools/run-fuzz.sh build/fuzz/bin $(FUZZ_SECONDS)
+
+fuzz-targets:
 	@tools/install-packages.sh dev
 	@$(CONFIGURE) fuzz && cmake --build build/fuzz -j $(JOBS)
-	@tools/run-fuzz.sh build/fuzz/bin $(FUZZ_SECONDS)
 
 ## make asan          all tests under the sanitizers for addresses and undefined behaviour
 asan: packages
@@ -158,9 +173,9 @@ test-write-failures:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target write_failures
 	@$(PYTHON) tests/failures/write_failures.py $(R)/bin $(R)/tests/failures/write_failures.so --python $(R)/python
 
-## make cluster-campaign  workers killed at random, partitions, 10,000 frames (CAMPAIGN="--kills 10 --frames 1000")
+## make cluster-campaign  workers killed at random, partitions, 10,000 frames (KILLS="--kills 10 --frames 1000")
 cluster-campaign: build
-	@OPENRT_BUILD=$(CURDIR)/$(R) $(PYTHON) tests/cluster/campaign.py $(CAMPAIGN)
+	@OPENRT_BUILD=$(CURDIR)/$(R) $(PYTHON) tests/cluster/campaign.py $(KILLS)
 
 ## make soak          60 minutes (SOAK="--minutes N") of a window under Xvfb and of a cluster whose workers come and go
 soak: build

@@ -1,15 +1,20 @@
 #!/bin/bash
-# test-embree4.sh FOLDER JOBS: builds the project and runs all its tests in a Debian 13 (trixie),
-# which has Embree 4. FOLDER becomes its root. Nothing of this system is mounted there; the sources,
-# and the corpus (OPENRT_CORPUS) if there is one, are copied. A later run reuses packages, ccache
-# and the build. Needs root, debootstrap, unshare and Debian's mirror.
+# test-in-debian.sh RELEASE FOLDER JOBS: builds the project and runs `make test` in a Debian of its
+# own, as on a machine that has nothing of ours. FOLDER becomes its root. The sources are those that
+# git tracks here; nothing of this system is mounted there. Needs root, debootstrap, unshare and
+# Debian's mirror ($DEBIAN_MIRROR, if it is not debootstrap's).
+#
+# trixie (Debian 13) has Embree 4. A later run reuses packages, compiler cache and the build, and the
+# corpus is copied there, if there is one (OPENRT_CORPUS).
+# bookworm (Debian 12) is the machine that the README speaks of: the build begins anew at each run,
+# without a compiler cache, and there is no corpus.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-root=$(realpath -m "$1") jobs=${2:-2} corpus=${OPENRT_CORPUS:-../shared/corpus}
+release=$1 root=$(realpath -m "$2") jobs=${3:-2} corpus=${OPENRT_CORPUS:-../shared/corpus}
 for tool in debootstrap unshare; do
-  command -v $tool >/dev/null || { echo "test-embree4: $tool is not installed" >&2; exit 1; }
+  command -v $tool >/dev/null || { echo "test-in-debian: $tool is not installed" >&2; exit 1; }
 done
-[ "$(id -u)" = 0 ] || { echo "test-embree4: needs root" >&2; exit 1; }
+[ "$(id -u)" = 0 ] || { echo "test-in-debian: needs root" >&2; exit 1; }
 
 # Runs a command with its own root and its own processes; /proc and /dev/shm end with the command.
 inside() {
@@ -21,7 +26,7 @@ inside() {
 # The stamp is written last, so that an interrupted root is created again.
 if [ ! -e "$root/debootstrap-done" ]; then
   mkdir -p "$root"
-  debootstrap --variant=minbase --include=ca-certificates trixie "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+  debootstrap --variant=minbase --include=ca-certificates,make "$release" "$root" ${DEBIAN_MIRROR:+"$DEBIAN_MIRROR"}
   touch "$root/debootstrap-done"
 fi
 cp -L /etc/resolv.conf "$root/etc/"
@@ -29,6 +34,11 @@ cp -L /etc/resolv.conf "$root/etc/"
 # changed ones get a new one.
 mkdir -p "$root/src" && rm -rf "$root/src.new" && mkdir "$root/src.new"
 git ls-files -z | tar --null -T - -c | tar -xm -C "$root/src.new"
+if [ "$release" = bookworm ]; then
+  rm -rf "$root/src" && mv "$root/src.new" "$root/src"
+  inside "cd /src && CCACHE_DISABLE=1 make test JOBS=$jobs"
+  exit
+fi
 (cd "$root/src.new" && find . -type f -print0 | while IFS= read -r -d '' file; do
   if cmp -s "$file" "../src/$file"; then touch -r "../src/$file" "$file"; fi
 done)
