@@ -1,6 +1,7 @@
 #include "libpicture/shader_rules.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -107,25 +108,31 @@ Node& findNode(const std::string& name, const World& world) {
                                       near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
+// Returns a field of a material, or null if it has none of this name and type.
+template <class Value>
+const Value* fieldOf(const Node* material, const char* name, FieldType type) {
+  const FieldInfo* field = material ? material->type().find(name) : nullptr;
+  if (!field || field->type != type || !holdsValue(*field)) return nullptr;
+  return static_cast<const Value*>(material->storage(*field));
+}
+
+// Returns the colour of a material, or null.
+const SFColor* colourOf(const Node* material) {
+  const auto* colour = fieldOf<SFColor>(material, "diffuseColor", FieldType::SFColor);
+  return colour ? colour : fieldOf<SFColor>(material, "baseColor", FieldType::SFColor);
+}
+
 // Returns whether a material has the numbers of a rule for colours.
 bool hasColour(const Node* material, const std::vector<float>& wanted) {
-  if (!material) return false;
-  const auto find = [&](const char* name, FieldType type) {
-    const FieldInfo* field = material->type().find(name);
-    return field && field->type == type && holdsValue(*field) ? material->storage(*field) : nullptr;
-  };
   const auto near = [](float a, float b, float within) { return std::abs(a - b) <= within; };
-  const void* colour = find("diffuseColor", FieldType::SFColor);
-  if (!colour) colour = find("baseColor", FieldType::SFColor);
-  if (!colour) return false;
-  const auto& c = *static_cast<const SFColor*>(colour);
-  const float own[] = {float(c.r), float(c.g), float(c.b)};
+  const SFColor* c = colourOf(material);
+  if (!c) return false;
+  const float own[] = {float(c->r), float(c->g), float(c->b)};
   for (size_t k = 0; k < 3; ++k)
     if (!near(own[k], wanted[k], colourTolerance)) return false;
   if (wanted.size() == 3) return true;
-  const void* shininess = find("shininess", FieldType::SFFloat);
-  return shininess &&
-         near(float(*static_cast<const SFFloat*>(shininess)), wanted[3], shininessTolerance);
+  const auto* shininess = fieldOf<SFFloat>(material, "shininess", FieldType::SFFloat);
+  return shininess && near(float(*shininess), wanted[3], shininessTolerance);
 }
 
 // Returns whether a node that is written, or the one drawn in its place, has a matching DEF name.
@@ -161,6 +168,17 @@ std::vector<nodes::Shape*> shapesOf(const World& world, const Selector& selector
   };
   walkInto(world.scope, visit, [](const Scope&) {});
   return shapes;
+}
+
+// Returns the number of different colours that the materials of the shapes have.
+size_t countColours(const std::vector<nodes::Shape*>& shapes) {
+  std::set<std::array<float, 3>> colours;
+  for (const nodes::Shape* shape : shapes) {
+    const Parts parts = partsOf(renderedNode(shape->appearance.get()));
+    if (const SFColor* c = colourOf(renderedNode(parts.material.get())))
+      colours.insert({float(c->r), float(c->g), float(c->b)});
+  }
+  return colours.size();
 }
 
 NodeRef makeNode(const char* typeName) {
@@ -255,7 +273,11 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
                         World& world, const SetAppearance& set) {
   using Kind = Selector::Kind;
   size_t given = 0;
-  std::map<std::string, NodeRef> shaders; // rules with one text share a shader
+  struct Read {
+    NodeRef node;
+    bool showsColour = true;
+  };
+  std::map<std::string, Read> shaders; // rules with one text share a shader
   // Rules for the rest come last. The last one of them gets all that is left.
   std::vector<ShaderRule> rules, rest;
   for (const ShaderRule& rule : written) {
@@ -281,16 +303,24 @@ size_t applyShaderRules(const std::vector<ShaderRule>& written, const std::strin
     } catch (const ShaderError& error) { throw wrong(error.what()); }
     const std::vector<nodes::Shape*> shapes = shapesOf(world, selector, below);
     if (shapes.empty() && rule.mayMatchNothing) continue;
-    NodeRef& shader = shaders[shaderText + '\n' + rule.folder];
-    if (!shader)
-      shader = readShader(shaderText, rule.where.c_str(), RT_SURFACE, shaderPath, rule.folder);
+    Read& shader = shaders[shaderText + '\n' + rule.folder];
+    if (!shader.node)
+      shader.node = readShader(shaderText, rule.where.c_str(), RT_SURFACE, shaderPath, rule.folder,
+                               &shader.showsColour);
     if (shapes.empty() && selector.kind == Kind::name)
       throw wrong(
           fmt::format("{} is not part of a shape, and no shape is below it", selector.pattern));
     if (shapes.empty() && selector.kind != Kind::rest)
       world.diagnostics.warn(
           {}, fmt::format("{} {}: no shape of the world matches", rule.where, rule.text));
-    give(shapes, shader, selector.kind == Kind::rest, world, set);
+    if (selector.kind == Kind::rest && !shader.showsColour) {
+      if (const size_t colours = countColours(shapes); colours > 1)
+        world.diagnostics.warn(
+            {}, fmt::format("{} {}: the class has no parameter for a material's colour: shapes of "
+                            "{} colours become alike",
+                            rule.where, rule.text, colours));
+    }
+    give(shapes, shader.node, selector.kind == Kind::rest, world, set);
     given += shapes.size();
   }
   return given;

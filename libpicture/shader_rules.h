@@ -19,7 +19,7 @@ namespace picture {
 //  - material:GLOB, appearance:GLOB, shape:GLOB: shapes whose Material, appearance or own node has
 //    such a DEF name, also in Inlines and prototypes. * stands for any letters, ? for one.
 //  - colour:R,G,B or colour:R,G,B,SHININESS: shapes whose Material has this diffuseColor or
-//    baseColor, within 0.03, and this shininess, within 0.02
+//    baseColor, within 0.03, and this shininess, within 0.0051
 //  - *: shapes that have no shader yet
 struct ShaderRule {
   std::string text;
@@ -43,7 +43,7 @@ using SetAppearance = std::function<void(xvrml::Node& shape, const xvrml::NodeRe
 
 // Applies the rules in their order, those for * last. Later ones win. Material and texture of a
 // shape stay, for shaders that have such parameters. A pattern or colour that selects nothing is a
-// warning of the world. Returns how many times a shape got a shader. Throws ShaderError that says
+// warning of the world, and so is a rule for * that makes shapes of several colours alike. Returns how many times a shape got a shader. Throws ShaderError that says
 // what was expected, before the rule that it is about has changed anything.
 size_t applyShaderRules(const std::vector<ShaderRule>& rules, const std::string& shaderPath,
                         xvrml::World& world, const SetAppearance& set = {});

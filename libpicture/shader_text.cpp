@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "nearest.h"
+#include "xvrml/mapper.h"
 #include "xvrml/nodes.h"
 
 namespace picture {
@@ -188,7 +189,8 @@ struct Lookup {
 };
 
 std::vector<std::string> optionsOf(const Written& written, RTenum role,
-                                   const std::string& shaderPath, const std::string& folder) {
+                                   const std::string& shaderPath, const std::string& folder,
+                                   bool* showsColor) {
   const Lookup lookup(shaderPath);
   const RTid shaderClass = rtNewShaderClass(
       written.name.c_str(), written.library.empty() ? nullptr : written.library.c_str());
@@ -224,6 +226,7 @@ std::vector<std::string> optionsOf(const Written& written, RTenum role,
       options.push_back(optionOf(infos[size_t(at - names.begin())], setting.value, folder));
     } catch (const ShaderError& error) { throw ShaderError(setting.name + ": " + error.what()); }
   }
+  if (showsColor) *showsColor = xvrml::takesMaterialColor(written.name, written.library);
   return options;
 }
 
@@ -246,7 +249,8 @@ const char* parameterTypeName(RTenum type) {
 }
 
 xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
-                          const std::string& shaderPath, const std::string& folder) {
+                          const std::string& shaderPath, const std::string& folder,
+                          bool* showsColor) {
   try {
     const Written written = readWritten(text);
     const xvrml::NodeType& type = *xvrml::findNodeType("ORTShader");
@@ -254,7 +258,7 @@ xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum ro
     auto& shader = static_cast<xvrml::nodes::ORTShader&>(*node);
     shader.name = written.name;
     shader.file = written.library;
-    shader.options = optionsOf(written, role, shaderPath, folder);
+    shader.options = optionsOf(written, role, shaderPath, folder, showsColor);
     // The option, or a place in a file with a colon behind it.
     std::string where = option;
     if (where.ends_with(':')) where.pop_back();

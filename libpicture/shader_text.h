@@ -18,9 +18,11 @@ struct ShaderError : std::runtime_error {
 // Returns an ORTShader node with that class and these parameters. Throws ShaderError that says what
 // was expected: the nearest class or parameter, the type of a value, or its range. `option` is for
 // messages, such as "--shader"; `role` is RT_SURFACE, RT_CAMERA and so on. If `folder` is not
-// empty, the files that the text names are relative to it and must be inside.
+// empty, the files that the text names are relative to it and must be inside. `showsColor`, if
+// given, tells whether the shader shows the colour of a shape's material.
 xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
-                          const std::string& shaderPath, const std::string& folder = "");
+                          const std::string& shaderPath, const std::string& folder = "",
+                          bool* showsColor = nullptr);
 
 // Returns "surface", "light" and so on for RT_SURFACE, RT_LIGHT and so on.
 const char* roleName(RTenum role);

@@ -1,4 +1,8 @@
 """Tests the preset pcb of vv: what the layers of KiCad's boards are made of, and how boards lie."""
+import base64
+import json
+import struct
+
 import pytest
 from conftest import HEADER
 
@@ -84,3 +88,65 @@ def test_a_board_is_the_same_on_any_number_of_threads(vv):
     vv.write("mask.wrl", HEADER + "".join(LAYER % (0, z, *layer) for z, layer in layers))
     one, three = (vv.floats("--preset", "pcb", "--threads", n, world="mask.wrl") for n in "13")
     assert one == three
+
+
+def test_colours_of_a_glb_stay(vv):
+    """Its materials are PhysicalMaterials, whose colour is baseColor. All were dark red, the default
+    of Plastic."""
+    corners = struct.pack("<12f", -1, 0, 1, 1, 0, 1, 1, 0, -1, -1, 0, -1)
+    faces = struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    model = {
+        "asset": {
+            "version": "2.0"
+        },
+        "scene": 0,
+        "scenes": [{
+            "nodes": [0]
+        }],
+        "nodes": [{
+            "mesh": 0
+        }],
+        "materials": [{
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [.02, .3, .05, 1],
+                "metallicFactor": 0
+            }
+        }],
+        "meshes": [{
+            "primitives": [{
+                "attributes": {
+                    "POSITION": 0
+                },
+                "indices": 1,
+                "material": 0
+            }]
+        }],
+        "accessors": [{
+            "bufferView": 0,
+            "componentType": 5126,
+            "count": 4,
+            "type": "VEC3",
+            "min": [-1, 0, -1],
+            "max": [1, 0, 1]
+        }, {
+            "bufferView": 1,
+            "componentType": 5123,
+            "count": 6,
+            "type": "SCALAR"
+        }],
+        "bufferViews": [{
+            "buffer": 0,
+            "byteLength": len(corners)
+        }, {
+            "buffer": 0,
+            "byteOffset": len(corners),
+            "byteLength": len(faces)
+        }],
+        "buffers": [{
+            "byteLength": len(corners + faces),
+            "uri": "data:application/octet-stream;base64," + base64.b64encode(corners + faces).decode()
+        }],
+    }
+    vv.write("board.gltf", json.dumps(model))
+    red, green, blue = vv.picture("--preset", "pcb", world="board.gltf")[12][16]
+    assert green > 1.3 * max(red, blue), (red, green, blue)

@@ -95,6 +95,13 @@ def test_a_rule_that_selects_nothing_is_a_warning(board):
     assert done.returncode == 4 and not (board.folder / "y.png").exists()
 
 
+def test_a_rule_that_throws_colours_away_is_a_warning(board):
+    done = board("board.wrl", "-o", "x.png", "--shader", "*=Metal", *SMALL)
+    assert "--shader *=Metal: the class has no parameter for a material's colour" in done.talk
+    for rule in ("*=Plastic", "material:*=Metal"):
+        assert "colour" not in board("board.wrl", "-o", "x.png", "--shader", rule, *SMALL).talk
+
+
 @pytest.mark.parametrize("rules, message", [
     ("material:PIN-*=Metal\nPIN Metal\n", "rules.txt:2: SELECTOR=CLASS[:PARAM=VALUE...] was"),
     ("colour:1,2=Metal", "rules.txt:1: colour: R,G,B from 0 to 1"),

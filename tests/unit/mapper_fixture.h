@@ -39,10 +39,14 @@ class MapRunning : public testing::Test {
     rtDeleteContext(context_);
   }
 
-  void load(const std::string& body) {
+  void load(const std::string& body) { loadText("#VRML V2.0 utf8\n" + body, "test.wrl"); }
+  void loadX3d(const std::string& body) {
+    loadText("#X3D V4.0 utf8\nPROFILE Full\n" + body, "test.x3dv");
+  }
+  void loadText(const std::string& text, const std::string& name) {
     mapper_.reset();
     engine_.reset();
-    world_ = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "test.wrl");
+    world_ = loadWorldFromMemory(text, name);
     for (const Diagnostic& d : world_->diagnostics.list()) ADD_FAILURE() << d.text();
     engine_ = std::make_unique<Engine>(world_->diagnostics, makeInteraction);
     engine_->adoptScope(world_->scope, true);

@@ -29,6 +29,7 @@ class MapShaders : public MapRunning {
     for (const Diagnostic& d : world_->diagnostics.list()) ADD_FAILURE() << d.text();
   }
   static constexpr const char* dark = "NavigationInfo { headlight FALSE }\n";
+  static inline const std::string lit = std::string(dark) + "DirectionalLight { }\n";
   // Returns a square that fills the view.
   static std::string square(const std::string& appearance) {
     return "Shape { appearance " + appearance +
@@ -79,6 +80,36 @@ TEST_F(MapShaders, DiffuseColorIsWhatAShaderCallsColor) {
   EXPECT_FLOAT_EQ(seen()[0], 0) << "options have the last word";
   EXPECT_FLOAT_EQ(seen()[2], 0.5f);
   silent();
+}
+
+TEST_F(MapShaders, AShaderShowsTheColourOfAnyMaterial) {
+  for (const char* material :
+       {"Material { diffuseColor 0 1 0 }", "TwoSidedMaterial { diffuseColor 0 1 0 }",
+        "PhysicalMaterial { baseColor 0 1 0 }", "UnlitMaterial { emissiveColor 0 1 0 }"}) {
+    for (const char* shader : {"name \"Plastic\" file \"plastic\" options \"1f index 1\"",
+                               "name \"Diffuse\" file \"diffuse\"",
+                               "name \"Phong\" file \"phong\"",
+                               "name \"Physical\" file \"physical\""}) {
+      SCOPED_TRACE(std::string(material) + " " + shader);
+      loadX3d(lit + square("ORTAppearance { material " + std::string(material) +
+                           " shader ORTShader { " + shader + " } }"));
+      const auto rgba = seen();
+      EXPECT_EQ(rgba[0], rgba[2]) << "but for highlights";
+      EXPECT_GT(rgba[1], rgba[0] + .15f);
+    }
+  }
+}
+
+TEST_F(MapShaders, AShaderShowsTheOwnPictureOfAMaterial) {
+  const std::string picture = "PixelTexture { image 1 1 3 0x00ff00 }";
+  for (const std::string& material : {"Material { diffuseColor 1 1 1 diffuseTexture " + picture + " }",
+                                     "PhysicalMaterial { baseTexture " + picture + " }"}) {
+    loadX3d(lit + square("ORTAppearance { material " + material +
+                         " shader ORTShader { name \"Diffuse\" file \"diffuse\" } }"));
+    const auto rgba = seen();
+    EXPECT_EQ(rgba[0], 0) << material;
+    EXPECT_GT(rgba[1], .3f) << material;
+  }
 }
 
 TEST_F(MapShaders, LightsByShader) {

@@ -159,4 +159,9 @@ class OpenRTMapper {
   std::unique_ptr<Impl> impl_;
 };
 
+// Returns whether a class of surface shaders has a parameter for the colour of a Material or
+// PhysicalMaterial: diffuseColor, baseColor, color or reflectance. `library` is the file of the
+// class, or empty. Loads the class in the current context; false if there is none. [its thread]
+bool takesMaterialColor(const std::string& shaderClass, const std::string& library);
+
 } // namespace xvrml

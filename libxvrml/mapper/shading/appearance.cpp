@@ -8,6 +8,7 @@
 
 #include "mapper/shading/layers.h"
 #include "mapper/shading/line_properties.h"
+#include "mapper/shading/material_parameters.h"
 #include "mapper/shading/physical.h"
 #include "mapper/shading/x3d_material.h"
 #include "xvrml/change.h"
@@ -191,39 +192,12 @@ Surface Surfaces::makeLines(const Entry& entry) {
 // textureTransform and those of the Material.
 RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
   const Parts parts = partsOf(&appearance);
-  if (!parts.texture && !parts.textureTransform && !parts.material)
+  if (!parts.texture && !parts.textureTransform && !parts.anyMaterial)
     return custom_.shaderFor(node, RT_SURFACE);
-  const RTid texture = textures_.ofNode(parts.texture);
   const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
-    const auto takes = [&](const char* name, RTenum type) {
-      const auto found = shaderClass.parameters.find(name);
-      return found != shaderClass.parameters.end() && found->second == type;
-    };
-    if (takes("texture", RT_PARAM_TEXTURE))
-      shader.texture("texture", texture);
-    else if (parts.texture && shader.fresh())
-      world_.diagnostics.warn(parts.texture->source,
-                              "the shader " + node.name +
-                                  " has no parameter texture: the picture is not used");
-    if (const nodes::TextureTransform* t = parts.textureTransform;
-        takes("textureTransform", RT_PARAM_MATRIX))
-      shader.matrix("textureTransform",
-                    t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
-    if (const nodes::Material* m = parts.material) {
-      const auto color = [&](const char* name, const Color& value) {
-        if (takes(name, RT_PARAM_COLOR)) shader.color(name, convert(value, linear_));
-      };
-      const auto number = [&](const char* name, float value) {
-        if (takes(name, RT_PARAM_FLOAT)) shader.number(name, value, 0, 1);
-      };
-      color(takes("diffuseColor", RT_PARAM_COLOR) ? "diffuseColor" : "color",
-            m->diffuseColor); // Plastic and CarPaint have "color"
-      color("emissiveColor", m->emissiveColor);
-      color("specularColor", m->specularColor);
-      number("ambientIntensity", m->ambientIntensity);
-      number("shininess", m->shininess);
-      number("transparency", m->transparency);
-    }
+    setMaterialParameters(shader, shaderClass, node,
+                          {parts.anyMaterial, parts.texture, parts.textureTransform}, textures_,
+                          world_, linear_);
   };
   return custom_.shaderFor(node, RT_SURFACE, &appearance, preset);
 }
