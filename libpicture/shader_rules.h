@@ -43,8 +43,9 @@ using SetAppearance = std::function<void(xvrml::Node& shape, const xvrml::NodeRe
 
 // Applies the rules in their order, those for * last. Later ones win. Material and texture of a
 // shape stay, for shaders that have such parameters. A pattern or colour that selects nothing is a
-// warning of the world, and so is a rule for * that makes shapes of several colours alike. Returns how many times a shape got a shader. Throws ShaderError that says
-// what was expected, before the rule that it is about has changed anything.
+// warning of the world, and so is a rule for * that makes shapes of several colours alike. Returns
+// how many times a shape got a shader. Throws ShaderError that says what was expected, before the
+// rule that it is about has changed anything.
 size_t applyShaderRules(const std::vector<ShaderRule>& rules, const std::string& shaderPath,
                         xvrml::World& world, const SetAppearance& set = {});
 

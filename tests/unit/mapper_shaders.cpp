@@ -87,8 +87,7 @@ TEST_F(MapShaders, AShaderShowsTheColourOfAnyMaterial) {
        {"Material { diffuseColor 0 1 0 }", "TwoSidedMaterial { diffuseColor 0 1 0 }",
         "PhysicalMaterial { baseColor 0 1 0 }", "UnlitMaterial { emissiveColor 0 1 0 }"}) {
     for (const char* shader : {"name \"Plastic\" file \"plastic\" options \"1f index 1\"",
-                               "name \"Diffuse\" file \"diffuse\"",
-                               "name \"Phong\" file \"phong\"",
+                               "name \"Diffuse\" file \"diffuse\"", "name \"Phong\" file \"phong\"",
                                "name \"Physical\" file \"physical\""}) {
       SCOPED_TRACE(std::string(material) + " " + shader);
       loadX3d(lit + square("ORTAppearance { material " + std::string(material) +
@@ -102,8 +101,9 @@ TEST_F(MapShaders, AShaderShowsTheColourOfAnyMaterial) {
 
 TEST_F(MapShaders, AShaderShowsTheOwnPictureOfAMaterial) {
   const std::string picture = "PixelTexture { image 1 1 3 0x00ff00 }";
-  for (const std::string& material : {"Material { diffuseColor 1 1 1 diffuseTexture " + picture + " }",
-                                     "PhysicalMaterial { baseTexture " + picture + " }"}) {
+  for (const std::string& material :
+       {"Material { diffuseColor 1 1 1 diffuseTexture " + picture + " }",
+        "PhysicalMaterial { baseTexture " + picture + " }"}) {
     loadX3d(lit + square("ORTAppearance { material " + material +
                          " shader ORTShader { name \"Diffuse\" file \"diffuse\" } }"));
     const auto rgba = seen();
