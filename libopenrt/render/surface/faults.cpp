@@ -32,6 +32,10 @@ const char* textOf(Fault fault) {
   case Fault::varyingEmission:
     return "has emission that varies, but its traits have RTS_UNIFORM_EMISSION: light samples take "
            "the same radiance everywhere";
+  case Fault::neverEntered:
+    return "bounds bodies that paths have left but never entered: a mesh of it is open, is inside "
+           "out, or belongs together with one whose shader has other parameters. Such a boundary "
+           "refracts nothing, or wrongly";
   }
   return "";
 }

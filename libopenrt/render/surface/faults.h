@@ -1,5 +1,6 @@
 // faults.h: detects faulty shader output: numbers that are not finite and, in diagnostic mode,
-// lobes that the class's traits do not declare. Bad numbers are replaced at once; faults are
+// lobes that the class's traits do not declare. Bodies that are not closed are reported in the same
+// way. Bad numbers are replaced at once; faults are
 // counted by class and reported once at the end of a frame. [render]
 #pragma once
 
@@ -18,7 +19,8 @@ enum class Fault : uint8_t {
   undeclaredEmission,
   undeclaredTransparency,
   undeclaredScattering,
-  varyingEmission // the last one
+  varyingEmission,
+  neverEntered // the last one
 };
 
 class ShaderFaults { // Fault counts of one thread, or of a frame.
