@@ -34,7 +34,9 @@ class ShaderFaults { // Fault counts of one thread, or of a frame.
   void add(const ShaderFaults& more);
   uint64_t count(Fault fault) const;
   // Logs one line for each class and fault, in an order that does not depend on threads.
-  void report(RTlogCallback callback, void* user) const;
+  // cameraRays: of the frame. Bodies that fewer than one path in a thousand has left without
+  // entering them are closed, but for a few paths that pass an edge within the rounding.
+  void report(RTlogCallback callback, void* user, uint64_t cameraRays) const;
   const std::vector<Entry>& entries() const { return entries_; } // unordered
 
  private:
