@@ -102,7 +102,7 @@ double LightImage::brightness(uint32_t x, uint32_t y, int k) const {
 
 // Replaces the variance of a pixel, colour k, by one that is pooled over the surrounding 5x5 pixels
 // as those of camera samples are (error.cpp): absolutely, or relative to the brightness, whichever
-// differs less, and weighed against the pixel's own by how much they differ beyond chance. A
+// differs less, and weighed against a smaller own one by how much they differ beyond chance. A
 // variance is proportional to the light where all paths carry about the same.
 void LightImage::pool(uint32_t x, uint32_t y, int k, LightSums& out) const {
   constexpr uint32_t reach = 2;
@@ -139,7 +139,10 @@ void LightImage::pool(uint32_t x, uint32_t y, int k, LightSums& out) const {
   const double n = added_, paths = light * light / (plain.sum * plain.count),
                chance = 2 / (n - 1) + 1 / paths,
                real = std::max(0.0, window.differing() - chance), weight = real / (real + chance);
-  out.variance[k] = unit * window.mean() + weight * (own - unit * window.mean());
+  // A few bright paths make the light too large and its variance with it: where the own variance is
+  // larger it counts as it is.
+  const double pooled = unit * window.mean();
+  out.variance[k] = own > pooled ? own : pooled + weight * (own - pooled);
 }
 
 LightSums LightImage::at(uint32_t x, uint32_t y) const {
