@@ -679,17 +679,22 @@ class Pictures {
              double(all.size());
       largest = double(*std::max_element(all.begin(), all.end()));
     }
+    const bool lamps = picture::transportInfo(result.stats.transport).tracesLamps;
+    const std::string paths =
+        lamps ? ". Paths from lamps are limited as well (docs/error-bars.md): --spp N without "
+                "--error and --time-limit takes N of both per pixel"
+              : "";
     if (full > 0)
       return fmt::format(
-          "{:.3g} % of the pixels took {} samples, the most allowed; --spp allows more", 100 * full,
-          options_.render.samples);
+          "{:.3g} % of the pixels took {} samples, the most allowed; --spp allows more{}",
+          100 * full, options_.render.samples, paths);
     if (options_.render.timeLimit > 0)
-      return "the time limit ended the rendering; --time-limit allows more time";
+      return "the time limit ended the rendering; --time-limit allows more time" + paths;
     const std::string taken =
         fmt::format("its pixels took at most {:.0f} of the {} samples allowed, ", largest, most);
-    if (picture::transportInfo(result.stats.transport).tracesLamps)
-      return taken + "and --error does not change the number of paths from lamps; --spp N without "
-                     "--error takes N of both per pixel";
+    if (lamps)
+      return taken + "and --error alone decides how many paths from lamps are taken; --spp N "
+                     "without --error takes N of both per pixel";
     return taken + "which was enough in the pilot samples that decide it, but the picture is "
                    "noisier than these; a smaller --error takes more samples";
   }

@@ -14,6 +14,7 @@
 #include "render/lights/light_sampler.h"
 #include "render/rays.h"
 #include "render/records.h"
+#include "render/surface/media.h"
 #include "shading/texture.h"
 
 namespace openrt {
@@ -70,7 +71,11 @@ class ShaderTable {
   // Returns whether every shader of `other` has the same slot, class and traits here, so that
   // records made for it can be used with this table.
   bool extends(const ShaderTable& other) const;
+  // Media with equal parameters are one, however many shaders have it, unless it scatters: then it
+  // has the lights of its own shader's surfaces.
   std::span<const RtsMedium> media() const { return media_; }
+  // Returns whether more than one shader has a medium.
+  bool severalBodies() const { return bodies_ > 1; }
   // Returns the slot of a light, camera or environment shader; shaderClass is null if the id is not
   // of that kind.
   ShaderSlot role(uint32_t shaderId, RtsKind kind) const;
@@ -90,12 +95,16 @@ class ShaderTable {
   bool make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   void setMedium(ShaderSlot& slot, const RtsHost& host);
+  void countUse(uint16_t medium, bool more);
   std::vector<ShaderSlot> slots_;
   // Indexed by slot. Tables share the blocks that have not changed.
   std::vector<std::shared_ptr<const Block>> blocks_;
   // Indexed by slot: the class that the scene requests, even if the default shader replaces it.
   std::vector<const RtsClass*> classes_;
   std::vector<RtsMedium> media_;
+  std::vector<uint32_t> users_;            // by medium: number of slots that have it
+  std::map<std::string, uint16_t> numbers_; // by the bytes of a medium that slots may share
+  uint32_t bodies_ = 0;                    // number of slots that have a medium
   std::shared_ptr<const Slots> slotOf_;
   uint32_t defaultShader_ = 0; // the shader that slot 0 takes its values from
 };
@@ -131,6 +140,11 @@ struct RenderScene {
   double lightPathFlux = 0;
   bool transparentShadows = false; // something transparent may lie between a point and a light
   bool absorbingShadows = false;   // so may a medium that absorbs
+  // Light samples pass what transmits straight on, and boundaries of media that have no effect
+  // (render/lights/shadows.h).
+  bool samplesPass = false;
+  // The media that contain the eye, in scenes where their paths do not look for them.
+  MediaStack aroundEye{};
   // Whether rays from the eye in all directions seldom leave the scene.
   bool enclosed = false;
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.

@@ -49,6 +49,35 @@ TEST_F(Faults, ALobeThatIsNotFiniteHasNoWeight) {
   EXPECT_EQ(log.count("shader NanLobe of faulty"), 1u);
 }
 
+TEST_F(Faults, BodiesThatAreLeftButWereNeverEnteredAreNamed) {
+  const RTid glass = shader("Glass", nullptr);
+  const auto body = [&](const auto& faces) {
+    const RTid object = rtBeginObject(0);
+    rtBindShader(glass);
+    faces();
+    rtEndObject();
+    return rtInstantiateObject(object);
+  };
+  constexpr const char* said = "bounds bodies that paths have left but never entered";
+  RTid placed = body([] { rtSphere(0.5f); });
+  picture(16);
+  rtDeleteInstance(placed);
+  placed = body([] { rtSphere(100); }); // the camera is inside
+  picture(16);
+  EXPECT_EQ(log.count(said), 0u);
+  rtDeleteInstance(placed);
+  rtRotatef(180, 1, 0, 0);
+  body([] {
+    rtBegin(RT_QUADS);
+    squareVertices();
+    rtEnd();
+  });
+  picture(4);
+  EXPECT_EQ(log.count(said), 1u);
+  EXPECT_TRUE(log.has("shader Glass of"));
+  EXPECT_TRUE(log.has("(16 points)"));
+}
+
 TEST_F(Faults, GoodShadersHaveNone) {
   rtBindShader(0);
   const RTid object = rtBeginObject(0);

@@ -242,9 +242,21 @@ def test_statistics(vv):
     assert 0 < stats["time"]["render"] < stats["time"]["total"] < 60
     stages = ("parse", "graph", "start", "map", "render", "write")
     assert sum(stats["time"][stage] for stage in stages) <= stats["time"]["total"]
-    assert stats["error"]["level"] == 0.95 and stats["error"]["mean_rel"] >= 0
+    assert stats["error"]["level"] == 0.95 and stats["error"]["mean_rel"] is None
     assert stats["memory"]["peak_rss"] > 1 << 20
     assert json.loads(vv("box.wrl", "-o", "x.png", "--stats", "-", *SMALL).text)["schema"] == 1
+
+
+def test_the_error_in_statistics_is_that_of_error_bars_or_null_with_the_way_to_get_it(vv):
+    without = "box.wrl -o a.exr --stats a.json --size 32x24 --spp 64".split()
+    assert vv(*without).returncode == 0
+    error = json.loads((vv.folder / "a.json").read_text())["error"]
+    assert {error[key] for key in error if key not in ("level", "method")} == {None}
+    assert "--channels rgba,error,trust or --error" in error["method"]
+    assert vv(*without, "--channels", "rgba,error,trust").returncode == 0
+    error = json.loads((vv.folder / "a.json").read_text())["error"]
+    assert error["method"].startswith("replicated") and error["pixels_trusted"] > .9
+    assert error["mean_rel"] >= 0 and error["half_width"] >= 0
 
 
 def test_statistics_do_not_change_the_picture(vv):

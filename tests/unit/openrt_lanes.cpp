@@ -125,6 +125,34 @@ TEST(PathFlags, HoldEachFactApart) {
   flags.setClass(PathClass::undeflected);
   EXPECT_EQ(flags.splits(), PathFlags::mostSplits);
   EXPECT_EQ(flags.channel(), 0);
+  for (int i = 0; i < 700; i++) flags.addPassage();
+  EXPECT_EQ(flags.passages(), 700u);
+  EXPECT_EQ(flags.splits(), PathFlags::mostSplits);
+  flags.setPassages(3);
+  EXPECT_EQ(flags.passages(), 3u);
+  EXPECT_TRUE(flags.deflected());
+}
+
+TEST(RayQueue, CutsThePathsThatWereBentTooOftenAndKeepsTheOrderOfTheOthers) {
+  RayQueue queue;
+  for (uint32_t i = 0; i < 10; i++) {
+    RayState state{.throughput = {1, 2, 3}, .path = i};
+    state.flags.setPassages(i);
+    queue.push({float(i), 0, 0}, {0, 0, 1}, state);
+  }
+  double lost = 0;
+  queue.cut(5, 5, lost);
+  EXPECT_EQ(queue.size(), 10u);
+  EXPECT_EQ(lost, 0);
+  queue.cut(9, 5, lost); // needs four passages
+  ASSERT_EQ(queue.size(), 6u);
+  EXPECT_EQ(lost, 4 * 6);
+  for (uint32_t i = 0; i < 6; i++) {
+    EXPECT_EQ(queue.states().path[i], i + 4);
+    EXPECT_EQ(queue.origin()[0][i], float(i + 4));
+  }
+  queue.cut(5 + mostPassages + 1, 5, lost);
+  EXPECT_TRUE(queue.empty());
 }
 
 } // namespace

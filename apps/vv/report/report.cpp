@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <set>
@@ -31,9 +32,11 @@ std::string dump(const Json& json) {
   return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
-// Returns the error estimate of the whole picture, relative (openrt.h, RTstats).
-Json errorEstimate(const RTstats& s) {
-  const bool known = s.errorPixels > 0;
+// Returns the error estimate of the whole picture, relative (openrt.h, RTstats). Samples that are
+// no replicates bound the error of the picture only loosely, and statistics do not change how a
+// picture is made: nothing is said about it unless the user has asked for errors.
+Json errorEstimate(const RTstats& s, bool asked) {
+  const bool known = s.errorPixels > 0 && asked;
   const auto value = [known](double x) { return known ? Json(x) : Json(nullptr); };
   return {{"mean_rel", value(s.errorMean)},
           {"mean_rel_interval", value(s.errorMeanInterval)},
@@ -42,7 +45,8 @@ Json errorEstimate(const RTstats& s) {
           {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
           {"unmet", value(s.errorUnmet)},
           {"level", s.errorLevel},
-          {"method", s.errorMethod}};
+          {"method",
+           asked ? s.errorMethod : "none: --channels rgba,error,trust or --error tells it"}};
 }
 
 Json transportJson(const Options& options, const RTstats& s) {
@@ -161,7 +165,9 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
 void addMachine(Json& json, const Options& options, const picture::RenderResult& result) {
   const RTstats& s = result.stats;
   json["transport"] = transportJson(options, result.stats);
-  json["error"] = errorEstimate(result.stats);
+  const picture::RenderSettings& r = options.render;
+  json["error"] = errorEstimate(
+      s, (r.channels & (RT_ERROR | RT_TRUST)) || r.error > 0 || r.timeLimit > 0);
   json["left_out"] = {{"cut_by_depth", s.cutByDepth},
                       {"cut_by_energy", s.cutByEnergy},
                       {"clipped", s.clipped},
@@ -217,7 +223,8 @@ std::string mergedStatsJson(const std::string& commandLine, const picture::Sums&
                    {"spp", uint64_t(info.samples) * info.seeds},
                    {"seeds", info.seeds},
                    {"channels", channelNames(info.channels)}};
-  json["error"] = errorEstimate(s);
+  json["error"] = errorEstimate(s, std::strncmp(s.errorMethod, "replicated", 10) == 0 ||
+                                       (info.channels & (RT_ERROR | RT_TRUST)));
   json["left_out"] = {{"cut_by_depth", s.cutByDepth},
                       {"cut_by_energy", s.cutByEnergy},
                       {"clipped", s.clipped},

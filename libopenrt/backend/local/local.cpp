@@ -17,6 +17,8 @@
 #include <string>
 
 #include "render/lights/light_sources.h"
+#include "render/lights/shadows.h"
+#include "render/medium/containing_media.h"
 #include "render/medium/medium_lights.h"
 #include "render/path/guides.h"
 #include "render/path/photon_pass.h"
@@ -80,6 +82,7 @@ void LocalBackend::prepare() {
   next->mediumLights = findMediumLights(*next);
   next->absorbingShadows =
       !next->mediumLights.empty() || (next->transparentShadows && hasAbsorption(*next));
+  next->samplesPass = samplesPass(*next);
   next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
@@ -303,6 +306,7 @@ void LocalBackend::prepareFrame() {
   prepare();
   if (guided_) return;
   snapshot_->enclosed = isEnclosed(*snapshot_);
+  snapshot_->aroundEye = mediaAroundEye(*snapshot_);
   guided_ = guideByPhotons(*snapshot_, stop_);
   if (snapshot_->photonGuide) transportReason_ += ", guided";
 }

@@ -56,7 +56,7 @@ enum {
 /* Settings of rtQuality and rtQualityf. */
 enum {
   RT_SAMPLES_PER_PIXEL = 1, /* 1 .. 65536, default 16 */
-  RT_MAX_DEPTH = 2,         /* maximum number of surfaces on a path, 0 .. 10000, default 25 */
+  RT_MAX_DEPTH = 2,         /* most surfaces on a path that bend light, 0 .. 10000, default 25 */
   RT_SEED = 3,              /* default 0 */
   RT_SHADOWS = 4,           /* 1 (default) or 0 */
   RT_TRANSPORT = 5,         /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */
@@ -298,8 +298,8 @@ typedef struct RTstats {
 
   /* Light that is left out, as a mean over the pixels of the sum over the colours. No error bar
    * covers it. */
-  double cutByDepth;  /* throughput of paths that RT_MAX_DEPTH ended; times the radiance beyond
-                         it is the loss */
+  double cutByDepth;  /* throughput of paths that RT_MAX_DEPTH ended, and of paths and shadow rays
+                         after 512 straight passages; times the radiance beyond it is the loss */
   double cutByEnergy; /* the same of branches that RT_ENERGY_CUT ended */
   double clipped;     /* radiance that RT_CLAMP took away */
   uint64_t unreachedLights; /* lights without extent that can be reached only through mirrors or

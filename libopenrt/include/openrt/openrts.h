@@ -204,9 +204,9 @@ typedef struct RtsRays {
 } RtsRays;
 
 /* Since 1.2. The interior of a body whose surface has the shader, by colour channel; an index that
- * differs by channel is dispersion. The surface's faces point outwards. Where bodies overlap, the
- * one with the highest priority counts (C. Schmidt, B. Budge, "Simple Nested Dielectrics in Ray
- * Traced Images", JGT 7(2), 2002); boundaries of the others inside it are invisible. */
+ * differs by channel is dispersion. Faces point outwards; equal media bound one body. Where bodies
+ * overlap, that of the highest priority counts (C. Schmidt, B. Budge, "Simple Nested Dielectrics in
+ * Ray Traced Images", JGT 7(2), 2002); boundaries of the others inside it are invisible. */
 typedef struct RtsMedium {
   float index[3];      /* index of refraction, > 0 */
   float absorption[3]; /* per world unit of length; transmittance is exp(-absorption x length) */

@@ -24,17 +24,26 @@ bool makesRounds(const edit::FrameSettingsT& frame) {
                              : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
+// Returns how many light paths a pixel gets at most where its number of camera paths is open. Their
+// error falls with the root of their number: 64 are for a target of 5 % and for a time limit.
+double openLightPaths(float targetError) {
+  constexpr double paths = 64, target = .05;
+  const double finer = targetError > 0 ? std::max(1.0, target / double(targetError)) : 1;
+  return paths * finer * finer;
+}
+
 // Returns the number of light paths: as many as camera paths that get light, and for sensors at
 // least as many as for 16x16 of them, because the light of few sensors is no easier to find. If the
-// number of camera paths is open, at most 64 per pixel.
+// number of camera paths is open, at most openLightPaths() per pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   constexpr double fewestSensors = 256;
-  constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;
   const uint32_t stride = lightStrideOf(frame);
   const double pixels = std::max(double(frame.width) * frame.height / (stride * stride),
                                  frame.measure ? fewestSensors : 1.0);
-  const double paths = pixels * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
+  const double samples = frame.samples,
+               paths = pixels *
+                       (open ? std::min(samples, openLightPaths(frame.targetError)) : samples);
   return uint32_t(std::min(paths, 4e9));
 }
 

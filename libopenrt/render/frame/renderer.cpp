@@ -64,7 +64,8 @@ void Frame::wait() {
   for (auto& thread : threads_) thread.join();
   threads_.clear();
   if (cancelled_) work_.cancel();
-  work_.counters().faults.report(scene_->host.logCallback, scene_->host.logUser);
+  const RayCounters counters = work_.counters();
+  counters.faults.report(scene_->host.logCallback, scene_->host.logUser, counters.camera);
 }
 
 void Frame::work(uint32_t largest) {

@@ -166,7 +166,7 @@ namespace {
 
 // Blocks the rays to shapes that may be hidden, or share their place with another surface, unless
 // the sampled shape is the one that the kernel reports. origin: where the rays start, or where they
-// have left the last boundary without effect.
+// have left the last surface that they have passed.
 void blockUncertain(const StageContext& context, const LightSamples& samples,
                     const float* const origin[3], uint8_t* blocked) {
   const EmissiveShapes& shapes = *context.scene.emitters.shapes();
@@ -222,17 +222,17 @@ template <class Add> void shadeSampledPoints(const StageContext& context,
   }
 }
 
-// Holds what shadow rays to emitters find in scenes with media that scatter.
-struct SeenThroughMedia {
+// Holds what shadow rays to emitters find in scenes where they pass something. Null: elsewhere.
+struct SeenThrough {
   float* transmittance[3] = {};
-  float* origin[3] = {}; // where each ray has left the last boundary without effect
+  float* origin[3] = {}; // where each ray has left the last surface that it has passed
 };
 
-SeenThroughMedia traceThroughMedia(const RtsBatch& batch, const LightSamples& samples,
+SeenThrough traceThrough(const RtsBatch& batch, const LightSamples& samples,
                                    const Boundaries& boundaries, uint8_t* blocked) {
   Arena& arena = *batch.arena;
   const uint32_t n = samples.rays.count;
-  SeenThroughMedia seen;
+  SeenThrough seen;
   for (int k = 0; k < 3; k++) {
     seen.transmittance[k] = arena.take<float>(n);
     std::fill_n(seen.transmittance[k], n, 1.0f);
@@ -240,15 +240,16 @@ SeenThroughMedia traceThroughMedia(const RtsBatch& batch, const LightSamples& sa
     std::copy_n(samples.rays.org[k], n, seen.origin[k]);
   }
   ArenaScope scope(arena);
-  ShadowRays shadows = allocateShadowRays(*batch.scene, n, arena);
-  shadows.toEmitters = true;
+  ShadowRays shadows = allocateShadowRays(*batch.scene, n, arena, true);
+  shadows.hit = samples.hit;
   shadows.lastOrigin = seen.origin;
   shadows.rays = copyRays(samples.rays, arena.takeNumbers(n), n, arena);
   for (uint32_t r = 0; r < n; r++) {
     const uint32_t i = samples.hit[r];
     shadows.lane[r] = r;
-    shadows.media[r] = mediaTowards(*batch.points, i, load(samples.rays.dir, r), boundaries,
-                                    batch.states->media[batch.order[i]]);
+    if (shadows.media)
+      shadows.media[r] = mediaTowards(*batch.points, i, load(samples.rays.dir, r), boundaries,
+                                      batch.states->media[batch.order[i]]);
   }
   traceTransmittance(batch, shadows, seen.transmittance);
   for (uint32_t r = 0; r < n; r++) blocked[r] = !(largest(load(seen.transmittance, r)) > 0);
@@ -267,7 +268,7 @@ struct TracedSamples {
   const RtsBatch& batch;
   const Boundaries& boundaries;
   const LightSamples& samples;
-  const SeenThroughMedia& seen;
+  const SeenThrough& seen;
   const uint8_t* blocked;
 };
 
@@ -284,11 +285,13 @@ void addSeen(const TracedSamples& traced, const float* const response[3],
   Arena& arena = context.arena;
   ArenaScope scope(arena);
   const bool absorbs = !scene.shaders->media().empty();
+  const float* const through[3] = {traced.seen.transmittance[0], traced.seen.transmittance[1],
+                                   traced.seen.transmittance[2]};
   const auto add = [&](uint32_t ray, const Vec3f& light) {
     const uint32_t i = samples.hit[ray];
     Vec3f left = light;
-    if (traced.seen.transmittance[0]) {
-      left *= load(traced.seen.transmittance, ray);
+    if (through[0]) {
+      left *= load(through, ray);
     } else if (absorbs) { // absorption of the medium between hit and emitter
       const MediaStack& media =
           mediaTowards(*batch.points, i, load(rays.dir, ray), traced.boundaries,
@@ -302,7 +305,7 @@ void addSeen(const TracedSamples& traced, const float* const response[3],
   auto *others = arena.take<uint32_t>(padded(n)), *toSky = arena.take<uint32_t>(n),
        *toShade = arena.take<uint32_t>(n);
   const uint32_t left =
-      absorbs || shapes.empty()
+      absorbs || through[0] || shapes.empty()
           ? listUnblocked(n, traced.blocked, others)
           : addOneRadiance(shapes.arrays(), samples, response, traced.blocked, radiance, others);
   uint32_t skies = 0, shaded = 0;
@@ -338,9 +341,9 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
   const uint32_t n = rays.count;
   if (n == 0) return;
   auto* blocked = arena.take<uint8_t>(padded(n));
-  SeenThroughMedia seen;
-  if (!scene.mediumLights.empty()) {
-    seen = traceThroughMedia(batch, samples, boundaries, blocked);
+  SeenThrough seen;
+  if (scene.samplesPass) {
+    seen = traceThrough(batch, samples, boundaries, blocked);
   } else {
     context.counters.shadow += n;
     findBlocked(scene, rays, blocked);

@@ -3,9 +3,14 @@
 // other.
 #include "render/lights/shadows.h"
 
+#include <algorithm>
 #include <limits>
 
+#include "render/film/ledger.h"
+#include "render/surface/lobes.h"
+#include "render/surface/surface_shader.h"
 #include "render/surface/surfaces.h"
+#include "scene/transports.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -104,6 +109,39 @@ void intersectTransparent(const RenderScene& scene, const ShadowRays& s, RayHits
     scene.kernel->intersect(s.rays, maskTransparent, Coherence::incoherent, found);
 }
 
+// Computes the transmittance of the hits of shadow rays. A class may have a straight approximation
+// of glass (`transmit`) although its lobes bend light, so light samples ask for its lobes.
+void transmitAt(const RtsBatch& batch, const ShadowRays& s, const RtsClass& shaderClass,
+                const Points& points, float* const through[3]) {
+  const RenderScene& scene = *batch.scene;
+  const uint32_t n = points.hits.count;
+  RtsBatch inner = batch;
+  inner.tracer = nullptr;
+  inner.points = &points;
+  if (s.toEmitters) {
+    if (shaderClass.medium) return;
+    const bool specular = std::any_of(points.record, points.record + n, [&](uint32_t record) {
+      return ((*scene.shaders)[scene.records[record].shader].traits & RTS_SPECULAR) != 0;
+    });
+    if (shaderClass.surface && specular) {
+      inner = makeBatch(contextOf(batch));
+      inner.tracer = nullptr;
+      inner.points = &points;
+      runSurfaceShader(inner, shaderClass);
+      for (uint32_t l = 0; l < inner.lobeCount; l++)
+        for (uint32_t i = 0; i < n && inner.lobes[l].kind == RTS_LOBE_TRANSPARENT; i++)
+          if (Vec3f weight; weightAt(inner.lobes[l], i, weight))
+            store(load(through, i) + weight, through, i);
+      return;
+    }
+  } else if (scene.lightSources && shaderClass.surface && shaderClass.medium) {
+    return; // light tracing follows the refracted light
+  }
+  if (!shaderClass.transmit) return;
+  const RunningShader running(shaderClass);
+  shaderClass.transmit(&scene.host, &inner, &points.hits, through);
+}
+
 // Advances every ray by one transparent surface; rays that hit none are done.
 void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done,
                              float* const color[3]) {
@@ -133,16 +171,7 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
     const RtsClass& shaderClass = *scene.buckets[range.bucket].shaderClass;
     const Boundaries boundaries =
         s.media ? crossWithMedia(batch, s, points, shaderClass, color) : Boundaries();
-    RtsBatch inner = batch;
-    inner.tracer = nullptr;
-    inner.points = &points;
-    // With light tracing, glass is opaque to shadow rays: light tracing follows the refracted
-    // light.
-    if (shaderClass.transmit && !s.toEmitters &&
-        !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
-      const RunningShader running(shaderClass);
-      shaderClass.transmit(&scene.host, &inner, &points.hits, through);
-    }
+    transmitAt(batch, s, shaderClass, points, through);
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];
       const Vec3f t = boundaries.visibleAt(i)
@@ -164,16 +193,54 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
 
 } // namespace
 
-ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena) {
+ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena,
+                              bool toEmitters) {
   ShadowRays s{};
+  s.toEmitters = toEmitters;
   s.rays.allocate(arena, capacity);
   s.lane = arena.take<uint32_t>(capacity);
-  if (scene.absorbingShadows) {
+  if (scene.absorbingShadows || (toEmitters && !scene.shaders->media().empty())) {
     s.media = arena.take<MediaStack>(capacity);
     std::fill_n(s.media, capacity, MediaStack{});
   }
   return s;
 }
+
+bool passesStraight(const ShaderSlot& shader) {
+  return (shader.traits & RTS_TRANSPARENT) && !shader.shaderClass->medium;
+}
+
+bool samplesPass(const RenderScene& scene) {
+  if (!scene.mediumLights.empty()) return true;
+  if (!tracesPaths(scene.frame.transport) || !scene.transparentShadows) return false;
+  return std::any_of(scene.records.begin(), scene.records.end(), [&](const Record& record) {
+    return passesStraight((*scene.shaders)[record.shader]);
+  });
+}
+
+bool passesBoundary(const RenderScene& scene, const ShaderSlot& shader) {
+  return (shader.traits & RTS_TRANSPARENT) && scene.samplesPass;
+}
+
+namespace {
+
+// Makes rays dark that have passed as many surfaces as are allowed, and counts what is cut: the
+// part of the light that had come so far, times the throughput of the path.
+void cutRest(const RtsBatch& batch, const ShadowRays& s, const float* const before[3],
+             float* const color[3]) {
+  for (uint32_t i = 0; i < s.rays.count; i++) {
+    const uint32_t lane = s.lane[i], hit = s.hit ? s.hit[lane] : lane;
+    const Vec3f carried =
+        batch.order ? load(batch.states->throughput, batch.order[hit]) : Vec3f{1, 1, 1};
+    for (int k = 0; k < 3 && batch.ledger; k++)
+      if (before[k][lane] > 0)
+        batch.ledger->cutByDepth +=
+            double(carried[k]) * double(color[k][lane]) / double(before[k][lane]);
+    scaleColor(color, lane, {});
+  }
+}
+
+} // namespace
 
 void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
   if (s.rays.count == 0) return;
@@ -189,17 +256,20 @@ void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color
     if (blocked[i]) scaleColor(color, s.lane[i], {});
   if (!scene.transparentShadows && !s.media) return;
   compact(s, blocked);
+  if (s.rays.count == 0) return;
   RayHits found;
   found.allocate(*batch.arena, s.rays.count);
-  // With media even a ray that meets no surface needs a pass.
-  const uint32_t passes = scene.frame.depth + (s.media ? 1 : 0);
-  for (uint32_t pass = 0; s.rays.count && pass < passes; pass++) {
+  float* before[3]; // by lane
+  for (int k = 0; k < 3; k++) {
+    before[k] = batch.arena->take<float>(s.lane[s.rays.count - 1] + 1);
+    for (uint32_t i = 0; i < s.rays.count; i++) before[k][s.lane[i]] = color[k][s.lane[i]];
+  }
+  // The last pass finds that a ray meets no further surface.
+  for (uint32_t pass = 0; s.rays.count && pass <= mostPassages; pass++) {
     crossTransparentSurface(batch, s, found, blocked, color);
     compact(s, blocked);
   }
-  for (uint32_t i = 0; i < s.rays.count; i++)
-    // rays that cross too many transparent surfaces are dark, as documented
-    scaleColor(color, s.lane[i], {});
+  cutRest(batch, s, before, color);
 }
 
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {

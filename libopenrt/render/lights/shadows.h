@@ -17,17 +17,29 @@ void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light)
 struct ShadowRays {
   Rays rays;
   uint32_t* lane;
+  const uint32_t* hit = nullptr; // by lane: the hit of the batch; null: the lane itself
   // The media at the rays' origins, in scenes with media that scatter. Null: no medium attenuates
   // the rays.
   MediaStack* media = nullptr;
-  // The rays pass only boundaries that have no effect on light. These are the ones where rays of
-  // paths keep the pdf of their directions, so that the MIS weights of both agree.
+  // The rays belong to light samples. They pass what rays of paths pass with the pdf of their
+  // directions, so that the MIS weights of both agree: passesStraight(), and boundaries without
+  // effect. No glass is crossed, because rays of paths are bent there.
   bool toEmitters = false;
   float* const* lastOrigin = nullptr; // gets the origins of the rays' last parts, by `lane`
 };
+// Returns whether light samples pass what the surfaces of a shader transmit straight on. Those of
+// media let them pass where the boundary has no effect (passesBoundary()).
+bool passesStraight(const ShaderSlot& shader);
+// Returns RenderScene::samplesPass of a scene whose other members are set. [commit]
+bool samplesPass(const RenderScene& scene);
+// Returns whether light samples pass a surface of the shader where it bounds a medium without any
+// effect.
+bool passesBoundary(const RenderScene& scene, const ShaderSlot& shader);
 // Allocates shadow rays. Their number is still to be set.
-ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena);
-// Multiplies colours by the transmittance along the rays. Overwrites the rays.
+ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena,
+                              bool toEmitters = false);
+// Multiplies colours by the transmittance along the rays. Overwrites the rays. A ray that passes
+// more than mostPassages surfaces is dark; what is cut from it is counted in the ledger.
 void traceTransmittance(const RtsBatch& batch, ShadowRays& rays, float* const color[3]);
 
 } // namespace openrt

@@ -1,5 +1,6 @@
 // unsampled_lights.h: counts the emitted light that only BSDF sampling can find: paths that come
-// from a non-specular surface via mirrors or smooth boundaries (UnsampledLight, ledger.h). [render]
+// from a non-specular surface via mirrors, smooth boundaries or whatever light samples do not pass
+// straight (UnsampledLight, ledger.h). [render]
 #pragma once
 
 #include "render/film/ledger.h"
@@ -23,7 +24,8 @@ class UnsampledLights {
   // RayState. A sky without sun has no brighter part that rays could be guided to. Without its sun
   // a sky has none that rays could miss.
   void send(PathFlags path, const Vec3f& throughput, float unguidedWeight = 1) {
-    if (!path.specularSinceDiffuse()) return;
+    if (!path.unsampled()) return;
+    if (!path.specularSinceDiffuse()) unguidedWeight = 1; // guided rays find light of mirrors only
     const bool reachesLights = !canOnlyReachSky(scene_, path);
     if (reachesLights || !hasSun_)
       ledger_.unsampledSky.send(throughput, brightestSky_, hasSun_ ? double(unguidedWeight) : 1);
@@ -31,13 +33,15 @@ class UnsampledLights {
   }
   // Counts the emission of a shape that such a ray has hit.
   void meet(PathFlags path, const Vec3f& radiance, float unguidedWeight) {
-    if (path.specularSinceDiffuse() && !canOnlyReachSky(scene_, path))
-      ledger_.unsampled.meet(radiance, brightestShape_, double(unguidedWeight));
+    if (!path.unsampled() || canOnlyReachSky(scene_, path)) return;
+    if (!path.specularSinceDiffuse()) unguidedWeight = 1;
+    ledger_.unsampled.meet(radiance, brightestShape_, double(unguidedWeight));
   }
   // Counts the radiance of the sky that such a ray has reached.
   void meetSky(PathFlags path, const Vec3f& radiance, float unguidedWeight) {
-    if (path.specularSinceDiffuse() && (!hasSun_ || !canOnlyReachSky(scene_, path)))
-      ledger_.unsampledSky.meet(radiance, brightestSky_, hasSun_ ? double(unguidedWeight) : 1);
+    if (!path.unsampled() || (hasSun_ && canOnlyReachSky(scene_, path))) return;
+    if (!path.specularSinceDiffuse()) unguidedWeight = 1;
+    ledger_.unsampledSky.meet(radiance, brightestSky_, hasSun_ ? double(unguidedWeight) : 1);
   }
 
  private:

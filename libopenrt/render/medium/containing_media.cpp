@@ -71,4 +71,11 @@ void findContainingMedia(const StageContext& context, const Rays& rays, MediaSta
   }
 }
 
+MediaStack mediaAroundEye(const RenderScene& scene) {
+  if (scene.shaders->media().empty()) return {};
+  Arena arena;
+  RayCounters counters;
+  return probe({scene, arena, counters}, scene.eye).stack();
+}
+
 } // namespace openrt

@@ -53,9 +53,10 @@ std::vector<MediumLights> findMediumLights(const RenderScene& scene) {
   for (const Record& record : scene.records) {
     const ShaderSlot& shader = (*scene.shaders)[record.shader];
     const uint16_t medium = shader.medium;
-    if (!medium || known[medium - 1]) continue;
-    known[medium - 1] = true;
+    if (!medium) continue;
     any |= fillsSpace(scene, shader);
+    if (known[medium - 1]) continue;
+    known[medium - 1] = true;
     if (!scatters(media[medium - 1])) continue;
     MediumLights& found = lights[medium - 1];
     found.set = scene.buckets[record.bucket].lightSet;

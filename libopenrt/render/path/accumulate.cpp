@@ -76,6 +76,7 @@ HWY_AFTER_NAMESPACE();
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/shadows.h"
 #include "render/path/guides.h"
 
 namespace openrt {
@@ -128,7 +129,8 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
     if (through <= 1e-6f)
       paths.ledger.cutByEnergy += double(through);
     else
-      spawnStraightRay(paths, i, transmission, ray.media, false);
+      spawnStraightRay(paths, i, transmission, ray.media,
+                       {.guided = false, .sampled = passesStraight(shaderAt(batch, i))});
   }
 }
 

@@ -91,6 +91,7 @@ void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* co
     rays.lane[n++] = i;
   }
   rays.rays.count = n;
+  rays.hit = to.hit;
   traceTransmittance(batch, rays, colour);
 }
 

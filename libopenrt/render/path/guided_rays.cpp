@@ -154,7 +154,7 @@ void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
     state.unguidedWeight = largest(response[r].unguided) / largest(response[r].light);
     state.branch = hash(state.branch + guidedBranch, paths.level + 1);
     state.media = mediaTowards(*batch.points, i, direction, boundaries, state.media);
-    state.flags.set(PathFlags::specularSinceDiffuseBit, false);
+    state.flags.set(PathFlags::specularSinceDiffuseBit | PathFlags::passedUnsampledBit, false);
     state.flags.set(PathFlags::scatteredBit, true);
     state.flags.set(PathFlags::deflectedBit, true);
     if (trial_) trial_->send(batch.scene->photonGuide->find(rays.position[r]));
@@ -165,6 +165,8 @@ void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
 void GuidedRays::follow(const PathSamples& samples, uint32_t level, PixelSamples& found) {
   std::swap(queue_, next_);
   next_.clear();
+  double ended = 0; // light that the rays of BSDF sampling would find, which count it
+  queue_.cut(level, context_.scene.frame.depth, ended);
   context_.counters.secondary += queue_.size();
   const Stage stage{samples, level, found};
   for (size_t begin = 0; begin < queue_.size(); begin += raysInFlight) {
@@ -203,6 +205,7 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
     }
     RayState passed = states[points.order[i]];
     passed.media = boundaries.crossing[i].behind;
+    passed.flags.addPassage();
     queueRay(points, i, load(points.hits.direction, i), passed, next_);
   }
 }
@@ -266,7 +269,10 @@ void GuidedRays::spawnRay(const RtsBatch& batch, uint32_t i, float choice,
   state.throughput *= sample.weight / choices.probability(chosen);
   if (!std::isfinite(largest(state.throughput))) return;
   state.flags.setChannel(sample.channel);
-  if (sample.deflected) state.flags.set(PathFlags::specularSinceDiffuseBit, true);
+  if (sample.deflected)
+    state.flags.set(PathFlags::specularSinceDiffuseBit, true);
+  else
+    state.flags.addPassage();
   state.travelled = points.hits.distance[i];
   state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
   if (trial_) trial_->send(context_.scene.photonGuide->find(state.previous.position));

@@ -35,11 +35,10 @@ class GuidedRays {
   // Queues a ray for each hit near photons that has a non-specular lobe.
   void start(const CameraPaths& paths, const LobeSampling& sampling, const Boundaries& boundaries);
   bool empty() const { return next_.empty(); }
-  // Follows all rays of the queue to their next surface and adds the light that they find there.
+  // Follows all rays of the queue, as far as the depth limit lets them, to their next surface and
+  // adds the light that they find there.
   // level: number of surfaces that the paths have hit before.
   void follow(const PathSamples& samples, uint32_t level, PixelSamples& found);
-  // Ends the rays of the queue.
-  void clear() { next_.clear(); }
   // Exchanges the rays with those of another one.
   void swap(GuidedRays& other) {
     std::swap(queue_, other.queue_);

@@ -68,17 +68,18 @@ void Guides::begin(const Rays& camera) {
     direction_[k] = camera.dir[k];
   }
   paths_ = camera.count;
+  surface_ = 0;
   next_.clear();
   if (follows_ && images_.size() < paths_) images_.resize(paths_);
 }
 
 void Guides::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
   intersectWave(context, WaveSource::camera, wave);
-  visit(context, wave, false, found);
+  visit(context, wave, found);
 }
 
 void Guides::finish(PixelSamples& found) {
-  for (uint32_t surface = 1; !next_.empty(); surface++) {
+  for (surface_ = 1; !next_.empty(); surface_++) {
     std::swap(queue_, next_);
     next_.clear();
     const uint32_t n = uint32_t(queue_.size()); // at most one for each path
@@ -88,26 +89,32 @@ void Guides::finish(PixelSamples& found) {
     wave.rays.allocate(arena_, n);
     loadWave(queue_, 0, n, wave);
     intersectWave(context_, WaveSource::surfaces, wave);
-    visit(context_, wave, surface >= mostSurfaces, found);
+    visit(context_, wave, found);
   }
 }
 
-// last: what is hit is described, whatever it is.
-void Guides::visit(const StageContext& context, Wave& wave, bool last, PixelSamples& found) {
+// Returns whether what the path hits is described, whatever it is.
+bool Guides::isLast(PathFlags path) const {
+  return surface_ >= mostSurfaces + std::min(path.passages(), mostPassages);
+}
+
+void Guides::visit(const StageContext& context, Wave& wave, PixelSamples& found) {
   ArenaScope scope(arena_);
   for (const uint32_t lane : wave.missed) // the sky in a mirror has the tint of the mirror
     if (found.albedo[0] && wave.states.flagsOf(lane).deflected())
       openrt::store(load(wave.states.throughput, lane), found.albedo, wave.states.path[lane]);
   forEachBucket(context, wave, [&](const Points& points, const Bucket& bucket) {
-    describeBucket(context, points, bucket, wave.states, last, found);
+    describeBucket(context, points, bucket, wave.states, found);
   });
 }
 
 void Guides::describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
-                            const PathStates& states, bool last, PixelSamples& found) {
+                            const PathStates& states, PixelSamples& found) {
   const RtsClass& shaderClass = *bucket.shaderClass;
   const uint32_t n = points.hits.count;
-  const bool asks = has(RT_ALBEDO) || (follows_ && !last);
+  const auto isLastAt = [&](uint32_t i) { return isLast(states.flagsOf(points.order[i])); };
+  bool asks = has(RT_ALBEDO);
+  for (uint32_t i = 0; i < n && follows_ && !asks; i++) asks = !isLastAt(i);
   RtsBatch batch = makeBatch(context, points, states);
   batch.lightSet = bucket.lightSet;
   batch.describes = true;
@@ -120,9 +127,10 @@ void Guides::describeBucket(const StageContext& context, const Points& points, c
     }
     const Boundaries boundaries = crossBoundaries(batch, shaderClass);
     for (uint32_t i = 0; i < n; i++) {
+      const bool last = isLastAt(i);
       if (!last && !boundaries.visibleAt(i))
-        queue(batch, i, {load(points.hits.direction, i)}, boundaries.crossing[i].behind,
-              Step::pass);
+        queue(batch, i, {.direction = load(points.hits.direction, i), .straight = true},
+              boundaries.crossing[i].behind, Step::pass);
       else if (last || !takeSurface(batch, boundaries, i))
         store(batch, i, albedo, found);
     }
@@ -140,7 +148,7 @@ void Guides::describeBucket(const StageContext& context, const Points& points, c
     sanitizeOutput(shaderClass, batch, shaded);
   }
   for (uint32_t i = 0; i < n; i++)
-    if (last || !follows_ || !takeShading(batch, i, load(shaded.transmission, i)))
+    if (isLastAt(i) || !follows_ || !takeShading(batch, i, load(shaded.transmission, i)))
       store(batch, i, shaded.albedo, found);
 }
 
@@ -184,6 +192,7 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
   if (!(images > 0 && images >= least * (images + others))) return false;
   lead.tint = sum[lead.reflected];
   lead.direction = heaviest[lead.reflected]->direction;
+  lead.straight = !heaviest[lead.reflected]->deflected;
   return isFinite(lead.direction) && isFinite(lead.tint);
 }
 
@@ -200,7 +209,8 @@ bool Guides::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmi
   constexpr Vec3f one{1, 1, 1};
   const Vec3f tint = min(max(Vec3f(), transmission), one); // NaN: opaque
   if (!follows_ || !(mean(tint) >= leastTransmission)) return false;
-  queue(batch, i, {load(batch.points->hits.direction, i), tint},
+  queue(batch, i,
+        {.direction = load(batch.points->hits.direction, i), .tint = tint, .straight = true},
         (*batch.states).media[batch.order[i]], Step::image);
   return true;
 }
@@ -214,6 +224,8 @@ void Guides::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const Me
               .path = from.path,
               .media = media,
               .flags = from.flags};
+  if (surface_ == 0) to.flags.setPassages(0);
+  if (lead.straight) to.flags.addPassage();
   if (step == Step::image) {
     Image& image = images_[from.path];
     if (!from.flags.deflected()) image = Image();

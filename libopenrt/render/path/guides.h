@@ -40,6 +40,7 @@ class Guides {
   // Follows the paths that were taken over, and records what they see.
   void finish(PixelSamples& found);
 
+  // What is passed straight does not count.
   static constexpr uint32_t mostSurfaces = 8;
   // Least share of images in what the lobes of a hit carry. Where less is reflected, as by
   // varnished wood at a low angle, the grain of the surface matters more than the image in it.
@@ -56,13 +57,14 @@ class Guides {
   };
   struct Lead { // where an image is seen from a hit
     Vec3f direction, tint{1, 1, 1};
-    bool reflected = false;
+    bool reflected = false, straight = false;
   };
   // What a guide ray does at a hit: it passes a boundary that has no effect, or follows an image.
   enum class Step : uint8_t { pass, image };
-  void visit(const StageContext& context, Wave& wave, bool last, PixelSamples& found);
+  void visit(const StageContext& context, Wave& wave, PixelSamples& found);
   void describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
-                      const PathStates& states, bool last, PixelSamples& found);
+                      const PathStates& states, PixelSamples& found);
+  bool isLast(PathFlags path) const;
   bool findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i, Lead& lead) const;
   void queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
              Step step);
@@ -80,6 +82,7 @@ class Guides {
   const float* origin_[3] = {};    // of the camera rays, by path
   const float* direction_[3] = {}; // unit
   uint32_t paths_ = 0;
+  uint32_t surface_ = 0; // number of surfaces that the rays of the wave have met before
   // By path. Those that follow an image, and only those, are valid; the rays of such paths count as
   // deflected (PathFlags).
   std::vector<Image> images_;

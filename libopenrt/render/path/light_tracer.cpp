@@ -57,8 +57,11 @@ void LightTracer::tracePaths(uint32_t first, uint32_t n) {
   departures_.start(samples_, n, queue_);
   Wave wave;
   wave.rays.allocate(arena_, n);
-  // The surface that the camera sees, or the sensor, counts as one more level.
-  while (!queue_.empty() && level_ < scene_.frame.depth) {
+  double ended = 0; // flux, of which nobody knows where it would have gone
+  while (true) {
+    // The surface that the camera sees, or the sensor, counts as one more level.
+    queue_.cut(level_ + 1, scene_.frame.depth, ended);
+    if (queue_.empty()) break;
     next_.clear();
     counters_.secondary += queue_.size();
     loadWave(queue_, 0, uint32_t(queue_.size()), wave);
@@ -113,6 +116,7 @@ void LightTracer::transmitRays(const Points& points, const PathStates& states,
   for (uint32_t i = 0; i < n; i++) {
     RayState state = states[points.order[i]];
     state.throughput *= min(max(Vec3f(), load(through, i)), {1, 1, 1}); // NaN: opaque
+    state.flags.addPassage();
     if (largest(state.throughput) > 0) push(points, i, state, load(points.hits.direction, i));
   }
 }
@@ -151,6 +155,7 @@ void LightTracer::scatter(const Points& points, const PathStates& states,
     }
     RayState passed = states[points.order[i]];
     passed.media = boundaries.crossing[i].behind;
+    passed.flags.addPassage();
     push(points, i, passed, load(points.hits.direction, i));
   }
 }
@@ -198,6 +203,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling
   state.throughput *= Vec3f(Vec3d(sample.weight * correction) / kept);
   state.flags.setChannel(sample.channel);
   state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
+  if (!sample.deflected) state.flags.addPassage();
   if (first && sample.deflected) {
     if (!departures_.applyEmission(points, i, state)) return;
     state.flags.setClass(PathClass::specularFirst);

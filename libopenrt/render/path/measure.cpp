@@ -73,11 +73,15 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
     addLamps(batch, sent);
   else
     gatherLight(batch, {}, sent);
+  // Under a sky of one radiance and nothing else every path finds the same light.
+  const SkySampler* sky = scene_.emitters.sky();
+  const bool even = scene_.records.empty() && sky && !sky->black() && !sky->usable();
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t path = wave.states.path[i];
     store(load(found.radiance, path) + load(sent.radiance, i), found.radiance, path);
     found.alpha[path] = 1;
     found.first[path] = 0;
+    if (even) samples_.random[path] = 0;
   }
 }
 

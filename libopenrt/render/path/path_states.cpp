@@ -30,6 +30,25 @@ void RayQueue::reserve(size_t count) {
   capacity_ = capacity;
 }
 
+void RayQueue::cut(uint32_t level, uint32_t most, double& lost) {
+  if (level <= most) return;
+  size_t kept = 0;
+  for (size_t i = 0; i < size_; i++) {
+    const RayState state = states_[i];
+    if (!isWithinDepth(state.flags, level, most)) {
+      for (size_t k = 0; k < 3; k++) lost += double(state.throughput[k]);
+      continue;
+    }
+    if (kept < i) {
+      store(load(origin_, i), origin_, kept);
+      store(load(direction_, i), direction_, kept);
+      states_.set(kept, state);
+    }
+    kept++;
+  }
+  size_ = kept;
+}
+
 PathStates RayQueue::statesFrom(size_t begin) const {
   PathStates from = states_;
   from.forEachArray([&](auto*& array) { array += begin; });

@@ -2,6 +2,7 @@
 // of rays for the next wave. A path may spawn several rays. [render]
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -13,6 +14,11 @@
 #include "render/surface/media.h"
 
 namespace openrt {
+
+// Passing straight on is not a bounce: clear sheets, holes of textures and boundaries without
+// effect do not count for RT_MAX_DEPTH. A path or a shadow ray passes at most so many of them more;
+// the rest is cut and counted (Ledger::cutByDepth; docs/decisions/0077).
+constexpr uint32_t mostPassages = 512;
 
 // Class of a path so far. Light tracing takes over the `caustic` camera paths that end on a light
 // source; path tracing must leave those out.
@@ -38,27 +44,45 @@ struct PathFlags {
   static constexpr uint32_t deflectedBit = 16;
   // A coat has reflected the path (RT_REFLECTION).
   static constexpr uint32_t reflectedBit = 32;
-  static constexpr uint32_t channelShift = 8, splitsShift = 16, mostSplits = 255;
+  // Since its last non-specular vertex the path has passed straight through something that light
+  // samples do not pass.
+  static constexpr uint32_t passedUnsampledBit = 64;
+  static constexpr uint32_t channelShift = 8, channelBits = 3, splitsShift = 10, mostSplits = 63;
+  static constexpr uint32_t passagesShift = 16;
 
   PathClass pathClass() const { return PathClass(bits & classBits); }
   bool scattered() const { return bits & scatteredBit; }
   bool specularSinceDiffuse() const { return bits & specularSinceDiffuseBit; }
   bool deflected() const { return bits & deflectedBit; }
   bool reflected() const { return bits & reflectedBit; }
+  // Returns whether light sampling at the last non-specular vertex cannot find what the ray hits.
+  bool unsampled() const { return bits & (specularSinceDiffuseBit | passedUnsampledBit); }
   // 1 + index of the only colour that the ray carries (dispersion); 0: all colours
-  uint8_t channel() const { return uint8_t(bits >> channelShift & 255); }
+  uint8_t channel() const { return uint8_t(bits >> channelShift & channelBits); }
   // number of times the path has split into several rays
-  uint32_t splits() const { return bits >> splitsShift; }
+  uint32_t splits() const { return bits >> splitsShift & mostSplits; }
+  // number of surfaces that the path has passed straight through
+  uint32_t passages() const { return bits >> passagesShift; }
 
   void setClass(PathClass to) { bits = (bits & ~classBits) | uint32_t(to); }
   void set(uint32_t bit, bool on) { bits = on ? bits | bit : bits & ~bit; }
   void setChannel(uint8_t to) {
-    bits = (bits & ~(255u << channelShift)) | uint32_t(to) << channelShift;
+    bits = (bits & ~(channelBits << channelShift)) | uint32_t(to) << channelShift;
   }
   void addSplit() {
     if (splits() < mostSplits) bits += 1u << splitsShift;
   }
+  void setPassages(uint32_t to) {
+    bits = (bits & ((1u << passagesShift) - 1)) | to << passagesShift;
+  }
+  void addPassage() { bits += 1u << passagesShift; }
 };
+
+// Returns whether a path may meet surface number `level`, where it may be bent or scattered at
+// `most` surfaces.
+inline bool isWithinDepth(PathFlags path, uint32_t level, uint32_t most) {
+  return level <= most + std::min(path.passages(), mostPassages);
+}
 
 // State that one ray carries for its path.
 struct RayState {
@@ -144,6 +168,10 @@ class RayQueue {
   // overwrite. add() says how many of them were written.
   void reserve(size_t count);
   void add(size_t count) { size_ += count; }
+  // Removes the rays whose paths have been bent or scattered at more than `most` surfaces, or have
+  // met more than most + mostPassages, if they have met `level`. Adds their throughputs,
+  // colours summed, to `lost`.
+  void cut(uint32_t level, uint32_t most, double& lost);
   // The arrays; valid until the next reserve() or push().
   float* const* origin() const { return origin_; }
   float* const* direction() const { return direction_; }

@@ -1,5 +1,8 @@
 #include "render/path/spawn_rays.h"
 
+#include <algorithm>
+
+#include "render/lights/shadows.h"
 #include "render/path/guided_rays.h"
 #include "render/path/wave.h"
 #include "render/surface/continue_paths.h"
@@ -42,13 +45,26 @@ void countUnsampled(const CameraPaths& paths, size_t begin) {
     paths.unsampled.send(states.flagsOf(r), load(states.throughput, r), states.unguidedWeight[r]);
 }
 
+// Returns by hit 1 where light samples do not pass what the surface transmits straight on; null if
+// they pass everywhere.
+const uint32_t* findUnsampled(const RtsBatch& batch) {
+  const uint32_t n = batch.points->hits.count;
+  auto* unsampled = batch.arena->take<uint32_t>(padded(n));
+  bool any = false;
+  for (uint32_t i = 0; i < n; i++)
+    any |= (unsampled[i] = !passesStraight(shaderAt(batch, i))) != 0;
+  return any ? unsampled : nullptr;
+}
+
 // Spawns the rays of the BSDF samples: those of one sample of all hits, then those of the next.
 void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
                    const Boundaries& boundaries, const BsdfSampleArrays& samples) {
   const RtsBatch& batch = paths.batch;
   Arena& arena = *batch.arena;
   const uint32_t n = batch.points->hits.count;
-  const bool path = tracesPaths(batch.scene->frame.transport);
+  const bool path = tracesPaths(batch.scene->frame.transport),
+             straight = std::any_of(samples.begin(), samples.end(),
+                                    [](const SampleArrays& sample) { return !sample.deflected; });
   const Continuation from{.points = batch.points,
                           .states = batch.states,
                           .level = paths.level,
@@ -57,6 +73,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
                           .energyCut = batch.scene->frame.energyCut,
                           .crossing = boundaries.crossing,
                           .twoSided = path ? transmitsByHit(batch) : nullptr,
+                          .unsampled = straight && path ? findUnsampled(batch) : nullptr,
                           .count = arena.take<uint32_t>(padded(n)),
                           .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);
@@ -68,32 +85,35 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   for (const SampleArrays& sample : samples) {
     const size_t begin = paths.next.size();
     continuePaths(from, sample, hitOf, paths.next);
-    if (sample.deflected && !sample.pdf) countUnsampled(paths, begin);
+    if (!sample.pdf && (sample.deflected || from.unsampled)) countUnsampled(paths, begin);
   }
 }
 
-// Spawns a ray through a boundary that has no effect. Where light samples pass it, too, the ray
-// keeps the pdf of its direction (ShadowRays::toEmitters).
+// Spawns a ray through a boundary that has no effect.
 void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
-  const RtsBatch& batch = paths.batch;
-  const RenderScene& scene = *batch.scene;
-  const size_t at = paths.next.size();
-  spawnStraightRay(paths, i, {1, 1, 1}, behind, true);
-  if (scene.mediumLights.empty()) return;
-  const uint32_t traits = (*scene.shaders)[scene.records[batch.points->record[i]].shader].traits;
-  if (traits & RTS_TRANSPARENT) paths.next.states().pdf[at] = batch.states->pdf[batch.order[i]];
+  const bool sampled = passesBoundary(*paths.batch.scene, shaderAt(paths.batch, i));
+  spawnStraightRay(paths, i, {1, 1, 1}, behind, {.guided = true, .sampled = sampled});
 }
 
 } // namespace
 
+const ShaderSlot& shaderAt(const RtsBatch& batch, uint32_t i) {
+  return (*batch.scene->shaders)[batch.scene->records[batch.points->record[i]].shader];
+}
+
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
-                      const MediaStack& media, bool guided) {
+                      const MediaStack& media, const Passage& passage) {
   const Points& points = *paths.batch.points;
   RayState ray = (*paths.batch.states)[paths.batch.order[i]];
   ray.throughput *= weight;
   ray.travelled = points.hits.distance[i];
-  ray.pdf = 0;
-  if (!guided) ray.unguidedWeight = 1;
+  ray.flags.addPassage();
+  if (!passage.sampled && ray.pdf > 0) {
+    ray.pdf = 0;
+    ray.flags.set(PathFlags::passedUnsampledBit, true);
+    paths.unsampled.send(ray.flags, ray.throughput);
+  }
+  if (!passage.guided) ray.unguidedWeight = 1;
   ray.media = media;
   queueRay(points, i, load(points.hits.direction, i), ray, paths.next);
 }

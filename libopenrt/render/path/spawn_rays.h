@@ -32,9 +32,15 @@ struct CameraPaths {
 void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries);
 
+// How rays of other kinds pass where a ray goes straight on.
+struct Passage {
+  bool guided;  // rays that photons guide do
+  bool sampled; // light samples do, so that the ray keeps the pdf of its direction
+};
 // Spawns a ray that goes straight on from hit i, with its throughput multiplied by `weight`.
-// guided: rays that photons guide go on there as well.
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
-                      const MediaStack& media, bool guided);
+                      const MediaStack& media, const Passage& passage);
+// Returns the shader of the surface at hit i.
+const ShaderSlot& shaderAt(const RtsBatch& batch, uint32_t i);
 
 } // namespace openrt

@@ -148,9 +148,10 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
     measureIlluminance(wave, found);
   else
     traceWave(wave, found);
-  for (level_++; (!next_.empty() || !guided_.empty()) && level_ <= scene_.frame.depth; level_++) {
+  for (level_++; !next_.empty() || !guided_.empty(); level_++) {
     std::swap(queue_, next_);
     next_.clear();
+    queue_.cut(level_, scene_.frame.depth, ledger_.cutByDepth);
     counters_.secondary += queue_.size();
     for (size_t begin = 0; begin < queue_.size() && !stopped(); begin += most) {
       loadWave(queue_, begin, uint32_t(std::min<size_t>(most, queue_.size() - begin)), wave);
@@ -158,10 +159,6 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
     }
     guided_.follow(samples_, level_, found);
   }
-  for (size_t i = 0; i < next_.size(); i++)
-    for (int k = 0; k < 3; k++) ledger_.cutByDepth += double(next_.states().throughput[k][i]);
-  next_.clear();
-  guided_.clear();
 }
 
 void TileRenderer::traceWave(Wave& wave, PixelSamples& found) {
@@ -239,12 +236,25 @@ void TileRenderer::gatherLight(RtsBatch& batch, const Boundaries& boundaries,
   continueFromLobes(batch, boundaries, sent);
 }
 
+// Returns whether the depth limit leaves room for one more surface on the path of hit i.
+bool TileRenderer::goesOn(const RtsBatch& batch, uint32_t i) const {
+  return isWithinDepth(batch.states->flagsOf(batch.order[i]), level_ + 1, scene_.frame.depth);
+}
+
+bool TileRenderer::samplesEmitters(const RtsBatch& batch) const {
+  if (!scene_.emitters.any()) return false;
+  if (level_ < scene_.frame.depth) return true;
+  for (uint32_t i = 0; i < batch.points->hits.count; i++)
+    if (goesOn(batch, i)) return true;
+  return false;
+}
+
 // Does the same without the lamps.
 void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundaries,
                                      const SentLight& sent) {
   LobeSampling sampling;
   const bool path = tracesPaths(scene_.frame.transport);
-  const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
+  const bool emitters = path && samplesEmitters(batch);
   if (path) {
     sampling = drawChoices(batch, randomNumbersAt(samples_, *batch.states, batch.order,
                                                   batch.points->hits.count, firstPair(), arena_));
@@ -252,6 +262,10 @@ void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundari
     if (emitters) allocateSelection(batch, sampling);
   }
   spawnRays(pathsOf(batch), sampling, boundaries);
+  if (emitters && level_ >= scene_.frame.depth)
+    for (float* followed : sampling.selectionProbability)
+      for (uint32_t i = 0; followed && i < batch.points->hits.count; i++)
+        if (!goesOn(batch, i)) followed[i] = 0;
   if (emitters) sampleEmitters(batch, sampling, boundaries, sent);
   if (emitters && scene_.lightPathFlux > 0) addLightPathBound(pathsOf(batch), sampling, footprint_);
   if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);

@@ -111,6 +111,8 @@ class TileRenderer {
   SentLight sentLight(const RtsBatch& batch, const RtsSurface& surface);
   void gatherLight(RtsBatch& batch, const Boundaries& boundaries, const SentLight& sent);
   void continueFromLobes(RtsBatch& batch, const Boundaries& boundaries, const SentLight& sent);
+  bool goesOn(const RtsBatch& batch, uint32_t i) const;
+  bool samplesEmitters(const RtsBatch& batch) const;
 
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture
@@ -118,13 +120,13 @@ class TileRenderer {
   const std::atomic<bool>* stop_ = nullptr;
   Arena arena_;
   RayCounters counters_;
-  const StageContext context_{scene_, arena_, counters_, this};
+  Ledger ledger_;
+  const StageContext context_{scene_, arena_, counters_, this, &ledger_};
   const bool showsNoLight_{showsNoLight(scene_.frame)};
   // 1 where there is no light to save, or a plug-in follows it
   const uint32_t lightStride_{
       showsNoLight_ || scene_.transport.shaderClass ? 1 : lightStrideOf(scene_.frame)};
   Guides guides_{scene_, arena_, counters_};
-  Ledger ledger_;
   UnsampledLights unsampled_{scene_, ledger_};
   Tile tile_;
   TileFootprint footprint_{}; // of the tile; if light paths tell what it may lack

@@ -20,15 +20,16 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 uint32_t pointsOf(const RtsBatch& batch) { return batch.points ? batch.hitCount() : batch.rays; }
 
-// Makes the rays of a request whose point belongs to the batch. Writes the index in the request of
-// each ray to `to`.
-Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
+// Makes the rays of a request whose point belongs to the batch and is wanted. Writes the index in
+// the request of each ray to `to`.
+template <class Wanted>
+Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to, const Wanted& wanted) {
   Rays rays;
   rays.allocate(*batch.arena, request.count);
   uint32_t n = 0;
   for (uint32_t i = 0; i < request.count; i++) {
     const uint32_t hit = request.hit[i];
-    if (hit >= pointsOf(batch) || (!request.origin[0] && !batch.points)) continue;
+    if (hit >= pointsOf(batch) || (!request.origin[0] && !batch.points) || !wanted(hit)) continue;
     const Vec3f direction = load(request.direction, i);
     store(request.origin[0] ? load(request.origin, i)
                             : liftPoint(*batch.points, batch.pointOf(hit), direction),
@@ -40,6 +41,10 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
   }
   rays.count = n;
   return rays;
+}
+
+Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
+  return raysOf(batch, request, to, [](uint32_t) { return true; });
 }
 
 } // namespace
@@ -65,13 +70,18 @@ void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* con
 void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* const rgba[4]) {
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
-  if (request.count == 0 || nesting_ == maxNesting || level_ >= scene_.frame.depth) return;
+  const uint32_t depth = scene_.frame.depth;
+  if (request.count == 0 || nesting_ == maxNesting || level_ >= depth + mostPassages) return;
   // The counts are allocated outside of the arena scope, because they live as long as the batch.
   if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch));
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
   Wave wave;
-  wave.rays = raysOf(batch, request, to);
+  wave.rays = raysOf(batch, request, to, [&](uint32_t hit) {
+    return level_ < depth ||
+           (batch.order &&
+            isWithinDepth(batch.states->flagsOf(batch.order[hit]), level_ + 1, depth));
+  });
   const uint32_t n = wave.rays.count;
   if (n == 0) return;
   wave.states.allocate(arena_, n);
@@ -91,6 +101,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
     state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
     state.media = parent.media;
     state.flags.setChannel(parent.flags.channel());
+    state.flags.setPassages(parent.flags.passages());
     if (batch.points) state.travelled = batch.points->hits.distance[batch.pointOf(hit)];
     wave.states.set(i, state);
   }
@@ -154,6 +165,7 @@ void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request,
   ArenaScope scope(arena_);
   ShadowRays rays = allocateShadowRays(scene_, request.count, arena_);
   rays.rays = raysOf(batch, request, rays.lane);
+  rays.hit = request.hit;
   if (rays.media && batch.order)
     for (uint32_t r = 0; r < rays.rays.count; r++)
       rays.media[r] = batch.states->media[batch.order[request.hit[rays.lane[r]]]];

@@ -8,6 +8,7 @@
 
 namespace openrt {
 
+struct Ledger;
 class TileRenderer;
 
 struct RayCounters {
@@ -21,6 +22,7 @@ struct StageContext {
   Arena& arena;
   RayCounters& counters;
   TileRenderer* tracer = nullptr; // as in RtsBatch
+  Ledger* ledger = nullptr;       // as in RtsBatch
 };
 
 } // namespace openrt
@@ -52,6 +54,7 @@ struct RtsBatch {
   // The renderer. Null if shaders are called outside of a frame: nothing is traced then, and random
   // points are (0.5, 0.5).
   openrt::TileRenderer* tracer = nullptr;
+  openrt::Ledger* ledger = nullptr; // gets what is cut from shadow rays; null: nobody counts it
   const openrt::PathStates* states = nullptr; // ray states of the wave, by lane
   const uint32_t* order = nullptr;            // lanes of the hits; null: camera rays, in order
   uint32_t rays = 0;                          // number of camera rays
@@ -81,6 +84,7 @@ inline RtsBatch makeBatch(const StageContext& context) {
   batch.arena = &context.arena;
   batch.counters = &context.counters;
   batch.tracer = context.tracer;
+  batch.ledger = context.ledger;
   return batch;
 }
 
@@ -95,7 +99,7 @@ inline RtsBatch makeBatch(const StageContext& context, const Points& points,
 }
 
 inline StageContext contextOf(const RtsBatch& batch) {
-  return {*batch.scene, *batch.arena, *batch.counters, batch.tracer};
+  return {*batch.scene, *batch.arena, *batch.counters, batch.tracer, batch.ledger};
 }
 
 } // namespace openrt

@@ -32,13 +32,16 @@ LaneVec weightAt(const SampleArrays& sample, uint32_t i) {
 }
 Lanes loadOrOne(const float* from, uint32_t i) { return from ? load(from + i) : lanesOf(1); }
 
+Bits splitsOf(Bits flags) {
+  return hn::And(hn::ShiftRight<PathFlags::splitsShift>(flags), bitsOf(PathFlags::mostSplits));
+}
+
 // Returns where one of several samples is selected, because the path has split often enough.
 Mask selectsOne(const Continuation& paths, Bits samples, Indices lane) {
   const BitsMask several = hn::Gt(samples, bitsOf(1));
   if (hn::AllFalse(BitsTag(), several)) return maskOf(several);
   const Bits flags = gather(paths.states->flags, lane);
-  const Bits splits = hn::ShiftRight<PathFlags::splitsShift>(flags);
-  return maskOf(hn::And(several, hn::Gt(splits, bitsOf(mostSplits - 1))));
+  return maskOf(hn::And(several, hn::Gt(splitsOf(flags), bitsOf(mostSplits - 1))));
 }
 
 // Returns the branches that the rays of the samples belong to. number: samples of the hit before.
@@ -51,12 +54,11 @@ Bits branchesAfter(const Continuation& paths, Bits branch, Bits number) {
 
 // Returns the facts of the paths after a sample has been followed.
 Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
-  const Bits splits = hn::ShiftRight<PathFlags::splitsShift>(flags);
   const BitsMask adds =
-      hn::And(hn::Gt(samples, bitsOf(1)), hn::Ne(splits, bitsOf(PathFlags::mostSplits)));
+      hn::And(hn::Gt(samples, bitsOf(1)), hn::Ne(splitsOf(flags), bitsOf(PathFlags::mostSplits)));
   flags = flags + hn::IfThenElseZero(adds, bitsOf(1u << PathFlags::splitsShift));
   if (sample.colour) flags = hn::Or(flags, bitsOf(sample.colour << PathFlags::channelShift));
-  if (!sample.deflected) return flags;
+  if (!sample.deflected) return flags + bitsOf(1u << PathFlags::passagesShift);
   if (sample.lobe->coat) {
     const BitsMask first = hn::Eq(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
     flags = hn::Or(flags, hn::IfThenElseZero(first, bitsOf(PathFlags::reflectedBit)));
@@ -69,7 +71,8 @@ Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
   const Bits rest =
       hn::AndNot(bitsOf(PathFlags::classBits | PathFlags::specularSinceDiffuseBit), flags);
   if (sample.pdf)
-    return rest | bitsOf(PathFlags::deflectedBit | PathFlags::scatteredBit) |
+    return hn::AndNot(bitsOf(PathFlags::passedUnsampledBit), rest) |
+           bitsOf(PathFlags::deflectedBit | PathFlags::scatteredBit) |
            hn::IfThenElse(is(PathClass::specularFirst), first, bitsOfClass(PathClass::diffuse));
   const BitsMask scattered = hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
   return rest | bitsOf(PathFlags::deflectedBit) |
@@ -169,6 +172,14 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
       pdf = pdf * load(sample.probability + i);
     }
     const Indices lane = indicesFrom(paths.points->order, i, hits.count);
+    Bits flags = flagsAfter(sample, gather(states.flags, lane), load(paths.count + i));
+    if (!sample.deflected) {
+      pdf = gather(states.pdf, lane);
+      const Mask lost = paths.unsampled ? hn::And(loadMask(paths.unsampled + i), pdf > zero)
+                                        : noLanes();
+      pdf = select(lost, zero, pdf);
+      flags = hn::Or(flags, bitsWhere(lost, PathFlags::passedUnsampledBit));
+    }
     const LaneVec weight = weightAt(sample, i);
     const LaneVec carried{weight.x * loadOrOne(sample.valueOf(0), i) / kept,
                           weight.y * loadOrOne(sample.valueOf(1), i) / kept,
@@ -187,7 +198,7 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
     append(pdf, to.pdf);
     append(gather(states.path, lane), to.path);
     append(branchesAfter(paths, gather(states.branch, lane), load(sample.number + i)), to.branch);
-    append(flagsAfter(sample, gather(states.flags, lane), load(paths.count + i)), to.flags);
+    append(flags, to.flags);
     if (specular) {
       append(gather(states.previousPosition, lane), to.previousPosition);
       append(gather(states.previousNormal, lane), to.previousNormal);

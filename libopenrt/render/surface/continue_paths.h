@@ -19,6 +19,9 @@ struct Continuation {
   const Crossing* crossing; // boundaries of media by hit; null: there are none
   // By hit: 1 if light from behind the surface counts for light samples; null: nowhere.
   const uint32_t* twoSided;
+  // By hit: 1 where light samples do not pass what the surface transmits straight on, so that rays
+  // lose the pdf of their directions there; null: nowhere.
+  const uint32_t* unsampled;
   // Written by chooseSamples(), by hit: number of samples; 1 if chance has decided which of them
   // are followed.
   uint32_t *count, *random;

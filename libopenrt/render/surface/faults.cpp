@@ -32,6 +32,10 @@ const char* textOf(Fault fault) {
   case Fault::varyingEmission:
     return "has emission that varies, but its traits have RTS_UNIFORM_EMISSION: light samples take "
            "the same radiance everywhere";
+  case Fault::neverEntered:
+    return "bounds bodies that paths have left but never entered: a mesh of it is open, is inside "
+           "out, or belongs together with one whose shader has other parameters. Such a boundary "
+           "refracts nothing, or wrongly";
   }
   return "";
 }
@@ -160,7 +164,7 @@ uint64_t ShaderFaults::count(Fault fault) const {
   return sum;
 }
 
-void ShaderFaults::report(RTlogCallback callback, void* user) const {
+void ShaderFaults::report(RTlogCallback callback, void* user, uint64_t cameraRays) const {
   if (!callback || entries_.empty()) return;
   std::vector<Entry> sorted = entries_;
   std::sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
@@ -168,6 +172,7 @@ void ShaderFaults::report(RTlogCallback callback, void* user) const {
     return order != 0 ? order < 0 : a.fault < b.fault;
   });
   for (const Entry& e : sorted) {
+    if (e.fault == Fault::neverEntered && e.hits < cameraRays / 1000 + 1) continue;
     const std::string text = "shader " + std::string(labelOf(*e.shaderClass)) + " " +
                              textOf(e.fault) + " (" + std::to_string(e.hits) +
                              (e.hits == 1 ? " point)" : " points)");

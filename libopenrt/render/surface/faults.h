@@ -1,5 +1,6 @@
 // faults.h: detects faulty shader output: numbers that are not finite and, in diagnostic mode,
-// lobes that the class's traits do not declare. Bad numbers are replaced at once; faults are
+// lobes that the class's traits do not declare. Bodies that are not closed are reported in the same
+// way. Bad numbers are replaced at once; faults are
 // counted by class and reported once at the end of a frame. [render]
 #pragma once
 
@@ -18,7 +19,8 @@ enum class Fault : uint8_t {
   undeclaredEmission,
   undeclaredTransparency,
   undeclaredScattering,
-  varyingEmission // the last one
+  varyingEmission,
+  neverEntered // the last one
 };
 
 class ShaderFaults { // Fault counts of one thread, or of a frame.
@@ -32,7 +34,9 @@ class ShaderFaults { // Fault counts of one thread, or of a frame.
   void add(const ShaderFaults& more);
   uint64_t count(Fault fault) const;
   // Logs one line for each class and fault, in an order that does not depend on threads.
-  void report(RTlogCallback callback, void* user) const;
+  // cameraRays: of the frame. Bodies that fewer than one path in a thousand has left without
+  // entering them are closed, but for a few paths that pass an edge within the rounding.
+  void report(RTlogCallback callback, void* user, uint64_t cameraRays) const;
   const std::vector<Entry>& entries() const { return entries_; } // unordered
 
  private:

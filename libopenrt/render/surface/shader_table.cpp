@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "render/render_scene.h"
 #include "shading/parameters.h"
@@ -66,7 +67,8 @@ ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>&
                          const Scene& scene, const std::map<uint32_t, uint32_t>& textureIndex,
                          const RtsHost& host)
     : slots_(before.slots_), blocks_(before.blocks_), classes_(before.classes_),
-      media_(before.media_), slotOf_(before.slotOf_), defaultShader_(before.defaultShader_) {
+      media_(before.media_), users_(before.users_), numbers_(before.numbers_),
+      bodies_(before.bodies_), slotOf_(before.slotOf_), defaultShader_(before.defaultShader_) {
   for (uint32_t id : changed) {
     const auto slot = slotOf_->find(id);
     const auto values = scene.shaders.find(id);
@@ -152,8 +154,10 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
         if (host.log)
           host.log(&host, 3, (std::string("shader ") + shaderClass.name + ": " + message).c_str());
         if (number != 0) {
+          countUse(slots_[number].medium, false);
           slots_[number] = slots_[0];
           blocks_[number] = blocks_[0];
+          countUse(slots_[number].medium, true);
         }
         return false;
       }
@@ -185,8 +189,8 @@ bool scattersSoundly(const RtsMedium& medium) {
 
 } // namespace
 
-// Stores the slot's medium; it keeps its number when its values change. A shader whose values are
-// out of range has no medium.
+// Stores the slot's medium; it keeps its number when its values change, unless it shares it or the
+// values are those of another one. A shader whose values are out of range has no medium.
 void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
   RtsMedium medium{};
   bool good = slot.shaderClass->medium(&host, slot.params, &medium) != 0;
@@ -202,14 +206,33 @@ void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
                    .c_str());
     std::fill_n(medium.scattering, 3, 0.0f);
   }
-  if (!good) {
-    slot.medium = 0;
-  } else if (slot.medium) {
-    media_[slot.medium - 1] = medium;
+  const uint16_t before = std::exchange(slot.medium, uint16_t(0));
+  countUse(before, false);
+  const bool alone = before && users_[before - 1] == 0;
+  if (alone) std::erase_if(numbers_, [&](const auto& entry) { return entry.second == before; });
+  if (!good) return;
+  const std::string key(reinterpret_cast<const char*>(&medium), sizeof medium);
+  if (const auto same = numbers_.find(key); same != numbers_.end() && !scatters(medium)) {
+    slot.medium = same->second;
+  } else if (alone) {
+    slot.medium = before;
   } else if (media_.size() < 0xffff) {
-    media_.push_back(medium);
+    media_.emplace_back();
+    users_.push_back(0);
     slot.medium = uint16_t(media_.size());
+  } else {
+    return;
   }
+  media_[slot.medium - 1] = medium;
+  if (!scatters(medium)) numbers_[key] = slot.medium;
+  countUse(slot.medium, true);
+}
+
+// Counts one slot more or less that has a medium; 0: none.
+void ShaderTable::countUse(uint16_t medium, bool more) {
+  if (!medium) return;
+  users_[medium - 1] += more ? 1 : -1;
+  bodies_ += more ? 1 : -1;
 }
 
 } // namespace openrt

@@ -164,17 +164,21 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     Crossing& c = out.crossing[i] = {stack, 0, 0, true, false};
     if (medium) c = cross(stack, medium, hits.flags[i] & RTS_HIT_BACK, media);
   }
-  if (media.size() > 1) crossSharedFaces(batch, out.crossing);
+  if (scene.shaders->severalBodies()) crossSharedFaces(batch, out.crossing);
   auto* disperses = batch.arena->take<uint32_t>(padded(hits.count));
   bool any = false;
+  uint64_t left = 0; // bodies that were never entered
   for (uint32_t i = 0; i < hits.count; i++) {
     const uint32_t lane = batch.order[i];
     const uint8_t channel = states.flagsOf(lane).channel();
     const Crossing& c = out.crossing[i];
     // Where the media at the start of paths are known, a body that was never entered is one that
     // the full stack has ignored.
-    if (c.unknown && scene.mediumLights.empty())
+    if (c.unknown && scene.mediumLights.empty()) {
       absorbAt(c.from, hits.segment[i], media, states, lane);
+      const MediaStack& around = scene.aroundEye;
+      left += std::find(around.begin(), around.end(), c.from) == around.end();
+    }
     float* eta = out.eta[i];
     for (int k = 0; k < 3; k++) eta[k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
     disperses[i] = channel == 0 && (eta[0] != eta[1] || eta[0] != eta[2]);
@@ -193,6 +197,8 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     }
   }
   if (any) out.disperses = disperses;
+  // Only camera paths tell: paths from lamps may start in a body.
+  if (left && batch.tracer) batch.counters->faults.add(shaderClass, Fault::neverEntered, left);
   return out;
 }
 

@@ -466,7 +466,10 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       }
     }
     if (log_)
-      for (const auto& work : works) work->counters().faults.report(log_, logUser_);
+      for (const auto& work : works) {
+        const RayCounters counters = work->counters();
+        counters.faults.report(log_, logUser_, counters.camera);
+      }
     if (ended) changed_.notify_all();
   }
 

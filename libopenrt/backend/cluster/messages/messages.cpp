@@ -123,7 +123,7 @@ ShaderFaults faultsFrom(std::span<const message::Fault> faults, const ShaderRegi
   ShaderFaults result;
   for (const message::Fault& fault : faults) {
     const RtsClass* shaderClass = shaders.loaded(fault.name, fault.library);
-    if (shaderClass && fault.kind <= uint8_t(Fault::varyingEmission))
+    if (shaderClass && fault.kind <= uint8_t(Fault::neverEntered))
       result.add(*shaderClass, Fault(fault.kind), fault.hits);
   }
   return result;
