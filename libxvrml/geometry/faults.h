@@ -19,6 +19,7 @@ enum class Fault : uint8_t {
   notFinite,       // NaN or infinite coordinates
   noArea,          // all vertices are collinear
   tangled,         // too large, or crosses itself too often to be tessellated
+  repeated,        // a face that names many of its points again, as if -1 were missing
   overLimit,       // beyond limits.triangles or the world's budget
   colorMissing,    // no colour for a face or vertex: white is used
   normalMissing,   // no usable normal: the face normal is used

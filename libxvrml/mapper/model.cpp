@@ -134,6 +134,9 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
   if (hasRobotJoints(world)) return {Axis::z, "its prototype Joint has a jointAxis"};
   if (const std::string why = evidenceForYUp(world, graph); !why.empty())
     return {Axis::y, why, shape.frontal};
+  // Parts that are printed or belong to robots have z up, and so do other programs that show STL.
+  if (world.head.version.encoding == Encoding::stl && shape.axis == Axis::y && !shape.certain)
+    return {Axis::z, "it is an STL file"};
   return shape;
 }
 
