@@ -26,7 +26,9 @@ inline bool endsNumber(const char* p, const char* end) {
 }
 
 template <class T>
-concept Vec = !std::is_same_v<T, Rotation> && requires(T v) { v.x; };
+concept Vec = !std::is_same_v<T, Rotation> && requires(T v) {
+  v.x;
+};
 
 // Makes an element with a number that cannot be read recognisable, where its type has such values:
 // nothing is drawn at a point that is not finite, or for an index that no list has. Other elements
@@ -123,8 +125,9 @@ bool ValueParser::htmlColor(Color& out) {
   if (!is) return false;
   const auto part = [bits](int shift) { return float(bits >> shift & 255) / 255; };
   out = {part(16), part(8), part(0)};
-  lexer_.error(start, fmt::format("'{}' is a colour as HTML writes it: X3D writes {} {} {}; read so",
-                                  rest.substr(0, 7), out.r, out.g, out.b));
+  lexer_.error(start,
+               fmt::format("'{}' is a colour as HTML writes it: X3D writes {} {} {}; read so",
+                           rest.substr(0, 7), out.r, out.g, out.b));
   lexer_.seek(start + 7);
   return true;
 }

@@ -21,9 +21,9 @@ class ValueParser {
   // Reads true and false as X3D writes them, too, without a warning.
   void acceptLowerCase() { lowerCase_ = true; }
 
-  // Lets a list keep what can be read of it: an element that cannot be read costs that element only,
-  // as do numbers that are left over. All is reported as before. endsList: returns whether a word in
-  // a list begins what follows the list, as the name of a field does; null: no word does.
+  // Lets a list keep what can be read of it: an element that cannot be read costs that element
+  // only, as do numbers that are left over. All is reported as before. endsList: returns whether a
+  // word in a list begins what follows the list, as the name of a field does; null: no word does.
   void keepElements(std::function<bool(const Token&)> endsList) {
     keepsElements_ = true;
     endsList_ = std::move(endsList);
@@ -71,9 +71,9 @@ class ValueParser {
   bool keepsElements_ = false;
   std::function<bool(const Token&)> endsList_;
   // Of the list that is being read:
-  uint64_t faults_ = 0;      // elements that cannot be read; the first is reported in its place
+  uint64_t faults_ = 0;          // elements that cannot be read; the first is reported in its place
   const char* second_ = nullptr; // the second of them
-  bool listEnded_ = false;   // the list has ended without its bracket, which is reported
+  bool listEnded_ = false;       // the list has ended without its bracket, which is reported
 };
 
 // Returns the characters that a string token stands for. \" and \\ are unescaped; other backslashes

@@ -117,9 +117,9 @@ class FaceReader {
     set_.faceName.push_back(uint32_t(begin));
   }
 
-  // Returns whether more than a third of the face's points are named before in it. Faces with holes,
-  // which are joined to the outline by two edges each, stay below that. Exporters forget the -1
-  // between faces; what is drawn then is garbage.
+  // Returns whether more than a third of the face's points are named before in it. Faces with
+  // holes, which are joined to the outline by two edges each, stay below that. Exporters forget the
+  // -1 between faces; what is drawn then is garbage.
   bool namesPointsAgain(std::span<const int32_t> index) {
     if (places_.size() < 9) return false;
     named_.clear();

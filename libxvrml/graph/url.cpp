@@ -86,8 +86,8 @@ class Listing {
     if (error) return {};
     if (folder != folder_ || changed != changed_ || names_.empty()) {
       names_.clear();
-      for (fs::directory_iterator one(place, error), end; !error && one != end && names_.size() < most;
-           one.increment(error)) {
+      for (fs::directory_iterator one(place, error), end;
+           !error && one != end && names_.size() < most; one.increment(error)) {
         const std::string its = one->path().filename().string();
         std::string& known = names_[lowered(its)];
         if (known.empty() || its < known) known = its;

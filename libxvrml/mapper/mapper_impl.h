@@ -71,6 +71,7 @@ struct OpenRTMapper::Impl {
   Bounds bounds_;
   BoundingSphere sphere_;
   bool hasUnspecifiedLighting_ = false;
+  bool clearTold = false; // whether the world was looked at for that all is wholly transparent
   size_t surfacesKept_ = 64;
 };
 

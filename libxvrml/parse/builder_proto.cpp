@@ -144,8 +144,9 @@ void Builder::closeDeclaration(bool good) {
   }
   if (!good && declaration.hasValue && !nodeValue) { // the rest of the interface is as declared
     NodeFrame* const script = isScript() ? &nodes_.back() : nullptr;
-    const FieldInfo* const own =
-        script && declaration.accepted ? script->node->type().find(declaration.field.name) : nullptr;
+    const FieldInfo* const own = script && declaration.accepted
+                                     ? script->node->type().find(declaration.field.name)
+                                     : nullptr;
     if (own) script->node->set(*own, defaultValue(own->type));
     declaration.field.defaultValue = defaultValue(declaration.field.type);
   }

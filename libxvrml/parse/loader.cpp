@@ -107,8 +107,7 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
   std::deque<std::string> names; // DEF names that a reader makes; they outlive the builder
   Builder builder(locator, state_, file);
   if (const FileVersion& version = file.head.version; isMesh(version.encoding)) {
-    readMesh(version.encoding,
-             {bytes, *name, locator, builder, state_.options, budget_, names});
+    readMesh(version.encoding, {bytes, *name, locator, builder, state_.options, budget_, names});
   } else {
     Lexer lexer(locator);
     Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();

@@ -103,13 +103,11 @@ bool Parser::node(const Name* def) {
 }
 
 // nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty
-// Reads up to and including the closing brace. What cannot be read is left out up to the next field.
-// If the text ends early, the open nodes keep what was read.
+// Reads up to and including the closing brace. What cannot be read is left out up to the next
+// field. If the text ends early, the open nodes keep what was read.
 void Parser::nodeBody(const Token& type) {
   while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {
-    if (lexer_.peek().is(TokenKind::end)) {
-      return failAtEnd(type);
-    }
+    if (lexer_.peek().is(TokenKind::end)) { return failAtEnd(type); }
     if (!nodeBodyElement()) skipToField();
   }
 }

@@ -222,8 +222,8 @@ bool Parser::strayInBody(const Token& token) {
 bool Parser::strayStatement(const Token& token) {
   const bool route = token.is("ROUTE"), proto = token.is("PROTO") || token.is("EXTERNPROTO");
   if (!route && !proto) return false;
-  lexer_.error(token.at(), fmt::format("{} cannot stand in a list of nodes (A.2); it is kept",
-                                       token.text));
+  lexer_.error(token.at(),
+               fmt::format("{} cannot stand in a list of nodes (A.2); it is kept", token.text));
   if (!(route ? routeStatement() : protoStatement())) skipToNode();
   return true;
 }
