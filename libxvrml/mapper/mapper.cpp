@@ -4,6 +4,9 @@
 #include <cmath>
 #include <new>
 #include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "mapper/extent.h"
 #include "mapper/mapper_impl.h"

@@ -50,6 +50,7 @@ struct OpenRTMapper::Impl {
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
   bool sphereStale = true, lightStale = true;
   bool farCameraTold = false;
+  bool clearTold = false; // whether it was looked for worlds that are wholly transparent
   bool modelLight = false, background = true; // set by setModelLight() and setBackground()
   std::vector<std::string> names;             // shape names by number
 
@@ -71,7 +72,6 @@ struct OpenRTMapper::Impl {
   Bounds bounds_;
   BoundingSphere sphere_;
   bool hasUnspecifiedLighting_ = false;
-  bool clearTold = false; // whether the world was looked at for that all is wholly transparent
   size_t surfacesKept_ = 64;
 };
 

@@ -1,5 +1,6 @@
 // xvrml_values_kept.cpp: what is left of a world in which a value, a number of a list or a
 // statement cannot be read: all but that. Every error is still reported, in its place.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -34,6 +35,10 @@ struct Read {
 };
 
 Read vrml(const std::string& text) { return Read("#VRML V2.0 utf8\n" + text); }
+// The node of a face set that stands in a field, on a line of its own.
+Read faces(const std::string& fields) {
+  return vrml("Shape { geometry DEF F IndexedFaceSet {\n" + fields + "\n} }\nDEF G Group { }");
+}
 
 TEST(ValuesKept, AValueThatCannotBeReadCostsItselfAlone) {
   for (const char* value :
@@ -67,16 +72,15 @@ TEST(ValuesKept, OtherTypesToo) {
   EXPECT_EQ(r.node<nodes::Switch>(1)->choice.size(), 1u);
   EXPECT_TRUE(r.named<nodes::Shape>("S")->geometry);
   EXPECT_EQ(r.node<nodes::Group>(3)->children.size(), 1u);
-  EXPECT_EQ(r.errors.find("\n5:"), std::string::npos) << r.errors; // no errors that follow
+  EXPECT_EQ(std::count(r.errors.begin(), r.errors.end(), '\n'), 5) << r.errors; // no more follow
 }
 
 TEST(ValuesKept, AnElementThatCannotBeReadCostsItselfAlone) {
-  const Read r = vrml("DEF C Coordinate { point [ 0 0 0, nan 1 0, 1 1 1, 2 2 x, 3 3 3 ] }\n"
-                      "DEF F IndexedFaceSet { coordIndex [ 0 1 one -1 2 3 4 -1 ] }\n"
-                      "DEF W WorldInfo { info [ \"a\" 5 \"b\" ] }\n"
-                      "DEF K Color { color [ 1 0 0, 0 1.#QNAN 0, 0 0 1 ] }");
-  EXPECT_NE(r.errors.find("2:35 expected a component"), std::string::npos) << r.errors;
-  EXPECT_NE(r.errors.find("2:55 1 more of this list cannot be read"), std::string::npos)
+  const Read r = faces("coord DEF C Coordinate { point [ 0 0 0, nan 1 0, 1 1 1, 2 2 x, 3 3 3 ] }\n"
+                       "coordIndex [ 0 1 one -1 2 3 4 -1 ]\n"
+                       "color DEF K Color { color [ 1 0 0, 0 1.#QNAN 0, 0 0 1 ] }");
+  EXPECT_NE(r.errors.find("3:41 expected a component"), std::string::npos) << r.errors;
+  EXPECT_NE(r.errors.find("3:61 1 more of this list cannot be read"), std::string::npos)
       << r.errors;
   const MFVec3f& points = r.named<nodes::Coordinate>("C")->point;
   ASSERT_EQ(points.size(), 5u);
@@ -86,42 +90,45 @@ TEST(ValuesKept, AnElementThatCannotBeReadCostsItselfAlone) {
   ASSERT_EQ(index.size(), 8u);
   EXPECT_GT(index[2], 1'000'000); // no list has it, so that nothing is drawn there
   EXPECT_EQ(index[6], 4);
-  EXPECT_EQ(r.named<nodes::WorldInfo>("W")->info, (MFString{"a", "b"}));
   EXPECT_EQ(r.named<nodes::Color>("K")->color, (MFColor{{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}));
+  const Read texts = vrml("DEF W WorldInfo { info [ \"a\" 5 \"b\" ] }");
+  EXPECT_EQ(texts.named<nodes::WorldInfo>("W")->info, (MFString{"a", "b"})) << texts.errors;
 }
 
 TEST(ValuesKept, NumbersLeftOverCountForNothing) {
-  const Read r = vrml("Coordinate { point [ 0 0 0, 1 1 1, 7 ] } DEF G Group { }");
-  EXPECT_NE(r.errors.find("2:36 1 number left over"), std::string::npos) << r.errors;
-  EXPECT_EQ(vrml("DEF C Coordinate { point [ 0 0 0, 1 1 1, 7 8 ] }")
-                .named<nodes::Coordinate>("C")
-                ->point.size(),
-            2u);
-  EXPECT_TRUE(r.named<nodes::Group>("G"));
+  for (const char* rest : {"7", "7 8", "7 nan"}) {
+    const Read r =
+        faces(fmt::format("coord DEF C Coordinate {{ point [ 0 0 0, 1 1 1, {} ] }}", rest));
+    EXPECT_NE(r.errors.find("left over"), std::string::npos) << r.errors;
+    EXPECT_EQ(r.named<nodes::Coordinate>("C")->point.size(), 2u) << rest;
+    EXPECT_TRUE(r.named<nodes::Group>("G"));
+  }
 }
 
 TEST(ValuesKept, AListEndsWhereItsBracketIsMissing) {
-  const Read r =
-      vrml("DEF F IndexedFaceSet { coordIndex [ 0 1 x -1 convex FALSE } DEF G Group { }");
+  const Read r = faces("coordIndex [ 0 1 x -1 convex FALSE");
   EXPECT_EQ(r.named<nodes::IndexedFaceSet>("F")->coordIndex.size(), 4u) << r.errors;
   EXPECT_FALSE(r.named<nodes::IndexedFaceSet>("F")->convex);
   EXPECT_TRUE(r.named<nodes::Group>("G"));
-  const Read end = vrml("DEF C Coordinate { point [ 0 0 0, 1 1 1, 2 2");
+  const Read end =
+      vrml("Shape { geometry IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 1 "
+           "1, 2 2");
   EXPECT_EQ(end.named<nodes::Coordinate>("C")->point.size(), 2u) << end.errors;
 }
 
 TEST(ValuesKept, NumbersOfOldCLibrariesAreNoComments) {
-  const Read r = vrml("DEF C Coordinate { point [ -1.#IND00 0 1.#QNAN0, 1 1 1 #INF\n, 2 2 2 ] }");
+  const Read r =
+      faces("coord DEF C Coordinate { point [ -1.#IND00 0 1.#QNAN0, 1 1 1 #INF\n, 2 2 2 ] }");
   EXPECT_EQ(r.named<nodes::Coordinate>("C")->point.size(), 3u) << r.errors;
-  const Read comment = vrml("DEF C Coordinate { point [ 1 1 1#a\n 2 2 2# INF\n ] }");
+  const Read comment = faces("coord DEF C Coordinate { point [ 1 1 1#a\n 2 2 2# INF\n ] }");
   EXPECT_EQ(comment.named<nodes::Coordinate>("C")->point.size(), 2u) << comment.errors;
-  EXPECT_EQ(comment.errors.find("number"), std::string::npos) << comment.errors;
+  EXPECT_EQ(comment.errors, "");
 }
 
 TEST(ValuesKept, RoutesAndPrototypesInListsOfNodes) {
   const Read r = vrml("Group { children [ DEF T TimeSensor { }\nPROTO P [ ] { Group { } }\nDEF I "
                       "ScalarInterpolator { }\nROUTE T.fraction_changed TO I.set_fraction\nDEF U P "
-                      "{ } ROUTE T.x TO DEF G Group { } ] }");
+                      "{ } ROUTE T DEF G Group { } ] }");
   EXPECT_EQ(r.world->scope.routes.size(), 1u) << r.errors;
   EXPECT_NE(r.errors.find("5:1 ROUTE cannot stand in a list of nodes"), std::string::npos);
   EXPECT_NE(r.errors.find("3:1 PROTO cannot stand in a list of nodes"), std::string::npos);
