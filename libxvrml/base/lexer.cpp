@@ -31,6 +31,10 @@ const char* endOfLine(const char* p, const char* end) {
 
 } // namespace
 
+bool isNonFiniteSuffix(std::string_view rest) {
+  return rest.starts_with("#IND") || rest.starts_with("#INF") || rest.starts_with("#QNAN") ||
+         rest.starts_with("#SNAN");
+}
 bool isIdentifierRest(unsigned char c) { return identifierRest[c]; }
 bool isIdentifierStart(unsigned char c) {
   return identifierRest[c] && !isDigit(static_cast<char>(c)) && c != '+' && c != '-';
@@ -98,6 +102,10 @@ const char* Lexer::lexNumber(const char* p, bool& valid) const {
       }
     }
   }
+  if (p < end_ && *p == '#' && isNonFiniteSuffix({p, size_t(end_ - p)})) {
+    valid = false;
+    ++p;
+  }
   if (p < end_ && !isVrmlSeparator(*p) && *p != '+' && *p != '-') valid = false;
   if (!valid) {
     while (p < end_ && !isVrmlSeparator(*p)) ++p;
@@ -156,7 +164,9 @@ void Lexer::lex() {
         p = lexNumber(p, valid);
       } else {
         valid = false;
-        while (p < end_ && !isVrmlSeparator(*p)) ++p;
+        do { // also a '#' where there are no comments
+          ++p;
+        } while (p < end_ && !isVrmlSeparator(*p));
       }
     }
   }

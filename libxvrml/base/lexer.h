@@ -58,6 +58,9 @@ constexpr bool isVrmlSpace(char c) {
 constexpr bool isVrmlSeparator(char c) {
   return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::separator;
 }
+// Returns whether `rest`, right behind a number, is what the C library of old Windows programs adds
+// to one that is not finite: -1.#IND00, 1.#INF, 1.#QNAN0. It is no comment.
+bool isNonFiniteSuffix(std::string_view rest);
 bool isIdentifierStart(unsigned char c); // returns whether c is an IdFirstChar (Annex A.3)
 bool isIdentifierRest(unsigned char c);  // returns whether c is one of IdRestChars (Annex A.3)
 bool isIdentifier(std::string_view text);

@@ -2,6 +2,8 @@
 #include "base/value_parser.h"
 
 #include <algorithm>
+#include <charconv>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,7 +21,26 @@ bool isWhole(FieldType type) {
 }
 
 inline bool endsNumber(const char* p, const char* end) {
-  return p == end || isVrmlSeparator(*p) || *p == '+' || *p == '-';
+  if (p == end || *p == '+' || *p == '-') return true;
+  return isVrmlSeparator(*p) && (*p != '#' || !isNonFiniteSuffix({p, size_t(end - p)}));
+}
+
+template <class T>
+concept Vec = !std::is_same_v<T, Rotation> && requires(T v) {
+  v.x;
+};
+
+// Makes an element with a number that cannot be read recognisable, where its type has such values:
+// nothing is drawn at a point that is not finite, or for an index that no list has. Other elements
+// get the default of their type.
+template <Numeric T> void markUnreadable(T& element) {
+  using Scalar = ScalarOf<T>;
+  if constexpr (std::is_integral_v<Scalar>)
+    element = std::numeric_limits<Scalar>::max();
+  else if constexpr (Vec<T> || numberCount<T> == 1)
+    *numbersOf(element) = std::numeric_limits<Scalar>::quiet_NaN();
+  else
+    element = T{};
 }
 
 } // namespace
@@ -27,6 +48,24 @@ inline bool endsNumber(const char* p, const char* end) {
 bool ValueParser::fail(const char* at, std::string message) {
   lexer_.error(at, std::move(message));
   return false;
+}
+
+// Handles a token in a list that cannot be read, and has been reported or counted.
+ValueParser::AfterFault ValueParser::passFault(const char* at) {
+  lexer_.seek(at);
+  const Token token = lexer_.peek();
+  const bool openString = token.is(TokenKind::invalid) && token.text.starts_with('"');
+  if (token.is(TokenKind::braceClose) || token.is(TokenKind::end)) return AfterFault::listEnds;
+  if (token.is(TokenKind::braceOpen) || token.is(TokenKind::bracketOpen) || openString)
+    return AfterFault::unreadable;
+  const bool ends = token.is(TokenKind::identifier) && endsList_ && endsList_(token);
+  lexer_.seek(at);
+  if (ends) return AfterFault::listEnds;
+  // What is glued to the token belongs to it: "e-..e" stands in the place of one number.
+  const char* p = at;
+  while (p < lexer_.end() && !isVrmlSeparator(*p)) ++p;
+  lexer_.seek(std::max(p, token.at() + token.text.size()));
+  return AfterFault::next;
 }
 
 bool ValueParser::failFound(const Token& found, std::string_view expected) {
@@ -55,6 +94,7 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
   const Token found = lexer_.peek();
   if (error == NumberError::outOfRange) {
     lexer_.next();
+    if (faults_ > 0) return false; // only the first of a list is reported in its place
     return fail(start, fmt::format("number {} is out of range for {}", describe(found), name));
   }
   if constexpr (std::is_integral_v<Scalar>) {
@@ -69,6 +109,7 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
       return true;
     }
   }
+  if (faults_ > 0) return false;
   return failFound(found, fmt::format("a{} {} of {}", std::is_integral_v<Scalar> ? "n" : "",
                                       std::is_integral_v<Scalar> ? "integer"
                                       : isWhole(type)            ? "number"
@@ -76,9 +117,30 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
                                       name));
 }
 
+// Reads a colour as pages write it, #FF0000. No encoding of X3D has it, but nothing else is meant.
+bool ValueParser::htmlColor(Color& out) {
+  const char* const start = lexer_.skipSpace(lexer_.cursor());
+  const std::string_view rest(start, size_t(lexer_.end() - start));
+  uint32_t bits = 0;
+  const bool is = rest.size() >= 7 && rest[0] == '#' &&
+                  std::from_chars(start + 1, start + 7, bits, 16).ptr == start + 7 &&
+                  (rest.size() == 7 || isVrmlSpace(rest[7]));
+  if (!is) return false;
+  const auto part = [bits](int shift) { return float(bits >> shift & 255) / 255; };
+  out = {part(16), part(8), part(0)};
+  lexer_.error(start,
+               fmt::format("'{}' is a colour as HTML writes it: X3D writes {} {} {}; read so",
+                           rest.substr(0, 7), out.r, out.g, out.b));
+  lexer_.seek(start + 7);
+  return true;
+}
+
 // One or several numbers.
 template <Numeric T> bool ValueParser::single(T& out) {
   const char* p = lexer_.cursor();
+  if constexpr (std::is_same_v<T, Color>) {
+    if (wholeText_ && htmlColor(out)) return true;
+  }
   auto* components = numbersOf(out);
   for (int i = 0; i < numberCount<T>; ++i) {
     p = lexer_.skipSpace(p);
@@ -203,15 +265,44 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
     return true;
   }
   if (!elements(out)) return false;
-  if (lexer_.accept(TokenKind::bracketClose)) return true;
-  if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
+  if (listEnded_ || lexer_.accept(TokenKind::bracketClose)) return true;
+  if (!lexer_.peek().is(TokenKind::braceClose)) {
+    failFound(lexer_.peek(), "a value or ]");
+    return keepsElements_ && lexer_.peek().is(TokenKind::end); // the file ends early
+  }
   lexer_.error(lexer_.cursor(),
                "']' is missing before '}'"); // the brace ends the node and its list
   return true;
 }
 
-// Reads the values of a list up to a bracket or brace, or to the end of the text.
+// Reads the values of a list, and reports how many could not be read.
 template <class T> bool ValueParser::elements(std::vector<T>& out) {
+  faults_ = 0;
+  listEnded_ = false;
+  const bool good = elementsUpToEnd(out);
+  const uint64_t more = std::exchange(faults_, 0);
+  if (more > 1)
+    lexer_.error(second_, fmt::format("{} more of this list cannot be read; the first one is here",
+                                      more - 1));
+  return good;
+}
+
+// Passes an element that cannot be read. `at`: the token that is wrong. Returns false if the list
+// cannot go on.
+bool ValueParser::passElement(const char* at) {
+  if (!keepsElements_) return false;
+  const AfterFault after = passFault(at);
+  if (after == AfterFault::unreadable) return false;
+  if (after == AfterFault::listEnds) {
+    if (faults_ > 0) failFound(lexer_.peek(), "a value or ]"); // it has not been reported
+    return listEnded_ = true;
+  }
+  if (++faults_ == 2) second_ = at;
+  return true;
+}
+
+// Reads the values of a list up to a bracket or brace, or to the end of the text.
+template <class T> bool ValueParser::elementsUpToEnd(std::vector<T>& out) {
   constexpr size_t sample = 1024;
   uint64_t taken = 0; // number of values for which memory has been reserved
   const char* const first = lexer_.cursor();
@@ -221,16 +312,26 @@ template <class T> bool ValueParser::elements(std::vector<T>& out) {
     const char* start = p;
     if constexpr (Numeric<T>) {
       auto* components = numbersOf(value);
+      bool good = true;
       for (int i = 0; i < numberCount<T>; ++i) {
         if (i > 0) p = lexer_.skipSpace(p);
-        if (i > 0 && (p < lexer_.end() ? *p == ']' : wholeText_)) {
+        if (i > 0 && (p < lexer_.end() ? *p == ']' || (keepsElements_ && *p == '}')
+                                       : wholeText_ || keepsElements_)) {
           lexer_.seek(p);
-          return fail(start,
-                      fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
+          fail(start, fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
                                   fieldTypeName(fieldTypeOf<T>), numberCount<T>));
+          if (budget_ && keepsElements_) budget_->give((taken - out.size()) * sizeof(T));
+          return keepsElements_;
         }
-        if (!scalar(p, components[i], fieldTypeOf<T>)) return false;
+        const char* const at = p;
+        if (scalar(p, components[i], fieldTypeOf<T>)) continue;
+        if (!passElement(at)) return false;
+        p = lexer_.cursor();
+        if (listEnded_) break;
+        good = false;
       }
+      if (listEnded_) break;
+      if (!good) markUnreadable(value);
       if (out.size() * numberCount<T> >= limits_.arrayElements) {
         lexer_.seek(p);
         return fail(start, fmt::format("more numbers in one field than limit arrayElements={}",
@@ -238,7 +339,13 @@ template <class T> bool ValueParser::elements(std::vector<T>& out) {
       }
     } else {
       lexer_.seek(p);
-      if (!single(value)) return false;
+      if (!single(value)) {
+        if (!passElement(start)) return false;
+        p = lexer_.cursor();
+        if (listEnded_) break;
+        if constexpr (!std::is_same_v<T, bool>) continue;
+        value = T{};
+      }
       p = lexer_.cursor();
       if (out.size() >= limits_.arrayElements) {
         return fail(start, fmt::format("more values in one field than limit arrayElements={}",

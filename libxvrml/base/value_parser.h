@@ -3,6 +3,8 @@
 // defaults. [the lexer's thread]
 #pragma once
 
+#include <functional>
+
 #include "base/budget.h"
 #include "base/lexer.h"
 #include "xvrml/limits.h"
@@ -19,6 +21,14 @@ class ValueParser {
   // Reads true and false as X3D writes them, too, without a warning.
   void acceptLowerCase() { lowerCase_ = true; }
 
+  // Lets a list keep what can be read of it: an element that cannot be read costs that element
+  // only, as do numbers that are left over. All is reported as before. endsList: returns whether a
+  // word in a list begins what follows the list, as the name of a field does; null: no word does.
+  void keepElements(std::function<bool(const Token&)> endsList) {
+    keepsElements_ = true;
+    endsList_ = std::move(endsList);
+  }
+
   // Reads a value into *storage, whose C++ type must be that of `type`. SFNode accepts only NULL
   // and MFNode only [ ]; the file parser reads nodes. Returns false after it has reported an error.
   // The lexer then stands at or behind the error, and the storage is unspecified.
@@ -31,12 +41,22 @@ class ValueParser {
  private:
   template <class T> bool multiple(std::vector<T>& out);
   template <class T> bool elements(std::vector<T>& out);
+  template <class T> bool elementsUpToEnd(std::vector<T>& out);
   template <class T> void reserve(std::vector<T>& out, const char* from, const char* to);
   bool single(bool& out);
   bool single(std::string& out);
   bool single(Image& out);
   bool single(NodeRef& out);
   template <Numeric T> bool single(T& out);
+  // What follows a number or a string of a list that cannot be read.
+  enum class AfterFault : uint8_t {
+    next,      // it is passed, and the list goes on
+    listEnds,  // the list ends before it
+    unreadable // neither
+  };
+  AfterFault passFault(const char* at);
+  bool passElement(const char* at);
+  bool htmlColor(Color& out);
   template <class Scalar> bool scalar(const char*& p, Scalar& out, FieldType type);
   bool take(const char* at, uint64_t bytes);
   bool fail(const char* at, std::string message);
@@ -48,6 +68,12 @@ class ValueParser {
   bool lowerCase_ = false;
   bool wholeText_ = false; // the value ends with the text
   bool refused_ = false;   // the budget has refused memory; reported once
+  bool keepsElements_ = false;
+  std::function<bool(const Token&)> endsList_;
+  // Of the list that is being read:
+  uint64_t faults_ = 0;          // elements that cannot be read; the first is reported in its place
+  const char* second_ = nullptr; // the second of them
+  bool listEnded_ = false;       // the list has ended without its bracket, which is reported
 };
 
 // Returns the characters that a string token stands for. \" and \\ are unescaped; other backslashes

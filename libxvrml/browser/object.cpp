@@ -102,6 +102,10 @@ void Browser::Impl::addJob(std::function<void()> job) {
 void Browser::Impl::runJobs() {
   if (working || engine->settling()) return;
   working = true;
+  const struct Idle {
+    bool& working;
+    ~Idle() { working = false; } // also if a job throws
+  } idle{working};
   for (int done = 0; done < 100 && !jobs.empty(); ++done) {
     const uint64_t before = generation;
     const std::function<void()> job = std::move(jobs.front());
@@ -109,7 +113,6 @@ void Browser::Impl::runJobs() {
     job();
     if (generation != before) break; // at most one new world per call
   }
-  working = false;
 }
 
 SourcePosition Browser::Impl::callerPosition() const {

@@ -88,7 +88,14 @@ void Engine::beginCascade(double time) {
 
 void Engine::settle() {
   if (settling_) return;
-  settling_ = true;
+  deliverAll();
+  renewExpansions();
+  sweep();
+  if (scripts) scripts->finish();
+}
+
+void Engine::deliverAll() {
+  const Settling settling(*this);
   do {
     while (scriptsToStart_ || !queue_.empty()) {
       if (++inCascade_ > maximumEvents) {
@@ -110,10 +117,6 @@ void Engine::settle() {
         followLinks(event);
     }
   } while (!overflow_ && ((scripts && scripts->eventsProcessed()) || observer->settled()));
-  settling_ = false;
-  renewExpansions();
-  sweep();
-  if (scripts) scripts->finish();
 }
 
 // Returns the value of a node in the body as the instance sends it: URLs are adapted.
@@ -243,9 +246,10 @@ void Engine::tick(double time) {
   if (settling_) return; // listeners and Scripts cannot advance time
   beginCascade(std::max(time, now_));
   observer->ticked();
-  settling_ = true; // events of these functions wait in the queue
-  if (scripts) scripts->tick();
-  settling_ = false;
+  if (scripts) {
+    const Settling settling(*this); // events of these functions wait in the queue
+    scripts->tick();
+  }
   callAll(ticking_, &Behaviour::tick);
   settle();
   beginCascade(now_);

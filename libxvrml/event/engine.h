@@ -96,7 +96,7 @@ class Engine : public Events {
   // Advances the time: runs the tick() functions and their cascade, then the look() functions and
   // theirs.
   void tick(double time);
-  bool settling() const { return settling_; }
+  bool settling() const { return settling_; } // events of others wait in the queue
 
   uint64_t listen(Node& node, const FieldInfo& out, Listener listener);
   void unlisten(Node& node, uint64_t number);
@@ -114,6 +114,17 @@ class Engine : public Events {
 
  private:
   friend class Events;
+  class Settling { // a part of the code that is settling, also if it is left by an exception
+   public:
+    explicit Settling(Engine& engine) : engine_(engine) { engine_.settling_ = true; }
+    ~Settling() { engine_.settling_ = false; }
+    Settling(const Settling&) = delete;
+    Settling& operator=(const Settling&) = delete;
+
+   private:
+    Engine& engine_;
+  };
+  void deliverAll();
   struct Event {
     NodeRef node;
     const FieldInfo* field;

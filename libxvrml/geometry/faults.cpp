@@ -10,7 +10,8 @@ static constexpr const char* faultTexts[] = {
     "", // report() names the index
     "left out: coordinates that are not finite",
     "left out: no area",
-    "left out: too large and tangled to be cut into triangles",
+    "left out: too large or tangled to be cut into triangles",
+    "with many points named again: is -1 missing between faces?",
     "left out beyond ",
     "without a colour, drawn white",
     "without a usable normal, drawn with the face's own",

@@ -18,7 +18,8 @@ enum class Fault : uint8_t {
   indexRange,      // an index without a point
   notFinite,       // NaN or infinite coordinates
   noArea,          // all vertices are collinear
-  tangled,         // too large, or crosses itself too often to be tessellated
+  tangled,         // crosses itself too often to be tessellated, or too large for that
+  repeated,        // a face that names many of its points again, as if -1 were missing
   overLimit,       // beyond limits.triangles or the world's budget
   colorMissing,    // no colour for a face or vertex: white is used
   normalMissing,   // no usable normal: the face normal is used

@@ -104,6 +104,7 @@ class FaceReader {
       faults_.add(Fault::fewVertices, begin);
       return;
     }
+    if (namesPointsAgain(index)) faults_.add(Fault::repeated, begin);
     for (size_t place : places_) {
       set_.corners.push_back(uint32_t(index[place]));
       colors_.corner(place, index[place], faults_);
@@ -116,6 +117,18 @@ class FaceReader {
     set_.faceName.push_back(uint32_t(begin));
   }
 
+  // Returns whether more than a third of the face's points are named before in it. Faces with
+  // holes, which are joined to the outline by two edges each, stay below that. Exporters forget the
+  // -1 between faces; what is drawn then is garbage.
+  bool namesPointsAgain(std::span<const int32_t> index) {
+    if (places_.size() < 9) return false;
+    named_.clear();
+    for (const size_t place : places_) named_.push_back(index[place]);
+    std::sort(named_.begin(), named_.end());
+    const auto different = std::unique(named_.begin(), named_.end()) - named_.begin();
+    return 3 * (places_.size() - size_t(different)) > places_.size();
+  }
+
   const nodes::IndexedFaceSet& node_;
   FaceSet& set_;
   Faults& faults_;
@@ -123,6 +136,7 @@ class FaceReader {
   Bound<Vec3f> normals_;
   Bound<Vec2f> texCoords_;
   std::vector<size_t> places_;
+  std::vector<int32_t> named_;
 };
 
 // Reads the indices of a list of valid triangles only. Returns false at the first anything else.

@@ -3,6 +3,7 @@
 // Used by the loader and the mapper. Pure except for file look-ups. [any thread]
 #include <algorithm>
 #include <filesystem>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -66,6 +67,66 @@ bool exists(const std::string& path) {
   return std::filesystem::is_regular_file(path, error);
 }
 
+std::string lowered(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  return lower;
+}
+
+// The names in the folder that was searched last. Worlds name many files of one folder.
+class Listing {
+ public:
+  // Returns the name in a folder that differs from `name` in the case of letters only: the first in
+  // the order of bytes. "" if there is none. folder: "" or with a slash at its end.
+  std::string find(const std::string& folder, std::string_view name) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path place = folder.empty() ? fs::path(".") : fs::path(folder);
+    const auto changed = fs::last_write_time(place, error);
+    if (error) return {};
+    if (folder != folder_ || changed != changed_ || names_.empty()) {
+      names_.clear();
+      for (fs::directory_iterator one(place, error), end;
+           !error && one != end && names_.size() < most; one.increment(error)) {
+        const std::string its = one->path().filename().string();
+        std::string& known = names_[lowered(its)];
+        if (known.empty() || its < known) known = its;
+      }
+      folder_ = folder;
+      changed_ = changed;
+    }
+    const auto found = names_.find(lowered(name));
+    return found == names_.end() ? std::string() : found->second;
+  }
+
+ private:
+  static constexpr size_t most = 100'000; // names that are looked at
+  std::string folder_;
+  std::filesystem::file_time_type changed_;
+  std::unordered_map<std::string, std::string> names_; // by their names in lower case
+};
+
+// Returns the path of a file whose name, or whose folders' names, are written with other letters as
+// to case: such worlds were made where that makes no difference. "" if there is none. `folder` is
+// written as it is.
+std::string findInAnyCase(std::string folder, std::string_view path) {
+  thread_local Listing listing;
+  for (size_t depth = 0; !path.empty() && depth < 64; ++depth) {
+    const size_t slash = std::min(path.find('/'), path.size());
+    const std::string part(path.substr(0, slash));
+    path.remove_prefix(std::min(path.size(), slash + 1));
+    std::error_code error;
+    std::string name = part;
+    const bool there = part.empty() || part == "." || part == ".." ||
+                       std::filesystem::exists(folder + part, error);
+    if (!there) name = listing.find(folder, part);
+    if (!there && name.empty()) return {};
+    folder += name;
+    if (!path.empty()) folder += '/';
+  }
+  return exists(folder) ? folder : std::string();
+}
+
 } // namespace
 
 std::string urlScheme(std::string_view url) {
@@ -123,6 +184,7 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
   }
 
   ResolvedUrl result;
+  const std::string_view whole = path;
   const size_t hash = path.find('#');
   if (hash != path.npos) {
     if (!percentDecode(path.substr(hash + 1), result.fragment)) return refuse("%00 in a name");
@@ -155,7 +217,21 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
   for (const std::string& other : {literal, folderOfUrl + literal.substr(name), before}) {
     if (!exists(folder + other)) continue;
     result.path = folder + other;
-    break;
+    return result;
+  }
+  // The name itself may contain a '#'; other than in a URL, it then begins no fragment.
+  std::string unsplit;
+  if (hash != whole.npos && percentDecode(whole, unsplit) && exists(folder + unsplit)) {
+    result.fragment.clear();
+    result.path = folder + unsplit;
+    return result;
+  }
+  if (absolute) return result;
+  if (std::string found = findInAnyCase(folder, decoded); !found.empty()) {
+    result.path = std::move(found);
+  } else if (found = findInAnyCase(folder, unsplit); !found.empty()) {
+    result.fragment.clear();
+    result.path = std::move(found);
   }
   return result;
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <new>
 #include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "mapper/extent.h"
 #include "mapper/mapper_impl.h"
@@ -176,6 +179,13 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   report(m.world.diagnostics, {}, "before the world was mapped");
   m.camera = camera;
   m.places.updateForFrame(m.graph, camera);
+  if (!std::exchange(m.clearTold, true))
+    if (const size_t shapes = countIfAllClear(m.graph))
+      m.world.diagnostics.warn(
+          {std::make_shared<const std::string>(m.world.path), 0, 0},
+          fmt::format("nothing can be seen: the material of {} has transparency 1",
+                      shapes == 1 ? "the only Shape"
+                                  : fmt::format("each of the {} Shapes", shapes)));
   Bound around = m.bound;
   if (!m.background) {
     around.background = {};

@@ -50,6 +50,7 @@ struct OpenRTMapper::Impl {
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
   bool sphereStale = true, lightStale = true;
   bool farCameraTold = false;
+  bool clearTold = false; // whether it was looked for worlds that are wholly transparent
   bool modelLight = false, background = true; // set by setModelLight() and setBackground()
   std::vector<std::string> names;             // shape names by number
 

@@ -85,15 +85,18 @@ std::string evidenceForYUp(const World& world, const Graph& graph) {
   return {};
 }
 
-// Guesses from the world's bounding box. It compares y and z; x is never up.
-UpGuess fromBounds(const Bounds& b) {
+// Guesses from the world's bounding box. It compares y and z; x is never up. isStl: z is up unless
+// the model stands or lies on y = 0: parts that are printed or belong to robots have z up, and so
+// do other programs that show STL files.
+UpGuess fromBounds(const Bounds& b, bool isStl) {
   double extent[3], middle[3];
   for (int i = 0; i < 3; ++i) {
     extent[i] = b.maximum[i] - b.minimum[i];
     middle[i] = (b.maximum[i] + b.minimum[i]) / 2;
   }
   const double largest = std::max({extent[0], extent[1], extent[2]});
-  if (extent[2] <= plane * largest) return {Axis::y, "it is a figure in the x-y plane", true};
+  if (extent[2] <= plane * largest && !isStl)
+    return {Axis::y, "it is a figure in the x-y plane", true};
   if (extent[1] <= plane * largest) return {Axis::y, "it lies in the x-z plane"};
   const auto standsOn = [&](int i) { return std::abs(b.minimum[i]) <= near * extent[i]; };
   const auto liesAbout = [&](int i) { return std::abs(middle[i]) <= near * extent[i]; };
@@ -104,6 +107,7 @@ UpGuess fromBounds(const Bounds& b) {
     if (standsOn(2)) return {Axis::z, "it stands on z = 0"};
     return {Axis::y, "it stands on y = 0"};
   }
+  if (isStl) return {Axis::z, "it is an STL file"};
   if (isPlate(2)) return {Axis::z, "it is flat along z"};
   if (isPlate(1)) return {Axis::y, "it is flat along y"};
   if (liesAbout(0) && liesAbout(1) != liesAbout(2)) {
@@ -117,7 +121,7 @@ UpGuess fromBounds(const Bounds& b) {
 
 UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
   if (bounds.empty) return {Axis::y, "nothing is drawn"};
-  const UpGuess shape = fromBounds(bounds);
+  const UpGuess shape = fromBounds(bounds, world.head.version.encoding == Encoding::stl);
   const auto written = [&](const Exporter& one, const char* where) {
     return UpGuess{one.up, where + (" names " + std::string(one.word)),
                    one.up == Axis::y && shape.frontal};
@@ -135,6 +139,25 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
   if (const std::string why = evidenceForYUp(world, graph); !why.empty())
     return {Axis::y, why, shape.frontal};
   return shape;
+}
+
+size_t countIfAllClear(const Graph& graph) {
+  const auto transparencyOf = [](const Node& material) -> float {
+    const FieldInfo* field = material.type().find("transparency");
+    return field && field->type == FieldType::SFFloat ? std::get<float>(material.get(*field)) : 0;
+  };
+  size_t shapes = 0;
+  for (const ItemId id : graph.order) {
+    const Item& item = graph.items[id];
+    if (item.kind != Kind::shape) continue;
+    const auto* appearance = nodeCast<nodes::Appearance>(
+        renderedNode(static_cast<const nodes::Shape&>(*item.node).appearance.get()));
+    const Node* material = appearance ? renderedNode(appearance->material.get()) : nullptr;
+    // A picture may have an alpha of its own, but it cannot make anything opaque here.
+    if (!material || !(transparencyOf(*material) >= 1)) return 0;
+    ++shapes;
+  }
+  return shapes;
 }
 
 bool hasUnspecifiedLighting(const Graph& graph, const Bound& bound) {

@@ -16,6 +16,10 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds);
 // ORTBackground, no shape with an ORTAppearance.
 bool hasUnspecifiedLighting(const Graph& graph, const Bound& bound);
 
+// Returns the number of Shapes if all are wholly transparent by their materials, so that nothing
+// can be seen; else 0.
+size_t countIfAllClear(const Graph& graph);
+
 // The three lights of a model, in camera coordinates. direction: where the light travels to.
 struct Lamp {
   Vec3f direction;

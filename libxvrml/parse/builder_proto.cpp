@@ -142,6 +142,14 @@ void Builder::closeDeclaration(bool good) {
     std::vector<ProtoPtr>& outer = scopes_[scopes_.size() - 2].scope->prototypes;
     outer.insert(outer.end(), local.begin(), local.end());
   }
+  if (!good && declaration.hasValue && !nodeValue) { // the rest of the interface is as declared
+    NodeFrame* const script = isScript() ? &nodes_.back() : nullptr;
+    const FieldInfo* const own = script && declaration.accepted
+                                     ? script->node->type().find(declaration.field.name)
+                                     : nullptr;
+    if (own) script->node->set(*own, defaultValue(own->type));
+    declaration.field.defaultValue = defaultValue(declaration.field.type);
+  }
   const bool rotation = declaration.field.type == FieldType::SFRotation ||
                         declaration.field.type == FieldType::MFRotation;
   if (angle_ != 1 && rotation && declaration.hasValue && good) {
@@ -154,7 +162,7 @@ void Builder::closeDeclaration(bool good) {
       convertAngles(declaration.field.type, std::visit([](auto& value) -> void* { return &value; },
                                                        declaration.field.defaultValue));
   }
-  if (good && declaration.accepted && !isScript())
+  if ((good || !nodeValue) && declaration.accepted && !isScript())
     addField(*scope().protoType, std::move(declaration.field));
 }
 

@@ -76,9 +76,13 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
   const Limits& limits = state_.options.limits;
-  switch (file.head.version.encoding) {
+  const Encoding encoding = file.head.version.encoding;
+  const bool mayBeBinary =
+      encoding == Encoding::stl || encoding == Encoding::ply || encoding == Encoding::gltf;
+  const std::string_view bytes = mayBeBinary ? source.text() : withoutDosEnd(source.text());
+  switch (encoding) {
   case Encoding::x3dXml: {
-    const XmlText text(source.text(), *name, budget_);
+    const XmlText text(bytes, *name, budget_);
     Locator locator(text.text(), name, state_.diagnostics);
     Builder builder(locator, state_, file);
     X3dElements elements(locator, limits, builder, budget_.get());
@@ -86,25 +90,24 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
     return builder.finish();
   }
   case Encoding::x3dJson: {
-    Locator locator(source.text(), name, state_.diagnostics);
+    Locator locator(bytes, name, state_.diagnostics);
     Builder builder(locator, state_, file);
     X3dElements elements(locator, limits, builder, budget_.get());
     readX3dJson(locator, budget_, elements);
     return builder.finish();
   }
   case Encoding::vrml1: {
-    Locator locator(source.text(), name, state_.diagnostics);
+    Locator locator(bytes, name, state_.diagnostics);
     composed_ = true; // its nodes are counted when the world is complete
     return readVrml1(locator, state_, file, Parser::maximumNesting);
   }
   default: break;
   }
-  Locator locator(source.text(), name, state_.diagnostics);
+  Locator locator(bytes, name, state_.diagnostics);
   std::deque<std::string> names; // DEF names that a reader makes; they outlive the builder
   Builder builder(locator, state_, file);
   if (const FileVersion& version = file.head.version; isMesh(version.encoding)) {
-    readMesh(version.encoding,
-             {source.text(), *name, locator, builder, state_.options, budget_, names});
+    readMesh(version.encoding, {bytes, *name, locator, builder, state_.options, budget_, names});
   } else {
     Lexer lexer(locator);
     Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();

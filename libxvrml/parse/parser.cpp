@@ -13,6 +13,11 @@ Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budg
     : lexer_(lexer), values_(lexer, limits, budget), sink_(sink),
       nesting_(std::min(limits.nesting, maximumNesting)), x3d_(x3d) {
   if (x3d) values_.acceptLowerCase();
+  values_.keepElements([this](const Token& word) {
+    Token type;
+    return sink_.hasField(word.text) || word.is("ROUTE") || word.is("PROTO") ||
+           word.is("EXTERNPROTO") || declares(word) || nodeAhead(type);
+  });
 }
 
 // vrmlScene ::= statements
@@ -89,27 +94,22 @@ bool Parser::node(const Name* def) {
   }
   ++depth_;
   open_.push_back(type);
-  const bool good = nodeBody(type);
-  if (!good) skipBlock();
+  nodeBody(type);
   open_.pop_back();
   if (open_.size() <= keep_) keep_ = SIZE_MAX;
   --depth_;
-  sink_.closeNode(good);
+  sink_.closeNode(true);
   return true;
 }
 
 // nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty
-// Reads up to and including the closing brace. If the text ends early, the open nodes keep what was
-// read.
-bool Parser::nodeBody(const Token& type) {
+// Reads up to and including the closing brace. What cannot be read is left out up to the next
+// field. If the text ends early, the open nodes keep what was read.
+void Parser::nodeBody(const Token& type) {
   while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {
-    if (lexer_.peek().is(TokenKind::end)) {
-      failAtEnd(type);
-      return true;
-    }
-    if (!nodeBodyElement()) return false;
+    if (lexer_.peek().is(TokenKind::end)) { return failAtEnd(type); }
+    if (!nodeBodyElement()) skipToField();
   }
-  return true;
 }
 
 // nodeBodyElement ::= fieldId fieldValue | fieldId IS fieldId | eventInId IS eventInId
@@ -140,7 +140,8 @@ bool Parser::field() {
     skipField();
     return true;
   }
-  const bool listOfValues = isMultiple(target.type) && lexer_.peek().is(TokenKind::bracketOpen);
+  const bool listOfValues = isMultiple(target.type) && target.type != FieldType::MFNode &&
+                            lexer_.peek().is(TokenKind::bracketOpen);
   const char* const from = lexer_.cursor();
   bool good = fieldValue(target);
   if (good && target.stringLines)
@@ -150,6 +151,7 @@ bool Parser::field() {
   if (!good && listOfValues)
     good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
+  if (!good && listOfValues) skipRestOfList();
   return good;
 }
 
@@ -181,7 +183,7 @@ bool Parser::nodesOfList() {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::end)) return true; // the node's body reports it
     if (token.is(TokenKind::identifier)) {
-      if (nodeValue()) continue;
+      if (strayStatement(token) || nodeValue()) continue;
       if (std::exchange(listEnded_, false)) return true;
       skipToNode();
     } else if (!token.is(TokenKind::braceClose)) {

@@ -44,7 +44,7 @@ class Parser {
   bool statement();
   bool nodeStatement();
   bool node(const Name* def);
-  bool nodeBody(const Token& type);
+  void nodeBody(const Token& type);
   bool nodeBodyElement();
   bool field();
   bool fieldValue(const FieldTarget& target);
@@ -86,6 +86,7 @@ class Parser {
   bool bodyFollows(const Token& type);
   bool endsList(const Token& token, bool hasDef);
   bool strayInBody(const Token& token);
+  bool strayStatement(const Token& token);
   bool strayInStatements(const Token& token, TokenKind end);
   bool closeListBefore(const Token& brace);
   void passBrace(bool holdsFields);
@@ -95,6 +96,9 @@ class Parser {
   void skipOne();
   void skipToNode();
   void skipField();
+  void skipToField();
+  void skipRestOfList();
+  void skipInterfaceValue();
   void skipDeclaration();
   void skipProto();
   void skipToStatement(TokenKind end);

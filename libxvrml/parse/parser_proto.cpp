@@ -143,9 +143,14 @@ bool Parser::interfaceDeclaration(bool isExtern) {
   if (!name(id, "a name for the interface")) return false;
   const bool hasValue = !isExtern && (access == Access::field || access == Access::exposedField);
   const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);
+  const bool list = isMultiple(type) && lexer_.peek().is(TokenKind::bracketOpen);
   const bool good = !hasValue || fieldValue(target);
   sink_.closeDeclaration(good);
-  return good;
+  if (good) return true;
+  if (type == FieldType::SFNode || type == FieldType::MFNode) return false;
+  if (list) skipRestOfList();
+  skipInterfaceValue();
+  return true;
 }
 
 // scriptBodyElement ::= nodeBodyElement | restrictedInterfaceDeclaration
@@ -173,8 +178,10 @@ bool Parser::scriptBodyElement() {
   const bool hasValue =
       (access == Access::field || access == Access::exposedField) && !isConnection;
   const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);
+  const bool list = isMultiple(type) && lexer_.peek().is(TokenKind::bracketOpen);
   const bool good = !hasValue || fieldValue(target);
   sink_.closeDeclaration(good);
+  if (!good && list && type != FieldType::MFNode) skipRestOfList();
   if (good && isConnection) {
     lexer_.next();
     Token interfaceName;

@@ -191,8 +191,8 @@ bool Parser::closeListBefore(const Token& brace) {
   return true;
 }
 
-// Handles a token that cannot begin a field. Braces and brackets are corrected; after any other
-// token the node is left out.
+// Handles a token that cannot begin a field. Braces and brackets are corrected; any other token is
+// left out.
 bool Parser::strayInBody(const Token& token) {
   if (token.is(TokenKind::bracketClose)) {
     if (recoveryPoints_.back().kind != RecoveryPoint::Kind::statements) {
@@ -208,9 +208,23 @@ bool Parser::strayInBody(const Token& token) {
     return true;
   }
   fail(token, "a field or }");
-  if (!token.is(TokenKind::braceOpen)) return false;
+  if (!token.is(TokenKind::braceOpen)) {
+    skipOne();
+    return false;
+  }
   lexer_.next();
   passBrace(true);
+  return true;
+}
+
+// Handles a statement in a list of nodes, where old exporters write routes between the nodes. The
+// grammar does not allow it there (A.2), but its meaning is certain. Returns false for other words.
+bool Parser::strayStatement(const Token& token) {
+  const bool route = token.is("ROUTE"), proto = token.is("PROTO") || token.is("EXTERNPROTO");
+  if (!route && !proto) return false;
+  lexer_.error(token.at(),
+               fmt::format("{} cannot stand in a list of nodes (A.2); it is kept", token.text));
+  if (!(route ? routeStatement() : protoStatement())) skipToNode();
   return true;
 }
 

@@ -115,6 +115,42 @@ void Parser::skipField() {
   }
 }
 
+// Skips what is left of a field or statement that cannot be read, in the body of a node: up to
+// something that may follow it there. The lexer is at or behind what is wrong.
+void Parser::skipToField() {
+  const bool inList = recoveryPoints_.back().kind != RecoveryPoint::Kind::statements;
+  for (TokenKind previous = TokenKind::number;;) {
+    const Token token = lexer_.peek();
+    if (token.is(TokenKind::end) || token.is(TokenKind::braceClose)) return;
+    if (token.is(TokenKind::bracketClose) && inList) return;
+    if (token.is(TokenKind::identifier)) {
+      Token type;
+      if (token.is("ROUTE") || token.is("PROTO") || token.is("EXTERNPROTO") ||
+          sink_.hasField(token.text) || (sink_.isScript() && declares(token)))
+        return;
+      if (endsValue(previous) && nodeAhead(type)) return;
+    }
+    skipOne();
+    previous = lastOf(token.kind);
+  }
+}
+
+// Skips up to and including the bracket of a list of values that cannot be read. If it is missing,
+// the list ends before a brace.
+void Parser::skipRestOfList() { skipNested('[', true); }
+
+// Skips what is left of a default value of a prototype's interface: up to the next declaration, the
+// end of the interface, or the body.
+void Parser::skipInterfaceValue() {
+  for (;;) {
+    const Token token = lexer_.peek();
+    if (token.is(TokenKind::end) || token.is(TokenKind::braceClose) ||
+        token.is(TokenKind::braceOpen) || token.is(TokenKind::bracketClose) || declares(token))
+      return;
+    skipOne();
+  }
+}
+
 // Skips a declaration of unknown type in a Script: up to the Script's next declaration or field, or
 // its end. The rest of the Script still runs.
 void Parser::skipDeclaration() {

@@ -51,6 +51,10 @@ void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVe
 double lengthUnit(const std::shared_ptr<const std::string>& file);
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres);
 
+// Returns a text without the byte 0x1A that editors of DOS put behind its end, and without the
+// blanks around that.
+std::string_view withoutDosEnd(std::string_view text);
+
 class Source {
  public:
   // Opens a file; "-" is standard input. budget: the world's budget, for the text that the source

@@ -49,6 +49,7 @@ AttributeReader::AttributeReader(Locator& locator, const Limits& limits, Budget*
     : locator_(locator), limits_(limits), budget_(budget), lexer_(locator),
       values_(lexer_, limits, budget) {
   values_.acceptLowerCase();
+  values_.keepElements(nullptr);
 }
 
 bool AttributeReader::reserve(const char* at, uint64_t bytes) {

@@ -18,16 +18,26 @@ uint64_t bytesOf(const Value& value) {
       [&](const auto& v) { return sizeof v + valueBytes(FieldType(value.index()), &v); }, value);
 }
 
+// Returns the node of a Script that cannot have one of its own: it has no fields.
+NodeRef makeNobody() {
+  auto type = std::make_shared<NodeType>();
+  type->name = "Script";
+  type->index = -1;
+  return NodeRef(new ScriptNode(std::move(type)));
+}
+
 } // namespace
 
 ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world,
                        const BrowserOptions& options, const RunOptions& run)
     : browser_(browser), engine_(engine), world_(world), options_(options), run_(run),
       programs_(scriptFolders(options.scriptPath), world.diagnostics, options.trustScripts),
-      table_(std::make_unique<Table>(*this)), patience_(options.scriptPatience) {}
+      table_(std::make_unique<Table>(*this)), nobody_(makeNobody()),
+      patience_(options.scriptPatience) {}
 
+// Ends all Scripts. Each is held with its node until the last has been shut down, because handles
+// may hold the last reference to nodes, and nodes to Scripts.
 ScriptHost::~ScriptHost() {
-  engine_.scripts = nullptr;
   ending_ = closing_ = true;
   // Seconds that shutdown() may take; the user waits no longer for a window to close.
   constexpr double grace = 0.25;
@@ -35,17 +45,21 @@ ScriptHost::~ScriptHost() {
   shutdownDeadline_ =
       wire::Clock::now() +
       std::chrono::milliseconds(int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
-  try {
-    finish();
-  } catch (const std::bad_alloc&) {} // the other Scripts are still ended
-  for (auto& [order, script] : scripts_) {
+  for (auto& [order, script] : scripts_) script->heldUntilStop = NodeRef(script->node);
+  const auto attempt = [](const auto& step) {
     try {
-      shutDownEarly(order);
-    } catch (const std::bad_alloc&) {} // it is shut down at its own turn instead
-    stop(*script);
+      step();
+    } catch (const std::exception&) {} // no memory: the other Scripts are still ended
+  };
+  attempt([&] { finish(); });
+  for (auto& [order, script] : scripts_) {
+    attempt([&, order = order] { shutDownEarly(order); }); // else it is shut down at its own turn
+    attempt([&, &script = *script] { stop(script); });
   }
   processes_.reset();
-  // Handles may hold the last reference to nodes, and nodes to Scripts. None of them runs any more.
+  // No Script runs any more. Their nodes go now, and nobody needs to know.
+  engine_.scripts = nullptr;
+  ended_.clear();
   scripts_.clear();
 }
 
@@ -60,7 +74,8 @@ void ScriptHost::markReach(Script& script) {
   });
 }
 
-// Ends a Script. If shutdown() runs out of memory, the interpreter is destroyed all the same.
+// Ends a Script, which afterwards has no interpreter and no handles. If shutdown() runs out of
+// memory, the interpreter is destroyed all the same.
 void ScriptHost::stop(Script& script) {
   script.waiting.clear();
   script.startPending = script.eventsProcessedDue = false;
@@ -70,7 +85,7 @@ void ScriptHost::stop(Script& script) {
   if (script.process) {
     try {
       return stopRemote(script);
-    } catch (const std::bad_alloc&) {
+    } catch (const std::exception&) {
       ending_ = ending;
       if (script.process) detach(script);
       return;
@@ -79,7 +94,7 @@ void ScriptHost::stop(Script& script) {
   ending_ = true;
   try {
     if (!isTimeUsedUp()) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
-  } catch (const std::bad_alloc&) {}
+  } catch (const std::exception&) {}
   ending_ = ending;
   script.engine->destroy(script.interpreter);
   script.engine = nullptr;
@@ -213,6 +228,7 @@ bool ScriptHost::eventsProcessed() {
 }
 
 void ScriptHost::drain(Key key, Script& script) {
+  const NodeRef keep(script.node); // a function may drop the last reference to it
   for (size_t left = script.waiting.size(); left > 0 && script.ready() && !isTimeUsedUp(); --left) {
     const Script::QueuedEvent event = std::move(script.waiting.front());
     script.waiting.pop_front();
@@ -229,8 +245,10 @@ void ScriptHost::drain(Key key, Script& script) {
 
 void ScriptHost::drop() {
   for (const auto& [key, waits] : std::exchange(due_, {}))
-    if (const auto found = scripts_.find(key); found != scripts_.end())
+    if (const auto found = scripts_.find(key); found != scripts_.end()) {
+      const NodeRef keep(found->second->node); // events may hold the last reference to it
       found->second->waiting.clear();
+    }
 }
 
 void ScriptHost::tick() {
@@ -248,46 +266,39 @@ void ScriptHost::tick() {
   }
 }
 
-// Handles the destruction of a node, which may happen anywhere. A copy keeps its fields until
-// shutdown can be called.
+// Handles the destruction of a node, which may happen anywhere, also while a function of the Script
+// is running. The copy keeps the fields until shutdown can be called.
 void ScriptHost::end(ScriptNode& node) noexcept {
   const auto found = scripts_.find(liveOf(node)->order);
   if (found == scripts_.end()) return;
-  std::unique_ptr<Script> script = std::move(found->second);
   std::erase(ticking_, found->first);
   due_.erase(found->first);
+  ended_.push_back(std::move(found->second)); // begin() has reserved its place
   scripts_.erase(found);
+  Script& script = *ended_.back();
+  script.waiting.clear();
+  script.nodeCopy = nobody_;
   try {
-    auto* nodeCopy = new ScriptNode(node.typePtr);
-    script->nodeCopy = NodeRef(nodeCopy);
-    nodeCopy->values = std::move(node.values);
-    // Readers still find values meanwhile.
-    node.values = std::vector<Value>(nodeCopy->values.size());
-    for (const FieldInfo& field : node.type().fields)
-      if (holdsValue(field)) node.values[field.offset] = defaultValue(field.type);
-    nodeCopy->source = node.source;
-    nodeCopy->defName = node.defName;
-    script->node = nodeCopy;
-    script->handles.setOwn(nodeCopy);
-    script->waiting.clear();
-    ended_.push_back(std::move(script));
-  } catch (const std::bad_alloc&) { // if the copy fails, shutdown is not called
-    bySelf_.erase(script->self);
-    if (script->process)
-      detach(*script);
-    else if (script->engine)
-      script->engine->destroy(script->interpreter);
-  }
+    const NodeRef copy(new ScriptNode(node.typePtr));
+    auto& nodeCopy = static_cast<ScriptNode&>(*copy);
+    nodeCopy.values.swap(node.values); // readers of the node find the values that its type declares
+    nodeCopy.source = node.source;
+    nodeCopy.defName = node.defName;
+    script.nodeCopy = copy;
+  } catch (const std::bad_alloc&) {} // shutdown() finds no fields
+  script.node = static_cast<ScriptNode*>(script.nodeCopy.get());
+  script.handles.setOwn(script.node);
 }
 
+// Shuts down the Scripts that have ended, and frees them. Meanwhile others may end.
 void ScriptHost::finish() {
-  while (!ended_.empty()) {
-    const std::vector<std::unique_ptr<Script>> ended = std::exchange(ended_, {});
-    for (const auto& script : ended) {
-      stop(*script);
-      bySelf_.erase(script->self);
-    }
+  for (size_t next = 0; next < ended_.size(); ++next) {
+    const std::unique_ptr<Script> script = std::move(ended_[next]);
+    if (!script) continue; // finish() was left before
+    stop(*script);
+    bySelf_.erase(script->self);
   }
+  ended_.clear();
 }
 
 Script* ScriptHost::find(XsNode self) {

@@ -19,8 +19,9 @@ namespace xvrml {
 
 // A Script node that has an interpreter, or will get one at its turn.
 struct Script {
-  Script(ScriptNode& node, XsNode self, XsNode& lastNumber)
-      : node(&node), self(self), handles(&node, self, lastNumber) {}
+  using Key = uint32_t; // order of the nodes in the world
+  Script(Key key, ScriptNode& node, XsNode self, XsNode& lastNumber)
+      : key(key), node(&node), self(self), handles(&node, self, lastNumber) {}
 
   struct QueuedEvent { // an event that has not been delivered yet
     const FieldInfo* in;
@@ -52,8 +53,11 @@ struct Script {
   bool busy() const { return process && process->busy(); }
   bool ready() const { return engine && !stopped && !busy(); }
 
-  ScriptNode* node; // node in the world; `nodeCopy` after the node's destruction
-  NodeRef nodeCopy; // copy of a destroyed node's fields, for shutdown()
+  const Key key;
+  // Never dangles: the node in the world until it is destroyed (ScriptHost::end), then `nodeCopy`.
+  ScriptNode* node;
+  NodeRef nodeCopy;      // copy of a destroyed node's fields, for shutdown()
+  NodeRef heldUntilStop; // the node in the world while all Scripts end
   const XsNode self;
   const XsEngine* engine = nullptr; // null: no runnable program
   uint32_t abiMinor = XS_ABI_MINOR; // of the engine
@@ -98,6 +102,10 @@ struct Script {
   bool counted = false; // counted in ScriptCounts::started, which ignores restarts
 };
 
+// Owns every Script from begin() on. A Script is freed in two places only: in finish(), after its
+// node has been destroyed, and at the end of the destructor. Handles of Scripts may hold the last
+// reference to any node, also to a Script's. So dropping handles may end other Scripts, or the
+// Script itself; end() then moves them to `ended_`, where they stay usable until finish().
 class ScriptHost : public ScriptRunner {
  public:
   struct Table; // the XsHost of the scripts, with a reference to this host
@@ -123,7 +131,7 @@ class ScriptHost : public ScriptRunner {
 
  private:
   friend struct HostTable;
-  using Key = uint32_t; // order of the nodes in the world
+  using Key = Script::Key;
 
   // Results of calls in addition to XsResult.
 
@@ -148,10 +156,17 @@ class ScriptHost : public ScriptRunner {
   template <class Invoke> XsResult call(Script& script, const char* function, Invoke&& invoke) {
     const NodeRef keep(script.node);
     enter(script);
-    Script* const outer = std::exchange(running_, &script);
-    const XsResult result = invoke();
-    running_ = outer;
+    const XsResult result = runAs(&script, invoke);
     return leave(script, function, result);
+  }
+  // Calls `serve` while the functions of XsHost answer `script` only; null: nobody.
+  template <class Serve> auto runAs(Script* script, Serve&& serve) {
+    struct Restore {
+      Script*& running;
+      Script* outer;
+      ~Restore() { running = outer; }
+    } const restore{running_, std::exchange(running_, script)};
+    return serve();
   }
   using Function = XsResult (*XsEngine::*)(XsInterpreter, double);
   XsResult plainCall(Script& script, wire::Op op, Function function);
@@ -201,11 +216,14 @@ class ScriptHost : public ScriptRunner {
   std::unique_ptr<Table> table_;
   std::map<Key, std::unique_ptr<Script>> scripts_;
   std::unordered_map<XsNode, Script*> bySelf_;
-  std::deque<Key> startQueue_;                 // start queue, in order
-  size_t earlyHandled_ = 0;                    // how many of the queue startEarly() has handled
-  size_t earlyStarts_ = 0;                     // Scripts whose `create` was sent before their turn
-  std::vector<std::unique_ptr<Script>> ended_; // Scripts whose nodes have been destroyed
-  std::map<Key, bool> due_;                    // eventsProcessed is due; true: events are waiting
+  std::deque<Key> startQueue_; // start queue, in order
+  size_t earlyHandled_ = 0;    // how many of the queue startEarly() has handled
+  size_t earlyStarts_ = 0;     // Scripts whose `create` was sent before their turn
+  // Scripts whose nodes have been destroyed, in that order. There is always room for all Scripts,
+  // so that end() needs no memory.
+  std::vector<std::unique_ptr<Script>> ended_;
+  const NodeRef nobody_;    // stands for a destroyed node that cannot be copied
+  std::map<Key, bool> due_; // eventsProcessed is due; true: events are waiting
   std::vector<Key> ticking_;
   std::vector<Key> waitingForProcess_;         // to be started when their processes are idle
   std::unique_ptr<ScriptProcesses> processes_; // null until one is needed

@@ -59,7 +59,7 @@ XsResult ScriptHost::createRemote(Script& script) {
   if (process->busy()) {
     script.engine = nullptr;
     script.startPending = true;
-    waitingForProcess_.push_back(liveOf(*script.node)->order);
+    waitingForProcess_.push_back(script.key);
     return again;
   }
   const XsResult result = beginCreate(script, process);
@@ -164,9 +164,8 @@ XsResult ScriptHost::serveCall(Script& script, double first, double next,
                                wire::Clock::time_point until) {
   const NodeRef keep(script.node);
   const ProcessRef process = script.process;
-  Script* const outer = std::exchange(running_, &script);
-  const ScriptProcess::State state = process->serve(first, next, until, engine_.now());
-  running_ = outer;
+  const ScriptProcess::State state =
+      runAs(&script, [&] { return process->serve(first, next, until, engine_.now()); });
   if (state == ScriptProcess::State::running) return later;
   const wire::Op op = std::exchange(script.pending, wire::Op{});
   if (state != ScriptProcess::State::returned) {
@@ -294,10 +293,9 @@ void ScriptHost::discard(const ProcessRef& process, double first, wire::Clock::t
   for (;;) {
     if (process->busy()) {
       if (!process->orphaned) return; // a Script waits for that call
-      Script* const outer = std::exchange(running_, nullptr);
-      const ScriptProcess::State state =
-          process->serve(first, std::max(first, linger), until, engine_.now());
-      running_ = outer;
+      const ScriptProcess::State state = runAs(nullptr, [&] {
+        return process->serve(first, std::max(first, linger), until, engine_.now());
+      });
       if (state == ScriptProcess::State::running) return;
       process->orphaned = false;
       if (state != ScriptProcess::State::returned) return restartAll(*process);

@@ -28,7 +28,10 @@ size_t parallelStarts() {
 void ScriptHost::begin(ScriptNode& node) {
   const Key key = liveOf(node)->order;
   const XsNode self = ++lastNumber_;
-  const auto place = scripts_.emplace(key, std::make_unique<Script>(node, self, lastNumber_)).first;
+  if (const size_t all = scripts_.size() + ended_.size() + 1; ended_.capacity() < all)
+    ended_.reserve(2 * all); // for end()
+  const auto place =
+      scripts_.emplace(key, std::make_unique<Script>(key, node, self, lastNumber_)).first;
   bySelf_.emplace(self, place->second.get());
   startQueue_.push_back(key);
   ++counts_.scripts;
@@ -137,7 +140,7 @@ bool ScriptHost::created(Script& script, XsResult result) {
   const bool initializing = script.pending == wire::Op::initialize;
   if (!script.nodeCopy) {
     if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
-    if (script.engine->tick) ticking_.push_back(liveOf(*script.node)->order);
+    if (script.engine->tick) ticking_.push_back(script.key);
   }
   if (initializing) {
     waitFor(script);
@@ -244,6 +247,8 @@ void ScriptHost::chargeProcesses() {
 void ScriptHost::stopAll() {
   const std::unordered_set<Key> beginning(startQueue_.begin(), startQueue_.end());
   uint64_t stopped = 0;
+  std::vector<NodeRef> kept; // without their handles, Scripts may lose their last references
+  for (const auto& [key, script] : scripts_) kept.emplace_back(script->node);
   for (const auto& [key, script] : scripts_) {
     if (script->stopped) continue;
     if (!script->engine && !script->startPending && !beginning.contains(key)) continue;

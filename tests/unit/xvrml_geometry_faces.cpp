@@ -232,6 +232,50 @@ TEST(GeometryFaces, TriangleLimitHolds) {
   EXPECT_NE(built.diagnostics.list()[0].message.find("triangles"), std::string::npos);
 }
 
+TEST(GeometryFaces, SimpleOutlinesOf12000CornersAreDrawn) {
+  const int n = 12000;
+  MFVec3f star, comb;
+  for (int i = 0; i < n; i++) {
+    const double angle = 2 * std::numbers::pi * i / n, r = i % 2 ? 1 : 0.1;
+    star.push_back({float(r * std::cos(angle)), float(r * std::sin(angle)), 0});
+  }
+  for (int i = 0; i < n; i++) { // long teeth on both sides, turned by 45 degrees
+    const bool back = i >= n / 2;
+    const float along = float(back ? n - 1 - i : i) / float(n / 2);
+    const float across = back ? 1.5f + 0.4f * float(i % 2) : float(i % 2);
+    comb.push_back({along - across, along + across, 0});
+  }
+  for (MFVec3f* outline : {&star, &comb}) {
+    const double expected = std::abs(shoelace(*outline));
+    Faces node = polygon(std::move(*outline), false);
+    const Built built = build(node);
+    EXPECT_EQ(built.diagnostics.warnings(), 0u);
+    double area = 0;
+    for (size_t t = 0; t < built.mesh.indices.size() / 3; t++)
+      area += std::abs(areaVector(built.mesh, t)[2]);
+    EXPECT_NEAR(area / expected, 1, 1e-3);
+  }
+}
+
+TEST(GeometryFaces, FacesWithoutTheirEndsAreReported) {
+  MFVec3f points;
+  for (int i = 0; i < 9; i++) points.push_back({float(i % 3), float(i / 3), 0});
+  MFInt32 joined; // eight triangles, of which none is ended by -1
+  for (const int i : {0, 1, 3, 4})
+    for (const int k : {i, i + 1, i + 4, i, i + 4, i + 3}) joined.push_back(k);
+  Faces garbage = faceSet(points, joined);
+  Built built = build(garbage);
+  ASSERT_EQ(built.diagnostics.warnings(), 1u);
+  EXPECT_NE(built.diagnostics.list()[0].message.find("is -1 missing between faces?"),
+            std::string::npos);
+  // A square with two holes, each joined to the outline by two edges, is as it should be.
+  MFVec3f holes{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 0}, {1, 1, 0}, {1, 2, 0},
+                {2, 2, 0}, {2, 1, 0}, {4, 1, 0}, {4, 2, 0}, {5, 2, 0}, {5, 1, 0}};
+  Faces outline = faceSet(holes, {0, 4, 5, 6, 7, 4, 0, 8, 9, 10, 11, 8, 0, 1, 2, 3});
+  Built plain = build(outline);
+  EXPECT_EQ(plain.diagnostics.warnings(), 0u);
+}
+
 TEST(GeometryFaces, HopelesslyTangledFacesAreRefused) {
   MFVec3f star; // every edge crosses nearly all others
   const int n = 5001;

@@ -77,6 +77,91 @@ TEST(RareMeshes, NamesOfFilesInObjAreNoUrls) {
   EXPECT_TRUE(holds(*world, "p%231.png")) << writeWorld(*world);
 }
 
+TEST(RareMeshes, ObjCornersNeedTheirVertexAlone) {
+  const std::string points = "v -2 -2 0 # first\nv 2 -2 0 #second\nv 2 2 0\nv -2 2 0\nvt 0 0\n";
+  const auto faces = [&](const std::string& rest) {
+    const auto world = loadWorldFromMemory(points + rest, "a.obj");
+    return messages(*world) + writeWorld(*world);
+  };
+  for (const char* good : {"f 1 2 3 # lower\n", "f 1 2 3#lower\n", "f 1// 2// 3//\n", "F 1 2 3\n",
+                           "f 1/1/ 2/1/ 3/1/\n", "f 1 2\\\n 3\n", "f\\\r\n 1 2 \\\r\n3",
+                           "fo 1/ 2/ 3/", "f 1/1 2 3/1 # mixed\n"}) {
+    const std::string text = faces(good);
+    EXPECT_NE(text.find("coordIndex [ 0 1 2 -1 ]"), std::string::npos) << good << text;
+    EXPECT_EQ(text.find("warning"), std::string::npos) << good << text;
+    EXPECT_EQ(text.find("error"), std::string::npos) << good << text;
+  }
+  for (const char* named : {"f 1/7 2/-9 3/0\n", "f 1/1/1 2/1/2 3/1/3\n", "f 1//x 2//y 3//z\n",
+                            "f 1.0 2.0 3.0\n", "f 1/1/1/1 2/1 3/1\n"}) {
+    const std::string text = faces(named);
+    EXPECT_NE(text.find("coordIndex [ 0 1 2 -1 ]"), std::string::npos) << named << text;
+    EXPECT_NE(text.find("1 faces or lines have corners"), std::string::npos) << named << text;
+  }
+  EXPECT_NE(faces("f 1 2 5\nf 1 2\nf a b c\n").find("3 faces, lines or points are left out"),
+            std::string::npos);
+}
+
+TEST(RareMeshes, MtlOfOtherPrograms) {
+  fileWith("other.mtl", "NEWMTL a # comment\nKD 0.5 0 0\nD 1\nTR 1\n"
+                        "newmtl b\nTr 1\nKd 0 0.5 0\nnewmtl c\nTr 0.25\nnewmtl d\nTr 0.5\nd 0.75\n"
+                        "newmtl e # 2\nd 0\n");
+  const auto load = [](const std::string& name) {
+    const auto world =
+        loadWorld(fileWith("other.obj", "mtllib other.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl " +
+                                            name + "\nf 1 2 3\n"));
+    return writeWorld(*world) + messages(*world);
+  };
+  EXPECT_EQ(load("b").find("transparency"), std::string::npos) << load("b");
+  EXPECT_NE(load("b").find("1 statements Tr 1 without a d: taken as opaque"), std::string::npos);
+  EXPECT_NE(load("c").find("transparency 0.25"), std::string::npos) << load("c");
+  EXPECT_NE(load("d").find("transparency 0.25"), std::string::npos) << load("d");
+  EXPECT_NE(load("a # comment").find("diffuseColor 0.5 0 0"), std::string::npos);
+  EXPECT_NE(load("b # comment").find("diffuseColor 0 0.5 0"), std::string::npos);
+  EXPECT_NE(load("e # 2").find("transparency 1"), std::string::npos);
+}
+
+TEST(RareMeshes, StlTextWithLinesOfItsOwn) {
+  const std::string facet = "facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n"
+                            " vertex 0 1 0\n end loop\nend facet\n";
+  const auto world = loadWorldFromMemory(
+      "solid a\ncolor 0.5 0.5 1\n" + facet + "x y\n" + facet + "end solid a\n", "a.stl");
+  EXPECT_TRUE(holds(*world, "coordIndex [ 0 1 2 -1 0 1 2 -1 ]")) << writeWorld(*world);
+  EXPECT_NE(messages(*world).find("2 lines are left out"), std::string::npos) << messages(*world);
+  // A text of another format is not taken for STL, and a binary file that begins so is none.
+  EXPECT_THROW(loadWorldFromMemory("solid ground\nand no facets\n", "a.wrl"), LoadError);
+  std::string binary = "solid ";
+  binary.resize(80, ' ');
+  binary += std::string("\x01\0\0\0", 4) + std::string(50, '\0') + "tail";
+  EXPECT_EQ(messages(*loadWorldFromMemory(binary, "a.stl")).find("lines"), std::string::npos);
+}
+
+TEST(RareMeshes, PlyHeadersOfOtherPrograms) {
+  const std::string data = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const std::string head = "ply\nformat ascii 1.0\nmade by x\nelement vertex 3\nproperty float x\n"
+                           "property float y\nproperty float z\nelement face 1\n"
+                           "property list uchar int vertex_indices\nend_header\n";
+  const auto unknown = loadWorldFromMemory(head + data, "a.ply");
+  EXPECT_TRUE(holds(*unknown, "coordIndex [ 0 1 2 -1 ]")) << writeWorld(*unknown);
+  EXPECT_NE(messages(*unknown).find("1 lines of the PLY header are passed over"),
+            std::string::npos);
+  std::string plain = head;
+  plain.erase(plain.find("made by x\n"), 10);
+  const auto marked = loadWorldFromMemory(plain + "\xef\xbb\xbf" + data, "a.ply");
+  EXPECT_EQ(messages(*marked), "");
+  EXPECT_TRUE(holds(*marked, "coordIndex [ 0 1 2 -1 ]")) << writeWorld(*marked);
+  // The first byte of the data is that of a line end, but lines end with CR here.
+  for (char& c : plain)
+    if (c == '\n') c = '\r';
+  plain.replace(plain.find("ascii"), 5, "binary_little_endian");
+  const float numbers[9] = {0.53926146f, 0, 0, 1, 0, 0, 0, 1, 0}; // 0x3f0a0d0a
+  std::string bytes(reinterpret_cast<const char*>(numbers), sizeof numbers);
+  ASSERT_EQ(bytes[0], '\n');
+  bytes += std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  const auto binary = loadWorldFromMemory(plain + bytes, "a.ply");
+  EXPECT_EQ(messages(*binary), "");
+  EXPECT_TRUE(holds(*binary, "coordIndex [ 0 1 2 -1 ]")) << writeWorld(*binary);
+}
+
 TEST(RareMeshes, AMaterialLibraryIsReadOnce) {
   const auto world = loadWorld(
       fileWith("twice.obj", "mtllib none.mtl\nmtllib none.mtl\nmtllib none.mtl\n" + triangleObj));

@@ -1,4 +1,5 @@
-// xvrml_parser_recovery.cpp: Tests that an error in a world costs only the node that contains it.
+// xvrml_parser_recovery.cpp: Tests that an error in a world costs no more than it must. What is
+// left of single values and lists is tested in xvrml_values_kept.cpp.
 #include <algorithm>
 
 #include "unit/xvrml_parser_support.h"
@@ -15,14 +16,16 @@ std::vector<std::string> rootTypes(const World& world) {
 
 using Names = std::vector<std::string>;
 
-TEST(ParserRecovery, ABadValueLosesItsNodeOnly) {
+TEST(ParserRecovery, ABadValueLosesItsFieldOnly) {
   const auto world = parse("Group { children [ Shape { } Transform { translation 1 2 children [ "
                            "Shape { } ] } WorldInfo { } ] } Group { }");
   EXPECT_EQ(world->diagnostics.errors(), 1u) << messages(*world);
   EXPECT_EQ(rootTypes(*world), (Names{"Group", "Group"}));
   const auto* group = nodeCast<nodes::Group>(world->scope.roots[0]);
-  ASSERT_EQ(group->children.size(), 2u);
-  EXPECT_EQ(group->children[1]->type().name, "WorldInfo");
+  ASSERT_EQ(group->children.size(), 3u);
+  EXPECT_EQ(nodeCast<nodes::Transform>(group->children[1])->translation, Vec3f());
+  EXPECT_EQ(nodeCast<nodes::Transform>(group->children[1])->children.size(), 1u);
+  EXPECT_EQ(group->children[2]->type().name, "WorldInfo");
 }
 
 TEST(ParserRecovery, AnUnknownNodeIsLeftOutWithAllInIt) {
@@ -65,23 +68,23 @@ TEST(ParserRecovery, ATextThatEndsEarlyKeepsWhatWasRead) {
 
 TEST(ParserRecovery, NamesThatWentWithANodeAreNotErrorsAgain) {
   const auto world =
-      parse("Torus { a DEF A Group { } } Group { children USE A } DEF B Transform { scale x "
-            "children DEF C Group { } } USE B USE C ROUTE B.translation TO C.translation");
-  EXPECT_EQ(world->diagnostics.errors(), 2u) << messages(*world); // the errors concern Torus and x
+      parse("Torus { a DEF A Group { } } Group { children USE A } Knot { b DEF B Transform { "
+            "children DEF C Group { } } } USE B USE C ROUTE B.translation TO C.translation");
+  EXPECT_EQ(world->diagnostics.errors(), 2u) << messages(*world); // they concern Torus and Knot
   EXPECT_GE(world->diagnostics.warnings(), 3u);
   EXPECT_TRUE(world->scope.names.empty());
   EXPECT_TRUE(world->scope.routes.empty());
 }
 
 TEST(ParserRecovery, APrototypeWithABadInterfaceIsLeftOutWhole) {
-  const auto world = parse("PROTO P [ field SFFloat x one field MFNode n [ Group { } ] ] { Shape { "
-                           "} Group { } } P { x 2 } Group { }");
+  const auto world = parse("PROTO P [ field SFNode x one field MFNode n [ Group { } ] ] { Shape { "
+                           "} Group { } } P { x NULL } Group { }");
   EXPECT_EQ(world->diagnostics.errors(), 1u) << messages(*world);
   EXPECT_EQ(rootTypes(*world), (Names{"Group"}));
 }
 
 TEST(ParserRecovery, ABadNodeInAPrototypeBody) {
-  const auto world = parse("PROTO P [ ] { Group { } Transform { scale x } Shape { } } P { }");
+  const auto world = parse("PROTO P [ ] { Group { } Torus { scale x } Shape { } } P { }");
   EXPECT_EQ(world->diagnostics.errors(), 1u);
   const auto& instance = dynamic_cast<ProtoInstance&>(*world->scope.roots.at(0));
   EXPECT_EQ(instance.body.roots.size(), 2u);

@@ -105,7 +105,10 @@ bool isTangled(std::span<const V3d> polygon, uint64_t budget) {
   if (uint64_t(n) * n / 2 <= budget) return false; // it cannot have that many
   Counter counter;
   counter.crossingBudget = budget;
-  counter.workBudget = 1000 * uint64_t(n) + 1'000'000;
+  // Long edges beside each other, as of a comb or a star, pass many of the small parts. The second
+  // term bounds the time for outlines of up to 100,000 points to a second.
+  counter.workBudget =
+      std::max(1000 * uint64_t(n), std::min<uint64_t>(10'000 * n, 200'000'000)) + 1'000'000;
   V2d low(polygon[0].x, polygon[0].y), high = low;
   std::vector<uint32_t> all(n);
   for (size_t i = 0; i < n; i++) {

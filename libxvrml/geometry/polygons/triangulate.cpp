@@ -239,7 +239,7 @@ class Triangulation {
   FaceSet& set_;
   std::span<const Vec3f> normals_;
   Faults& faults_;
-  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 20'000'000, walkBudget_ = 250'000'000;
+  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 300'000'000, walkBudget_ = 250'000'000;
   std::optional<Tessellator> tessellator_;
   std::vector<V3d> contour_;
   std::vector<uint32_t> triangles_;

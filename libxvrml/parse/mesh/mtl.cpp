@@ -26,13 +26,16 @@ class MtlReader {
     for (; !text_.atEnd(); text_.nextLine()) {
       if (text_.atLineEnd()) continue;
       at_ = text_.at();
-      const std::string_view word = text_.word();
+      const std::string word = lowerKeyword(text_.word()); // programs write them in any case
       if (word[0] == '#') continue;
       if (word == "newmtl")
         begin(text_.rest());
       else if (material_)
         statement(word);
     }
+    opaque_.report(locator_, Severity::warning,
+                   "statements Tr 1 without a d: taken as opaque, as the programs that write them "
+                   "mean it");
     bad_.report(locator_, Severity::warning,
                 "statements without the numbers that they need are "
                 "left out");
@@ -53,27 +56,27 @@ class MtlReader {
 
   void statement(std::string_view word) {
     ObjMaterial& m = *material_;
-    if (word == "Kd")
+    if (word == "kd")
       m.hasDiffuse = color(m.diffuse) || m.hasDiffuse;
-    else if (word == "Ks")
+    else if (word == "ks")
       color(m.specular);
-    else if (word == "Ke")
+    else if (word == "ke")
       color(m.emissive);
-    else if (word == "Ns")
+    else if (word == "ns")
       number(m.exponent);
     else if (word == "d")
       dissolve(m);
-    else if (word == "Tr")
-      m.opacity = number(m.opacity) ? 1 - m.opacity : m.opacity;
+    else if (word == "tr")
+      transparency(m);
     else if (word == "illum")
       illumination(m);
-    else if (word == "Pr")
+    else if (word == "pr")
       m.physical = number(m.roughness) || m.physical;
-    else if (word == "Pm")
+    else if (word == "pm")
       m.physical = number(m.metallic) || m.physical;
-    else if (word == "map_Kd")
+    else if (word == "map_kd")
       map(m.diffuseMap);
-    else if (word == "map_Ke")
+    else if (word == "map_ke")
       map(m.emissiveMap);
     else if (word == "norm")
       map(m.normalMap);
@@ -105,7 +108,16 @@ class MtlReader {
   void dissolve(ObjMaterial& m) { // "d 0.5", "d -halo 0.5"
     const char* before = text_.at();
     if (text_.word() != "-halo") text_.seek(before);
-    number(m.opacity);
+    m.hasDissolve = number(m.opacity) || m.hasDissolve;
+  }
+
+  // Tr is not in the format. It is 1 - d to most programs, and d to others, which write "Tr 1" for
+  // what is opaque. So d decides where both are given, and Tr never hides a material.
+  void transparency(ObjMaterial& m) {
+    float value = 0;
+    if (!number(value) || m.hasDissolve) return;
+    if (value >= 1) opaque_.add(at_);
+    m.opacity = value >= 1 ? 1 : 1 - value;
   }
 
   void illumination(ObjMaterial& m) {
@@ -160,7 +172,7 @@ class MtlReader {
   ObjMaterials& materials_;
   ObjMaterial* material_ = nullptr;
   const char* at_ = nullptr;
-  FaultCount bad_, maps_;
+  FaultCount bad_, maps_, opaque_;
 };
 
 // Names of files may hold '#', which begins a fragment in a URL.
@@ -260,13 +272,18 @@ void readMtl(const MeshFile& file, std::string_view name, const char* at, ObjMat
     const Source source = Source::open(resolved.path, file.options.limits, file.budget);
     const auto path = std::make_shared<const std::string>(resolved.path);
     Locator locator(source.text(), path, file.locator.diagnostics());
-    MtlReader(source.text(), resolved.path, locator, materials).read();
+    MtlReader(withoutDosEnd(source.text()), resolved.path, locator, materials).read();
   } catch (const LoadError& error) { throw MeshFault{at, error.diagnostic.text()}; }
 }
 
 void writeObjAppearance(NodeStream& nodes, const MeshFile& file, ObjMaterials& materials,
                         const std::string& name, bool lit) {
-  const auto found = materials.find(name);
+  auto found = materials.find(name);
+  if (found == materials.end()) { // names may hold '#', but a comment may follow, too
+    std::string_view bare = std::string_view(name).substr(0, name.find('#'));
+    while (!bare.empty() && TextCursor::isSpace(bare.back())) bare.remove_suffix(1);
+    found = materials.find(std::string(bare));
+  }
   ObjMaterial* m = found == materials.end() ? nullptr : &found->second;
   if (!lit) return writeUnlit(nodes, m);
   if (m && !m->def.empty()) return nodes.useIn("appearance", m->def);

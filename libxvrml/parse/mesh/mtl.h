@@ -20,9 +20,10 @@ struct ObjTexture {
 struct ObjMaterial {
   Color diffuse{0.8f, 0.8f, 0.8f}, specular, emissive;
   bool hasDiffuse = false;
-  float exponent = 25.6f; // Ns
-  float opacity = 1;      // d, or 1 - Tr
-  int illumination = 2;   // illum; below 2: no highlights
+  float exponent = 25.6f;   // Ns
+  float opacity = 1;        // d, or 1 - Tr
+  bool hasDissolve = false; // d is given
+  int illumination = 2;     // illum; below 2: no highlights
   // The physical extension (Pr, Pm, norm)
   bool physical = false;
   float roughness = 1, metallic = 0;

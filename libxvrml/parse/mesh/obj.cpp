@@ -69,6 +69,9 @@ class ObjReader {
                       "lines without the numbers that they need; their values are taken as 0");
     badFaces_.report(file_.locator, Severity::error,
                      "faces, lines or points are left out: expected indices of vertices above");
+    badCorners_.report(file_.locator, Severity::warning,
+                       "faces or lines have corners that name texture coordinates or normals which "
+                       "the file does not have above; they are drawn without these");
     freeForm_.report(file_.locator, Severity::warning,
                      "statements of free-form curves and surfaces are left out");
     for (Part& part : parts_) write(part);
@@ -77,44 +80,95 @@ class ObjReader {
 
  private:
   void statement(std::string_view word) {
+    if (word.back() == '\\') { // the statement continues in the next line
+      word.remove_suffix(1);
+      text_.seek(text_.at() - 1);
+    }
+    if (!readNumbers(word) && !readState(word) && !readNumbers(lowerKeyword(word)) &&
+        !readState(lowerKeyword(word)))
+      readOther(word);
+  }
+
+  // Statements of numbers and indices. Returns false for other keywords.
+  bool readNumbers(std::string_view word) {
+    constexpr std::string_view keywords[] = {"v", "vt", "vn", "f", "fo", "l", "p"};
+    if (std::find(std::begin(keywords), std::end(keywords), word) == std::end(keywords))
+      return false;
+    const TextCursor whole = text_;
+    const bool plain = isPlainLine();
+    if (!plain) joinLines();
     if (word == "v")
       readVertex();
     else if (word == "vt")
       readValue(texCoords_, 1);
     else if (word == "vn")
       readValue(normals_, 3);
-    else if (word == "f" || word == "fo")
-      readElement(MeshKind::faces);
     else if (word == "l")
       readElement(MeshKind::lines);
     else if (word == "p")
       readElement(MeshKind::points);
     else
-      readState(word);
+      readElement(MeshKind::faces);
+    if (plain) return true;
+    text_ = whole;
+    text_.seek(lastLine_);
+    return true;
   }
 
-  // Statements that say how the following elements are.
-  void readState(std::string_view word) {
-    if (word[0] == '#') return;
-    part_ = nullptr;
+  // Returns whether the rest of the line has neither a comment nor a continuation. Most lines have
+  // none, and are read where they stand.
+  bool isPlainLine() const {
+    for (const char* p = text_.at(); p < text_.end() && *p != '\n' && *p != '\r'; ++p)
+      if (*p == '#' || *p == '\\') return false;
+    return true;
+  }
+
+  // Goes on with a copy of the statement in one line: without comments, which begin at any '#', and
+  // with the lines that a backslash at the end of a line joins.
+  void joinLines() {
+    joined_.clear();
+    for (bool continues = true; continues;) {
+      std::string_view line = text_.rest();
+      lastLine_ = text_.at();
+      line = line.substr(0, line.find('#'));
+      continues = line.ends_with('\\') && !text_.atEnd();
+      if (line.ends_with('\\')) line.remove_suffix(1);
+      if (joined_.capacity() < joined_.size() + line.size() + 1) {
+        scratch_.take(joined_.size() + line.size() + 1);
+        joined_.reserve(2 * (joined_.size() + line.size() + 1));
+      }
+      joined_.append(line) += ' ';
+      if (continues) text_.nextLine();
+    }
+    text_ = TextCursor(joined_);
+  }
+
+  // Statements that say how the following elements are. Returns false for other keywords.
+  bool readState(std::string_view word) {
+    if (word.empty() || word[0] == '#') return true;
     if (word == "o") {
       object_ = text_.rest();
       group_ = {};
     } else if (word == "g") {
       group_ = text_.rest();
     } else if (word == "s") {
-      smoothing_ = text_.rest();
+      smoothing_ = text_.word();
+      smoothing_ = smoothing_.substr(0, smoothing_.find('#'));
       if (smoothing_ == "off") smoothing_ = "0";
     } else if (word == "usemtl") {
       material_ = text_.rest();
     } else if (word == "mtllib") {
       readLibraries();
     } else {
-      readOther(word);
+      return false;
     }
+    part_ = nullptr;
+    return true;
   }
 
-  void readOther(std::string_view word) {
+  void readOther(std::string_view spelled) {
+    part_ = nullptr;
+    const std::string word = lowerKeyword(spelled);
     constexpr std::string_view freeForm[] = {"cstype", "deg",  "bmat", "step", "curv",
                                              "curv2",  "surf", "parm", "trim", "hole",
                                              "scrv",   "sp",   "end",  "con",  "vp"};
@@ -125,10 +179,10 @@ class ObjReader {
     if (std::find(std::begin(freeForm), std::end(freeForm), word) != std::end(freeForm))
       return freeForm_.add(at_);
     if (std::find(std::begin(display), std::end(display), word) != std::end(display)) return;
-    if (unknown_.size() < 20 && unknown_.emplace(word.substr(0, 100)).second)
+    if (unknown_.size() < 20 && unknown_.emplace(spelled.substr(0, 100)).second)
       file_.locator.warn(at_, fmt::format("{} is no statement of an OBJ file; such lines are left "
                                           "out",
-                                          describe(Name{word, at_})));
+                                          describe(Name{spelled, at_})));
   }
 
   // A file name may contain blanks; several names stand in one line.
@@ -150,6 +204,7 @@ class ObjReader {
     text_.seek(at);
     while (!text_.atLineEnd()) {
       const std::string_view name = text_.word();
+      if (name[0] == '#') return; // a comment
       try {
         readMtl(file_, name, name.data(), materials_);
       } catch (const MeshFault& fault) { report(fault); }
@@ -173,7 +228,7 @@ class ObjReader {
   void readVertex() {
     float numbers[7] = {};
     int count = 0;
-    while (count < 7 && !atStatementEnd() && text_.number(numbers[count])) ++count;
+    while (count < 7 && !text_.atLineEnd() && text_.number(numbers[count])) ++count;
     if (count < 7) numbers[count] = 0; // a number out of range
     if (count < 3) badValues_.add(at_);
     grow(points_);
@@ -189,7 +244,7 @@ class ObjReader {
     T value;
     float* numbers = &value.x;
     int count = 0;
-    while (count < int(sizeof(T) / sizeof(float)) && !atStatementEnd() &&
+    while (count < int(sizeof(T) / sizeof(float)) && !text_.atLineEnd() &&
            text_.number(numbers[count]))
       ++count;
     if (count < needed) {
@@ -198,18 +253,6 @@ class ObjReader {
     }
     grow(list);
     list.push_back(value);
-  }
-
-  // Returns whether the statement is at its end. A backslash at the end of a line continues it.
-  bool atStatementEnd() {
-    for (;;) {
-      if (text_.atLineEnd()) return true;
-      const char* next = text_.at() + 1;
-      const bool continues =
-          *text_.at() == '\\' && (next == text_.end() || *next == '\n' || *next == '\r');
-      if (!continues) return false;
-      text_.nextLine();
-    }
   }
 
   // Reads an index of a list: from 1, or from -1 backwards.
@@ -229,24 +272,33 @@ class ObjReader {
     return true;
   }
 
-  // "v", "v/vt", "v//vn", "v/vt/vn"
-  bool readCorner(Corner& corner) {
+  // Reads an index behind a '/'. An index that is not written is none.
+  bool readOptionalIndex(size_t listSize, int32_t& out) {
+    if (text_.atEnd() || *text_.at() == '/' || TextCursor::isSpace(*text_.at())) return true;
+    if (readIndex(listSize, out)) return true;
+    out = -1;
+    return false;
+  }
+
+  // "v", "v/vt", "v//vn", "v/vt/vn"; also "v/", "v//" and "v/vt/". Returns false if the vertex is
+  // not one of the file's. `good` becomes false if anything else cannot be read.
+  bool readCorner(Corner& corner, bool& good) {
     corner = {};
     if (!readIndex(points_.size(), corner.coord)) return false;
-    if (accept('/')) {
-      const bool empty = !text_.atEnd() && *text_.at() == '/';
-      if (!empty && !readIndex(texCoords_.size(), corner.texCoord)) return false;
-      if (accept('/') && !readIndex(normals_.size(), corner.normal)) return false;
-    }
-    return text_.atEnd() || TextCursor::isSpace(*text_.at());
+    if (accept('/')) good = readOptionalIndex(texCoords_.size(), corner.texCoord) && good;
+    if (accept('/')) good = readOptionalIndex(normals_.size(), corner.normal) && good;
+    if (text_.atEnd() || TextCursor::isSpace(*text_.at())) return true;
+    good = false;
+    text_.word(); // what else is glued to it
+    return true;
   }
 
   void readElement(MeshKind kind) {
     corners_.clear();
-    bool texCoords = true, normals = true;
-    while (!atStatementEnd()) {
+    bool texCoords = true, normals = true, good = true;
+    while (!text_.atLineEnd()) {
       Corner corner;
-      if (!readCorner(corner)) return badFaces_.add(at_);
+      if (!readCorner(corner, good)) return badFaces_.add(at_);
       texCoords = texCoords && corner.texCoord >= 0;
       normals = normals && corner.normal >= 0;
       grow(corners_);
@@ -254,6 +306,7 @@ class ObjReader {
     }
     const size_t least = kind == MeshKind::faces ? 3 : kind == MeshKind::lines ? 2 : 1;
     if (corners_.size() < least) return badFaces_.add(at_);
+    if (!good) badCorners_.add(at_);
     const bool faces = kind == MeshKind::faces;
     addElement(partFor(kind, faces && texCoords, faces && normals));
   }
@@ -352,7 +405,9 @@ class ObjReader {
   TextCursor text_;
   Scratch scratch_;
   NodeStream nodes_;
-  const char* at_ = nullptr; // the statement that is being read
+  const char* at_ = nullptr;       // the statement that is being read
+  std::string joined_;             // a copy of that statement, if it is not plain
+  const char* lastLine_ = nullptr; // where the last line of the joined statement ends
   MFVec3f points_, normals_;
   MFColor colors_;
   MFVec2f texCoords_;
@@ -366,7 +421,7 @@ class ObjReader {
   std::vector<int32_t> places_;
   std::set<std::string> unknown_;
   std::set<std::string, std::less<>> libraries_; // the lines that name them
-  FaultCount badValues_, badFaces_, freeForm_;
+  FaultCount badValues_, badFaces_, badCorners_, freeForm_;
 };
 
 } // namespace

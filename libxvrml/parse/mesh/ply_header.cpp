@@ -61,9 +61,10 @@ class HeaderReader {
   explicit HeaderReader(const MeshFile& file) : file_(file), text_(file.bytes) {}
 
   PlyHeader read() {
-    text_.nextLine(); // "ply"
+    findLineEnd();
+    nextLine(); // "ply"
     bool formatted = false;
-    for (;; text_.nextLine()) {
+    for (;; nextLine()) {
       const char* at = text_.at();
       if (text_.atEnd()) fail(at, "end_header, found the end of the file");
       const std::string_view word = text_.word();
@@ -77,13 +78,18 @@ class HeaderReader {
       else if (word == "comment")
         readComment();
       else if (word != "obj_info" && !word.empty())
-        fail(at, fmt::format("a line of a PLY header (format, element, property, comment, "
-                             "end_header), found {}",
-                             describe(Name{word, at})));
+        unknown_.add(at);
     }
-    text_.nextLine();
+    nextLine();
+    unknown_.report(file_.locator, Severity::error,
+                    "lines of the PLY header are passed over: expected format, element, property, "
+                    "comment or end_header");
     if (!formatted) fail(file_.bytes.data(), "a line 'format ascii 1.0' in the PLY header");
     header_.bytes = size_t(text_.at() - file_.bytes.data());
+    // A program that writes a file in two parts may put a mark before each.
+    if (header_.order == PlyOrder::text &&
+        file_.bytes.substr(header_.bytes).starts_with("\xef\xbb\xbf"))
+      header_.bytes += 3;
     for (const PlyElement& element : header_.elements) {
       if (element.name == "vertex")
         header_.vertices = std::min<uint64_t>(element.count, INT32_MAX / 4);
@@ -99,6 +105,21 @@ class HeaderReader {
  private:
   [[noreturn]] void fail(const char* at, std::string_view expected) {
     throw MeshFault{at, fmt::format("expected {}", expected)};
+  }
+
+  // The first line says how the lines of the header end. Behind a header of CR alone, a byte 0x0A
+  // belongs to the data.
+  void findLineEnd() {
+    const size_t end = std::min(file_.bytes.find_first_of("\r\n"), file_.bytes.size());
+    const std::string_view rest = file_.bytes.substr(end);
+    carriageReturns_ = rest.starts_with('\r') && !rest.starts_with("\r\n");
+  }
+  void nextLine() {
+    text_.rest();
+    if (carriageReturns_ && !text_.atEnd() && *text_.at() == '\r')
+      text_.seek(text_.at() + 1);
+    else
+      text_.nextLine();
   }
 
   bool readFormat() {
@@ -177,6 +198,8 @@ class HeaderReader {
   const MeshFile& file_;
   TextCursor text_;
   PlyHeader header_;
+  bool carriageReturns_ = false; // lines of the header end with CR alone
+  FaultCount unknown_;
 };
 
 } // namespace

@@ -13,6 +13,7 @@
 #include "parse/mesh/node_stream.h"
 #include "parse/mesh/text_cursor.h"
 #include "parse/mesh/weld.h"
+#include "parse/source.h"
 
 namespace xvrml {
 namespace {
@@ -65,7 +66,7 @@ void writeSolid(const MeshFile& file, NodeStream& nodes, Solid&& solid) {
 class TextReader {
  public:
   explicit TextReader(const MeshFile& file)
-      : file_(file), nodes_(file), text_(file.bytes), scratch_(file.budget) {}
+      : file_(file), nodes_(file), text_(withoutDosEnd(file.bytes)), scratch_(file.budget) {}
 
   void read() {
     for (text_.skipSpace(); !text_.atEnd(); text_.skipSpace()) statement();
@@ -75,6 +76,9 @@ class TextReader {
     }
     bad_.report(file_.locator, Severity::error,
                 "facets are left out, because they do not have three vertices of three numbers");
+    unknown_.report(file_.locator, Severity::error,
+                    "lines are left out: expected a statement of an STL file (facet, vertex, "
+                    "endsolid)");
   }
 
  private:
@@ -91,20 +95,29 @@ class TextReader {
       facetAt_ = at;
       vertices_ = 0;
       text_.nextLine();
-    } else if (is(word, "endfacet")) {
+    } else if (is(word, "endfacet") || endsTwoWords(word, "facet")) {
       endFacet();
     } else if (is(word, "solid")) {
       if (open_) finish();
       open_ = true;
       solid_.name = text_.rest();
-    } else if (is(word, "endsolid")) {
+    } else if (is(word, "endsolid") || endsTwoWords(word, "solid")) {
       text_.nextLine();
       finish();
-    } else if (!is(word, "endloop") && !is(word, "outer") && !is(word, "loop")) {
-      throw MeshFault{at, fmt::format("expected a statement of an STL file (facet, vertex, "
-                                      "endsolid), found {}; the rest of the file is left out",
-                                      describe(Name{word, at}))};
+    } else if (!is(word, "endloop") && !is(word, "outer") && !is(word, "loop") &&
+               !endsTwoWords(word, "loop")) {
+      unknown_.add(at);
+      text_.nextLine();
     }
+  }
+
+  // Some programs write "end loop" for "endloop". Moves behind both words if they are these.
+  bool endsTwoWords(std::string_view first, std::string_view second) {
+    if (!is(first, "end")) return false;
+    const char* before = text_.at();
+    if (is(text_.word(), second)) return true;
+    text_.seek(before);
+    return false;
   }
 
   void endFacet() {
@@ -130,7 +143,7 @@ class TextReader {
   Vec3f facet_[3];
   int vertices_ = 0;
   const char* facetAt_ = nullptr;
-  FaultCount bad_;
+  FaultCount bad_, unknown_;
 };
 
 // Colours of facets in 15 bits. Magics: the header holds "COLOR=" with red, green, blue, alpha;
@@ -209,19 +222,34 @@ bool isBinaryStl(std::string_view bytes) {
   return count > 0 && uint64_t(headBytes) + uint64_t(facetBytes) * count == bytes.size();
 }
 
+namespace {
+
+// Returns whether the beginning of a file is a text that begins with "solid". Binary files, whose
+// header may be that word, have zeros in their numbers.
+bool beginsAsText(std::string_view begin) {
+  TextCursor text(begin);
+  text.skipSpace();
+  return is(text.word(), "solid") && std::all_of(begin.begin(), begin.end(), [](char c) {
+           return static_cast<unsigned char>(c) >= ' ' || TextCursor::isSpace(c) || c == '\x1a';
+         });
+}
+
+} // namespace
+
+// Some programs write lines of their own between "solid" and the first "facet".
 bool isAsciiStl(std::string_view bytes) {
-  TextCursor text(bytes.substr(0, 4096));
-  text.skipSpace();
-  if (!is(text.word(), "solid")) return false;
-  text.nextLine();
-  text.skipSpace();
-  const std::string_view second = text.word();
-  return is(second, "facet") || is(second, "endsolid");
+  const std::string_view begin = bytes.substr(0, 4096);
+  if (!beginsAsText(begin)) return false;
+  TextCursor text(begin);
+  for (text.nextLine(); !text.atEnd(); text.nextLine()) {
+    const std::string_view word = text.word();
+    if (is(word, "facet") || is(word, "endsolid")) return true;
+  }
+  return false;
 }
 
 void readStl(const MeshFile& file) {
-  // Some programs begin the header of a binary file with "solid".
-  if (!isBinaryStl(file.bytes) && isAsciiStl(file.bytes))
+  if (!isBinaryStl(file.bytes) && beginsAsText(file.bytes.substr(0, 4096)))
     TextReader(file).read();
   else
     readBinary(file);

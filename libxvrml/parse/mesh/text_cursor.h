@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "base/number.h"
@@ -68,5 +69,12 @@ class TextCursor {
   const char* p_;
   const char* end_;
 };
+
+// Returns a keyword in lower case. No keyword has more than 20 letters.
+inline std::string lowerKeyword(std::string_view word) {
+  std::string lower(word.substr(0, 21));
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  return lower;
+}
 
 } // namespace xvrml

@@ -26,7 +26,14 @@ const NodeType* foreignType(std::string_view name) {
 
 Reader::Reader(Locator& locator, const Limits& limits, Budget& budget, uint64_t nesting)
     : locator_(locator), limits_(limits), lexer_(locator), values_(lexer_, limits, &budget),
-      budget_(budget), nesting_(nesting) {}
+      budget_(budget), nesting_(nesting) {
+  // In a list of numbers a word begins what follows, except those that stand for no number.
+  values_.keepElements([](const Token& word) {
+    std::string lower(word.text.substr(0, 3));
+    for (char& c : lower) c = char(c | 0x20);
+    return lower != "nan" && lower != "inf";
+  });
+}
 
 Tree Reader::read() {
   while (!lexer_.peek().is(TokenKind::end)) {
