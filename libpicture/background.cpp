@@ -31,10 +31,6 @@ constexpr Named colours[] = {
     {"teal", 0x008080},    {"aqua", 0x00ffff},    {"cyan", 0x00ffff},  {"orange", 0xffa500},
 };
 
-float linearOf(float v) {
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
-
 [[noreturn]] void refuse(const std::string& text) {
   throw std::invalid_argument(fmt::format("{} was expected, not \"{}\"", backgroundForms, text));
 }

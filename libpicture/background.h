@@ -1,7 +1,7 @@
 // background.h: Chooses and draws what is visible where no geometry is: the world's own Background,
 // nothing, one colour or a picture. For every choice except the first, the world is rendered
 // without its Background, and the finished picture is composited over the colours by its alpha.
-// [any thread]
+// A backdrop is put behind what screens show only (Picture::backdrop). [any thread]
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@
 namespace picture {
 
 struct Background {
-  enum class Kind : unsigned char { world, none, colour, file } kind = Kind::world;
+  // backdrop: a colour that screens and files for them show, and programs do not read
+  enum class Kind : unsigned char { world, none, colour, file, backdrop } kind = Kind::world;
   // display values from 0 to 1 (sRGB-encoded); linear pictures convert them to linear
   std::array<float, 3> colour{};
   std::string file; // png, jpg or gif; exr, hdr and pfm hold radiance
@@ -30,8 +31,8 @@ inline constexpr const char* backgroundForms =
 // it covers the frame; it is neither rotated nor stretched.
 class BackgroundLayer {
  public:
-  // Reads the file, if there is one; throws std::runtime_error that names it. With Kind::none and
-  // Kind::world, nothing is drawn.
+  // Reads the file, if there is one; throws std::runtime_error that names it. With the other
+  // kinds, nothing is drawn here; Picture::backdrop is for Kind::backdrop.
   BackgroundLayer(const Background& background, bool linear);
   // Composites the plane `rgba` (premultiplied colours, first row at the top) over the background.
   // Every pixel is opaque afterwards.

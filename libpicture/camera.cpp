@@ -156,6 +156,13 @@ void sideView(Side side, xvrml::Axis axis, double view[16]) {
   std::copy_n(columns, 16, view);
 }
 
+// Shows the whole world along the axes of a view: all that a turn brings, or just what is seen.
+xvrml::CameraSettings around(const xvrml::OpenRTMapper& mapper, const View& view,
+                             const double axes[16], double fovy, double aspect) {
+  return view.turns ? xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect)
+                    : xvrml::cameraAround(mapper.bounds(), axes, fovy, aspect);
+}
+
 // Shows a model from three quarters, or a figure in the x-y plane from the front.
 xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy,
                                   double aspect) {
@@ -165,7 +172,7 @@ xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View&
   } else if (const xvrml::UpGuess guess = mapper.guessUp(); !guess.frontal) {
     xvrml::threeQuarterView(guess.axis, axes);
   }
-  return xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect);
+  return around(mapper, view, axes, fovy, aspect);
 }
 
 } // namespace
@@ -222,13 +229,11 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
   if (view.side) {
     double axes[16];
     sideView(*view.side, upOf(mapper, view), axes);
-    camera = view.turns ? xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect)
-                        : xvrml::cameraAround(mapper.bounds(), axes, fovy, aspect);
+    camera = around(mapper, view, axes, fovy, aspect);
   } else if (view.lookAt) {
     lookAtMatrix(view, camera.matrix);
     camera.fovy = fovy;
-    if (view.fit)
-      camera = xvrml::cameraAround(mapper.boundingSphere(), camera.matrix, fovy, aspect);
+    if (view.fit) camera = around(mapper, view, camera.matrix, fovy, aspect);
   } else if (view.viewer && !view.viewpoint && !view.fit) {
     camera = *view.viewer;
     if (view.fov) camera.fovy = fovy;

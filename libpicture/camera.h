@@ -59,7 +59,8 @@ struct View {
   bool fit = false;
   // The whole world from this side; it replaces the direction of viewpoint and lookAt.
   std::optional<Side> side;
-  bool turns = false; // with side: at such a distance that a full turn stays in the picture
+  // With side or fit, and for models: at such a distance that a full turn stays in the picture.
+  bool turns = false;
   // camera of a running world; it replaces the first Viewpoint
   std::optional<xvrml::CameraSettings> viewer;
   // none: y if a Viewpoint is bound, otherwise what the world suggests

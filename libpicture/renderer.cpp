@@ -187,11 +187,13 @@ struct Renderer::Impl {
     if (!reconstruction) reconstruction.emplace(frame.threads);
     if (frame.denoiser == Denoiser::oidn && !denoiser) denoiser = newDenoiser(frame.threads);
     const bool transparent = result.picture.transparent;
+    const auto backdrop = result.picture.backdrop;
     result.picture = reconstruction->add(
         result.picture, {camera, double(frame.width) / frame.height}, 1, denoiser.get());
     if (const std::string& problem = reconstruction->facts().problem; !problem.empty())
       throw RenderError(problem);
     result.picture.transparent = transparent;
+    result.picture.backdrop = backdrop;
     result.picture.note = previewNote(frame.samples, denoiser ? denoiser->name() : "");
     result.renderSeconds += reconstruction->facts().seconds;
     lastEnd = Clock::now();

@@ -230,7 +230,9 @@ void Stage::prepare(const View& view) {
                                                                              : settings.headlight);
   mapper_->setModelLight(settings.environment.empty() && !studio);
   // otherwise alpha is the coverage by shapes
-  mapper_->setBackground(settings.background.kind == Background::Kind::world && !studio);
+  mapper_->setBackground((settings.background.kind == Background::Kind::world ||
+                          settings.background.kind == Background::Kind::backdrop) &&
+                         !studio);
   readBackground();
   shown_ = cameraOf(view);
   std::optional<View::Pinhole> pinhole = view.pinhole;
@@ -296,6 +298,8 @@ void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t cha
   picture.view = frame.view;
   picture.depthAlongRay = frame.quality.whole(RT_DEPTH_ALONG) == RT_DEPTH_ALONG_RAY;
   picture.transparent = frame.background.kind == Background::Kind::none;
+  if (frame.background.kind == Background::Kind::backdrop)
+    picture.backdrop = frame.background.colour;
   if (hasNames(channels)) picture.names = mapper_->names();
 }
 

@@ -85,7 +85,7 @@ void decodeFacts(std::string_view bytes, uint64_t at, SumsFacts& facts, SumsView
   facts.linear = reader.number<uint8_t>() != 0;
   facts.depthAlongRay = reader.number<uint8_t>() != 0;
   const auto kind = reader.number<uint8_t>();
-  if (kind > uint8_t(Background::Kind::file)) throw BrokenFile("it is damaged: its background");
+  if (kind > uint8_t(Background::Kind::backdrop)) throw BrokenFile("it is damaged: its background");
   facts.background.kind = Background::Kind(kind);
   for (float& c : facts.background.colour) c = reader.number<float>();
   view = decodeView(reader);
@@ -277,6 +277,8 @@ Picture pictureOf(const Sums& sums, const SumsFacts& facts) {
   picture.linear = facts.linear;
   picture.depthAlongRay = facts.depthAlongRay;
   picture.transparent = facts.background.kind == Background::Kind::none;
+  if (facts.background.kind == Background::Kind::backdrop)
+    picture.backdrop = facts.background.colour;
   picture.names = facts.names;
   for (const Channel& channel : channelTable()) {
     if (!(info.channels & channel.bit)) continue;

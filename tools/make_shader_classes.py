@@ -42,8 +42,9 @@ def row(p):
     default = p.get("default")
     if p["type"] == "matrix":
         default = None
-    low, high = p.get("minimum", 0), p.get("maximum", 0)
-    span = "" if low == high else f"{number(low)} .." if high > 1e37 else f"{number(low)} .. {number(high)}"
+    low, high = p.get("minimum"), p.get("maximum")  # None: no bound
+    ends = [number(end) if end is not None and abs(end) < 1e37 else "" for end in (low, high)]
+    span = "" if low == high or ends == ["", ""] else " .. ".join(ends).strip()
     kind = p["type"] + ("" if p.get("per", "shader") == "shader" else ", per " + p["per"])
     return f"| `{p['name']}` | {kind} | {value(default)} | {span} | {p['text']} |"
 

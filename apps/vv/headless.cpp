@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "bare_model.h"
 #include "ending.h"
 #include "inputs.h"
 #include "libpicture/files/atomic_file.h"
+#include "look.h"
 #include "options/shader_text.h"
 #include "outputs.h"
 #include "pictures.h"
@@ -70,7 +70,7 @@ class Headless {
     browser_ = startWorld(std::move(read), options_, problems_);
     const double startSeconds = secondsSinceStart() - before;
     const xvrml::World& world = browser_->world();
-    chooseBackground(options_, world);
+    if (options_.makesPictures()) chooseLook(options_, world, options_.render);
     protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) {
       if (!options_.check)

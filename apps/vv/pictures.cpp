@@ -589,6 +589,18 @@ class Pictures {
     made.view.exposure = *exposure_;
   }
 
+  // Says once that a picture for screens is white for the most part.
+  void sayBrightness(const picture::Picture& made) {
+    const bool shown =
+        std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
+          return output.film != picture::FilmKind::none || output.format->appliesCurve;
+        });
+    if (options_.quiet || !shown || options_.falseColour || brightnessSaid_) return;
+    const std::string hint = tooBrightHint(made);
+    brightnessSaid_ = !hint.empty();
+    if (brightnessSaid_) say("vv: " + hint);
+  }
+
   // Says once that the pictures are biased.
   void sayBias(const picture::Picture& made) {
     if (made.note.empty() || std::exchange(biasSaid_, true) || options_.quiet) return;
@@ -614,6 +626,7 @@ class Pictures {
     fitExposure(result.picture);
     if (options_.denoise) denoise(job, result);
     sayBias(result.picture);
+    if (!result.interrupted) sayBrightness(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
     writePictures(job, result.picture, coloured, !result.interrupted, Which::shown);
     if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture, Which::shown);
@@ -730,7 +743,7 @@ class Pictures {
   std::unique_ptr<Checkpoint> checkpoint_; // of a picture whose sums are kept; else null
   std::vector<std::string> names_;         // of channel id, before the picture is finished
   bool saveFailed_ = false;                // a write of the file of --resume has failed
-  bool biasSaid_ = false;
+  bool biasSaid_ = false, brightnessSaid_ = false;
   bool anyWorker_ = false; // a worker has been connected
   struct OpenFilm {
     const Output* of = nullptr;
@@ -757,6 +770,7 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   wanted.linear = made.linear;
   wanted.view = made.view;
   wanted.transparent = made.transparent;
+  wanted.backdrop = made.backdrop;
   wanted.names = made.names;
   wanted.note = made.note;
   wanted.denoisedBy = made.denoisedBy;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "arrays.h"
 #include "expectation.h"
 #include "nearest.h"
 #include "numbers.h"
@@ -264,8 +265,8 @@ py::sequence sequenceOf(const py::handle& object, const Target& target) {
 
 // Returns a read-only copy, so that `node.point[0] = ...` fails; it could not change the node.
 template <class T> py::object readOnly(const T* data, std::vector<py::ssize_t> shape) {
-  py::array_t<T> array(std::move(shape));
-  if (array.size()) std::memcpy(array.mutable_data(), data, size_t(array.nbytes()));
+  py::array_t<T> array = newArray<T>(std::move(shape));
+  if (array.size()) std::memcpy(array.mutable_data(), data, size_t(array.size()) * sizeof(T));
   array.attr("setflags")(py::arg("write") = false);
   return array;
 }
@@ -335,7 +336,7 @@ struct ToPython {
     return readOnly(flipped.data(), {v.height, v.width, v.components});
   }
   py::object operator()(const MFBool& v) const {
-    py::array_t<bool> array(py::ssize_t(v.size()));
+    py::array_t<bool> array = newArray<bool>({py::ssize_t(v.size())});
     for (size_t i = 0; i < v.size(); ++i) array.mutable_at(py::ssize_t(i)) = v[i];
     array.attr("setflags")(py::arg("write") = false);
     return array;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "arrays.h"
 #include "cluster_object.h"
 #include "libpicture/renderer.h"
 #include "merge.h"
@@ -115,7 +116,7 @@ PyObject* newObject(PyTypeObject* type, PyObject*, PyObject*) {
 // ImportError.
 void findNumpy() {
   try {
-    const py::array_t<uint8_t> first(0);
+    newArray<uint8_t>({0});
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_ImportError)) throw;
   }

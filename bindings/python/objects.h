@@ -87,6 +87,9 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   std::unique_lock<WorldMutex> lockDrawing();
   // True while this thread renders a picture; progress callbacks must not change the world then.
   bool isRenderingHere = false;
+  // Shapes have got shaders by rules, and the last preset whose rules did.
+  bool shadersGiven = false;
+  std::string presetGiven;
 
   // Calls callback(value, time) after the event has been processed, on the thread that caused it.
   uint64_t listen(const xvrml::NodeRef& node, const std::string& event, py::function callback);
@@ -212,6 +215,9 @@ void defineScripts(py::module_& module);
 void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
 void defineRender(py::object worldClass);
+// Gives shapes a surface shader, and returns how many. mayMatchNothing: no warning if it is none.
+size_t setShader(const WorldPtr& world, const std::string& selector, const std::string& shader,
+                 bool mayMatchNothing);
 void defineMeasurement(py::module_& module); // before defineWorld()
 void defineBrowser(py::module_& module);
 void defineViewer(py::module_& module);

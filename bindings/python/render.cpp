@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
+#include "libpicture/bare_model.h"
 #include "libpicture/measure.h"
 #include "numbers.h"
 #include "parameters.h"
 #include "picture_object.h"
+#include "presets.h"
 #include "quality_parameters.h"
 #include "render_request.h"
 
@@ -69,6 +72,11 @@ struct Making {
 void Making::draw(std::shared_ptr<picture::Renderer>& renderer) {
   const Drawing drawing(*world);
   interruptible([&](picture::ProgressCallback watch) {
+    if (request.isLookOpen) {
+      picture::choose(picture::lookOf(world->graph(), world->shadersGiven), request.settings);
+      const picture::ViewTransform view = std::exchange(request.settings.view, {});
+      if (request.shown.isPlain() && !request.fitExposure) request.shown = view;
+    }
     renderer = world->renderer(request.settings, std::move(watch));
     renderer->setProgressCallback({}); // the callback's captures end here
   });
@@ -105,8 +113,22 @@ py::object Making::picture() {
   return py::cast(std::move(made));
 }
 
-py::object render(const WorldPtr& self, const RenderArguments& given) {
+// Gives shapes the shaders of a preset, unless the world has them from it.
+void giveShaders(const WorldPtr& self, const std::string& preset,
+                 const std::vector<std::string>& rules) {
+  if (rules.empty() || self->presetGiven == preset) return;
+  for (const std::string& rule : rules) {
+    const size_t equals = rule.find('=');
+    setShader(self, rule.substr(0, equals), rule.substr(equals + 1), true);
+  }
+  self->presetGiven = preset;
+}
+
+py::object render(const WorldPtr& self, const RenderArguments& asked) {
+  RenderArguments given = asked;
+  const std::vector<std::string> rules = applyPreset(given);
   Making making{self, given, requestOf(given), progressOf(given.progress), {}};
+  giveShaders(self, given.preset.value_or(""), rules);
   // Look for the cluster before taking the lock, because this may wait for another world.
   making.request.settings.cluster = clusterFor(given.cluster, self);
   if (making.request.settings.cluster && given.isa != "auto")
@@ -363,7 +385,9 @@ void defineRender(py::object worldClass) {
           qualityParameter<Switch>(RT_JITTER), qualityParameter<long long>(RT_LIGHT_STRIDE),
           parameter("exact_shapes", &A::exactShapes)),
       parameterList(parameter("exposure", &A::exposure), parameter("view", &A::view),
-                    parameter("crop", &A::crop), qualityParameter<std::string>(RT_DEPTH_ALONG)),
+                    parameter("crop", &A::crop), qualityParameter<std::string>(RT_DEPTH_ALONG),
+                    parameter("preset", &A::preset), parameter("studio", &A::studio),
+                    parameter("from_", &A::from)),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
       "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "
@@ -378,6 +402,10 @@ void defineRender(py::object worldClass) {
       "shown; Picture.exposure and Picture.view change them later. "
       "crop: (x, y, width, height), the part of the picture to make. depth_along: 'axis' or 'ray', "
       "what the channel z measures. "
+      "preset: 'studio', 'product', 'technical' or 'pcb', as --preset of vv; the shaders that it "
+      "gives to shapes stay. studio: light of a studio before a backdrop of this colour. from_: "
+      "'three-quarter', 'front', 'top' ..., as --from. A model without light, viewpoint and "
+      "background is shown before a grey backdrop; studio=False or background='black' leaves it. "
       "progress: True for a bar, or a function that is called with the fraction done. Ctrl-C "
       "raises KeyboardInterrupt, whose attribute image is the picture so far.");
 }

@@ -259,6 +259,43 @@ void setBackground(const char*, const Given& given, RenderRequest& request) {
   request.settings.background = backgroundOf(given.background);
 }
 
+void setStudio(const char*, const Given& given, RenderRequest& request) {
+  py::object colour = given.studio;
+  if (colour.is_none() && given.studioColour) colour = py::str(*given.studioColour);
+  Settings& settings = request.settings;
+  const bool refused = py::isinstance<py::bool_>(colour) && !colour.cast<bool>();
+  request.isLookOpen =
+      !refused && colour.is_none() && given.background.is_none() && given.channels.is_none();
+  if (refused || colour.is_none()) return;
+  picture::Background read;
+  try {
+    read = backgroundOf(colour);
+  } catch (const py::value_error&) {}
+  if (read.kind != picture::Background::Kind::colour)
+    throw py::value_error("studio: a colour (a name such as white, #rgb, #rrggbb, or three numbers "
+                          "from 0 to 1), False or None expected, not " +
+                          shown(given.studio));
+  // a colour of background is the backdrop of a studio
+  if (settings.background.kind == picture::Background::Kind::colour)
+    read.colour = settings.background.colour;
+  else if (settings.background.kind != picture::Background::Kind::world)
+    throw py::value_error("studio: it has a backdrop of its own: not with a background other than "
+                          "a colour");
+  settings.background = {};
+  settings.studio = {true, read.colour};
+}
+
+void setFrom(const char* name, const Given& given, RenderRequest& request) {
+  if (!given.from) return;
+  request.view.side = picture::sideNamed(*given.from);
+  if (!request.view.side)
+    throw py::value_error(
+        fmt::format("{}: one of {} expected, not '{}'", name, picture::sideNames(), *given.from));
+  if (!given.camera.is_none() || !given.viewpoint.is_none() || given.fit)
+    throw py::value_error(
+        fmt::format("{}: not with camera, viewpoint or fit, which look from elsewhere", name));
+}
+
 void setExposure(const char*, const Given& given, RenderRequest& request) {
   const std::optional<double> stops = exposureOf(given.exposure);
   request.fitExposure = !stops;
@@ -291,7 +328,9 @@ constexpr Rule rules[] = {
     {"fov", setFov},
     {"camera", setCamera},
     {"up", setUp},
+    {"from_", setFrom},
     {"background", setBackground},
+    {"studio", setStudio},
     {"exposure", setExposure},
 };
 

@@ -33,6 +33,9 @@ struct RenderArguments {
   py::object exposure = py::float_(0.0);
   std::string view = "standard";
   py::object crop = py::none();
+  py::object studio = py::none(); // a colour, or False: neither a studio nor the look of models
+  std::optional<std::string> from, preset;
+  std::optional<std::string> studioColour; // of the preset; no parameter of Python
   picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
 };
 
@@ -45,6 +48,8 @@ struct RenderRequest {
   // The settings do not have it, so that the scene is kept between pictures.
   picture::ViewTransform shown;
   bool fitExposure = false;
+  // The arguments leave the look to the world (libpicture/bare_model.h).
+  bool isLookOpen = false;
 };
 
 // Returns the instruction set. Raises ValueError if this machine does not have it.

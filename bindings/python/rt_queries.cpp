@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "arrays.h"
 #include "numbers.h"
 #include "objects.h"
 #include "openrt/queries.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr size_t chunk = size_t(1) << 17, grain = 8192;
 constexpr uint32_t invalid = 0xFFFFFFFF;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-using Shape = std::vector<py::ssize_t>;
+using Shape = ArrayShape;
 
 template <class T> struct Rows { // rows of numbers, with any shape before the last dimension
   py::array_t<T, py::array::c_style | py::array::forcecast> values;
@@ -40,7 +41,7 @@ template <class T> struct Rows { // rows of numbers, with any shape before the l
 template <class T> py::array_t<T> like(const Shape& shape, py::ssize_t width = 0) {
   Shape sides = shape;
   if (width) sides.push_back(width);
-  return py::array_t<T>(sides);
+  return newArray<T>(std::move(sides));
 }
 
 template <class F> void parallel(size_t count, const F& f) {
@@ -247,7 +248,8 @@ py::dict list(const RtContextPtr& self, const py::object& given, double near, do
   for (size_t i = 0; i < query.rays.count; ++i) first[i + 1] = first[i] + counts[i];
   const auto total = py::ssize_t(first.back());
   const typename P::Arrays hits(Shape{total});
-  py::array_t<int64_t> splits(py::ssize_t(query.rays.count) + 1), ids(total);
+  auto splits = newArray<int64_t>({py::ssize_t(query.rays.count) + 1});
+  auto ids = newArray<int64_t>({total});
   std::copy(first.begin(), first.end(), splits.mutable_data());
   int64_t* idTo = ids.mutable_data();
   std::vector<typename P::Hit> found;

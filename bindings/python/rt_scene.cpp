@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "degenerate.h"
 #include "local_origin.h"
 #include "numbers.h"
@@ -165,7 +166,7 @@ py::object keptTriangles(const py::object& vertices, const py::object& faces) {
       kept.push_back(uint32_t(i));
   }
   if (kept.size() == total) return py::none();
-  return py::array_t<uint32_t>(py::ssize_t(kept.size()), kept.data());
+  return copiedArray(kept);
 }
 
 // Makes an object of one surface that draw() adds. ccw: false exchanges its front and back.

@@ -48,6 +48,10 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
 
   Browser& running = world_->live();
   const auto lock = world_->lock();
+  const picture::Look look = world_->viewers
+                                 ? world_->viewers->look
+                                 : picture::lookOf(world_->graph(), world_->shadersGiven);
+  if (request.isLookOpen) picture::choose(look, request.settings);
   if (world_->viewers && !(world_->viewers->settings == request.settings))
     throw py::value_error(
         "the views of a world have the same options, except size, spp, viewpoint, "
@@ -55,6 +59,7 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
   const auto shared = world_->viewers ? world_->viewers : std::make_shared<Viewers>();
   if (!world_->viewers) {
     shared->settings = request.settings;
+    shared->look = look;
     shared->generation = running.generation();
     const BoundNodes bound = running.bound();
     // A world without Viewpoint and NavigationInfo is probably a model.
@@ -253,7 +258,7 @@ void defineViewer(py::module_& module) {
                     qualityParameter<std::string>(RT_TRANSPORT), qualityParameter<double>(RT_CLAMP),
                     parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
                     parameter("background", &A::background), parameter("isa", &A::isa),
-                    parameter("exact_shapes", &A::exactShapes)),
+                    parameter("exact_shapes", &A::exactShapes), parameter("studio", &A::studio)),
       "The options are those of World.render().");
   viewer.def("close", &Viewer::close)
       .def_property_readonly("is_open", &Viewer::isOpen)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "libpicture/bare_model.h"
 #include "libpicture/live/pacing.h"
 #include "objects.h"
 #include "render_request.h"
@@ -22,7 +23,8 @@ struct Viewers {
   Viewer* steering = nullptr; // moves the browser's viewer; the cameras of the others stay
   uint64_t changes = 0;       // number of frames that began because the world had changed
   uint64_t generation = 0;    // generation of the browser's world
-  uint32_t numbers = 0;       // number of views opened so far
+  picture::Look look = picture::Look::own; // look of the world when the first view was opened
+  uint32_t numbers = 0;                    // number of views opened so far
 };
 
 struct ViewerArguments : RenderArguments {

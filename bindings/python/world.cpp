@@ -226,30 +226,6 @@ void removeNode(const WorldPtr& self, const NodeObject& removed) {
     std::erase(self->graph().scope.roots, removed.node);
 }
 
-size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader) {
-  const auto lock = self->lock();
-  World& world = self->graph();
-  const picture::ShaderRule rule{selector + "=" + shader, "set_shader:", {}, false};
-  if (selector.empty() || selector.find('=') != selector.npos)
-    throw py::value_error(fmt::format(
-        "selector: a DEF name, material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B or * was "
-        "expected, not {}",
-        std::string(py::repr(py::str(selector)))));
-  size_t given = 0;
-  try {
-    if (Browser* browser = self->browser())
-      self->change([&] {
-        given = picture::applyShaderRules({rule}, "", world,
-                                          [&](Node& shape, const NodeRef& appearance) {
-                                            browser->set(shape, "appearance", appearance);
-                                          });
-      });
-    else
-      given = picture::applyShaderRules({rule}, "", world);
-  } catch (const picture::ShaderError& error) { throw py::value_error(error.what()); }
-  return given;
-}
-
 WorldPtr emptyWorld() {
   auto made = std::make_shared<WorldObject>();
   made->world = std::make_unique<World>();
@@ -280,6 +256,32 @@ py::array matrixOf(const ViewpointInfo& v) {
 }
 
 } // namespace
+
+size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader,
+                 bool mayMatchNothing) {
+  const auto lock = self->lock();
+  World& world = self->graph();
+  const picture::ShaderRule rule{selector + "=" + shader, "set_shader:", {}, mayMatchNothing};
+  if (selector.empty() || selector.find('=') != selector.npos)
+    throw py::value_error(fmt::format(
+        "selector: a DEF name, material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B or * was "
+        "expected, not {}",
+        std::string(py::repr(py::str(selector)))));
+  size_t given = 0;
+  try {
+    if (Browser* browser = self->browser())
+      self->change([&] {
+        given = picture::applyShaderRules({rule}, "", world,
+                                          [&](Node& shape, const NodeRef& appearance) {
+                                            browser->set(shape, "appearance", appearance);
+                                          });
+      });
+    else
+      given = picture::applyShaderRules({rule}, "", world);
+  } catch (const picture::ShaderError& error) { throw py::value_error(error.what()); }
+  self->shadersGiven = self->shadersGiven || given > 0;
+  return given;
+}
 
 void defineWorld(py::module_& module) {
   py::class_<Diagnostic>(module, "Diagnostic",
@@ -382,11 +384,16 @@ void defineWorld(py::module_& module) {
              const std::string& in) { return route(self, from, out, to, in, false); },
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
           "Removes a route. Returns False if it did not exist.")
-      .def("set_shader", setShader, py::arg("selector"), py::arg("shader"),
-           "Gives shapes another surface shader, as --shader of vv does: "
-           "set_shader('material:PIN-*', 'Metal:roughness=.22'). The selector is a DEF name, "
-           "material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B, or '*' for shapes without a "
-           "shader. Returns the number of shapes; 0 is also a warning of the world.")
+      .def(
+          "set_shader",
+          [](const WorldPtr& self, const std::string& selector, const std::string& shader) {
+            return setShader(self, selector, shader, false);
+          },
+          py::arg("selector"), py::arg("shader"),
+          "Gives shapes another surface shader, as --shader of vv does: "
+          "set_shader('material:PIN-*', 'Metal:roughness=.22'). The selector is a DEF name, "
+          "material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B, or '*' for shapes without a "
+          "shader. Returns the number of shapes; 0 is also a warning of the world.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
       .def("to_x3d", toX3d, py::arg("encoding") = "xml",
            "Returns the world as X3D text, in the encoding 'xml' or 'classic' (ClassicVRML).")

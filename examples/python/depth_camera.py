@@ -19,7 +19,7 @@ def main(path: str) -> None:
                                   eye=centre + np.array([0.3, 0.4, 1.0]) * size,
                                   up=(0, 1, 0),
                                   width_px=60,
-                                  height_px=24)
+                                  height_px=24)[::-1, ::-1]  # upright: Open3D begins below
     rays[..., 3:] /= np.linalg.norm(rays[..., 3:], axis=-1, keepdims=True)
     hits = caster.cast_rays(rays)
     met = np.isfinite(hits["t_hit"])

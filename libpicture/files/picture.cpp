@@ -142,16 +142,31 @@ void cut(Picture& picture, int x, int y, int width, int height) {
   picture.height = height;
 }
 
-std::vector<uint8_t> displayBytes(const Picture& picture) {
+// behind: what is seen behind the shapes, in the colours of rgba; null: black
+static std::vector<uint8_t> bytesOver(const Picture& picture, const float* behind) {
   const std::vector<float>& rgba = rgbaOf(picture);
   const bool plain = picture.view.isPlain() || !picture.linear;
   std::vector<uint8_t> bytes(rgba.size() / 4 * 3);
   for (size_t i = 0; i < rgba.size() / 4; ++i) {
     float screen[3] = {rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]};
-    if (!plain) toScreen(picture.view, &rgba[4 * i], screen);
+    const float open = 1 - rgba[4 * i + 3];
+    for (size_t c = 0; behind && open > 0 && c < 3; ++c) screen[c] += open * behind[c];
+    if (!plain) toScreen(picture.view, screen, screen);
     for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(screen[c], picture.linear);
   }
   return bytes;
+}
+
+std::vector<uint8_t> displayBytes(const Picture& picture) {
+  if (!picture.backdrop) return bytesOver(picture, nullptr);
+  float behind[3];
+  for (size_t c = 0; c < 3; ++c)
+    behind[c] = picture.linear ? linearOf((*picture.backdrop)[c]) : (*picture.backdrop)[c];
+  return bytesOver(picture, behind);
+}
+
+std::vector<uint8_t> displayBytesAlone(const Picture& picture) {
+  return bytesOver(picture, nullptr);
 }
 
 std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {

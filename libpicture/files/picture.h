@@ -2,8 +2,10 @@
 // screen shows. formats.h encodes it. The renderer's caller owns the picture. [any thread]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -34,6 +36,8 @@ struct Picture {
   bool depthAlongRay = false; // channel z is the distance along the ray, not along the view axis
   ViewTransform view;         // how linear rgba is shown on screens
   bool transparent = false;   // files of the picture have alpha if their format keeps it
+  // display values of what screens show behind the shapes, by alpha; rgba does not have it
+  std::optional<std::array<float, 3>> backdrop;
   // Indexed by Channel::bit; width*height*components floats, first row at the top.
   std::map<uint32_t, std::vector<float>> planes;
   // The picture is a part of a larger one of this size: its left upper corner there. Not of a
@@ -55,6 +59,8 @@ const std::vector<float>& rgbaOf(const Picture& picture);
 
 // Returns 8-bit red, green, blue as a screen shows them, first row at the top.
 std::vector<uint8_t> displayBytes(const Picture& picture);
+// Returns the same without the backdrop, for programs that read the picture.
+std::vector<uint8_t> displayBytesAlone(const Picture& picture);
 // Also returns alpha; the colours are not premultiplied.
 std::vector<uint8_t> displayBytesAlpha(const Picture& picture);
 

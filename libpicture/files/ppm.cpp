@@ -7,7 +7,7 @@ std::string encodePpm(const Picture& picture) {
   std::string out = "P6\n";
   if (!picture.note.empty()) out += "# " + picture.note + "\n";
   out += std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
-  std::vector<uint8_t> bytes = displayBytes(picture);
+  std::vector<uint8_t> bytes = displayBytesAlone(picture);
   out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return out;
 }

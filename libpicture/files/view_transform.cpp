@@ -89,6 +89,10 @@ std::optional<ViewCurve> curveNamed(std::string_view name) {
   return {};
 }
 
+float linearOf(float v) {
+  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+
 void toScreen(const ViewTransform& view, const float radiance[3], float screen[3]) {
   constexpr double most = 1e30; // keeps infinities out of differences
   const double scale = std::exp2(view.exposure);

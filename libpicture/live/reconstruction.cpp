@@ -230,6 +230,7 @@ struct Reconstruction::Impl {
     picture.linear = frame.linear;
     picture.view = frame.view;
     picture.transparent = frame.transparent;
+    picture.backdrop = frame.backdrop;
     std::vector<float>& rgba = picture.planes[RT_RGBA];
     rgba.resize(size_t(frame.width) * size_t(frame.height) * 4);
     const Moment& grid = sparse ? pixels : now;

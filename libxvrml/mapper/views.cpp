@@ -2,7 +2,9 @@
 #include "mapper/views.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "geometry/lens.h"
 #include "nodes/bindable.h"
@@ -116,28 +118,64 @@ CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
 }
 
 namespace {
-struct Extents {
-  double x = 0, y = 0, front = 0;
+
+// The smallest camera along the axes of a view that sees all corners: its place right of the
+// centre, above it and before it, and half of the size of what a parallel view shows.
+struct Fit {
+  double right = 0, above = 0, front = 0, distance = 0, halfWidth = 0, halfHeight = 0;
 };
 
-// Measures how far the corners reach from the centre along the axes of the view. For a perspective
-// view it also computes the distance of the camera.
-Extents measure(const Bounds& b, const Matrix& view, const Vector& center, double tanX,
-                double tanY) {
-  Extents e;
-  const Vector axis[3] = {{view.x[0][0], view.x[0][1], view.x[0][2]},
-                          {view.x[1][0], view.x[1][1], view.x[1][2]},
-                          {view.x[2][0], view.x[2][1], view.x[2][2]}};
-  for (int corner = 0; corner < 8; ++corner) {
-    auto side = [&](int i) { return corner & (1 << i) ? b.maximum[i] : b.minimum[i]; };
-    const Vector p = Vector(side(0), side(1), side(2)) - center;
-    const double x = std::abs(p.dot(axis[0])), y = std::abs(p.dot(axis[1])), z = p.dot(axis[2]);
-    e.x = std::max(e.x, x);
-    e.y = std::max(e.y, y);
-    e.front = std::max({e.front, z + (tanX > 0 ? std::max(x / tanX, y / tanY) : 0)});
+// Finds how far the corners reach to both sides of the lines of sight with this slope, from the
+// middle of the picture: their place in it, and half of their width there.
+struct Reach {
+  double middle, half;
+};
+Reach reachOf(const std::array<Vector, 8>& corners, int axis, double slope) {
+  double above = std::numeric_limits<double>::lowest(), below = above;
+  for (const Vector& p : corners) {
+    above = std::max(above, p[axis] + slope * p.z);
+    below = std::max(below, -p[axis] + slope * p.z);
   }
-  return e;
+  return {(above - below) / 2, (above + below) / 2};
 }
+
+// Returns the place at which the corners are in the middle of the picture, seen from a distance: at
+// some slope, the lines of sight touch them on both sides.
+double middleFrom(const std::array<Vector, 8>& corners, int axis, double most, double distance) {
+  double low = 0, high = most;
+  for (int i = 0; i < 50; ++i) {
+    const double slope = (low + high) / 2;
+    (reachOf(corners, axis, slope).half > slope * distance ? low : high) = slope;
+  }
+  return reachOf(corners, axis, high).middle;
+}
+
+// tanX, tanY: tangents of half the angles; 0: a parallel view.
+Fit fitBox(const Bounds& b, const Matrix& view, const Vector& center, double tanX, double tanY) {
+  std::array<Vector, 8> corners; // along the axes of the view
+  Fit fit{0, 0, std::numeric_limits<double>::lowest(), 0, 0, 0};
+  for (size_t corner = 0; corner < 8; ++corner) {
+    auto side = [&](size_t i) { return corner & (1u << i) ? b.maximum[i] : b.minimum[i]; };
+    const Vector p = Vector(side(0), side(1), side(2)) - center;
+    for (int i = 0; i < 3; ++i)
+      corners[corner][i] = p.dot(Vector(view.x[i][0], view.x[i][1], view.x[i][2]));
+    fit.front = std::max(fit.front, corners[corner].z);
+  }
+  const Reach across = reachOf(corners, 0, tanX), upwards = reachOf(corners, 1, tanY);
+  fit.halfWidth = across.half;
+  fit.halfHeight = upwards.half;
+  fit.distance = fit.front;
+  if (!(tanX > 0)) {
+    fit.right = across.middle;
+    fit.above = upwards.middle;
+    return fit;
+  }
+  fit.distance = std::max({fit.front, across.half / tanX, upwards.half / tanY});
+  fit.right = middleFrom(corners, 0, tanX, fit.distance);
+  fit.above = middleFrom(corners, 1, tanY, fit.distance);
+  return fit;
+}
+
 } // namespace
 
 bool hasHeadlight(const Bound& bound) {
@@ -163,16 +201,16 @@ CameraSettings cameraAround(const Bounds& bounds, const double view[16], double 
       high(bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
   const Vector center = (low + high) / 2;
   const double tanY = std::tan(camera.fovy / 2) / margin, size = (high - low).length();
-  const mapper::Extents e = mapper::measure(bounds, axes, center, tanY * ratio, tanY);
-  double distance = e.front;
+  const mapper::Fit fit = mapper::fitBox(bounds, axes, center, tanY * ratio, tanY);
+  double distance = fit.distance;
   if (camera.fovy == 0) {
-    camera.height = 2 * margin * std::max(e.y, e.x / ratio);
-    distance = e.front + size;
+    camera.height = 2 * margin * std::max(fit.halfHeight, fit.halfWidth / ratio);
+    distance = fit.front + size;
     if (!(camera.height > 0)) camera.height = 1;
   }
   if (!(distance > 0)) distance = 1;
-  toArray(compose(translation(center + transformDirection(axes, Vector(0, 0, distance))), axes),
-          camera.matrix);
+  const Vector eye = center + transformDirection(axes, Vector(fit.right, fit.above, distance));
+  toArray(compose(translation(eye), axes), camera.matrix);
   return camera;
 }
 

@@ -29,12 +29,19 @@ bool beginsWithoutCase(std::string_view bytes, std::string_view word) {
          });
 }
 
-// The main chunk of a 3D Studio file contains its own length.
+// The main chunk of a 3D Studio file contains its own length, and begins with the version or the
+// editor's chunk. Either may be wrong: files are cut off, or padded.
 bool is3ds(std::string_view bytes) {
   uint32_t length = 0;
-  if (bytes.size() < 6 || !bytes.starts_with("MM")) return false;
+  if (bytes.size() < 8 || !bytes.starts_with("MM")) return false;
   std::memcpy(&length, bytes.data() + 2, sizeof length);
-  return length == bytes.size();
+  const std::string_view first = bytes.substr(6, 2);
+  return length == bytes.size() || first == std::string_view("\x02\x00", 2) || first == "\x3d\x3d";
+}
+
+// A USD package is a ZIP archive whose first file is a USD scene.
+bool isUsdz(std::string_view bytes) {
+  return bytes.starts_with("PK\x03\x04") && holds(bytes.substr(0, 512), ".usd");
 }
 
 constexpr std::string_view exportIt =
@@ -67,6 +74,7 @@ const Signature signatures[] = {
        return b.starts_with("\x89PNG") || b.starts_with("\xff\xd8\xff") || b.starts_with("GIF8");
      },
      {"a picture", "name the world that shows it, or write one with an ImageTexture"}},
+    {isUsdz, {"a USD package (.usdz)", exportIt}},
     {[](std::string_view b) { return b.starts_with("PK\x03\x04"); },
      {"a ZIP archive", "unpack it and name the .wrl file in it"}},
     {[](std::string_view b) { return b.starts_with("%PDF"); },

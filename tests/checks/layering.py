@@ -159,7 +159,7 @@ FOREIGN = [
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "picture", "test"}, "the ffmpeg libraries"),
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
-    (re.compile(r"toml\+\+/"), {"app"}, "toml++"),
+    (re.compile(r"toml\+\+/"), {"app", "binding"}, "toml++"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
     (re.compile(r"expat\.h$"), {"xvrml-parse", "test"}, "expat"),
 ]

@@ -228,13 +228,14 @@ def test_wrong_cameras(world, wrong):
 
 
 def test_open3d_rays():
-    """Both forms of Open3D's create_rays_pinhole give the same rays."""
+    """Both forms of create_rays_pinhole give the rays of Open3D: for the form with eye, center and up,
+    up is the y axis of the camera, which points along the rows of the picture."""
     width, height, fov = 64, 48, 60
     eye, center, up = np.array([1.0, 2, 9]), np.array([0.5, 0, 0]), np.array([0.1, 1, 0])
     ahead = (center - eye) / np.linalg.norm(center - eye)
-    right = np.cross(ahead, up) / np.linalg.norm(np.cross(ahead, up))
+    across = np.cross(up, ahead) / np.linalg.norm(np.cross(up, ahead))
     extrinsic = np.eye(4)
-    extrinsic[:3, :3] = [right, np.cross(ahead, right), ahead]
+    extrinsic[:3, :3] = [across, np.cross(ahead, across), ahead]
     extrinsic[:3, 3] = -extrinsic[:3, :3] @ eye
     focal = width / 2 / np.tan(np.radians(fov) / 2)
     intrinsic = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]])

@@ -364,8 +364,9 @@ def test_pinhole_rays_are_those_of_the_camera():
                                   up=(0, 1, 0),
                                   width_px=4,
                                   height_px=2)
+    # as in Open3D: the first row is the lowest, and columns go from right to left
     assert rays.shape == (2, 4, 6) and np.allclose(
-        rays[0, 0, 3:], [-0.75, 0.25, -1]) and np.allclose(rays[1, 3, 3:], [0.75, -0.25, -1])
+        rays[0, 0, 3:], [0.75, -0.25, -1]) and np.allclose(rays[1, 3, 3:], [-0.75, 0.25, -1])
 
 
 def test_empty_and_hostile_rays(cloud):

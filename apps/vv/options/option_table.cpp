@@ -115,6 +115,7 @@ void setColour(Options& o, const std::string& value) {
 }
 
 void setExposure(Options& o, const std::string& value) {
+  o.viewGiven = true;
   o.fitExposure = value == "auto";
   if (o.fitExposure) return;
   try {
@@ -129,6 +130,7 @@ void setExposure(Options& o, const std::string& value) {
 }
 
 void setView(Options& o, const std::string& value) {
+  o.viewGiven = true;
   const std::optional<picture::ViewCurve> curve = picture::curveNamed(value);
   if (!curve)
     throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::curveNames, value));
@@ -391,7 +393,7 @@ const OptionInfo table[] = {
        notEmpty(v, "a file name");
        o.recordInput = v;
      }},
-    {"--preset", "NAME", "Change",
+    {"--preset", "studio|product|technical|pcb|NAME", "Change",
      "Use the options of a preset, unless others are given: studio (soft light, grey backdrop), "
      "product (the same before white), technical (the light of the camera, white), pcb (a "
      "studio for KiCad's boards, with materials by their names), or one of a vv.toml.",

@@ -156,6 +156,26 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   return out;
 }
 
+const OptionInfo* optionCalled(std::string_view word) {
+  for (const OptionInfo& option : optionTable())
+    for (std::string_view name : split(option.names, ','))
+      if (name == word) return &option;
+  return nullptr;
+}
+
+// Refuses an option whose value is missing, so that the next option would be taken for it.
+void refuseSwallowedOptions(int argc, char** argv) {
+  for (int i = 1; i + 1 < argc; ++i) {
+    const std::string_view word = argv[i], next = argv[i + 1];
+    if (word == "--") return;
+    const OptionInfo* const option = optionCalled(word);
+    if (!option || !*option->argument || option->argument[0] == '[') continue;
+    if (next.starts_with("--") && optionCalled(next.substr(0, next.find('='))))
+      throw UsageError(fmt::format("{}, not the option {}", missingValue(word), next));
+    ++i; // any other value
+  }
+}
+
 Options readCommandLine(int argc, char** argv) {
   Options options;
   options.render.denoiser = picture::Denoiser::automatic;
@@ -173,6 +193,7 @@ Options readCommandLine(int argc, char** argv) {
             : app.add_flag(option.names);
     added.push_back(one);
   }
+  refuseSwallowedOptions(argc, argv);
   try {
     app.parse(withOptionalArguments(argc, argv));
   } catch (const CLI::ArgumentMismatch&) {

@@ -105,6 +105,7 @@ struct Options {
   bool noWindow = false;
   // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen by the first.
   std::optional<double> falseColour;
+  bool viewGiven = false;         // the view transform was chosen by --exposure or --view
   std::string resume;             // file that an interrupted picture is continued from; empty: none
   double resumeEvery = 60;        // seconds between two writes of that file
   bool sums = false;              // EXR files get the sums of their pictures

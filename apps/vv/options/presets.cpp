@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "libpicture/built_in_presets.h"
 #include "nearest.h"
-#include "options/built_in_presets.h"
 #include "report/messages.h"
 
 namespace vv {
@@ -342,7 +342,7 @@ std::vector<Setting> withPresets(std::vector<Setting> given, const std::string& 
     documents.push_back(readFile(path));
     checkRoot(documents[0]);
   }
-  documents.push_back(parse(builtInPresets, "built-in presets", ""));
+  documents.push_back(parse(picture::builtInPresets, "built-in presets", ""));
   Presets presets(documents);
   if (!path.empty())
     if (const toml::array* blocks = documents[0].root["files"].as_array()) {

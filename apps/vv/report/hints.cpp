@@ -58,7 +58,25 @@ bool showsNothing(const picture::Picture& picture) {
 
 bool mayBeUnlit(const Options& options, const picture::RenderResult& result) {
   return result.stats.lights == 0 && result.picture.planes.contains(RT_RGBA) &&
-         options.render.background.kind == picture::Background::Kind::colour;
+         (options.render.background.kind == picture::Background::Kind::colour ||
+          options.render.background.kind == picture::Background::Kind::backdrop);
+}
+
+std::string tooBrightHint(const picture::Picture& picture) {
+  constexpr double many = 0.5, white = 1.02;
+  if (!picture.linear || picture.view.curve != picture::ViewCurve::standard ||
+      !picture.planes.contains(RT_RGBA))
+    return {};
+  const std::vector<float>& rgba = picture::rgbaOf(picture);
+  const double scale = std::exp2(picture.view.exposure);
+  size_t bright = 0;
+  for (size_t i = 0; i < rgba.size(); i += 4)
+    if (scale * (0.2126 * rgba[i] + 0.7152 * rgba[i + 1] + 0.0722 * rgba[i + 2]) > white) ++bright;
+  const double share = double(bright) / double(std::max<size_t>(rgba.size() / 4, 1));
+  if (share < many) return {};
+  return fmt::format("{:.0f} % of the pixels are brighter than white: --exposure auto, or --view "
+                     "filmic, shows what is there",
+                     100 * share);
 }
 
 std::string hintFor(const Options& options, const picture::View& view,

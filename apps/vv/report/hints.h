@@ -16,6 +16,10 @@ bool showsNothing(const picture::Picture& picture);
 // silhouettes.
 bool mayBeUnlit(const Options& options, const picture::RenderResult& result);
 
+// Returns that most of the picture is brighter than white on a screen, and what helps; empty if it
+// is not.
+std::string tooBrightHint(const picture::Picture& picture);
+
 // Returns the probable reason for a picture that shows nothing, or whose shapes are all black, and
 // the option that helps; empty if the picture may be intended. Renders a picture with one sample
 // per pixel to find out what is in view. Do not call it while a frame is in flight.

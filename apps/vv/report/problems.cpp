@@ -54,8 +54,9 @@ void Problems::reportGrouped(const std::vector<xvrml::Diagnostic>& fresh) {
   std::unordered_map<std::string, size_t> counts;
   std::vector<std::pair<const xvrml::Diagnostic*, std::string>> shown;
   for (const xvrml::Diagnostic& d : fresh) {
-    if (isDetail(d) || (options_.quiet && d.severity != xvrml::Severity::error)) continue;
-    if (d.severity == xvrml::Severity::note) {
+    if (options_.quiet && d.severity != xvrml::Severity::error) continue;
+    if (isDetail(d) && !options_.check) continue;
+    if (d.severity == xvrml::Severity::note && !isDetail(d)) {
       shown.emplace_back(&d, std::string());
       continue;
     }
@@ -91,9 +92,17 @@ void Problems::tell(const xvrml::World& world) {
   const std::vector<xvrml::Diagnostic> fresh(list.begin() + long(std::min(reported_, list.size())),
                                              list.end());
   reported_ = list.size();
-  if (options_.verbose || options_.check) {
+  if (options_.verbose) {
     for (const xvrml::Diagnostic& d : fresh)
       if (!options_.quiet || d.severity == xvrml::Severity::error) say(d.text());
+  } else if (options_.check) { // each error and warning, and a detail for each kind of them
+    std::vector<xvrml::Diagnostic> notes;
+    for (const xvrml::Diagnostic& d : fresh)
+      if (d.severity == xvrml::Severity::note)
+        notes.push_back(d);
+      else if (!options_.quiet || d.severity == xvrml::Severity::error)
+        say(d.text());
+    reportGrouped(notes);
   } else {
     reportGrouped(fresh);
   }

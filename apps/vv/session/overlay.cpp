@@ -82,6 +82,7 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
     first += fmt::format("   error {:.2g} %", 100 * f.stats.errorHalfWidth);
   if (f.cluster) first += "   " + workersText(f.workers);
   if (paused) first += "   paused";
+  if (f.isRestless && !paused) first += "   P pauses: full picture";
   if (f.loading) first += "   loading ...";
   const std::string wrong = problems(f);
   if (level == OverlayLevel::brief) {

@@ -173,6 +173,7 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   if (moving && isMoving() && now > lastStart_)
     gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);
   if (!moving) gap_ = 0;
+  if (moving && !isMoving()) motionBegan_ = now;
   lastStart_ = now;
   frame_ = sizeOf(phase);
   frame.width = frame_.width;

@@ -94,6 +94,8 @@ class PictureLoop {
   // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
+  // Returns for how long something has moved without a rest, in seconds.
+  double movingFor() const { return isMoving() ? lastStart_ - motionBegan_ : 0; }
   double frameRate() const { return isMoving() && gap_ > 0 ? 1 / gap_ : 0; }
   const picture::LivePicture& facts() const { return facts_; } // state without the pixels
 
@@ -135,7 +137,7 @@ class PictureLoop {
   std::optional<bool> headlight_;
   picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
-  double lastStart_ = 0, settlingEnds_ = 0, gap_ = 0;
+  double lastStart_ = 0, motionBegan_ = 0, settlingEnds_ = 0, gap_ = 0;
   picture::LivePicture facts_; // state of the picture, without the pixels
   std::string failure_;        // the last failure that was told; "": a picture has come since
 };

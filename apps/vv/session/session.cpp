@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "look.h"
 #include "report/describe.h"
 #include "report/messages.h"
 #include "session/input/view_command.h"
@@ -68,6 +69,18 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
           if (held()) replay_->wait();
         });
   inlines_.collect();
+  chooseLookOnce();
+}
+
+// An Inline may hold a Viewpoint or a light, so the look is chosen when all are loaded.
+void Session::chooseLookOnce() {
+  if (isLookChosen_ || inlines_.isLoading()) return;
+  isLookChosen_ = true;
+  shared_.live.change([this](picture::RenderSettings& settings) {
+    Options given = options_; // the variance is the window's own
+    given.render.channels = channels_;
+    chooseLook(given, browser_->world(), settings);
+  });
 }
 
 void Session::begin(int width, int height, const std::optional<Place>& place,
@@ -210,6 +223,10 @@ void Session::want(Action fit) {
 void Session::takeTurns() {
   using Urgency = PictureLoop::Urgency;
   if (captures_.isPending()) return;
+  if (!isLookChosen_ && !inlines_.isLoading()) {
+    if (!shared_.isIdle()) return shared_.cancel();
+    chooseLookOnce();
+  }
   const double now = clock_.reading();
   if (isSaving() || guests_.all().empty())
     return pictures_.advance(
@@ -452,6 +469,8 @@ SessionFacts Session::facts(uint32_t viewer) const {
                                   : (still ? Showing::still : Showing::samples);
   facts.denoisedBy = picture.denoisedBy;
   facts.frameRate = pictures.frameRate();
+  constexpr double restless = 3;
+  facts.isRestless = pictures.movingFor() > restless && !pilotOf(viewer).isSteering();
   facts.width = picture.width;
   facts.height = picture.height;
   facts.samples = picture.samples;

@@ -37,7 +37,8 @@ struct SessionFacts {
     samples  // the few samples themselves
   };
   Showing showing = Showing::still;
-  double frameRate = 0; // pictures per second while something moves; 0: nothing moves
+  double frameRate = 0;    // pictures per second while something moves; 0: nothing moves
+  bool isRestless = false; // the world has moved for seconds, so that previews are all there is
   int width = 0, height = 0;
   double samples = 0, wanted = 0;
   std::string denoisedBy; // the library that has filtered the preview; "": none
@@ -166,6 +167,7 @@ class Session {
   void takeTurns();
   const PictureLoop& picturesOf(uint32_t viewer) const;
   void loadSome();
+  void chooseLookOnce();
   void want(Action fit);
   void saveIfFinished();
   void giveUp(const std::string& why);
@@ -196,6 +198,7 @@ class Session {
   Saver saver_ = Saver::script; // who wants that file
   PictureWriter writer_;
   InlineQueue inlines_;
+  bool isLookChosen_ = false;
   PickPreparation preparation_; // the last member: its destructor waits for a user of the others
 };
 

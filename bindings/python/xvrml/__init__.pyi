@@ -587,6 +587,9 @@ class World:
         view: str = ...,
         crop: Union[None, Tuple[int, int, int, int], Sequence[int]] = ...,
         depth_along: str = ...,
+        preset: Optional[str] = ...,
+        studio: Union[None, bool, str, Sequence[float]] = ...,
+        from_: Optional[str] = ...,
     ) -> Picture:
         ...
 
@@ -778,6 +781,7 @@ class LiveView:
         background: Union[None, str, "os.PathLike[str]", Sequence[float]] = ...,
         isa: str = ...,
         exact_shapes: bool = ...,
+        studio: Union[None, bool, str, Sequence[float]] = ...,
     ) -> None:
         ...
 

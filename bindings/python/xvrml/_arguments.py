@@ -1,6 +1,7 @@
 """Raises readable errors for wrong arguments. If an argument has a wrong type, a compiled function
 lists all its signatures. A wrapped function says instead which argument is wrong, what was expected
 and what was given."""
+import ast
 import difflib
 import functools
 import inspect
@@ -167,6 +168,54 @@ def sentence(function, args, kwargs):
     return f"{name}(): the arguments do not fit {name}({', '.join(shown)})"
 
 
+class _Default:
+    """A default value of a compiled function that is no literal of Python."""
+
+    def __init__(self, text):
+        self._text = text
+
+    def __repr__(self):
+        return self._text
+
+
+def _default(text):
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError):
+        return {"inf": math.inf, "nan": math.nan}.get(text, _Default(text))
+
+
+def _inspectable(doc):
+    """Returns the signature that the docstring of a compiled function begins with, for
+    inspect.signature() and editors; None if it begins with none."""
+    found = re.match(r"\w+\((.*)\)(?: -> (.*))?", (doc or "").strip().split("\n")[0])
+    if not found:
+        return None
+    parameters, kind = [], inspect.Parameter.POSITIONAL_OR_KEYWORD
+    for part in _split(found[1]):
+        name, _, type_and_default = part.partition(":")
+        if name.startswith("*"):
+            kind = inspect.Parameter.KEYWORD_ONLY
+            if name != "*":
+                parameters.append(
+                    inspect.Parameter(
+                        name.strip("*"), inspect.Parameter.VAR_KEYWORD
+                        if name.startswith("**") else inspect.Parameter.VAR_POSITIONAL))
+            continue
+        annotation, equals, default = type_and_default.partition(" = ")
+        if not name.strip().isidentifier():
+            return None
+        parameters.append(
+            inspect.Parameter(name.strip(),
+                              kind,
+                              default=_default(default) if equals else inspect.Parameter.empty,
+                              annotation=annotation.strip() or inspect.Parameter.empty))
+    try:
+        return inspect.Signature(parameters, return_annotation=found[2] or inspect.Signature.empty)
+    except ValueError:  # of an order that Python's functions do not have
+        return None
+
+
 def _wrapped(function):
 
     @functools.wraps(function)
@@ -181,6 +230,9 @@ def _wrapped(function):
                 raise
         raise TypeError(message)
 
+    signature = _inspectable(function.__doc__)
+    if signature is not None:
+        call.__signature__ = signature
     return call
 
 

@@ -373,7 +373,9 @@ def create_rays_pinhole(*args, **options):
     along the view axis.
 
     create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px): the camera is at eye and
-    looks at center; fov_deg is the horizontal angle of view.
+    looks at center; fov_deg is the horizontal angle of view. As in Open3D, up is the direction in
+    which rows follow each other: the first row is the lowest, and columns go from right to left.
+    rays[::-1, ::-1], or the opposite of up, gives an upright picture.
 
     create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): K (3x3) and world
     to camera (4x4); camera x points to the right, y down, z forward. The middle of a picture is at
@@ -428,17 +430,17 @@ def _rays_of_view(fov_deg, center, eye, up, width_px, height_px):
             "create_rays_pinhole(): eye and center are the same point: a direction of view expected"
         )
     ahead = (center - eye) / distance
-    right = np.cross(ahead, up)
-    if not np.linalg.norm(right) > 1e-9 * np.linalg.norm(up):
+    across = np.cross(up, ahead)  # columns go this way, to the left of somebody whose head is up
+    if not np.linalg.norm(across) > 1e-9 * np.linalg.norm(up):
         raise ValueError(
             "create_rays_pinhole(): up: a direction across the view expected, not one along it, nor 0 0 0"
         )
-    right /= np.linalg.norm(right)
-    down = np.cross(ahead, right)
+    across /= np.linalg.norm(across)
+    onward = np.cross(ahead, across)
     size = 2 * np.tan(np.radians(fov_deg) / 2) / width_px
     x = (np.arange(width_px) + 0.5 - width_px / 2) * size
     y = (np.arange(height_px) + 0.5 - height_px / 2) * size
     rays = np.empty((height_px, width_px, 6), np.float32)
     rays[..., :3] = eye
-    rays[..., 3:] = ahead + x[None, :, None] * right + y[:, None, None] * down
+    rays[..., 3:] = ahead + x[None, :, None] * across + y[:, None, None] * onward
     return rays

@@ -1,9 +1,10 @@
-// built_in_presets.h: The presets that --preset knows, in the format of vv.toml (docs/presets.md).
+// built_in_presets.h: The presets that --preset of vv and preset= of Python know, in the format of
+// vv.toml (docs/presets.md).
 #pragma once
 
 #include <string_view>
 
-namespace vv {
+namespace picture {
 
 inline constexpr std::string_view builtInPresets = R"toml(
 [preset.studio]
@@ -61,4 +62,4 @@ shader = [
 ]
 )toml";
 
-} // namespace vv
+} // namespace picture

@@ -1,0 +1,15 @@
+// look.h: Gives a model that says nothing of how it is shown the look of models: in pictures, in
+// the window and on pages (docs/decisions/0040-models.md). [main thread]
+#pragma once
+
+#include "options/options.h"
+#include "xvrml/world.h"
+
+namespace vv {
+
+// Sets background and studio of the settings for such a model, where the options leave them open.
+// Comparisons, readings, other channels and files that programs read keep the world as it is.
+void chooseLook(const Options& options, const xvrml::World& world,
+                picture::RenderSettings& settings);
+
+} // namespace vv

@@ -1,0 +1,220 @@
+"""Tests how models are shown that do not say how: one look in pictures of vv, in its window and in
+Python (docs/decisions/0040-models.md), and what vv says about pictures that are too bright."""
+import inspect
+import re
+import struct
+import zlib
+
+import pytest
+
+from conftest import HEADER, read_ppm
+from xserver import display
+
+np = pytest.importorskip("numpy")
+xvrml = pytest.importorskip("xvrml")
+
+GREY = (158, 166, 173)  # the backdrop, 0.62 0.65 0.68
+SIZE = (64, 48)
+SPP = ("--size", "64x48", "--spp", "4")
+PLAIN = HEADER + "Shape { appearance Appearance { material Material { diffuseColor .8 .2 .1 } } geometry Box { } }"
+METAL = """#X3D V4.0 utf8
+PROFILE Full
+Shape { appearance Appearance { material PhysicalMaterial { metallic 1 roughness .3 } } geometry Box { } }
+"""
+
+
+@pytest.fixture
+def models(vv):
+    vv.write("plain.wrl", PLAIN)
+    vv.write("metal.x3dv", METAL)
+    return vv
+
+
+def corner(png):
+    """Returns the first pixel of a PNG file, which has no neighbours to differ from."""
+    place, packed = 8, b""
+    while place < len(png):
+        length, kind = struct.unpack(">I4s", png[place:place + 8])
+        packed += png[place + 8:place + 8 + length] if kind == b"IDAT" else b""
+        place += 12 + length
+    return tuple(zlib.decompress(packed)[1:4])
+
+
+def load(vv, name):
+    return xvrml.load(vv.folder / name)
+
+
+def shown(vv, name, *options):
+    """Returns the bytes of the PNG file that vv writes."""
+    done = vv(name, "-o", "shown.png", *SPP, *options)
+    assert done.returncode == 0, done.talk
+    return (vv.folder / "shown.png").read_bytes()
+
+
+def saved(vv, world, **options):
+    world.render(size=SIZE, spp=4, **options).save(vv.folder / "saved.png")
+    return (vv.folder / "saved.png").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["plain.wrl", "metal.x3dv"])
+def test_python_shows_a_model_as_vv_does(models, name):
+    assert saved(models, load(models, name)) == shown(models, name)
+
+
+def test_the_backdrop_is_what_screens_show_and_programs_do_not_read(models):
+    picture = load(models, "plain.wrl").render(size=SIZE, spp=4)
+    assert tuple(picture.display[0, 0]) == GREY and tuple(picture.array[0, 0]) == (0, 0, 0, 0)
+    alone = shown(models, "plain.wrl")
+    assert shown(models, "plain.wrl", "-o", "beside.exr", "-o", "beside.ppm") == alone
+    assert read_ppm((models.folder / "beside.ppm").read_bytes())[2][0][0] == (0, 0, 0)
+    models("plain.wrl", "-o", "alone.exr", *SPP)
+    assert (models.folder / "alone.exr").read_bytes() == (models.folder / "beside.exr").read_bytes()
+
+
+def test_a_live_view_in_python_has_the_same_look(models):
+    with xvrml.LiveView(load(models, "plain.wrl"), size=SIZE, spp=4) as view:
+        assert tuple(view.wait()[0, 0]) == GREY
+
+
+@pytest.mark.parametrize("name", ["plain.wrl", "metal.x3dv"])
+def test_the_window_has_the_same_look(models, name):
+    models.write("keys.txt", "0.5 save window.png\n0.6 quit\n")
+    with display():
+        done = models(name, "--input", "keys.txt", *SPP)
+    assert done.returncode == 0, done.talk
+    expected = corner(shown(models, name))
+    found = corner((models.folder / "window.png").read_bytes())
+    assert max(abs(a - b) for a, b in zip(found, expected)) <= 12 and min(found) > 80
+
+
+def test_shaders_by_rules_leave_a_model_its_studio(models):
+    world = load(models, "plain.wrl")
+    world.set_shader("*", "Metal")
+    here = shown(models, "plain.wrl", "--shader", "*=Metal")
+    assert saved(models, world) == here
+    world = load(models, "plain.wrl")
+    world.set_shader("*", "Metal")
+    array = world.render(size=SIZE, spp=4).array
+    assert array[..., 3].min() == 1 and array[..., :3].min() > 0.02  # surroundings everywhere
+
+
+@pytest.mark.parametrize("options, python", [(("--background", "black"), dict(background="black")),
+                                             (("--studio", "#ffddaa"), dict(studio="#ffddaa")),
+                                             (("--from", "front"), dict(from_="front")),
+                                             (("--preset", "product"), dict(preset="product")),
+                                             (("--preset", "technical", "--spp", "4"),
+                                              dict(preset="technical")),
+                                             (("--preset", "pcb", "--spp", "4"), dict(preset="pcb"))])
+def test_options_of_the_look_are_the_same_in_python(models, options, python):
+    assert saved(models, load(models, "metal.x3dv"), **python) == shown(models, "metal.x3dv", *options)
+
+
+def test_the_look_can_be_refused_in_python(models):
+    for world in ("plain.wrl", "metal.x3dv"):
+        picture = load(models, world).render(size=SIZE, spp=1, studio=False)
+        assert tuple(picture.display[0, 0]) == (0, 0, 0) and picture.array[0, 0, 3] == 0
+
+
+def test_a_preset_gives_its_shaders_once(models):
+    world = load(models, "plain.wrl")
+    first = saved(models, world, preset="pcb")
+    text = world.to_vrml()
+    assert saved(models, world, preset="pcb") == first and world.to_vrml() == text
+
+
+@pytest.mark.parametrize("options, words", [
+    (dict(preset="metal"), "preset: 'pcb', 'product', 'studio', 'technical' expected, not 'metal'"),
+    (dict(studio="none"), "studio: a colour (a name such as white"),
+    (dict(studio="white", background="none"), "not with a background other than a colour"),
+    (dict(from_="behind"), "from_: one of three-quarter, above, front"),
+    (dict(from_="front", fit=True), "from_: not with camera, viewpoint or fit"),
+])
+def test_wrong_looks(models, options, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        load(models, "plain.wrl").render(size=(4, 3), **options)
+
+
+def test_a_studio_that_nobody_asked_for_keeps_highlights(models):
+    """A white matt ball is not burnt out, and the backdrop is the grey of other models."""
+    models.write("white.x3dv",
+                 METAL + "Transform { translation 3 0 0 children Shape { appearance Appearance {"
+                 " material PhysicalMaterial { baseColor .95 .95 .95 metallic 0 } } geometry Sphere { } } }")
+    world = load(models, "white.x3dv")
+    picture = world.render(size=SIZE, spp=16)
+    assert picture.view == "filmic" and (picture.display.min(2) == 255).mean() < 0.005
+    corner = picture.display[:4, :4].reshape(-1, 3).mean(0)
+    assert np.abs(corner - GREY).max() < 16
+    assert shown(models, "white.x3dv") != shown(models, "white.x3dv", "--view", "standard")
+
+
+def margins(lit):
+    rows, columns = np.flatnonzero(lit.any(1)), np.flatnonzero(lit.any(0))
+    height, width = lit.shape
+    return columns[0], width - 1 - columns[-1], rows[0], height - 1 - rows[-1]
+
+
+@pytest.mark.parametrize("size", [(160, 80), (80, 160), (120, 120)])
+def test_a_model_fills_nine_tenths_of_a_still_and_is_in_its_middle(size):
+    world = xvrml.loads(HEADER + "Shape { geometry Box { size 4 1 2 } }")
+    left, right, top, bottom = margins(world.render(size=size, spp=1).array[..., 3] > 0)
+    assert abs(left - right) <= 2 and abs(top - bottom) <= 2
+    assert min((left + right) / size[0], (top + bottom) / size[1]) <= 0.11
+    assert min(left, right, top, bottom) > 0
+
+
+def test_a_turntable_still_stays_in_the_picture(models):
+    done = models("plain.wrl", "--turntable", "4", "-o", "turn.ppm", "--size", "60x60", "--spp", "1")
+    assert done.returncode == 0, done.talk
+    for n in range(4):
+        rows = read_ppm((models.folder / f"turn-{n:04}.ppm").read_bytes())[2]
+        assert min(margins(np.array(rows).any(2))) > 0
+
+
+def test_a_white_picture_says_what_helps(models):
+    models.write("bright.wrl", HEADER + "Viewpoint { } NavigationInfo { headlight FALSE } Background { skyColor 1 1 1 }"
+                 "Shape { appearance Appearance { material Material { emissiveColor 1 1 1 } } geometry Box { size 20 20 1 } }")
+    done = models("bright.wrl", "-o", "b.png", *SPP, "--exposure", "3")
+    assert re.search(r"\d+ % of the pixels are brighter than white: --exposure auto", done.talk)
+    for options in ((), ("--exposure", "auto"), ("--exposure", "3", "--view", "filmic")):
+        assert "brighter than white" not in models("bright.wrl", "-o", "b.png", *SPP, *options).talk
+    assert "brighter" not in models("bright.wrl", "-o", "b.exr", *SPP, "--exposure", "3").talk
+    assert "brighter" not in models("bright.wrl", "-o", "b.png", *SPP, "-q", "--exposure", "3").talk
+
+
+def test_an_option_without_its_value_does_not_take_the_next_one(models):
+    done = models("plain.wrl", "--exposure", "--size", "64x48", "-o", "x.png")
+    assert done.returncode == 2
+    assert "--exposure: a value was expected: EV|auto, not the option --size" in done.talk
+    assert models("plain.wrl", "--exposure", "-1", "-o", "x.png", *SPP).returncode == 0
+
+
+def test_a_check_tells_details_of_one_kind_once(models):
+    faces = "Shape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, 1 0 0, 0 1 0] } coordIndex [0 0 0 -1, 0 1 2 -1] } }\n"
+    models.write("many.wrl", HEADER + 30 * faces)
+    few, all_of_them = models("many.wrl", "--check"), models("many.wrl", "--check", "-v")
+    notes = [line for line in few.talk.splitlines() if ": note:" in line]
+    everything = [line for line in all_of_them.talk.splitlines() if ": note:" in line]
+    assert len(everything) >= 30 and len(notes) == 1
+    assert "more like this; -v shows all" in notes[0]
+    assert few.returncode == all_of_them.returncode
+
+
+def test_files_of_other_formats_are_named(vv):
+    vv.write("cut.3ds", b"MM\xff\x00\x00\x00\x02\x00\x0a\x00\x00\x00\x03\x00\x00\x00")
+    vv.write("scene.usdz", b"PK\x03\x04" + 22 * b"\0" + b"\x0a\0\0\0scene.usdc" + 50 * b"\0")
+    assert "a 3D Studio mesh" in vv("cut.3ds", "-o", "x.png").talk
+    assert "a USD package (.usdz)" in vv("scene.usdz", "-o", "x.png").talk
+
+
+@pytest.mark.parametrize("function", [
+    xvrml.load, xvrml.World.render, xvrml.Browser.pick, xvrml.Picture.matte,
+    xvrml.Browser.create_node
+])
+def test_functions_have_signatures(function):
+    assert inspect.signature(function).parameters
+
+
+def test_signatures_have_names_and_defaults():
+    parameters = inspect.signature(xvrml.World.render).parameters
+    assert parameters["size"].default == (800, 600) and parameters["spp"].default is None
+    assert parameters["crop"].kind is inspect.Parameter.KEYWORD_ONLY
