@@ -20,6 +20,7 @@
 #include "session/guests.h"
 #include "session/inline_queue.h"
 #include "session/input/replay.h"
+#include "session/input/step_order.h"
 #include "session/pick_preparation.h"
 #include "session/picture_loop.h"
 #include "session/pilot.h"
@@ -163,6 +164,7 @@ class Session {
  private:
   void step();
   void takeEvents();
+  void take(const InputEvent& event);
   void takeTurns();
   const PictureLoop& picturesOf(uint32_t viewer) const;
   void loadSome();
@@ -172,6 +174,10 @@ class Session {
   // Tells whether scripts wait: for a fit, or for a picture that is to be saved.
   bool held() const { return fit_.isPending() || isSaving(); }
   bool isSaving() const { return !saveTo_.empty(); }
+  Pilot::Keys keysWhileHeld() const {
+    return isSaving() ? Pilot::Keys::shared : Pilot::Keys::ofWindow;
+  }
+  bool isRecording() const { return callbacks_.record && !replay_; }
   // Tells whether an event must wait, or is dropped, while the world is held for a picture.
   enum class Passage : uint8_t { passes, waits, isDropped };
   Passage passageOf(const InputEvent& event) const;
@@ -189,6 +195,7 @@ class Session {
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;
+  StepOrder order_; // of the user's events
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted
