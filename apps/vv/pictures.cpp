@@ -234,8 +234,8 @@ class Pictures {
     pilot_->present(place.camera, place.up);
   }
 
-  // Returns the time that the world's clock advances to. A script is at the end of a step, as in the
-  // window, so that its events have happened.
+  // Returns the time that the world's clock advances to. A script is at the end of a step, as in
+  // the window, so that its events have happened.
   double instantOf(const Moment& moment) const {
     return replay_ ? timeOfStep(moment.time, options_.fps) : moment.time;
   }

@@ -24,7 +24,8 @@ struct Encoded {
   std::string failure;
 };
 
-// Encodes a picture on a thread of its own. With render.file the file is written, otherwise the result holds the bytes.
+// Encodes a picture on a thread of its own. With render.file the file is written, otherwise the
+// result holds the bytes.
 class Encoding {
  public:
   // Throws std::system_error if there is no thread for it.

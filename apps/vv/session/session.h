@@ -114,6 +114,10 @@ class Session {
   void handleFor(uint32_t viewer, const InputEvent& event);
   // Returns the pilot of a guest; for another number that of viewer 0.
   const Pilot& pilotOf(uint32_t viewer) const;
+  // Bounds the pixels of each viewer's previews.
+  void setMostPreviewPixels(double pixels);
+  // Frees the pictures of all viewers, because nobody looks. Returns false if that cannot be now.
+  bool release();
   // Renders the true picture of this instant for a viewer, with all samples. asker: any number, by
   // which it can be given up.
   void capture(uint32_t viewer, uint64_t asker, Captures::Done done);
@@ -195,7 +199,8 @@ class Session {
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;
-  StepOrder order_; // of the user's events
+  StepOrder order_;                 // of the user's events
+  double mostPreviewPixels_ = 0; // of each viewer; 0: there is no bound
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted
