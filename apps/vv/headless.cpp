@@ -188,7 +188,7 @@ int runOnce(Headless& job) {
     return exitTryAgain;
   } catch (const std::exception& error) {
     sayError(error.what());
-    return exitRender;
+    return exitCodeOf(error);
   }
 }
 
