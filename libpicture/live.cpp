@@ -7,6 +7,8 @@
 // A preview is rebuilt before its frame counts as ended. A thread of its own would not make the
 // frame rate higher: rebuilding uses all processors, as rendering does, and with a cluster the
 // other frame in flight is rendered by the workers meanwhile.
+//
+// Longer than 500 lines because both threads work on the state of one frame.
 #include "libpicture/live.h"
 
 #include <algorithm>
@@ -26,6 +28,7 @@
 #include "libpicture/live/preview_settings.h"
 #include "libpicture/live/previews.h"
 #include "libpicture/stage.h"
+#include "system/memory.h"
 
 namespace picture {
 
@@ -124,6 +127,8 @@ struct LiveRenderer::Impl {
   // Ended frames that look() has not returned yet; at most as many as may be in flight.
   std::deque<std::shared_ptr<const EndedFrame>> unpolled;
   std::string failure;
+  std::vector<uint32_t> left; // viewers whose accumulated frames are to be freed
+  bool released = false;      // those of all viewers are
 
   // Used by the render thread only.
   std::deque<FrameInFlight> inFlight; // frames in flight, oldest first
@@ -154,10 +159,12 @@ struct LiveRenderer::Impl {
   // Waits for the oldest frame only when no other frame may be started; waiting earlier would delay
   // the newer one.
   void loop() {
-    const auto hasWork = [this] { return requested || ending; };
+    const auto hasWork = [this] { return requested || ending || isTidying(); };
     std::unique_lock lock(mutex);
     while (!ending) {
-      if (requested) {
+      if (isTidying()) {
+        tidy(lock);
+      } else if (requested) {
         FrameRequest frame = *std::exchange(requested, {});
         lock.unlock();
         std::string wrong = failureOf([&] { begin(std::move(frame)); });
@@ -184,6 +191,22 @@ struct LiveRenderer::Impl {
     }
     lock.unlock();
     stage.close();
+  }
+
+  // Tells whether kept frames are to be freed. The caller holds the mutex.
+  bool isTidying() const { return !left.empty() || (released && inFlight.empty() && !requested); }
+
+  // Frees what viewers who have left had accumulated, or all viewers.
+  void tidy(std::unique_lock<std::mutex>& lock) {
+    const std::vector<uint32_t> viewers = std::exchange(left, {});
+    const bool all = !requested && inFlight.empty() && std::exchange(released, false);
+    lock.unlock();
+    for (const uint32_t viewer : viewers) previews.forget(viewer);
+    if (all) {
+      previews.forgetAll();
+      os::giveBackMemory();
+    }
+    lock.lock();
   }
 
   template <class Work> std::string failureOf(const Work& work) {
@@ -264,8 +287,13 @@ struct LiveRenderer::Impl {
     throwOnError("rendering");
     auto result = std::make_shared<EndedFrame>();
     result->facts = flight.facts;
-    stage.readChannels(flight.settings, result->picture, &flight.names);
+    // The estimate of the error takes much memory for a moment, so no other picture is kept then.
+    if (flight.facts.purpose == Purpose::still) {
+      const std::lock_guard lock(mutex);
+      lastStill = nullptr;
+    }
     stage.describe(flight.settings, result->result);
+    stage.readChannels(flight.settings, result->picture, &flight.names);
     result->result.map = flight.map;
     result->whole =
         !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
@@ -367,6 +395,27 @@ struct LiveRenderer::Impl {
     thread.join();
   }
 
+  void forget(uint32_t viewer) {
+    display.forget(viewer);
+    {
+      const std::lock_guard lock(mutex);
+      left.push_back(viewer);
+    }
+    changed.notify_all();
+  }
+
+  void release() {
+    display = {};
+    scratch = {};
+    {
+      const std::lock_guard lock(mutex);
+      lastStill = nullptr;
+      unpolled.clear();
+      released = true;
+    }
+    changed.notify_all();
+  }
+
   void show(const Picture& picture, const live::ShownFrame& frame, bool whole, double seconds,
             LivePicture& out) {
     out = {};
@@ -382,6 +431,7 @@ struct LiveRenderer::Impl {
     if (now() != State::mapping) stage.reportMessages(); // the mapper adds messages, too
     const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
     if (!finished) return alone() && pollInFlight(out);
+    scratch = {}; // the next frame may be long in coming
     show(finished->picture, finished->facts, finished->whole, finished->seconds, out);
     out.alone = finished->alone;
     out.ended = true;
@@ -447,6 +497,10 @@ void LiveRenderer::cancel() {
 bool LiveRenderer::look(LivePicture& picture) { return impl_->look(picture); }
 
 bool LiveRenderer::copy(Picture& picture, uint64_t* number) { return impl_->copy(picture, number); }
+
+void LiveRenderer::forget(uint32_t viewer) { impl_->forget(viewer); }
+
+void LiveRenderer::release() { impl_->release(); }
 
 void LiveRenderer::change(const std::function<void(RenderSettings&)>& change) {
   change(impl_->given);

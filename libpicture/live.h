@@ -99,6 +99,12 @@ class LiveRenderer {
   // frame.
   // number: receives what start() returned for its frame.
   bool copy(Picture& picture, uint64_t* number = nullptr);
+  // Frees what is kept for a viewer who has left: the accumulated frames and what was shown last.
+  void forget(uint32_t viewer);
+  // Frees the pictures that are kept for all viewers, and gives the memory back to the system; the
+  // geometry of the world stays. copy() has nothing before the next still frame. The pictures of
+  // the last frame itself go when another frame starts: a small one, if nobody looks. [idle]
+  void release();
   // Changes the quality of the following frames. [idle]
   void change(const std::function<void(RenderSettings&)>& change);
   // Valid after the first mapping. [not while mapping]

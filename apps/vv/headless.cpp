@@ -64,7 +64,7 @@ class Headless {
     std::unique_ptr<xvrml::World> read;
     {
       const StageProgress reading("", "reading the world", options_.quiet);
-      read = readWorld(options_.input, options_.load);
+      read = xvrml::loadWorld(options_.input, options_.load);
     }
     const double before = secondsSinceStart();
     browser_ = startWorld(std::move(read), options_, problems_);
@@ -188,7 +188,7 @@ int runOnce(Headless& job) {
     return exitTryAgain;
   } catch (const std::exception& error) {
     sayError(error.what());
-    return exitRender;
+    return exitCodeOf(error);
   }
 }
 

@@ -73,7 +73,7 @@ int runAndReport(int argc, char** argv) {
     return vv::exitTryAgain;
   } catch (const std::exception& error) {
     vv::sayError(error.what());
-    return vv::exitRender;
+    return vv::exitCodeOf(error);
   }
 }
 

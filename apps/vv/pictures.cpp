@@ -152,7 +152,7 @@ class Pictures {
     const Timeline timeline(options_);
     if (options_.script) beginScript(settings);
     WorldClock clock([this](double time) { tick(time); }, options_.fps);
-    if (!clock.advance(timeline[0].time))
+    if (!clock.advance(instantOf(timeline[0])))
       return stopped("vv: interrupted before the first picture");
     if (!renderer_) makeRenderer(settings);
     picture::Renderer& renderer = *renderer_;
@@ -161,7 +161,7 @@ class Pictures {
       if (const int code = measure(); code != exitDone || !makesPicture()) return code;
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
-      if (!clock.advance(moment.time))
+      if (!clock.advance(instantOf(moment)))
         return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
                                  : finishOldest();
       std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()}
@@ -232,6 +232,12 @@ class Pictures {
     if (!view) return pilot_->frameAll(renderer_->bounds());
     const picture::Renderer::Place place = renderer_->placeOf(*view);
     pilot_->present(place.camera, place.up);
+  }
+
+  // Returns the time that the world's clock advances to. A script is at the end of a step, as in
+  // the window, so that its events have happened.
+  double instantOf(const Moment& moment) const {
+    return replay_ ? timeOfStep(moment.time, options_.fps) : moment.time;
   }
 
   void tick(double time) {

@@ -73,6 +73,10 @@ void install(int signal, void (*handler)(int)) {
 void installSignals() {
   install(SIGINT, onInterrupt);
   install(SIGTERM, onInterrupt);
+  install(SIGXCPU, onInterrupt); // the soft limit of a batch system
+  struct sigaction before = {};
+  ::sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) install(SIGHUP, onInterrupt); // nohup ignores it
   install(SIGUSR1, onSave);
   for (int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) install(crash, onCrash);
   install(SIGPIPE, SIG_IGN); // failed writes report errors themselves

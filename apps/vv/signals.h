@@ -1,8 +1,8 @@
 // signals.h: Handles signals; main() installs the handlers, which only set flags.
 //
-// * SIGINT and SIGTERM end a picture early and keep the finished part. A second one ends the
-//   process at once.
-// So does a time limit, because a shader may hang.
+// * SIGINT, SIGTERM, SIGXCPU and, unless nohup ignores it, SIGHUP end a picture early and keep the
+//   finished part. A second one ends the process at once. So does a time limit, because a shader
+//   may hang.
 // * SIGUSR1 requests a copy of the picture so far.
 // * A crash prints the shader that was running.
 #pragma once

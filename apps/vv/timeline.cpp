@@ -1,5 +1,6 @@
 #include "timeline.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "signals.h"
@@ -24,6 +25,14 @@ Moment Timeline::operator[](size_t i) const {
     moment.turn = 2 * std::numbers::pi * double(i) / double(options_.turntable);
   }
   return moment;
+}
+
+double timeOfStep(double time, double fps) {
+  double step = std::ceil(time * fps);
+  // The product may be rounded to either side.
+  while (step > 0 && (step - 1) / fps >= time) --step;
+  while (step / fps < time) ++step;
+  return step / fps;
 }
 
 bool WorldClock::advance(double time) {

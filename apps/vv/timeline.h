@@ -28,6 +28,9 @@ class Timeline {
   size_t count_ = 1;
 };
 
+// Returns the time of the first step of 1/fps at or after `time`, where a script's events happen.
+double timeOfStep(double time, double fps);
+
 class WorldClock {
  public:
   WorldClock(xvrml::Browser& browser, double fps)

@@ -1,12 +1,10 @@
 #include "world_start.h"
 
-#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <system_error>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "options/definitions.h"
 #include "report/messages.h"
@@ -15,21 +13,6 @@
 namespace vv {
 
 namespace {
-
-std::string readStandardInput(uint64_t limit) {
-  std::string bytes;
-  char block[65536];
-  for (;;) {
-    const ssize_t got = ::read(STDIN_FILENO, block, sizeof block);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw Failure{exitInput, "cannot read standard input"};
-    if (got == 0) return bytes;
-    bytes.append(block, size_t(got));
-    if (bytes.size() > limit)
-      throw Failure{exitInput,
-                    fmt::format("standard input is longer than the limit fileBytes ({})", limit)};
-  }
-}
 
 // Creates the Browser, which starts the Scripts; shows the progress if that takes long.
 std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world,
@@ -61,12 +44,6 @@ void giveShaders(const Options& options, xvrml::World& world) {
 }
 
 } // namespace
-
-std::unique_ptr<xvrml::World> readWorld(const std::string& path,
-                                        const xvrml::LoadOptions& options) {
-  if (path != "-") return xvrml::loadWorld(path, options);
-  return xvrml::loadWorldFromMemory(readStandardInput(options.limits.fileBytes), "-", options);
-}
 
 xvrml::LoadOptions loadOptionsForShowing(const Options& options) {
   xvrml::LoadOptions load = options.load;

@@ -1,4 +1,4 @@
-// world_start.h: Reads worlds and starts them according to the options, for pictures and for the
+// world_start.h: Starts worlds according to the options, for pictures and for the
 // window.
 #pragma once
 
@@ -10,9 +10,6 @@
 #include "xvrml/browser.h"
 
 namespace vv {
-
-// Reads a world; "-" is standard input. Throws xvrml::LoadError or Failure. [any thread]
-std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options);
 
 // Returns how worlds are read that are shown while their Inlines are still to come. Inlines are
 // read with the world if an option needs all nodes. [any thread]

@@ -1,13 +1,19 @@
-// libraries.h: what the loader says of loaded libraries, beyond dlsym and dladdr. Any thread.
+// libraries.h: what the loader says of loaded libraries, beyond dlsym and dladdr, and whether a file
+// can be one. Any thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
+#include <string>
 
 #include <dlfcn.h>
+#include <sys/stat.h>
 
 #if defined(__linux__)
+#include <cstring>
+
 #include <link.h>
 #else
 #include <unistd.h>
@@ -56,6 +62,38 @@ inline bool defines(void* library, void* function) {
   if (owner) dlclose(owner);
   return owner == library;
 #endif
+}
+
+// Returns why a file cannot be loaded as a library: it is no regular file, or it is shorter than its
+// headers say. Empty if nothing is known; other faults are for the loader to tell.
+inline std::string whyIncomplete(const std::string& path) {
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) return {};
+  if (!S_ISREG(info.st_mode)) return "it is not a regular file";
+#if defined(__linux__)
+  const auto size = uint64_t(info.st_size);
+  std::ifstream file(path, std::ios::binary);
+  ElfW(Ehdr) head{};
+  const bool isElf = size >= SELFMAG && file.read(reinterpret_cast<char*>(&head), SELFMAG) &&
+                     std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0;
+  if (!isElf) return {};
+  const std::string early = "it is damaged: it ends before its headers say";
+  if (size < sizeof head) return early;
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(&head), sizeof head);
+  constexpr int own = sizeof(void*) == 8 ? ELFCLASS64 : ELFCLASS32;
+  if (!file || head.e_ident[EI_CLASS] != own || head.e_phentsize != sizeof(ElfW(Phdr))) return {};
+  const uint64_t table = uint64_t(head.e_phnum) * sizeof(ElfW(Phdr));
+  if (head.e_phoff > size || table > size - head.e_phoff) return early;
+  for (uint64_t i = 0; i < head.e_phnum; ++i) {
+    ElfW(Phdr) part{};
+    file.seekg(std::streamoff(head.e_phoff + i * sizeof part));
+    if (!file.read(reinterpret_cast<char*>(&part), sizeof part)) return early;
+    const bool isMapped = part.p_type == PT_LOAD || part.p_type == PT_DYNAMIC;
+    if (isMapped && (part.p_offset > size || part.p_filesz > size - part.p_offset)) return early;
+  }
+#endif
+  return {};
 }
 
 } // namespace os

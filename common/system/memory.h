@@ -1,4 +1,5 @@
-// memory.h: what the allocator of the C library says of a block. Any thread.
+// memory.h: what the allocator of the C library says of a block, and what it keeps for later. Any
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +18,14 @@ inline size_t blockBytes(void* memory) {
   return malloc_size(memory);
 #else
   return malloc_usable_size(memory);
+#endif
+}
+
+// Gives freed memory back to the system, where the C library keeps it otherwise. Takes some
+// milliseconds: call it when the program rests.
+inline void giveBackMemory() {
+#if defined(__GLIBC__)
+  ::malloc_trim(0);
 #endif
 }
 

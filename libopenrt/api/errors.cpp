@@ -11,6 +11,7 @@
 #include "backend/backend.h"
 #include "openrt/sums.h"
 #include "scene/sums_error.h"
+#include "shortage.h"
 
 namespace openrt {
 namespace {
@@ -63,8 +64,7 @@ void recordCurrentException(ErrorState& errors, const char* function) noexcept {
     errors.record(RT_INVALID_VALUE, function, e.what());
   } catch (const std::system_error& e) {
     // A thread cannot be started, for example.
-    const bool exhausted = e.code() == std::errc::resource_unavailable_try_again;
-    errors.record(exhausted ? RT_OUT_OF_MEMORY : RT_IO_ERROR, function, e.what());
+    errors.record(isShortage(e) ? RT_OUT_OF_MEMORY : RT_IO_ERROR, function, e.what());
   } catch (const std::exception& e) {
     errors.record(RT_INVALID_OPERATION, function, e.what());
   } catch (...) { errors.record(RT_INVALID_OPERATION, function, "an unknown exception"); }

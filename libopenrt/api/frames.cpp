@@ -1,5 +1,6 @@
 // frames.cpp: Implements the API functions for the frame buffer, quality settings, frames,
 // statistics and ray queries. Runs on the application's thread.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -70,7 +71,9 @@ void setQuality(Context& c, RTenum name, double value, bool real) {
     c.framesInFlight = static_cast<uint32_t>(value);
     return;
   }
-  setting->set(c.scene.frame, value);
+  // Frames hold 32 bits. A positive number stays one: 0 means none, or no limit.
+  const double least = real && value > 0 ? double(std::numeric_limits<float>::min()) : value;
+  setting->set(c.scene.frame, std::max(value, least));
   c.scene.frameDirty = true;
 }
 

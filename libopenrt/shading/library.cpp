@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "plugin_files.h"
+#include "plugin_library.h"
 #include "shading/plugin_check.h"
 #include "system/files.h"
 #include "system/libraries.h"
@@ -136,10 +136,7 @@ FileStamp FileStamp::of(const std::string& path) {
 }
 
 void ShaderLibrary::open(const std::string& file) {
-  handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle) return;
-  const char* reason = dlerror();
-  failLoading(path, reason ? reason : "cannot be loaded");
+  handle = plugin_files::openLibrary(file, "shader library");
 }
 
 void ShaderLibrary::readClasses() {

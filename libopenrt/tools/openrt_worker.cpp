@@ -117,6 +117,14 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
       exitCode = reportError(Usage, unknownArgument(app, unknown[0]));
       return std::nullopt;
     }
+    // An empty value, perhaps of a variable that is not set, must not mean that there is none.
+    for (const auto& [name, value] :
+         {std::pair<const char*, const std::string*>{"--connect", &o.connect},
+          {"--key", &o.key},
+          {"--allow", &o.allow},
+          {"--new-key", &o.newKey}})
+      if (app.count(name) > 0 && value->empty())
+        throw CLI::ValidationError(name, "a value was expected, not \"\"");
     if (!o.allow.empty() && o.key.empty()) throw CLI::ValidationError("--allow", "needs --key");
   } catch (const CLI::ParseError& e) {
     exitCode =
@@ -197,6 +205,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   for (int number : {SIGINT, SIGTERM, SIGALRM}) std::signal(number, onSignal);
+  if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup
   std::signal(SIGPIPE, SIG_IGN);
   return withEnoughStack([&] { return run(argc, argv); });
 }

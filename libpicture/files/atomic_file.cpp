@@ -153,12 +153,18 @@ void writeDescriptor(int descriptor, std::string_view bytes, const std::string& 
   }
 }
 
-void writeFile(const std::string& path, std::string_view bytes, Wait wait) {
+namespace {
+
+enum class Targets : uint8_t { any, regular };
+
+void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Targets targets) {
   const std::string target = followLinks(path);
   struct stat info;
   const bool exists = ::stat(target.c_str(), &info) == 0;
   if (isLink(target)) fail(path, ELOOP);
   if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
+  if (exists && !S_ISREG(info.st_mode) && targets == Targets::regular)
+    throw std::runtime_error(whyNotRegular(path));
   if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
   if (exists)
     if (const std::string why = whyProtected(path, info); !why.empty())
@@ -170,6 +176,22 @@ void writeFile(const std::string& path, std::string_view bytes, Wait wait) {
   writeDescriptor(temporary.descriptor(), bytes, path);
   if (wait == Wait::disk) temporary.sync();
   temporary.moveTo(target);
+}
+
+} // namespace
+
+void writeFile(const std::string& path, std::string_view bytes, Wait wait) {
+  replaceFile(path, bytes, wait, Targets::any);
+}
+
+std::string whyNotRegular(const std::string& path) {
+  struct stat info;
+  if (::stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode) || S_ISDIR(info.st_mode)) return "";
+  return "cannot write " + path + ": it is a pipe or a device; a regular file was expected";
+}
+
+void writeRegularFile(const std::string& path, std::string_view bytes) {
+  replaceFile(path, bytes, Wait::no, Targets::regular);
 }
 
 void protectFile(const std::string& path, const std::string& what) {

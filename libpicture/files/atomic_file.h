@@ -18,6 +18,14 @@ enum class Wait : uint8_t { no, disk };
 // std::runtime_error naming the file and the reason.
 void writeFile(const std::string& path, std::string_view bytes, Wait wait = Wait::no);
 
+// Writes a file as writeFile() does, but no device and no pipe: opening or writing one may block
+// for ever. It is for writes that a program or a script asks for while others wait.
+void writeRegularFile(const std::string& path, std::string_view bytes);
+
+// Returns why writeRegularFile() would refuse a path that is no regular file; empty if it is one,
+// or does not exist.
+std::string whyNotRegular(const std::string& path);
+
 // Returns the file that a path leads to through symbolic links, whether it exists or not.
 std::string followLinks(const std::string& path);
 

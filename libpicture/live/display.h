@@ -35,6 +35,8 @@ class Display {
   // frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
   void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
+  // Frees what a viewer was shown last.
+  void forget(uint32_t viewer) { viewers_.forget(viewer); }
 
  private:
   // A picture, and whether any of it is a preview.

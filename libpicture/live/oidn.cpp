@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
+#include "plugin_library.h"
+
 namespace picture::live {
 
 namespace {
@@ -133,15 +135,31 @@ struct OwnedDevice {
 
 // --- The library ---
 
-std::shared_ptr<const OidnLibrary> OidnLibrary::load(const std::string& file) {
-  void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) {
+namespace {
+
+// Loads a library by its file, or by a bare name, which the system's loader looks for in its own
+// folders. Returns null if there is none of that name.
+void* open(const std::string& file) {
+  std::string why;
+  if (file.find('/') != file.npos) {
+    try {
+      return plugin_files::openLibrary(file, "library");
+    } catch (const std::runtime_error& error) { why = error.what(); }
+  } else {
+    if (void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
     const char* const reason = dlerror();
-    const std::string why = reason ? reason : "it cannot be loaded";
+    why = reason ? reason : "it cannot be loaded";
     // A library that was found is called by its whole path, one that was not by its name.
-    if (file.find('/') == file.npos && why.starts_with(file + ":")) return nullptr;
-    throw OidnError(fmt::format("Open Image Denoise cannot be loaded: {}", why));
+    if (why.starts_with(file + ":")) return nullptr;
   }
+  throw OidnError(fmt::format("Open Image Denoise cannot be loaded: {}", why));
+}
+
+} // namespace
+
+std::shared_ptr<const OidnLibrary> OidnLibrary::load(const std::string& file) {
+  void* const handle = open(file);
+  if (!handle) return nullptr;
   auto library = std::make_shared<OidnLibrary>();
   library->file_ = file;
   library->functions_ = std::make_shared<const OidnFunctions>(functionsOf(handle, file));

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/live/oidn.h"
+#include "system/libraries.h"
 #include "system/process.h"
 
 namespace picture::live {
@@ -38,7 +39,7 @@ std::vector<std::string>& packages() {
 }
 
 std::string given() {
-  const char* const name = std::getenv(variable);
+  const char* const name = os::trustedEnvironment(variable);
   return name ? name : "";
 }
 
@@ -76,9 +77,11 @@ std::vector<std::string> packageFiles() {
     for (const std::string& folder : packages()) addFiles(folder, files);
   }
   constexpr const char* below = "/lib/python3*/site-packages/pyoidn";
-  if (const char* const environment = std::getenv("VIRTUAL_ENV"); environment && *environment)
+  // A relative path would mean whatever lies in the folder in which the program was started.
+  if (const char* const environment = os::trustedEnvironment("VIRTUAL_ENV");
+      environment && *environment == '/')
     addFiles(std::string(environment) + below, files);
-  if (const char* const home = std::getenv("HOME"); home && *home)
+  if (const char* const home = os::trustedEnvironment("HOME"); home && *home == '/')
     addFiles(std::string(home) + "/.local" + below, files);
   addFiles(std::string("/usr/local") + below, files);
   addFiles("/usr/local/lib/python3*/dist-packages/pyoidn", files);

@@ -60,6 +60,7 @@ class Previews {
   std::string takeProblem() { return oidn_.takeProblem(); }
   // Frees what a viewer has accumulated.
   void forget(uint32_t viewer) { viewers_.forget(viewer); }
+  void forgetAll() { viewers_ = {}; }
 
   size_t viewers() const { return viewers_.size(); }
 

@@ -12,7 +12,7 @@
 
 #include "folder_files.h"
 #include "nodes/registry.h"
-#include "plugin_files.h"
+#include "plugin_library.h"
 
 namespace xvrml {
 namespace {
@@ -81,14 +81,10 @@ bool registerNodes(const NodePlugin& plugin) {
 
 // Loads one plug-in. Returns "" or the reason why it is refused.
 std::string loadOne(const std::string& path) {
+  void* handle = nullptr;
   try {
-    plugin_files::checkFile(path, "node plug-in");
+    handle = plugin_files::openLibrary(path, "node plug-in");
   } catch (const std::runtime_error& why) { return why.what(); }
-  void* handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) {
-    const char* reason = ::dlerror();
-    return fmt::format("node plug-in {}: {}", path, reason ? reason : "cannot be loaded");
-  }
   const auto* plugin = static_cast<const NodePlugin*>(::dlsym(handle, nodePluginSymbol));
   std::string reason =
       plugin ? whyRefused(*plugin) : fmt::format("it exports no {}", nodePluginSymbol);

@@ -5,19 +5,14 @@
 
 #include <dlfcn.h>
 
-#include "plugin_files.h"
+#include "plugin_library.h"
 #include "script/plugin_check.h"
 #include "system/libraries.h"
 
 namespace xvrml {
 
 ScriptLibrary loadScriptLibrary(const std::string& path) {
-  void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) {
-    const char* reason = dlerror();
-    throw std::runtime_error("script library " + path + ": " +
-                             (reason ? reason : "cannot be loaded"));
-  }
+  void* const handle = plugin_files::openLibrary(path, "script library");
   try {
     void* symbol = dlsym(handle, XS_ENTRY_NAME);
     if (!symbol)

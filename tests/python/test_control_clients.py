@@ -1,6 +1,7 @@
 """Tests vv --control with clients that are wrong or hostile, its addresses and keys, the lines of
 docs/control.md, the examples, and the window."""
 import json
+import os
 import re
 import shutil
 import stat
@@ -90,6 +91,30 @@ def test_a_client_that_does_not_read_is_cut_off(start):
     times = [json.loads(line)["time"] for line in lines[:-1]]
     assert 140 < len(times) < 190 and times == sorted(times)
     assert "unreadBytes=" in json.loads(lines[-1])["error"]["message"]
+
+
+def test_a_picture_for_a_pipe_is_refused_and_others_go_on(start, tmp_path):
+    os.mkfifo(tmp_path / "pipe.png")
+    server = start()
+    first, second = server.raw(), server.raw()
+    for name in ("pipe.png", "/dev/null", "/dev/stdout"):
+        answer = first.ask({"command": "render", "file": name, "format": "png"})
+        assert answer["error"]["code"] == "file", answer
+    assert "regular file" in first.ask({"command": "render", "file": "pipe.png"})["error"]["message"]
+    assert second.ask({"command": "render"})["result"]["format"] == "png"
+    assert second.ask({"command": "quit"})["result"] is None
+    assert server.program.wait(PATIENCE) == 0
+
+
+def test_standard_input_is_no_world_for_clients(start):
+    server = start()
+    first, second = server.raw(), server.raw()
+    for url in ("-", ["-", "world.wrl"], ["world.wrl", "-"]):
+        assert first.ask({"command": "load", "url": url})["error"]["code"] == "world"
+    assert second.ask({"command": "load", "url": "world.wrl"})["result"] == "world.wrl"
+    assert second.receive()["event"] == "world"
+    assert second.ask({"command": "quit"})["result"] is None
+    assert server.program.wait(PATIENCE) == 0
 
 
 def test_clients_come_and_go(start):

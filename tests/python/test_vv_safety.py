@@ -245,3 +245,10 @@ def test_files_within_files_each_as_deep_as_may_be(vv):
     for arguments in (["--check"], ["-o", "a.png", *SMALL], ["--info"]):
         done = vv("0.wrl", *arguments, timeout=300)
         assert done.returncode in (0, 4), (arguments, done.returncode, done.talk[-500:])
+
+
+def test_the_budget_of_a_world_bounds_standard_input(vv):
+    text = (HEADER + 3_000_000 * "Group { }\n").encode()
+    done = vv("-", "-o", "x.png", "--size", "8x6", "--limit", "worldBytes=10000000", stdin=text)
+    assert done.returncode == 3, done.talk
+    assert "worldBytes=10000000" in done.talk and len(done.talk.splitlines()) == 1

@@ -1,6 +1,7 @@
 """Tests `vv serve` with real HTTP and WebSockets: the page, its pictures, input, several pages and
 files. test_vv_serve_access.py has visitors that are hostile or not allowed, page_client.py the
 client."""
+import os
 import re
 import subprocess
 import time
@@ -411,3 +412,34 @@ def test_the_command_gives_the_same_view(serve, vv):
     done = vv(*words[1:-2], "-o", "again.png")
     assert done.returncode == 0, done.talk
     page.still(lambda p: looks_like(p, vv.folder / "again.png"))
+
+
+# --- Memory ---
+
+
+def memory(server, what):
+    """Returns megabytes: VmRSS (now) or VmHWM (at most so far)."""
+    with open(f"/proc/{server.program.pid}/status") as status:
+        return next(int(line.split()[1]) / 1024 for line in status if line.startswith(what))
+
+
+@pytest.mark.skipif("TSAN_OPTIONS" in os.environ, reason="the sanitizer multiplies memory")
+def test_the_views_of_all_pages_share_a_budget_and_give_it_back(serve):
+    server = serve(coloured("1 1 0"), "--spp", 2)
+    before = memory(server, "VmRSS")
+    pages = [server.join(4096, 1024)]
+    pages[0].still(lambda p: (p.width, p.height) == (4096, 1024))
+    for _ in range(3):
+        page = server.join(4096, 1024)
+        page.send(type="own")
+        page.until_state(lambda s: s["role"] == "own")
+        pages.append(page)
+    for page in pages:  # four views of a quarter of maxViewPixels
+        shown = page.until(lambda p: p.facts["finished"] and p.width < 4096)
+        assert 2_000_000 < shown.width * shown.height <= 8388608 / 4
+    assert memory(server, "VmHWM") < before + 2000  # docs/limits.md: 1.2 GB, 1.5 GB for all views
+    for page in pages:
+        page.close()
+    wait_for(lambda: memory(server, "VmRSS") < before + 150, "the memory is given back")
+    page = server.join(320, 80)
+    assert page.still().width == 320

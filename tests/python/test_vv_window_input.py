@@ -66,6 +66,74 @@ def test_with_and_without_a_window_input_gives_the_same_bytes(window, vv):
     assert (vv.folder / "w.png").read_bytes() == (vv.folder / "h.png").read_bytes()
 
 
+EXAMINED = HEADER + """
+Viewpoint { position 0 0 6 }
+NavigationInfo { type [ "EXAMINE" "ANY" ] }
+Background { skyColor .6 .7 .9 }
+Shape { appearance Appearance { material Material { diffuseColor 1 1 0 } } geometry Box { size 1 2 1 } }
+"""
+
+
+@pytest.mark.parametrize("save, at", [("0.3 key S", .3), ("0.3 save world-1.png", .3),
+                                      ("0.31 save world-1.png", .31)])
+def test_events_after_a_save_happen_after_it_in_the_window_and_without(window, vv, save, at):
+    vv.write("world.wrl", EXAMINED)
+    after = "0.31" if at > .3 else "0.3"
+    vv.write(
+        "in.txt", "0.1 move 0 0.8\n0.1 press left 0 0.8\n0.2 move 0.4 0.6\n"
+        f"0.3 release left 0.4 0.6\n{save}\n{after} move 0 0.8\n{after} press left 0 0.8\n"
+        f"{after} move -0.3 0.7\n0.5 release left -0.3 0.7\n0.7 save end.png\n0.7 down Q\n")
+    w = window("world.wrl", "--input", "in.txt", "--spp", 2, ready=False)
+    assert w.program.wait(PATIENCE) == 0
+    for name, time in ("world-1.png", at), ("end.png", .7):
+        done = vv("world.wrl", "--input", "in.txt", "--time", time, "-o", "h.png", "--size",
+                  "%dx%d" % SIZE, "--spp", 2)
+        assert done.returncode == 0, done.talk
+        assert (vv.folder / name).read_bytes() == (vv.folder / "h.png").read_bytes(), name
+
+
+def test_a_recording_keeps_what_follows_a_save_behind_it(window, vv):
+    # Steps of half a second: what follows the save comes in the same step.
+    w = window(SPINNING, "--record-input", "in.txt", "--fps", 2, "--spp", 4)
+    w.drag(0, 0.8, 0.4, 0.6)
+    for count in (1, 2):
+        w.key("s")
+        w.said("saved as", count)
+        w.drag(0, 0.8, -0.3, 0.7)
+    assert w.end() == 0
+    lines = [line.split() for line in (vv.folder / "in.txt").read_text().splitlines()]
+    saves = [i for i, line in enumerate(lines) if line[1:] == ["down", "S"]]
+    assert len(saves) == 2
+    for count, i in enumerate(saves, 1):
+        assert float(lines[i + 1][0]) > float(lines[i][0])
+        done = vv("world.wrl", "--input", "in.txt", "--time", lines[i][0], "--fps", 2, "-o",
+                  "h.png", "--size", "%dx%d" % SIZE, "--spp", 4)
+        assert done.returncode == 0, done.talk
+        saved = (vv.folder / f"world-{count}.png").read_bytes()
+        assert saved == (vv.folder / "h.png").read_bytes()
+
+
+def test_a_recording_ends_when_another_world_begins(window, vv):
+    w = window(SENSORS, "--record-input", "in.txt")
+    w.click(-0.35, 0)
+    w.key("r")
+    w.said("in.txt ends here")
+    w.ready(2)
+    w.click(0, 0.9)
+    assert w.end() == 0
+    text = (vv.folder / "in.txt").read_text()
+    assert text.count("press left") == 1 and text.count("down R") == 1
+    # The replay does not load the world again, which would begin the script again.
+    vv.write("again.txt", text + text.split()[-3] + " save last.png\n1e3 quit\n")
+    played = window("world.wrl", "--input", "again.txt", ready=False)
+    played.said("saved as last.png")
+
+
+def test_commands_of_programs_are_not_recorded(vv):
+    done = vv("box.wrl", "--record-input", "in.txt", "--control", "127.0.0.1:0")
+    assert done.returncode == 2 and "--control" in done.talk
+
+
 def test_what_was_recorded_can_be_played(window, vv):
     w = window(SENSORS, "--record-input", "in.txt")
     w.click(-0.35, 0)

@@ -89,6 +89,17 @@ TEST(ServerAccess, WithoutATokenOnlyThisMachineIsServed) {
   EXPECT_EQ(verdict({"", "", "", ""}, ""), Verdict::wrongHost);
 }
 
+TEST(ServerAccess, AWebSocketSaysWhichPageHasOpenedIt) {
+  using vv::server::Asked;
+  const auto socket = [](const Credentials& c, std::string_view token) {
+    return judge(c, token, Asked::socket);
+  };
+  EXPECT_EQ(socket({"localhost:8097", "", "", ""}, ""), Verdict::noOrigin);
+  EXPECT_EQ(socket({"localhost:8097", "http://localhost:8097", "", ""}, ""), Verdict::allowed);
+  EXPECT_EQ(socket({"vv.example.org", "", secret, ""}, secret), Verdict::noOrigin);
+  EXPECT_EQ(socket({"evil.example", "", "", ""}, ""), Verdict::wrongHost);
+}
+
 TEST(ServerAccess, ATokenComesByQueryOrCookie) {
   const std::string_view host = "vv.example.org";
   EXPECT_EQ(verdict({host, "", "", ""}, secret), Verdict::tokenMissing);
@@ -118,7 +129,8 @@ std::string headerOf(const Answer& answer, std::string_view name) {
 TEST(ServerAnswer, EveryAnswerHasThePolicy) {
   Downloads downloads;
   for (const Verdict verdict : {Verdict::allowed, Verdict::withQuery, Verdict::wrongHost,
-                                Verdict::wrongOrigin, Verdict::tokenMissing, Verdict::wrongToken})
+                                Verdict::wrongOrigin, Verdict::noOrigin, Verdict::tokenMissing,
+                                Verdict::wrongToken})
     for (const char* path : {"/", "/page.js", "/nothing", "/saved/x/y.png"}) {
       const Answer answer = answerFor(verdict, path, downloads);
       EXPECT_NE(headerOf(answer, "content-security-policy").find("default-src 'none'"),

@@ -131,6 +131,9 @@ TEST(ServerFlow, PicturesFitThePageWithinTheLimits) {
     EXPECT_LE(size.height, maxPictureSide);
     EXPECT_LE(size.width * size.height, maxPicturePixels);
   }
+  const PictureSize shared = pictureSizeFor(4096, 1024, maxViewPixels / 8.);
+  EXPECT_LE(shared.width * shared.height, maxViewPixels / 8);
+  EXPECT_NEAR(double(shared.width) / shared.height, 4, .01);
   const PictureSize large = pictureSizeFor(5000, 3000);
   EXPECT_NEAR(double(large.width) / large.height, 5.0 / 3, 0.002);
 }

@@ -3,12 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 
+#include "shortage.h"
+#include "start_threads.h"
 #include "system/files.h"
 #include "system/libraries.h"
 #include "system/memory.h"
@@ -122,6 +128,7 @@ TEST(SystemCalls, StacksBlocksAndProcessors) {
   EXPECT_GE(os::allowedProcessors(), 1u);
   void* const block = std::malloc(1000);
   EXPECT_GE(os::blockBytes(block), 1000u);
+  os::giveBackMemory(); // what is in use stays
   std::free(block);
   EXPECT_GT(os::addressSpace(), 1u << 20);
 }
@@ -133,6 +140,42 @@ TEST(SystemCalls, RandomBytesDiffer) {
   EXPECT_NE(a, b);
   EXPECT_NE(std::count(a.begin(), a.end(), 0), 1000);
   EXPECT_NE(a.back() + a[a.size() - 2] + a[a.size() - 3] + a[a.size() - 4], 0);
+}
+
+#if defined(__linux__)
+// In a process of its own, whose address space has room for some stacks only.
+TEST(SystemCalls, WhereThreadsAreShortFewerOfThemDoTheWork) {
+  constexpr rlim_t room = 1 << 28;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    long pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t bytes = rlim_t(pages) * rlim_t(::sysconf(_SC_PAGESIZE)) + room;
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_AS, &limit);
+    std::atomic<bool> ended{false};
+    std::vector<std::thread> threads;
+    startThreads(threads, 1000, [&](size_t) { ended.wait(false); });
+    const size_t started = threads.size();
+    ended = true;
+    ended.notify_all();
+    for (std::thread& thread : threads) thread.join();
+    ::_exit(started > 0 && started < 1000 ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+#endif
+
+TEST(SystemCalls, ShortagesAreToldFromOtherErrors) {
+  const auto of = [](std::errc code) { return std::system_error(std::make_error_code(code)); };
+  EXPECT_TRUE(isShortage(std::bad_alloc()));
+  EXPECT_TRUE(isShortage(of(std::errc::resource_unavailable_try_again)));
+  EXPECT_TRUE(isShortage(of(std::errc::too_many_files_open)));
+  EXPECT_FALSE(isShortage(of(std::errc::permission_denied)));
+  EXPECT_FALSE(isShortage(std::runtime_error("x")));
 }
 
 } // namespace

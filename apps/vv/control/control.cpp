@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <future>
 #include <map>
 #include <new>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "control/listener.h"
 #include "control/pictures_sent.h"
 #include "control/world_commands.h"
+#include "libpicture/files/atomic_file.h"
 #include "outputs.h"
 #include "report/describe.h"
 #include "report/messages.h"
@@ -49,7 +49,7 @@ struct Control::Impl {
   uint32_t channels = 0; // of its picture
   // A world is being read. Commands that load others wait, so that only one is read at a time.
   bool loading = false;
-  std::optional<std::future<Encoded>> encoding;
+  std::optional<Encoding> encoding;
 
   std::unique_ptr<Listener> listener; // destroyed first: its thread uses the mailbox
 
@@ -175,6 +175,9 @@ struct Control::Impl {
       host.quit();
     } else if (const auto* load = std::get_if<Load>(&command.action)) {
       if (load->urls.empty()) throw CommandError("command", "load: url: the array is empty");
+      if (std::find(load->urls.begin(), load->urls.end(), "-") != load->urls.end())
+        throw CommandError("world", "load: \"-\" is standard input, which belongs to the one who "
+                                    "started vv; the path of a file was expected");
       host.open(load->urls);
       loading = true;
       client.busy = Client::Busy::loading;
@@ -201,6 +204,8 @@ struct Control::Impl {
   void beginPicture(const Render& render) {
     static_cast<void>(formatOf(render));
     channels = channelsOf(render, options.render.channels);
+    if (const std::string why = picture::whyNotRegular(render.file); !why.empty())
+      throw CommandError("file", "render: " + why);
     if (!render.file.empty()) protectFilesOf(session->browser().world(), render.file);
     Still still;
     still.width = render.width.value_or(options.render.width);
@@ -214,8 +219,8 @@ struct Control::Impl {
     if (renderer == 0) return;
     Client& client = clients.at(renderer); // busy clients stay
     if (encoding) {
-      if (encoding->wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-      const Encoded encoded = encoding->get();
+      if (!encoding->hasEnded()) return;
+      const Encoded encoded = encoding->take();
       encoding.reset();
       renderer = 0;
       return finish(client, encoded.result, "render", encoded.failure);
@@ -226,8 +231,13 @@ struct Control::Impl {
       renderer = 0;
       return finish(client, "", "render", still->failure);
     }
-    encoding = encode(std::move(still->picture), channels,
-                      std::get<Render>(client.underWay.line.command->action));
+    try {
+      encoding.emplace(std::move(still->picture), channels,
+                       std::get<Render>(client.underWay.line.command->action));
+    } catch (const std::exception& error) {
+      renderer = 0;
+      finish(client, "", "limit", error.what());
+    }
   }
 
   // --- Worlds ---
@@ -270,6 +280,14 @@ struct Control::Impl {
     session = nullptr;
   }
 
+  // Answers what is under way. A picture that is being written gets a moment.
+  void end() {
+    constexpr double patience = .5; // seconds
+    if (encoding && encoding->hasEnded(patience)) followPicture();
+    encoding.reset();
+    detach("vv ended");
+  }
+
   bool serve(Session* current, bool isLoading) {
     collect();
     if (current && !current->isFree()) return false;
@@ -292,7 +310,7 @@ Control::Control(const Options& options, Host host)
   say("vv: control: listening at " + impl_->listener->address());
 }
 
-Control::~Control() { impl_->detach("vv ended"); }
+Control::~Control() { impl_->end(); }
 
 bool Control::serve(Session* session, bool isLoading) { return impl_->serve(session, isLoading); }
 
@@ -304,6 +322,8 @@ void Control::loadFailed(const std::string& why) {
 }
 
 void Control::wait(double seconds) { impl_->mailbox.wait(seconds); }
+
+bool Control::isWriting() { return Encoding::working(); }
 
 bool Control::isBusy() const {
   return std::any_of(impl_->clients.begin(), impl_->clients.end(), [](const auto& one) {

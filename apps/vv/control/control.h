@@ -40,6 +40,9 @@ class Control {
   void wait(double seconds);
   // Tells whether commands wait for something: the end of a frame, a picture, a world.
   bool isBusy() const;
+  // Tells whether a thread still writes the picture of a command, perhaps of a Control that has
+  // ended.
+  static bool isWriting();
 
  private:
   struct Impl;

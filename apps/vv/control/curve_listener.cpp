@@ -17,6 +17,7 @@
 
 #include "control/listener.h"
 #include "options/values.h"
+#include "spare_descriptors.h"
 #include "system/wake_up.h"
 
 namespace vv::control {
@@ -34,10 +35,16 @@ std::string_view textOf(const zmq::message_t& message) {
   return {message.data<char>(), message.size()};
 }
 
+zmq::context_t makeContext() {
+  needDescriptors(32, "--control");
+  return zmq::context_t();
+}
+
 class CurveListener final : public Listener {
  public:
   CurveListener(const Place& place, const KeyRing& keys, Mailbox& mailbox)
-      : place_(place), keys_(keys), mailbox_(mailbox), door_(context_, zmq::socket_type::rep),
+      : place_(place), keys_(keys), mailbox_(mailbox), context_(makeContext()),
+        door_(context_, zmq::socket_type::rep),
         socket_(context_, zmq::socket_type::router) {
     setUp();
     thread_ = std::thread([this] { run(); });

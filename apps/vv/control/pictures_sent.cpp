@@ -1,7 +1,11 @@
 #include "control/pictures_sent.h"
 
+#include <atomic>
+#include <chrono>
 #include <exception>
+#include <future>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +17,8 @@ namespace vv::control {
 
 namespace {
 
+std::atomic<int> threads{0}; // that encode
+
 Encoded encoded(const picture::Picture& picture, uint32_t channels, const Render& render) {
   try {
     const picture::Format& format = formatOf(render);
@@ -22,7 +28,7 @@ Encoded encoded(const picture::Picture& picture, uint32_t channels, const Render
                     picture.width, picture.height);
     if (render.file.empty())
       return {fmt::format(R"({{{},"data":"{}"}})", facts, base64(bytes)), ""};
-    picture::writeFile(render.file, bytes);
+    picture::writeRegularFile(render.file, bytes);
     return {fmt::format(R"({{{},"file":{}}})", facts, jsonText(render.file)), ""};
   } catch (const std::bad_alloc&) {
     return {"", "not enough memory for the picture"};
@@ -60,11 +66,39 @@ uint32_t channelsOf(const Render& render, uint32_t usual) {
   return channels;
 }
 
-std::future<Encoded> encode(picture::Picture picture, uint32_t channels, const Render& render) {
-  return std::async(std::launch::async, [picture = std::move(picture), channels, render] {
-    return encoded(picture, channels, render);
-  });
+struct Encoding::Job {
+  picture::Picture picture;
+  uint32_t channels = 0;
+  Render render;
+  std::promise<Encoded> answer;
+  std::future<Encoded> future = answer.get_future();
+};
+
+Encoding::Encoding(picture::Picture picture, uint32_t channels, const Render& render)
+    : job_(std::make_shared<Job>()) {
+  job_->picture = std::move(picture);
+  job_->channels = channels;
+  job_->render = render;
+  ++threads;
+  try {
+    std::thread([job = job_]() mutable {
+      job->answer.set_value(encoded(job->picture, job->channels, job->render));
+      job = nullptr; // frees the picture before the process may end
+      --threads;
+    }).detach();
+  } catch (...) {
+    --threads;
+    throw;
+  }
 }
+
+bool Encoding::hasEnded(double seconds) const {
+  return job_->future.wait_for(std::chrono::duration<double>(seconds)) == std::future_status::ready;
+}
+
+Encoded Encoding::take() { return job_->future.get(); }
+
+bool Encoding::working() { return threads > 0; }
 
 std::string base64(std::string_view bytes) {
   constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -2,7 +2,8 @@
 // picture takes longer than a frame. [the browser's thread]
 #pragma once
 
-#include <future>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,8 +24,24 @@ struct Encoded {
   std::string failure;
 };
 
-// Begins to encode. With render.file the file is written, otherwise the result holds the bytes.
-std::future<Encoded> encode(picture::Picture picture, uint32_t channels, const Render& render);
+// Encodes a picture on a thread of its own. With render.file the file is written, otherwise the
+// result holds the bytes.
+class Encoding {
+ public:
+  // Throws std::system_error if there is no thread for it.
+  Encoding(picture::Picture picture, uint32_t channels, const Render& render);
+  // Returns whether it has ended; waits for that at most these seconds.
+  bool hasEnded(double seconds = 0) const;
+  // Returns the answer. [after its end]
+  Encoded take();
+  // Tells whether a thread still encodes or writes, whether its answer is wanted or not. Such a
+  // thread cannot be stopped, and a slow disk may hold it for long.
+  static bool working();
+
+ private:
+  struct Job;
+  std::shared_ptr<Job> job_;
+};
 
 // Returns bytes in base64 (RFC 4648, section 4).
 std::string base64(std::string_view bytes);

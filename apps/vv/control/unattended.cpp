@@ -117,7 +117,7 @@ class Unattended {
   int end() {
     const int code = interrupted() ? exitInterrupted : failed_;
     control_.reset(); // sends the last answers, before the process may end
-    stopOrExit(session_.get(), code);
+    stopOrExit(session_.get(), code, Control::isWriting() ? Others::work : Others::rest);
     return code;
   }
 

@@ -119,6 +119,16 @@ bool isCommand(int argc, char** argv, std::string_view name) {
 bool servesPage(int argc, char** argv) { return isCommand(argc, argv, "serve"); }
 bool mergesSums(int argc, char** argv) { return isCommand(argc, argv, "merge"); }
 
+// Tells whether the word after an option is its value.
+bool takesNext(const std::string& word) {
+  return std::any_of(optionTable().begin(), optionTable().end(), [&](const OptionInfo& option) {
+    const std::string names = option.names; // "-o,--output"
+    for (const std::string_view name : split(names, ','))
+      if (word == name) return *option.argument && option.argument[0] != '[';
+    return false;
+  });
+}
+
 // Takes the files of vv merge, and refuses options that say how to render.
 void readMerge(Options& options, const std::vector<std::string>& files,
                const std::vector<std::string>& given) {
@@ -140,10 +150,16 @@ void readMerge(Options& options, const std::vector<std::string>& files,
 }
 
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
-// its argument only if it is a whole number.
-std::vector<std::string> withOptionalArguments(int argc, char** argv) {
+// its argument only if it is a whole number. The words after "--" are files: they go to `files`.
+std::vector<std::string> withOptionalArguments(int argc, char** argv,
+                                               std::vector<std::string>& files) {
   std::vector<std::string> out;
   for (int i = servesPage(argc, argv) || mergesSums(argc, argv) ? 2 : 1; i < argc; ++i) {
+    const bool isValue = !out.empty() && takesNext(out.back());
+    if (!isValue && std::string_view(argv[i]) == "--") {
+      files.assign(argv + i + 1, argv + argc);
+      break;
+    }
     out.emplace_back(argv[i]);
     for (const OptionInfo& option : optionTable()) {
       if (option.argument[0] != '[' || out.back() != longName(option)) continue;
@@ -194,13 +210,15 @@ Options readCommandLine(int argc, char** argv) {
     added.push_back(one);
   }
   refuseSwallowedOptions(argc, argv);
+  std::vector<std::string> files;
   try {
-    app.parse(withOptionalArguments(argc, argv));
+    app.parse(withOptionalArguments(argc, argv, files));
   } catch (const CLI::ArgumentMismatch&) {
     throw UsageError(missingValue(argv[argc - 1]));
   } catch (const CLI::ParseError& error) { throw UsageError(error.what()); }
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
+  inputs.insert(inputs.end(), files.begin(), files.end());
   const bool merges = mergesSums(argc, argv);
   if (inputs.size() > 1 && !merges) throw UsageError(secondFileHint(inputs[0], inputs[1]));
   if (!app.remaining().empty())

@@ -188,6 +188,9 @@ constexpr Rule rules[] = {
        return !o.recordInput.empty() && (!o.opensWindow() || !o.inputScript.empty());
      },
      "--record-input needs the window and cannot be used with --input"},
+    {[](const Options& o) { return !o.recordInput.empty() && !o.control.empty(); },
+     "--record-input holds what the user does, not the commands of programs: it cannot be used "
+     "with --control"},
     {[](const Options& o) {
        return !o.inputScript.empty() && !o.makesPictures() && !o.opensWindow();
      },

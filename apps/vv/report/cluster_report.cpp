@@ -11,6 +11,7 @@
 #include "describe.h"
 #include "libpicture/worker_facts.h"
 #include "openrt/sums.h"
+#include "shortage.h"
 
 namespace vv {
 
@@ -66,6 +67,7 @@ void joinCluster(Options& options) {
   try {
     options.render.cluster = std::make_shared<picture::Cluster>(options.cluster, context);
   } catch (const picture::RenderError& error) {
+    if (error.code == RT_OUT_OF_MEMORY) throw;
     const std::string why = error.what();
     const picture::ClusterSettings& c = options.cluster;
     const std::string hosts = c.workers.starts_with('@') ? c.workers.substr(1) : "";
@@ -81,6 +83,10 @@ int exitCodeOf(const picture::RenderError& error) {
          : error.code == RT_SUMS_ERROR    ? exitUsage
          : error.code == RT_OUT_OF_MEMORY ? exitTryAgain
                                           : exitRender;
+}
+
+int exitCodeOf(const std::exception& error) {
+  return isShortage(error) ? exitTryAgain : exitRender;
 }
 
 std::string workersText(const std::vector<RTworker>& workers) {

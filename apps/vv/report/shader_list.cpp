@@ -17,7 +17,7 @@
 #include "openrt/openrt.h"
 #include "openrt/openrts.h"
 #include "options/shader_text.h"
-#include "plugin_files.h"
+#include "plugin_library.h"
 #include "printable.h"
 #include "system/libraries.h"
 
@@ -108,8 +108,10 @@ Json classJson(const RtsClass& c, RTid id, const std::string& library) {
 
 // Appends the classes of a library, which stays loaded. Returns the error, or empty.
 std::string addLibrary(const File& file, Json& classes) {
-  void* handle = dlopen(file.path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!handle) return dlerror();
+  void* handle = nullptr;
+  try {
+    handle = plugin_files::openLibrary(file.path, "shader library");
+  } catch (const std::runtime_error& why) { return why.what(); }
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
   if (!symbol) return "exports no " RTS_ENTRY_NAME;
   const auto& plugin = *static_cast<const RtsPlugin*>(symbol);
@@ -161,7 +163,7 @@ std::string listShaders(const std::string& shaderPath, bool json) {
   Json classes = Json::array();
   for (const File& file : libraries(shaderPath))
     if (const std::string why = addLibrary(file, classes); !why.empty())
-      sayWarning(file.path + ": " + why);
+      sayWarning(why.find(file.path) == why.npos ? file.path + ": " + why : why);
   rtDeleteContext(context);
   if (json)
     return printableJson(Json({{"shaders", std::move(classes)}})

@@ -105,11 +105,12 @@ bool isSameOrigin(std::string_view origin, std::string_view host) {
   return false;
 }
 
-Verdict judge(const Credentials& credentials, std::string_view token) {
+Verdict judge(const Credentials& credentials, std::string_view token, Asked asked) {
   // Without this a page that has given its own name the address of this machine could steer.
   if (token.empty() && !isLoopbackHost(credentials.host)) return Verdict::wrongHost;
   if (!credentials.origin.empty() && !isSameOrigin(credentials.origin, credentials.host))
     return Verdict::wrongOrigin;
+  if (credentials.origin.empty() && asked == Asked::socket) return Verdict::noOrigin;
   if (token.empty()) return Verdict::allowed;
   if (!credentials.token.empty() && equalInConstantTime(credentials.token, token))
     return Verdict::withQuery;
@@ -124,6 +125,8 @@ std::string_view textOf(Verdict verdict) {
   case Verdict::wrongHost:
     return "Without --token this world can be seen only under the names of this machine itself, "
            "such as localhost.";
+  case Verdict::noOrigin:
+    return "A WebSocket needs the header Origin, with the address of the page.";
   case Verdict::wrongOrigin: return "A page of another site may not use this world.";
   case Verdict::tokenMissing:
     return "This world needs a token: open the address that vv has printed, which ends with "

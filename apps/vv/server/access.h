@@ -2,6 +2,7 @@
 // request. Pure functions of texts. [any thread]
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -29,17 +30,20 @@ struct Credentials {
   std::string_view host, origin, cookie; // headers; cookie: the value of our cookie
   std::string_view token;                // of the query
 };
+// A page, or a WebSocket, which must say which page has opened it.
+enum class Asked : uint8_t { page, socket };
 
 enum class Verdict {
   allowed,
   withQuery,    // allowed, by the token in the query: it can be replaced by the cookie
   wrongHost,    // no token is in use, and the name of the host is not that of this machine
   wrongOrigin,  // a page of another site asks
+  noOrigin,     // a WebSocket does not say which page has opened it
   tokenMissing, // neither cookie nor query has a token
   wrongToken
 };
 // token: the one in use; empty: none, and then only this machine may ask.
-Verdict judge(const Credentials& credentials, std::string_view token);
+Verdict judge(const Credentials& credentials, std::string_view token, Asked asked = Asked::page);
 // Returns what the visitor is told; empty for the first two verdicts.
 std::string_view textOf(Verdict verdict);
 

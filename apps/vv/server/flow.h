@@ -71,6 +71,7 @@ struct PictureSize {
 
 // Returns the size of pictures for a page of this size in pixels of the device: the same, or the
 // largest one of about the same shape within the limits.
-PictureSize pictureSizeFor(int width, int height);
+// most: the largest number of pixels.
+PictureSize pictureSizeFor(int width, int height, double most = maxPicturePixels);
 
 } // namespace vv::server

@@ -165,19 +165,19 @@ struct Host::Impl {
     return lws_http_transaction_completed(connection) ? -1 : 0;
   }
 
-  Verdict judgeRequest(lws* connection) const {
+  Verdict judgeRequest(lws* connection, Asked asked) const {
     const std::string host = headerOf(connection, WSI_TOKEN_HOST),
                       origin = headerOf(connection, WSI_TOKEN_ORIGIN),
                       cookies = headerOf(connection, WSI_TOKEN_HTTP_COOKIE),
                       token = tokenOfQuery(connection);
-    return judge({host, origin, cookieNamed(cookies, cookieName), token}, options.token);
+    return judge({host, origin, cookieNamed(cookies, cookieName), token}, options.token, asked);
   }
 
   // Tells whether a connection may become a WebSocket: 0 yes, 1 no, -1 hang up.
   int confirm(lws* connection, const char* protocol) {
     if (!protocol || ::strcasecmp(protocol, "websocket") != 0) return -1;
     const bool known = headerOf(connection, WSI_TOKEN_GET_URI) == socketPath;
-    const std::string_view refusal = textOf(judgeRequest(connection));
+    const std::string_view refusal = textOf(judgeRequest(connection, Asked::socket));
     if (known && refusal.empty()) return 0;
     const std::string text(known ? refusal : "There is no such page.");
     return lws_return_http_status(connection, known ? 403 : 404, text.c_str()) < 0 ? -1 : 1;
@@ -186,7 +186,7 @@ struct Host::Impl {
   int answer(lws* connection, std::string_view path) {
     Request request;
     request.path = path;
-    request.verdict = judgeRequest(connection);
+    request.verdict = judgeRequest(connection, Asked::page);
     request.token = options.token;
     request.cookieName = cookieName;
     request.secure = usesTls(connection);

@@ -19,6 +19,8 @@ inline constexpr int maxMessagesPerSecond = 300;
 inline constexpr int maxMessageBurst = 600;
 inline constexpr int maxPictureSide = 4096;
 inline constexpr int maxPicturePixels = 4'194'304;
+inline constexpr int maxViewPixels = 8'388'608;
+inline constexpr int maxPreviewPixels = 2'097'152;
 inline constexpr int minTokenLength = 16;
 inline constexpr int maxTokenLength = 128;
 inline constexpr int maxDownloads = 8;
@@ -35,6 +37,9 @@ inline constexpr Limit limits[] = {
     {"maxMessageBurst", maxMessageBurst, "messages of one page at once"},
     {"maxPictureSide", maxPictureSide, "pixels of a picture's side; a larger page scales it"},
     {"maxPicturePixels", maxPicturePixels, "pixels of a picture; a larger page scales it"},
+    {"maxViewPixels", maxViewPixels, "pixels of the pictures of all views; they share them evenly"},
+    {"maxPreviewPixels", maxPreviewPixels,
+     "pixels of the previews of all views; they share them evenly"},
     {"minTokenLength", minTokenLength, "shortest token, in characters"},
     {"maxTokenLength", maxTokenLength, "longest token, in characters"},
     {"maxDownloads", maxDownloads,

@@ -57,6 +57,12 @@ Page* Pages::find(uint64_t number) {
   return found == pages_.end() ? nullptr : &found->second;
 }
 
+size_t Pages::views() const {
+  return 1 + size_t(std::count_if(pages_.begin(), pages_.end(), [](const auto& one) {
+           return one.second.role == Page::Role::own;
+         }));
+}
+
 uint64_t Pages::ownerOf(uint32_t view) const {
   if (view == 0) return leader_;
   for (const auto& [number, page] : pages_)

@@ -51,6 +51,8 @@ class Pages {
   uint64_t ownerOf(uint32_t view) const;
   std::map<uint64_t, Page>& all() { return pages_; }
   size_t count() const { return pages_.size(); }
+  // Returns the number of views: that of the world, and those of pages with one of their own.
+  size_t views() const;
 
   // Tells whether anybody looks: a page that has had no picture yet, or has acknowledged one
   // lately. Pages that are hidden do not acknowledge.

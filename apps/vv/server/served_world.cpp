@@ -14,7 +14,8 @@ ServedWorld::ServedWorld(const Options& options, Callbacks callbacks)
     : options_(options), callbacks_(std::move(callbacks)), problems_(options) {}
 
 void ServedWorld::openFirst() {
-  std::unique_ptr<xvrml::World> world = readWorld(options_.input, loadOptionsForShowing(options_));
+  std::unique_ptr<xvrml::World> world =
+      xvrml::loadWorld(options_.input, loadOptionsForShowing(options_));
   begin(std::move(world), "", {options_.render.width, options_.render.height});
 }
 

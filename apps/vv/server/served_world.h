@@ -30,7 +30,7 @@ class ServedWorld {
   // The options must outlive this object.
   ServedWorld(const Options& options, Callbacks callbacks);
 
-  // Reads the world of the options and begins it. Throws the errors of readWorld and Session.
+  // Reads the world of the options and begins it. Throws the errors of loadWorld and Session.
   void openFirst();
   // Reads the world again, in the background, and keeps the leader's view.
   void reload();

@@ -32,6 +32,7 @@ namespace {
 
 // Seconds. Nothing wakes the loop for a signal: an idle loop looks for one now and then.
 constexpr double idleWait = 0.25, quietWait = 0.1, activeWait = 0.004, drawingWait = 0.001;
+constexpr double restAfter = 3; // seconds without a look
 constexpr int movingQuality = 80, stillQuality = 95; // of JPEG
 // Seconds from the first SIGINT until the process ends, even if a thread hangs.
 constexpr unsigned interruptSeconds = 5;
@@ -68,6 +69,7 @@ class Server {
       const double time = now();
       if (world_.session().resting()) saves_->advance();
       watched_ = pages_.isWatched(time);
+      restIfAlone(time);
       if (isTime(time)) advance(time);
       takePictures();
       sendPictures();
@@ -109,6 +111,16 @@ class Server {
     const Session& session = world_.session();
     if (time < next_) return session.due() && time >= advanced_ + activeWait;
     return !session.drawing() || time >= next_ + 1 / options_.fps;
+  }
+
+  // Frees the pictures when nobody has looked for a while. The world stays in memory.
+  void restIfAlone(double time) {
+    if (watched_) {
+      lastWatched_ = time;
+      hasRested_ = false;
+    } else if (!hasRested_ && time > lastWatched_ + restAfter) {
+      hasRested_ = world_.session().release();
+    }
   }
 
   // --- Pages ---
@@ -161,8 +173,7 @@ class Server {
     // Another page may lead now: its own view ends, and the pictures get its size.
     for (uint32_t view = 1; view < maxViews; ++view)
       if (world_.session().isGuest(view) && pages_.ownerOf(view) == 0) endView(view);
-    const Page* const leader = pages_.find(pages_.leader());
-    if (leader && leader->sized) world_.session().resize(leader->size.width, leader->size.height);
+    fitViews();
   }
 
   static InputEvent leaving() {
@@ -185,14 +196,17 @@ class Server {
       if (const auto event = viewpointEvent(message.number)) input(number, page, *event);
       break;
     case Message::Type::own:
-      if (const uint32_t view = pages_.separate(number))
+      if (const uint32_t view = pages_.separate(number)) {
         world_.session().addGuest(view, page.size.width, page.size.height);
-      else if (page.role == Page::Role::follower)
+        fitViews();
+      } else if (page.role == Page::Role::follower)
         notify(0, fmt::format("there are {} views already", maxViews), 4);
       break;
     case Message::Type::follow: {
       const uint32_t view = page.view;
-      if (pages_.follow(number)) endView(view);
+      if (!pages_.follow(number)) break;
+      endView(view);
+      fitViews();
       break;
     }
     case Message::Type::save: saves_->want(number, message.format); break;
@@ -204,10 +218,23 @@ class Server {
   void resize(Page& page, PictureSize size) {
     page.size = size;
     page.sized = true;
-    if (page.role == Page::Role::leader)
-      world_.session().resize(size.width, size.height);
-    else if (page.role == Page::Role::own)
-      world_.session().resizeGuest(page.view, size.width, size.height);
+    fitViews();
+  }
+
+  // Gives the pictures of each view the size of its page, as far as its share of the pixels allows.
+  void fitViews() {
+    Session& session = world_.session();
+    const auto views = double(pages_.views());
+    session.setMostPreviewPixels(maxPreviewPixels / views);
+    for (const auto& [number, page] : pages_.all()) {
+      if (!page.sized || page.role == Page::Role::follower) continue;
+      const PictureSize size =
+          pictureSizeFor(page.size.width, page.size.height, maxViewPixels / views);
+      if (page.role == Page::Role::leader)
+        session.resize(size.width, size.height);
+      else
+        session.resizeGuest(page.view, size.width, size.height);
+    }
   }
 
   void input(uint64_t number, const Page& page, const InputEvent& event) {
@@ -290,6 +317,7 @@ class Server {
     for (const auto& [number, page] : pages_.all())
       if (page.role == Page::Role::own)
         world_.session().addGuest(page.view, page.size.width, page.size.height);
+    fitViews();
     reports_.beginAnew();
     saves_->loseAll();
     isQuiet_ = false;
@@ -343,9 +371,11 @@ class Server {
     const picture::LivePicture& picture = shot.picture;
     const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
     try {
-      if (shot.jpeg.empty())
+      const bool isFirst = shot.jpeg.empty();
+      if (isFirst)
         shot.jpeg = picture::jpegOf(picture.rgb, picture.width, picture.height,
                                     still ? stillQuality : movingQuality);
+      if (isFirst) shot.picture.rgb = {}; // the JPEG file is all that pages get
       host_->sendPicture(page, pictureMessage(shot.number, picture, shot.wanted, shot.jpeg));
     } catch (const std::exception&) { host_->close(page); } // it would wait for ever
   }
@@ -398,6 +428,8 @@ class Server {
   bool steps_ = false;   // the world has begun to run
   // Seconds: of the world's session, and of this process at its last step and at the next one.
   double time_ = 0, advanced_ = 0, next_ = 0;
+  double lastWatched_ = 0;
+  bool hasRested_ = false; // the pictures are freed, and nobody has looked since
 
   std::unique_ptr<Host> host_;
   std::unique_ptr<Saves> saves_;

@@ -10,10 +10,10 @@
 
 namespace vv {
 
-void stopOrExit(Session* session, int code) {
+void stopOrExit(Session* session, int code, Others others) {
   constexpr double patience = .5; // seconds
   const bool stopped = !session || session->stop(patience);
-  if (stopped && !WorldLoader::working()) return;
+  if (stopped && !WorldLoader::working() && others == Others::rest) return;
   picture::removeTemporaries();
   std::fflush(nullptr);
   ::_exit(code);

@@ -1,13 +1,18 @@
 // ending.h: Ends a process that shows a world. [main thread]
 #pragma once
 
+#include <cstdint>
+
 namespace vv {
 
 class Session;
 
+// Whether threads that know nothing of worlds, such as those that write files, still work.
+enum class Others : uint8_t { rest, work };
+
 // Stops a session; null: there is none. Returns when no thread uses a world any more. Reading a
-// world and building geometry cannot be cancelled: if a thread still does after half a second, the
-// process ends here with `code`, without cleanup.
-void stopOrExit(Session* session, int code);
+// world, building geometry and writing a file cannot be cancelled: if a thread still does so after
+// half a second, the process ends here with `code`, without cleanup.
+void stopOrExit(Session* session, int code, Others others = Others::rest);
 
 } // namespace vv

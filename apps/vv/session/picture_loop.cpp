@@ -1,6 +1,7 @@
 #include "session/picture_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "libpicture/live/denoise_choice.h"
@@ -45,7 +46,8 @@ bool PictureLoop::isSettled(double now) const {
   if (motion_ == Motion::samples) return true;
   if (phase_ == Phase::settling) return now >= settlingEnds_;
   return picture::lightOf(facts_.stats, false) == picture::Pacing::Light::direct &&
-         frame_.width >= width_ && frame_.height >= height_ && frame_.lightStride == 1;
+         frame_.width >= previewSide(width_) && frame_.height >= previewSide(height_) &&
+         frame_.lightStride == 1;
 }
 
 bool PictureLoop::isInterrupted() const {
@@ -159,9 +161,18 @@ picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {
 
 picture::FrameSize PictureLoop::sizeOf(Phase phase) {
   const int samples = options_.render.samples;
-  if (phase == Phase::settling) return pacing_.settle(width_, height_, samples);
-  return pacing_.next(width_, height_, phase == Phase::moving, samples,
-                      picture::lightOf(facts_.stats, motion_ == Motion::rebuilt));
+  if (phase == Phase::settling)
+    return pacing_.settle(previewSide(width_), previewSide(height_), samples);
+  const auto light = picture::lightOf(facts_.stats, motion_ == Motion::rebuilt);
+  if (phase == Phase::moving)
+    return pacing_.next(previewSide(width_), previewSide(height_), true, samples, light);
+  return pacing_.next(width_, height_, false, samples, light);
+}
+
+int PictureLoop::previewSide(int side) const {
+  const double pixels = double(width_) * height_;
+  if (!(mostPreviewPixels_ > 0) || pixels <= mostPreviewPixels_) return side;
+  return std::max(1, int(side * std::sqrt(mostPreviewPixels_ / pixels)));
 }
 
 void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {

@@ -45,6 +45,8 @@ class PictureLoop {
   void resize(int width, int height);
   int width() const { return width_; }
   int height() const { return height_; }
+  // Bounds the pixels of previews, whose accumulated frames take much more memory than pictures.
+  void setMostPreviewPixels(double pixels) { mostPreviewPixels_ = pixels; }
   void setMotion(Motion motion) { motion_ = motion; }
   Motion motion() const { return motion_; }
 
@@ -60,6 +62,8 @@ class PictureLoop {
   xvrml::MapOptions::Headlight headlightOf(const Pilot& pilot) const;
   // Notes a picture of this viewer that the renderer has returned. Returns whether it is shown.
   bool note(const picture::LivePicture& picture);
+  // Notes that the renderer has no still picture any more.
+  void loseStill() { isStillLost_ = true; }
   // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
   // still one with samples everywhere, or for a moment while it ends.
   bool copyStill(picture::Picture& picture);
@@ -110,6 +114,7 @@ class PictureLoop {
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   picture::FrameSize sizeOf(Phase phase);
+  int previewSide(int side) const; // of a preview as large as may be
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   picture::View stillViewOf(const Pilot& pilot, double aspect) const;
   void advanceStill(const Pilot& pilot, Fit& fit);
@@ -121,7 +126,8 @@ class PictureLoop {
   const uint32_t viewer_;
   StillTaker taker_{renderer_};
   picture::Pacing pacing_;
-  int width_ = 0, height_ = 0; // size of the window in pixels
+  int width_ = 0, height_ = 0;   // size of the window in pixels
+  double mostPreviewPixels_ = 0; // 0: there is no bound
   Motion motion_ = Motion::rebuilt;
 
   Phase phase_ = Phase::unstarted;

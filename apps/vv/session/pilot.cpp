@@ -310,6 +310,17 @@ Action Pilot::press(Action action) {
   return Action::none;
 }
 
+Action Pilot::windowAction(const InputEvent& event, Keys keys) const {
+  if (event.kind == InputEvent::Kind::save) return Action::save;
+  if (event.kind == InputEvent::Kind::quit) return Action::quit;
+  if (event.kind != InputEvent::Kind::down) return Action::none;
+  const WorldKeys::Claim claim = WorldKeys::claimOf(browser_, event);
+  const bool isOfWindow = claim == WorldKeys::Claim::window ||
+                          (claim == WorldKeys::Claim::both && keys == Keys::shared);
+  const Action action = actionOf(WorldKeys::commandOf(browser_, event));
+  return isOfWindow && action >= Action::save ? action : Action::none;
+}
+
 Action Pilot::handle(const InputEvent& event) {
   using Kind = InputEvent::Kind;
   switch (event.kind) {

@@ -38,6 +38,12 @@ class Pilot {
   // Handles an event. Returns the action that is left to the window (including frameAll and
   // beginAgain, which need the world's extent), or none.
   Action handle(const InputEvent& event);
+  // Keys that count as the window's while the world is held: those that the world does not get, or
+  // also those that both get.
+  enum class Keys : uint8_t { ofWindow, shared };
+  // Returns the action that handle() leaves to the window, for an event that does not reach the
+  // world; for other events none. Changes nothing.
+  Action windowAction(const InputEvent& event, Keys keys = Keys::ofWindow) const;
 
   void setAspect(double aspect); // width / height of the picture
   double aspect() const { return aspect_; }

@@ -47,7 +47,7 @@ void PictureWriter::begin(picture::Picture picture, const std::string& path, uin
       if (!format)
         throw std::runtime_error(
             fmt::format("{}: the suffix is none of {}", path, picture::formatSuffixes()));
-      picture::writeFile(path, format->encode(wantedPart(picture, channels)));
+      picture::writeRegularFile(path, format->encode(wantedPart(picture, channels)));
       told_ = "saved as " + path + note;
       failed_ = false;
     } catch (const std::bad_alloc&) {

@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 
 #include "look.h"
-#include "report/describe.h"
 #include "report/messages.h"
-#include "session/input/view_command.h"
 #include "timeline.h"
 #include "world_start.h"
 
@@ -64,7 +62,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
         std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
           if (action == Action::frameAll || action == Action::beginAgain)
             want(action);
-          else
+          else if (action != Action::reload) // the script would begin again, and reload again
             callbacks_.onAction(event, action);
           if (held()) replay_->wait();
         });
@@ -144,25 +142,25 @@ void Session::step() {
   clock_.run({[this] { return held(); },
               [this](double time) {
                 if (replay_) return replay_->step(time);
+                order_.begin();
                 pilot_.step(time);
                 guests_.step(time);
                 return true;
               }});
 }
 
-// While the world is held for a picture, only the window's keys act. What ends an action of the
-// user or moves the pointer is handled afterwards; what would begin one is dropped.
+// After a save, only the window's keys act until the next step. While the world is held for the
+// picture, what ends an action of the user or moves the pointer is handled afterwards; what would
+// begin one is dropped. A replay waits for fits, so a recorded session does the same.
 Session::Passage Session::passageOf(const InputEvent& event) const {
   using Kind = InputEvent::Kind;
-  if (!isSaving() || replay_) return Passage::passes;
-  switch (event.kind) {
-  case Kind::move:
-  case Kind::release:
-  case Kind::leave:
-  case Kind::up: return Passage::waits;
-  case Kind::down: return actionOf(event) >= Action::save ? Passage::passes : Passage::isDropped;
-  default: return Passage::isDropped;
-  }
+  if (replay_) return Passage::passes;
+  if (isRecording() && fit_.isPending()) return Passage::waits;
+  if (!order_.isEnded() || pilot_.windowAction(event, keysWhileHeld()) != Action::none)
+    return Passage::passes;
+  const bool ends = event.kind == Kind::move || event.kind == Kind::release ||
+                    event.kind == Kind::leave || event.kind == Kind::up;
+  return ends || !isSaving() ? Passage::waits : Passage::isDropped;
 }
 
 // Adds an event to those that wait. Of moves that follow each other only the last one counts.
@@ -184,24 +182,37 @@ void Session::takeEvents() {
     waiting_.pop_front();
     const Passage passage = passageOf(event);
     if (passage == Passage::isDropped) continue;
-    if (passage == Passage::waits || (pointerWaits && event.kind <= InputEvent::Kind::wheel)) {
+    // Keys of the window do not overtake what waits for the next step.
+    const bool isBehind = order_.isEnded() && !isSaving() && !replay_ && !later.empty();
+    const bool waits = passage == Passage::waits || isBehind;
+    if (waits || (pointerWaits && event.kind <= InputEvent::Kind::wheel)) {
       postpone(event, later);
       continue;
     }
-    Action action = Action::none;
-    if (callbacks_.record) callbacks_.record(clock_.time(), event);
-    if (!replay_)
-      action = pilot_.handle(event);
-    else if (event.kind == InputEvent::Kind::down)
-      action = actionOf(event);
-    const bool ofWindow = action >= Action::save && action != Action::none;
-    if ((action == Action::frameAll || action == Action::beginAgain) && !replay_)
-      want(action);
-    else if (ofWindow)
-      callbacks_.onAction(event, action);
+    take(event);
   }
   waiting_ = std::move(later);
   if (!isSaving()) guests_.takeEvents(pointerWaits, callbacks_.onGuestAction);
+}
+
+// Handles an event of the user. A key that gives up a save, or that only a replay would pass to the
+// world, is not recorded.
+void Session::take(const InputEvent& event) {
+  const bool apart = order_.isEnded(), wasSaving = isSaving();
+  if (isRecording() && !apart) callbacks_.record(clock_.time(), event);
+  Action action = Action::none;
+  if (replay_)
+    action = event.kind == InputEvent::Kind::down ? actionOf(event) : Action::none;
+  else
+    action = apart ? pilot_.windowAction(event, keysWhileHeld()) : pilot_.handle(event);
+  if (!replay_) order_.note(action);
+  if ((action == Action::frameAll || action == Action::beginAgain) && !replay_)
+    want(action);
+  else if (action >= Action::save)
+    callbacks_.onAction(event, action);
+  const bool gaveUp = wasSaving && !isSaving();
+  if (isRecording() && apart && !gaveUp && pilot_.windowAction(event) != Action::none)
+    callbacks_.record(clock_.time(), event);
 }
 
 // Loads Inlines after the first picture, a few at a time.
@@ -365,7 +376,24 @@ void Session::addGuest(uint32_t viewer, int width, int height) {
   Guest& guest = guests_.add(viewer, pilot_, *browser_, shared_, options_);
   guest.pilot.step(clock_.time());
   guest.pictures.setMotion(pictures_.motion());
+  guest.pictures.setMostPreviewPixels(mostPreviewPixels_);
   resizeGuest(viewer, width, height);
+}
+
+void Session::setMostPreviewPixels(double pixels) {
+  mostPreviewPixels_ = pixels;
+  pictures_.setMostPreviewPixels(pixels);
+  for (const auto& [viewer, guest] : guests_.all()) guest->pictures.setMostPreviewPixels(pixels);
+}
+
+bool Session::release() {
+  if (!resting() || !shared_.isIdle() || !pictures_.hasStarted() || isSaving() ||
+      captures_.isPending() || pictures_.stillWaits())
+    return false;
+  shared_.release();
+  pictures_.loseStill();
+  for (const auto& [viewer, guest] : guests_.all()) guest->pictures.loseStill();
+  return true;
 }
 
 void Session::removeGuest(uint32_t viewer) {
@@ -427,69 +455,6 @@ bool Session::isQuiet() const {
            const Guest& guest = *one.second;
            return guest.waiting.empty() && quiet(guest.pilot, guest.pictures, guest.fit);
          });
-}
-
-// --- Reports ---
-
-std::string Session::command(const std::vector<std::string>& arguments, uint32_t viewer) const {
-  const Pilot& pilot = pilotOf(viewer);
-  const PictureLoop& pictures = picturesOf(viewer);
-  std::optional<bool> headlight = pilot.headlight();
-  if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
-    headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
-  return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
-                      browser_->now(), options_.epoch, headlight},
-                     arguments);
-}
-
-std::string Session::takeMessageOf(uint32_t guest) {
-  Guest* const found = guests_.find(guest);
-  return found ? found->pilot.takeMessage() : std::string();
-}
-
-std::string Session::takeMessage() {
-  std::string text = std::exchange(message_, {});
-  std::string pilots = pilot_.takeMessage();
-  if (const std::string failure = pictures_.takeFailure(); !failure.empty()) {
-    sayError(failure);
-    if (isSaving()) giveUp(failure);
-    return failure;
-  }
-  const std::string written = writer_.takeMessage();
-  return !pilots.empty() ? pilots : !written.empty() ? written : text;
-}
-
-SessionFacts Session::facts(uint32_t viewer) const {
-  using Showing = SessionFacts::Showing;
-  const PictureLoop& pictures = picturesOf(viewer);
-  const picture::LivePicture& picture = pictures.facts();
-  const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
-  SessionFacts facts;
-  facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
-                                  : (still ? Showing::still : Showing::samples);
-  facts.denoisedBy = picture.denoisedBy;
-  facts.frameRate = pictures.frameRate();
-  constexpr double restless = 3;
-  facts.isRestless = pictures.movingFor() > restless && !pilotOf(viewer).isSteering();
-  facts.width = picture.width;
-  facts.height = picture.height;
-  facts.samples = picture.samples;
-  facts.wanted = pictures.isRefining() ? options_.render.samples : 0;
-  facts.stats = picture.stats;
-  facts.map = picture.map;
-  facts.finished = picture.finished;
-  const xvrml::Diagnostics& d = browser_->world().diagnostics;
-  facts.errors = d.errors();
-  facts.warnings = d.warnings();
-  if (!d.list().empty()) facts.lastProblem = d.list().back().text();
-  facts.navigation = navigationName(pilotOf(viewer).navigation());
-  facts.description = browser_->description();
-  facts.loading = inlines_.isLoading();
-  if (const auto& cluster = options_.render.cluster) {
-    facts.cluster = true;
-    facts.workers = cluster->workers();
-  }
-  return facts;
 }
 
 } // namespace vv

@@ -20,6 +20,7 @@
 #include "session/guests.h"
 #include "session/inline_queue.h"
 #include "session/input/replay.h"
+#include "session/input/step_order.h"
 #include "session/pick_preparation.h"
 #include "session/picture_loop.h"
 #include "session/pilot.h"
@@ -114,6 +115,10 @@ class Session {
   void handleFor(uint32_t viewer, const InputEvent& event);
   // Returns the pilot of a guest; for another number that of viewer 0.
   const Pilot& pilotOf(uint32_t viewer) const;
+  // Bounds the pixels of each viewer's previews.
+  void setMostPreviewPixels(double pixels);
+  // Frees the pictures of all viewers, because nobody looks. Returns false if that cannot be now.
+  bool release();
   // Renders the true picture of this instant for a viewer, with all samples. asker: any number, by
   // which it can be given up.
   void capture(uint32_t viewer, uint64_t asker, Captures::Done done);
@@ -164,6 +169,7 @@ class Session {
  private:
   void step();
   void takeEvents();
+  void take(const InputEvent& event);
   void takeTurns();
   const PictureLoop& picturesOf(uint32_t viewer) const;
   void loadSome();
@@ -174,6 +180,10 @@ class Session {
   // Tells whether scripts wait: for a fit, or for a picture that is to be saved.
   bool held() const { return fit_.isPending() || isSaving(); }
   bool isSaving() const { return !saveTo_.empty(); }
+  Pilot::Keys keysWhileHeld() const {
+    return isSaving() ? Pilot::Keys::shared : Pilot::Keys::ofWindow;
+  }
+  bool isRecording() const { return callbacks_.record && !replay_; }
   // Tells whether an event must wait, or is dropped, while the world is held for a picture.
   enum class Passage : uint8_t { passes, waits, isDropped };
   Passage passageOf(const InputEvent& event) const;
@@ -191,6 +201,8 @@ class Session {
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;
+  StepOrder order_;                 // of the user's events
+  double mostPreviewPixels_ = 0; // of each viewer; 0: there is no bound
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted

@@ -41,6 +41,17 @@ class SharedRenderer {
     for (Started& one : started_)
       if (one.viewer == viewer) one.viewer = nobody;
     if (viewer_ == viewer) viewer_ = nobody;
+    live.forget(viewer);
+  }
+  // Frees the pictures of all viewers while nobody looks. The smallest frame takes the place of the
+  // last one, with its sums. [idle]
+  void release() {
+    live.release();
+    picture::LiveFrame smallest;
+    smallest.width = smallest.height = 1;
+    smallest.viewer = nobody;
+    smallest.purpose = picture::LiveFrame::Purpose::rawPreview;
+    start(smallest, false);
   }
   // Returns the state of the world that the last frame shows, for isOutdated().
   uint64_t world() const { return world_; }

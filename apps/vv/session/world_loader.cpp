@@ -5,7 +5,6 @@
 #include <thread>
 #include <utility>
 
-#include "world_start.h"
 
 namespace vv {
 
@@ -25,7 +24,7 @@ LoadAnswer load(const LoadRequest& request) {
       answer.fragment = resolved.fragment;
     }
     try {
-      if (why.empty()) answer.world = readWorld(path, request.options);
+      if (why.empty()) answer.world = xvrml::loadWorld(path, request.options);
     } catch (const xvrml::LoadError& error) {
       why = error.diagnostic.text();
     } catch (const Failure& failure) { why = failure.text; } catch (const std::bad_alloc&) {

@@ -186,23 +186,28 @@ class Window {
     calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
       open({urls, base, {}}, false);
     };
-    if (record_.is_open())
+    // A recording and a script are of one world: the first one, or for a script the same one again.
+    Options options = options_;
+    if (session_) options.recordInput.clear();
+    const bool scripted = !session_ || keepPlace_;
+    if (!options.recordInput.empty())
       calls.record = [this](double time, const InputEvent& event) {
         record(inputLine(time, event));
       };
-    auto fresh = std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls),
-                                           options_.script.get());
+    auto fresh = std::make_unique<Session>(std::move(world), options, problems_, std::move(calls),
+                                           scripted ? options_.script.get() : nullptr);
     width_ = screen_.width();
     height_ = screen_.height();
     fresh->setMotion(motion_);
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
     const std::string saved = session_ ? session_->endSaving() : "";
+    const std::string recorded = session_ ? endRecording() : "";
     if (control_) control_->detach();
     session_ = std::move(fresh); // ends the previous session
     failed_ = exitDone;
     first_ = true;
-    message(saved, 6);
+    message(saved.empty() ? recorded : saved, 6);
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
     watch_.follow(session_->browser().world());
@@ -216,6 +221,19 @@ class Window {
     if (record_ << line << std::flush) return;
     const int reason = errno;
     recordingFailed(reason);
+  }
+
+  // Ends the recording, because the time of another world begins at 0. Returns what is said of it.
+  std::string endRecording() {
+    if (!record_.is_open()) return {};
+    errno = 0;
+    if (record_ && (record_.close(), !record_)) recordingFailed(errno);
+    if (!record_) return {};
+    const std::string text = fmt::format("--record-input: {} ends here, because a recording is "
+                                         "that of one world",
+                                         options_.recordInput);
+    sayWarning(text);
+    return text;
   }
 
   void recordingFailed(int reason) {
@@ -356,7 +374,7 @@ class Window {
                                                        : failed_;
     if (session_) session_->endSaving();
     control_.reset(); // sends the last answers, before the process may end
-    stopOrExit(session_.get(), code);
+    stopOrExit(session_.get(), code, control::Control::isWriting() ? Others::work : Others::rest);
     return code;
   }
 

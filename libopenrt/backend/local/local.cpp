@@ -355,8 +355,7 @@ void LocalBackend::wait() {
     frame_ = nullptr;
     finished_ = std::move(frame);
   }
-  if (!finished_->failure().empty())
-    throw std::runtime_error("rendering failed: " + finished_->failure());
+  finished_->throwFailure();
 }
 
 void LocalBackend::cancel() {

@@ -6,8 +6,11 @@
 #include <bit>
 #include <chrono>
 #include <exception>
+#include <stdexcept>
 
 #include "render/frame/job_runner.h"
+#include "shortage.h"
+#include "start_threads.h"
 
 namespace openrt {
 namespace {
@@ -41,8 +44,8 @@ Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads, const K
                  largest = largestJob(scene_->frame, tiles, threads);
   const uint64_t jobs =
       uint64_t(tiles) * std::max(scene_->frame.samples / std::max(largest, 1u), 1u);
-  for (uint64_t i = 0; i < std::min<uint64_t>(threads, jobs); i++)
-    threads_.emplace_back([this, largest] { work(largest); });
+  startThreads(threads_, size_t(std::min<uint64_t>(threads, jobs)),
+               [this, largest](size_t) { work(largest); });
 }
 
 Frame::~Frame() {
@@ -90,12 +93,22 @@ void Frame::work(uint32_t largest) {
     }
     std::lock_guard lock(mutex_);
     seconds_ = std::max(seconds_, now() - started_);
-  } catch (const std::exception& e) {
+  } catch (...) {
     {
       std::lock_guard lock(mutex_);
-      failure_ = e.what();
+      failure_ = std::current_exception();
     }
     cancel();
+  }
+}
+
+void Frame::throwFailure() const {
+  if (!failure_) return;
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& e) {
+    if (isShortage(e)) throw;
+    throw std::runtime_error(std::string("rendering failed: ") + e.what());
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -31,7 +32,8 @@ class Frame {
   // Valid after wait().
   const FrameWork& work() const { return work_; }
   double seconds() const { return seconds_; }
-  const std::string& failure() const { return failure_; } // empty if the frame succeeded
+  // Throws why the frame has failed; nothing if it succeeded.
+  void throwFailure() const;
 
  private:
   void work(uint32_t largest);
@@ -42,7 +44,7 @@ class Frame {
   std::mutex mutex_; // guards everything below
   std::condition_variable changed_;
   uint64_t changes_ = 0;
-  std::string failure_;
+  std::exception_ptr failure_;
   double seconds_ = 0, started_ = 0;
 };
 

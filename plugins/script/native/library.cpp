@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "plugin_files.h"
+#include "plugin_library.h"
 #include "system/libraries.h"
 
 namespace native {
@@ -48,15 +48,12 @@ void* loadLibrary(const std::string& name) {
     throw std::runtime_error("there is no library \"" + name +
                              "\" in the folders of $XVRML_NATIVE_PATH and of the installation (" +
                              plugin_files::listed(folders) + ")");
-  plugin_files::checkFile(path, "native library");
   static std::mutex mutex;
   static auto& known = *new std::map<std::string, void*>();
   const std::scoped_lock lock(mutex);
   void*& handle = known[path];
-  if (!handle) handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle) return handle;
-  const char* reason = dlerror();
-  throw std::runtime_error(std::string("native library ") + (reason ? reason : path.c_str()));
+  if (!handle) handle = plugin_files::openLibrary(path, "native library");
+  return handle;
 }
 
 } // namespace native

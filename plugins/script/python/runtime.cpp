@@ -7,6 +7,8 @@
 #include <dlfcn.h>
 
 #include "memory.h"
+#include "plugin_files.h"
+#include "system/libraries.h"
 
 namespace python {
 namespace {
@@ -24,12 +26,14 @@ void shareSymbols() {
 }
 
 // Returns the program name from which Python derives the place of its library: an activated
-// environment of the same version, otherwise the Python of the build.
+// environment of the same version, which no other user could have written, otherwise the Python of the build.
 std::string programName() {
-  const char* environment = std::getenv("VIRTUAL_ENV");
+  const char* environment = os::trustedEnvironment("VIRTUAL_ENV");
   const std::string version =
       std::to_string(PY_MAJOR_VERSION) + "." + std::to_string(PY_MINOR_VERSION);
-  if (environment && fs::exists(fs::path(environment) / "lib" / ("python" + version)))
+  // A relative path would mean whatever lies in the folder in which the program was started.
+  if (environment && *environment == '/' &&
+      plugin_files::trusted(fs::path(environment) / "lib" / ("python" + version)))
     return (fs::path(environment) / "bin/python3").string();
   return fs::exists(PYTHON_PROGRAM) ? PYTHON_PROGRAM : "python3";
 }

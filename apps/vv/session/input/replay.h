@@ -1,10 +1,12 @@
 // replay.h: Drives a world with a script: steps of 1/fps from 0, with the script's events at their
-// steps. The same script gives the same world, with or without a window. [the browser's thread]
+// steps, in the order of step_order.h. The same script gives the same world, with or without a
+// window. [the browser's thread]
 #pragma once
 
 #include <functional>
 
 #include "session/input/input_script.h"
+#include "session/input/step_order.h"
 #include "session/pilot.h"
 
 namespace vv {
@@ -29,6 +31,7 @@ class Replay {
   const InputScript& script_;
   std::function<void(const InputEvent&, Action)> onAction_;
   size_t next_ = 0;
+  StepOrder order_;
   double stepped_ = -1;
   bool waiting_ = false;
 };

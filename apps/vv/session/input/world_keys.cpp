@@ -26,6 +26,21 @@ bool isPrintable(const std::string& text) {
   return text.size() == 1 && text[0] >= ' ' && text[0] <= '~';
 }
 
+// A key as the sensors of the world name it.
+struct KeyForWorld {
+  std::string name;
+  bool isText;  // its character comes as an event of its own
+  bool isTyped; // it types a character, or is Enter, Backspace or Tab
+
+  explicit KeyForWorld(const InputEvent& event) {
+    const char* const named = worldNameOf(event.text);
+    const std::string typed = typedBy(event);
+    name = named ? named : typed.empty() ? event.text : typed;
+    isText = typed.empty() && (isPrintable(name) || static_cast<signed char>(name[0]) < 0);
+    isTyped = !typed.empty() || name == "Enter" || name == "Backspace" || name == "Tab";
+  }
+};
+
 } // namespace
 
 std::string typedBy(const InputEvent& event) {
@@ -39,17 +54,20 @@ std::string typedBy(const InputEvent& event) {
   return event.shift && key != " " ? std::string() : key;
 }
 
+WorldKeys::Claim WorldKeys::claimOf(const xvrml::Browser& browser, const InputEvent& event) {
+  if (!browser.sensesKeys()) return Claim::window;
+  const KeyForWorld key(event);
+  if (key.isText) return event.control ? Claim::window : Claim::world;
+  return key.isTyped ? Claim::world : Claim::both;
+}
+
 bool WorldKeys::press(xvrml::Browser& browser, const InputEvent& event) {
   if (!browser.sensesKeys()) return false;
-  const char* const named = worldNameOf(event.text);
-  const std::string typed = typedBy(event), name = named           ? named
-                                                   : typed.empty() ? event.text
-                                                                   : typed;
-  const bool byText = typed.empty() && (isPrintable(name) || static_cast<signed char>(name[0]) < 0);
-  if (byText) return !event.control; // its character comes as text
-  if (!browser.worldKey(name, true)) return false;
-  pressed_[event.text] = name;
-  return !typed.empty() || name == "Enter" || name == "Backspace" || name == "Tab";
+  const KeyForWorld key(event);
+  if (key.isText) return !event.control;
+  if (!browser.worldKey(key.name, true)) return false;
+  pressed_[event.text] = key.name;
+  return key.isTyped;
 }
 
 void WorldKeys::release(xvrml::Browser& browser, const InputEvent& event) {

@@ -4,6 +4,7 @@
 // both. [the browser's thread]
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -18,6 +19,10 @@ std::string typedBy(const InputEvent& event);
 
 class WorldKeys {
  public:
+  // Whom a key that goes down is for: the window alone, both, or the world alone.
+  enum class Claim : uint8_t { window, both, world };
+  // Tells whom a key is for, if the sensor takes it. Passes nothing on.
+  static Claim claimOf(const xvrml::Browser& browser, const InputEvent& event);
   // Passes a key that goes down. Returns whether it is the world's alone.
   bool press(xvrml::Browser& browser, const InputEvent& event);
   // Releases the key as it was pressed, whatever Shift is now.

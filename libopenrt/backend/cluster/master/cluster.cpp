@@ -21,6 +21,8 @@
 #include "backend/surface_queries.h"
 #include "render/frame/threads.h"
 #include "scene/sums_error.h"
+#include "shortage.h"
+#include "start_threads.h"
 
 namespace openrt {
 namespace {
@@ -45,7 +47,7 @@ class ThreadPool {
  public:
   using Task = std::function<void()>;
   explicit ThreadPool(uint32_t threads) {
-    for (uint32_t i = 0; i < threads; i++) threads_.emplace_back([this] { run(); });
+    startThreads(threads_, threads, [this](size_t) { run(); });
   }
   ~ThreadPool() {
     {
@@ -513,9 +515,12 @@ std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options,
                                             const ClusterOptions& cluster) {
   try {
     return std::make_unique<ClusterBackend>(options, cluster);
-  } catch (const std::bad_alloc&) { throw; } catch (const ClusterError&) {
+  } catch (const ClusterError&) {
     throw;
-  } catch (const std::exception& e) { throw ClusterError(e.what()); }
+  } catch (const std::exception& e) {
+    if (isShortage(e)) throw;
+    throw ClusterError(e.what());
+  }
 }
 
 } // namespace openrt

@@ -9,6 +9,7 @@
 
 #include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/addresses.h"
+#include "spare_descriptors.h"
 
 namespace openrt::cluster {
 namespace {
@@ -39,7 +40,8 @@ std::string failureText(uint16_t event, int value, bool withKeys) {
 } // namespace
 
 zmq::context_t makeContext() {
-  constexpr int ioThreads = 2, sockets = 16384;
+  constexpr int ioThreads = 2, sockets = 16384, descriptors = 32;
+  needDescriptors(descriptors, "the network of a cluster");
   zmq::context_t context(ioThreads);
   context.set(zmq::ctxopt::max_sockets, sockets);
   context.set(zmq::ctxopt::blocky, false);

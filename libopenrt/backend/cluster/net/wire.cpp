@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "backend/cluster/net/wire_impl.h"
+#include "shortage.h"
 
 namespace openrt::cluster {
 namespace {
@@ -134,7 +135,11 @@ Event Wire::Impl::receive(double seconds) {
 Wire::Wire(const WireOptions& options) {
   try {
     impl_ = std::make_unique<Impl>(options);
-  } catch (const zmq::error_t& e) { throw std::runtime_error(std::string("ZeroMQ: ") + e.what()); }
+  } catch (const zmq::error_t& e) {
+    const std::system_error error(e.num(), std::generic_category(), "ZeroMQ");
+    if (isShortage(error)) throw error;
+    throw std::runtime_error(std::string("ZeroMQ: ") + e.what());
+  }
 }
 
 Wire::~Wire() = default;

@@ -14,6 +14,7 @@
 
 #include "backend/local/local.h"
 #include "render/frame/job_runner.h"
+#include "start_threads.h"
 
 namespace openrt::cluster {
 namespace {
@@ -38,10 +39,17 @@ struct WorkerCore::Impl {
     options.threads = count;
     backend = std::make_unique<LocalBackend>(options);
     running = std::make_unique<Running[]>(count);
-    for (uint32_t i = 0; i < count; i++) threads.emplace_back([this, i] { work(i); });
-    threads.emplace_back([this] { control(); });
+    startThreads(threads, 1, [this](size_t) { control(); });
+    try {
+      startThreads(threads, count, [this](size_t i) { work(uint32_t(i)); });
+    } catch (...) {
+      end();
+      throw;
+    }
   }
-  ~Impl();
+  ~Impl() { end(); }
+
+  void end(); // of the threads
 
   void push(Command&& command);
   void work(uint32_t thread);
@@ -86,7 +94,7 @@ struct WorkerCore::Impl {
   std::vector<std::thread> threads;
 };
 
-WorkerCore::Impl::~Impl() {
+void WorkerCore::Impl::end() {
   {
     std::lock_guard lock(mutex);
     closing = true;

@@ -1,0 +1,72 @@
+// session_reports.cpp: What a session says about itself: the command of a view, messages for its
+// user, and the facts of the overlay.
+#include <utility>
+
+#include "report/messages.h"
+#include "session/input/view_command.h"
+#include "session/session.h"
+
+namespace vv {
+
+std::string Session::command(const std::vector<std::string>& arguments, uint32_t viewer) const {
+  const Pilot& pilot = pilotOf(viewer);
+  const PictureLoop& pictures = picturesOf(viewer);
+  std::optional<bool> headlight = pilot.headlight();
+  if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
+    headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
+  return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
+                      browser_->now(), options_.epoch, headlight},
+                     arguments);
+}
+
+std::string Session::takeMessageOf(uint32_t guest) {
+  Guest* const found = guests_.find(guest);
+  return found ? found->pilot.takeMessage() : std::string();
+}
+
+std::string Session::takeMessage() {
+  std::string text = std::exchange(message_, {});
+  std::string pilots = pilot_.takeMessage();
+  if (const std::string failure = pictures_.takeFailure(); !failure.empty()) {
+    sayError(failure);
+    if (isSaving()) giveUp(failure);
+    return failure;
+  }
+  const std::string written = writer_.takeMessage();
+  return !pilots.empty() ? pilots : !written.empty() ? written : text;
+}
+
+SessionFacts Session::facts(uint32_t viewer) const {
+  using Showing = SessionFacts::Showing;
+  const PictureLoop& pictures = picturesOf(viewer);
+  const picture::LivePicture& picture = pictures.facts();
+  const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
+  SessionFacts facts;
+  facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
+                                  : (still ? Showing::still : Showing::samples);
+  facts.denoisedBy = picture.denoisedBy;
+  facts.frameRate = pictures.frameRate();
+  constexpr double restless = 3;
+  facts.isRestless = pictures.movingFor() > restless && !pilotOf(viewer).isSteering();
+  facts.width = picture.width;
+  facts.height = picture.height;
+  facts.samples = picture.samples;
+  facts.wanted = pictures.isRefining() ? options_.render.samples : 0;
+  facts.stats = picture.stats;
+  facts.map = picture.map;
+  facts.finished = picture.finished;
+  const xvrml::Diagnostics& d = browser_->world().diagnostics;
+  facts.errors = d.errors();
+  facts.warnings = d.warnings();
+  if (!d.list().empty()) facts.lastProblem = d.list().back().text();
+  facts.navigation = navigationName(pilotOf(viewer).navigation());
+  facts.description = browser_->description();
+  facts.loading = inlines_.isLoading();
+  if (const auto& cluster = options_.render.cluster) {
+    facts.cluster = true;
+    facts.workers = cluster->workers();
+  }
+  return facts;
+}
+
+} // namespace vv
