@@ -137,8 +137,8 @@ void LightImage::pool(uint32_t x, uint32_t y, int k, LightSums& out) const {
   const double unit = byLight ? bright : 1, own = variance(pixels_[size_t(y) * width_ + x], k);
   // Chance: that of the variance of `parts` values, each the light of a few equal paths.
   const double n = added_, paths = light * light / (plain.sum * plain.count),
-               chance = 2 / (n - 1) + 1 / paths,
-               real = std::max(0.0, window.differing() - chance), weight = real / (real + chance);
+               chance = 2 / (n - 1) + 1 / paths, real = std::max(0.0, window.differing() - chance),
+               weight = real / (real + chance);
   // A few bright paths make the light too large and its variance with it: where the own variance is
   // larger it counts as it is.
   const double pooled = unit * window.mean();

@@ -229,7 +229,7 @@ struct SeenThrough {
 };
 
 SeenThrough traceThrough(const RtsBatch& batch, const LightSamples& samples,
-                                   const Boundaries& boundaries, uint8_t* blocked) {
+                         const Boundaries& boundaries, uint8_t* blocked) {
   Arena& arena = *batch.arena;
   const uint32_t n = samples.rays.count;
   SeenThrough seen;

@@ -51,8 +51,7 @@ const uint32_t* findUnsampled(const RtsBatch& batch) {
   const uint32_t n = batch.points->hits.count;
   auto* unsampled = batch.arena->take<uint32_t>(padded(n));
   bool any = false;
-  for (uint32_t i = 0; i < n; i++)
-    any |= (unsampled[i] = !passesStraight(shaderAt(batch, i))) != 0;
+  for (uint32_t i = 0; i < n; i++) any |= (unsampled[i] = !passesStraight(shaderAt(batch, i))) != 0;
   return any ? unsampled : nullptr;
 }
 
@@ -64,7 +63,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   const uint32_t n = batch.points->hits.count;
   const bool path = tracesPaths(batch.scene->frame.transport),
              straight = std::any_of(samples.begin(), samples.end(),
-                                    [](const SampleArrays& sample) { return !sample.deflected; });
+                                    [](const SampleArrays&sample) { return !sample.deflected; });
   const Continuation from{.points = batch.points,
                           .states = batch.states,
                           .level = paths.level,
