@@ -80,6 +80,7 @@ void Session::chooseLookOnce() {
     Options given = options_; // the variance is the window's own
     given.render.channels = channels_;
     chooseLook(given, browser_->world(), settings);
+    shared_.view = settings.view;
   });
 }
 
@@ -414,7 +415,8 @@ void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
       return captures_.adopt(asker, pictures.number(), std::move(done));
     }
   }
-  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot), std::move(done)});
+  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot),
+                  pictures.transformOf(pilot), std::move(done)});
 }
 
 bool Session::isQuiet() const {
@@ -437,8 +439,11 @@ std::string Session::command(const std::vector<std::string>& arguments, uint32_t
   std::optional<bool> headlight = pilot.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
+  std::optional<picture::ViewTransform> transform;
+  if (options_.render.linear && (options_.viewGiven || pilot.exposure() != 0))
+    transform = pictures.transformOf(pilot);
   return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
-                      browser_->now(), options_.epoch, headlight},
+                      browser_->now(), options_.epoch, headlight, transform},
                      arguments);
 }
 
