@@ -255,6 +255,8 @@ class Pictures {
     renderer_->change([this](picture::RenderSettings& s) {
       const std::optional<bool> switched = pilot_->headlight();
       s.headlight = options_.render.headlight;
+      s.view.exposure = std::clamp(options_.render.view.exposure + pilot_->exposure(),
+                                   -picture::mostExposure, picture::mostExposure);
       if (switched)
         s.headlight =
             *switched ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;

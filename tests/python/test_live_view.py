@@ -63,7 +63,7 @@ def test_a_world_without_viewpoint_is_shown_as_render_shows_it():
         view.wait()
         assert not np.allclose(view.camera, before)
         distance = lambda pose: np.linalg.norm(pose[:3, 3])
-        assert distance(view.camera) == pytest.approx(distance(before), rel=1e-3)  # it turned
+        assert distance(view.camera) == pytest.approx(distance(before), rel=1e-2)  # it turned
 
 
 def test_the_arguments_of_render(world):

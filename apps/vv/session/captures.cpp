@@ -39,7 +39,10 @@ void Captures::advance() {
   waiting_.pop_front();
   next.frame.viewer = ownViewer;
   next.frame.purpose = picture::LiveFrame::Purpose::still;
-  shared_.live.change([&](picture::RenderSettings& s) { s.headlight = next.headlight; });
+  shared_.live.change([&](picture::RenderSettings& s) {
+    s.headlight = next.headlight;
+    s.view = next.view;
+  });
   adopt(next.asker, shared_.start(next.frame, false), std::move(next.done));
   isOwn_ = true;
 }

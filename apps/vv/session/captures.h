@@ -19,6 +19,7 @@ class Captures {
     uint64_t asker;           // for giveUp()
     picture::LiveFrame frame; // its viewer is set by Captures
     xvrml::MapOptions::Headlight headlight;
+    picture::ViewTransform view;
     Done done;
   };
 

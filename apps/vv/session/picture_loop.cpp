@@ -37,6 +37,7 @@ void PictureLoop::resize(int width, int height) {
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
          shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
+         pilot.exposure() != exposure_ ||
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
@@ -141,11 +142,21 @@ xvrml::MapOptions::Headlight PictureLoop::headlightOf(const Pilot& pilot) const 
   return !chosen ? options_.render.headlight : *chosen ? on : off;
 }
 
-// The renderer still has the headlight of its last frame, which may have been another viewer's.
+picture::ViewTransform PictureLoop::transformOf(const Pilot& pilot) const {
+  picture::ViewTransform view = shared_.view;
+  view.exposure =
+      std::clamp(view.exposure + pilot.exposure(), -picture::mostExposure, picture::mostExposure);
+  return view;
+}
+
+// The renderer still has these of its last frame, which may have been another viewer's.
 void PictureLoop::followHeadlight(const Pilot& pilot) {
   headlight_ = pilot.headlight();
-  const auto wanted = headlightOf(pilot);
-  renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
+  exposure_ = pilot.exposure();
+  renderer_.change([&](picture::RenderSettings& s) {
+    s.headlight = headlightOf(pilot);
+    s.view = transformOf(pilot);
+  });
 }
 
 picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {

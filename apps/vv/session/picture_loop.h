@@ -60,6 +60,7 @@ class PictureLoop {
   // Returns a frame of the present view with all samples, and the headlight of this view.
   picture::LiveFrame stillOf(const Pilot& pilot) const;
   xvrml::MapOptions::Headlight headlightOf(const Pilot& pilot) const;
+  picture::ViewTransform transformOf(const Pilot& pilot) const;
   // Notes a picture of this viewer that the renderer has returned. Returns whether it is shown.
   bool note(const picture::LivePicture& picture);
   // Notes that the renderer has no still picture any more.
@@ -141,6 +142,7 @@ class PictureLoop {
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
+  double exposure_ = 0; // of the pilot
   picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
   double lastStart_ = 0, motionBegan_ = 0, settlingEnds_ = 0, gap_ = 0;

@@ -60,7 +60,7 @@ Pilot::Pilot(const Pilot& leader, xvrml::Browser& browser)
     : browser_(browser), viewer_(makeGuestViewer(browser)), time_(0),
       pointer_(
           browser, [this] { return eye(); }, leader.pointer_.shared()),
-      fov_(leader.fov_), headlight_(leader.headlight_) {}
+      fov_(leader.fov_), headlight_(leader.headlight_), exposure_(leader.exposure_) {}
 
 void Pilot::setAspect(double aspect) {
   aspect_ = aspect;
@@ -290,6 +290,12 @@ Action Pilot::press(Action action) {
     message_ = hasHeadlight() ? "headlight off" : "headlight on";
     // Returns to the world's own setting, or switches to the opposite of it.
     headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight());
+    break;
+  case Action::brighter:
+  case Action::darker:
+    exposure_ = std::clamp(exposure_ + (action == Action::brighter ? .5 : -.5),
+                           -picture::mostExposure / 2, picture::mostExposure / 2);
+    message_ = fmt::format("exposure {:+g}", exposure_);
     break;
   case Action::pause:
     if (!viewer_->isOfWorld()) {

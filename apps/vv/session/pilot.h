@@ -74,6 +74,7 @@ class Pilot {
   bool paused() const { return time_.isPaused(); }
   // the user's choice; none: not switched
   std::optional<bool> headlight() const { return headlight_; }
+  double exposure() const { return exposure_; }    // stops that the user has added
   bool hasViewerMoved() const { return touched_; } // the user has moved the viewer
   bool overSensor() const { return pointer_.isOverSensor(); }
   xvrml::Navigation navigation() const { return viewer_->navigation(); }
@@ -106,6 +107,7 @@ class Pilot {
   bool animates_ = false;    // the viewer moves gradually between Viewpoints
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
+  double exposure_ = 0;
   std::set<std::string> held_; // keys that are held down
   WorldKeys worldKeys_;        // keys that the world's sensors get
   bool shift_ = false, alt_ = false;

@@ -78,6 +78,7 @@ void Session::chooseLookOnce() {
     Options given = options_; // the variance is the window's own
     given.render.channels = channels_;
     chooseLook(given, browser_->world(), settings);
+    shared_.view = settings.view;
   });
 }
 
@@ -442,7 +443,8 @@ void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
       return captures_.adopt(asker, pictures.number(), std::move(done));
     }
   }
-  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot), std::move(done)});
+  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot),
+                  pictures.transformOf(pilot), std::move(done)});
 }
 
 bool Session::isQuiet() const {

@@ -14,8 +14,11 @@ std::string Session::command(const std::vector<std::string>& arguments, uint32_t
   std::optional<bool> headlight = pilot.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
+  std::optional<picture::ViewTransform> transform;
+  if (options_.render.linear && (options_.viewGiven || pilot.exposure() != 0))
+    transform = pictures.transformOf(pilot);
   return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
-                      browser_->now(), options_.epoch, headlight},
+                      browser_->now(), options_.epoch, headlight, transform},
                      arguments);
 }
 

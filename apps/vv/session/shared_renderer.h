@@ -14,9 +14,10 @@ class SharedRenderer {
  public:
   // The browser must outlive the renderer.
   SharedRenderer(xvrml::Browser& browser, const picture::RenderSettings& settings)
-      : live(browser, settings), browser_(browser) {}
+      : live(browser, settings), view(settings.view), browser_(browser) {}
 
   picture::LiveRenderer live;
+  picture::ViewTransform view; // how the world is shown; users add to its exposure
 
   // Starts a frame as LiveRenderer::start does, and returns its number. moving: the next frame
   // waits for its end, or not even that where the renderer permits it; other frames are cancelled

@@ -21,6 +21,8 @@ constexpr KeyInfo keys[] = {
     {Action::still, "4", "no navigation: the mouse works only sensors and anchors"},
     {Action::none, "Left Right Up Down", "turn and go; Shift: faster; Alt: sideways, up and down"},
     {Action::headlight, "H", "headlight on or off"},
+    {Action::brighter, "+ =", "brighter by half a stop"},
+    {Action::darker, "-", "darker by half a stop"},
     {Action::pause, "P", "pause or resume time"},
     {Action::save, "S", "save the picture as PNG"},
     {Action::saveExr, "Shift+S", "save the picture as OpenEXR"},

@@ -25,6 +25,8 @@ enum class Action : uint8_t {
   fly,
   still,
   headlight,
+  brighter,
+  darker,
   pause,
   save,
   saveExr,

@@ -60,6 +60,9 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
     line += fmt::format(" --fov {}", smaller * 180 / std::numbers::pi);
   }
   if (view.headlight) line += *view.headlight ? " --headlight on" : " --headlight off";
+  if (view.transform)
+    line += fmt::format(" --exposure={} --view {}", view.transform->exposure,
+                        picture::curveName(view.transform->curve));
   if (view.epoch) line += fmt::format(" --epoch {}", *view.epoch);
   if (view.time > 0) line += fmt::format(" --time {:.3f}", view.time);
   for (size_t i = 0; i < arguments.size(); ++i) {

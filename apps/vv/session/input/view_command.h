@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libpicture/camera.h"
+#include "libpicture/files/view_transform.h"
 
 namespace vv {
 
@@ -16,6 +17,7 @@ struct ShownView {
   double time = 0;             // seconds since the world was loaded
   std::optional<double> epoch; // loading time in seconds since 1970; none: the default
   std::optional<bool> headlight;
+  std::optional<picture::ViewTransform> transform; // none: that of a world without options
 };
 
 // Returns a line for a shell. `arguments` are those of this run; the ones about quality, changes of
