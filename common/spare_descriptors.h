@@ -1,5 +1,5 @@
-// spare_descriptors.h: Tells in time that file descriptors are short. Some libraries end the process
-// when they cannot open one: ZeroMQ does so when it starts. Stateless; any thread.
+// spare_descriptors.h: Tells in time that file descriptors are short. Some libraries end the
+// process when they cannot open one: ZeroMQ does so when it starts. Stateless; any thread.
 #pragma once
 
 #include <cerrno>

@@ -1,5 +1,5 @@
-// libraries.h: what the loader says of loaded libraries, beyond dlsym and dladdr, and whether a file
-// can be one. Any thread.
+// libraries.h: what the loader says of loaded libraries, beyond dlsym and dladdr, and whether a
+// file can be one. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -64,8 +64,8 @@ inline bool defines(void* library, void* function) {
 #endif
 }
 
-// Returns why a file cannot be loaded as a library: it is no regular file, or it is shorter than its
-// headers say. Empty if nothing is known; other faults are for the loader to tell.
+// Returns why a file cannot be loaded as a library: it is no regular file, or it is shorter than
+// its headers say. Empty if nothing is known; other faults are for the loader to tell.
 inline std::string whyIncomplete(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) return {};

@@ -128,9 +128,9 @@ std::string headerOf(const Answer& answer, std::string_view name) {
 
 TEST(ServerAnswer, EveryAnswerHasThePolicy) {
   Downloads downloads;
-  for (const Verdict verdict : {Verdict::allowed, Verdict::withQuery, Verdict::wrongHost,
-                                Verdict::wrongOrigin, Verdict::noOrigin, Verdict::tokenMissing,
-                                Verdict::wrongToken})
+  for (const Verdict verdict :
+       {Verdict::allowed, Verdict::withQuery, Verdict::wrongHost, Verdict::wrongOrigin,
+        Verdict::noOrigin, Verdict::tokenMissing, Verdict::wrongToken})
     for (const char* path : {"/", "/page.js", "/nothing", "/saved/x/y.png"}) {
       const Answer answer = answerFor(verdict, path, downloads);
       EXPECT_NE(headerOf(answer, "content-security-policy").find("default-src 'none'"),

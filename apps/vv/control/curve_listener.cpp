@@ -44,8 +44,7 @@ class CurveListener final : public Listener {
  public:
   CurveListener(const Place& place, const KeyRing& keys, Mailbox& mailbox)
       : place_(place), keys_(keys), mailbox_(mailbox), context_(makeContext()),
-        door_(context_, zmq::socket_type::rep),
-        socket_(context_, zmq::socket_type::router) {
+        door_(context_, zmq::socket_type::rep), socket_(context_, zmq::socket_type::router) {
     setUp();
     thread_ = std::thread([this] { run(); });
   }

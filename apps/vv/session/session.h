@@ -199,7 +199,7 @@ class Session {
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;
-  StepOrder order_;                 // of the user's events
+  StepOrder order_;              // of the user's events
   double mostPreviewPixels_ = 0; // of each viewer; 0: there is no bound
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;

@@ -26,7 +26,8 @@ void shareSymbols() {
 }
 
 // Returns the program name from which Python derives the place of its library: an activated
-// environment of the same version, which no other user could have written, otherwise the Python of the build.
+// environment of the same version, which no other user could have written, otherwise the Python of
+// the build.
 std::string programName() {
   const char* environment = os::trustedEnvironment("VIRTUAL_ENV");
   const std::string version =

@@ -512,9 +512,7 @@ std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options,
                                             const ClusterOptions& cluster) {
   try {
     return std::make_unique<ClusterBackend>(options, cluster);
-  } catch (const ClusterError&) {
-    throw;
-  } catch (const std::exception& e) {
+  } catch (const ClusterError&) { throw; } catch (const std::exception& e) {
     if (isShortage(e)) throw;
     throw ClusterError(e.what());
   }
