@@ -62,6 +62,35 @@ def test_which_way_is_up(vv, text, axis, reason):
     assert up["axis"] == axis and reason in up["reason"], up
 
 
+@pytest.mark.parametrize("low, high, axis, reason", [
+    ((1, 2, 3), (4, 40, 50), "z", "an STL file"),
+    ((1, 2, 3), (30, 4, 50), "z", "an STL file"),
+    ((1, 2, 0), (30, 40, 5), "z", "z = 0"),
+    ((1, 0, 3), (3, 4, 5), "y", "y = 0"),
+    ((1, 2, 3), (5, 2, 9), "y", "x-z plane"),
+    ((1, 2, 3), (5, 5, 3), "z", "an STL file"),
+])
+def test_z_is_up_in_stl_unless_a_sign_says_y(vv, low, high, axis, reason):
+    corners = [low, (high[0], low[1], low[2]), high]
+    vertices = "".join("vertex {} {} {}\n".format(*corner) for corner in corners)
+    vv.write("part.stl", f"solid a\nfacet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n"
+             "endsolid a\n")
+    up = json.loads(vv("part.stl", "--info", "--json").text)["up"]
+    assert up["axis"] == axis and reason in up["reason"], up
+
+
+def test_a_model_that_cannot_be_seen_says_so(vv):
+    clear = "Shape { appearance Appearance { material Material { transparency 1 } } geometry Box { } }"
+    vv.write("clear.wrl", HEADER + clear + clear)
+    done = vv("clear.wrl", "--check")
+    assert "the material of each of the 2 Shapes has transparency 1" in done.talk, done.talk
+    vv.write("clear.wrl", HEADER + clear + "Shape { geometry Sphere { } }")
+    assert "transparency" not in vv("clear.wrl", "--check").talk
+    vv.write("m.mtl", "newmtl a\nd 0\n")
+    vv.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n")
+    assert "the only Shape has transparency 1" in vv("m.obj", "--check").talk
+
+
 def test_up_is_said(vv):
     assert info(vv, CUBE, "--up=-x") == {"axis": "-x", "reason": ""}
     assert info(vv, CUBE, "--up", "+z") == {"axis": "z", "reason": ""}
