@@ -102,9 +102,9 @@ class ShaderTable {
   // Indexed by slot: the class that the scene requests, even if the default shader replaces it.
   std::vector<const RtsClass*> classes_;
   std::vector<RtsMedium> media_;
-  std::vector<uint32_t> users_;            // by medium: number of slots that have it
+  std::vector<uint32_t> users_;             // by medium: number of slots that have it
   std::map<std::string, uint16_t> numbers_; // by the bytes of a medium that slots may share
-  uint32_t bodies_ = 0;                    // number of slots that have a medium
+  uint32_t bodies_ = 0;                     // number of slots that have a medium
   std::shared_ptr<const Slots> slotOf_;
   uint32_t defaultShader_ = 0; // the shader that slot 0 takes its values from
 };

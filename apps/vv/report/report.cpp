@@ -38,15 +38,15 @@ std::string dump(const Json& json) {
 Json errorEstimate(const RTstats& s, bool asked) {
   const bool known = s.errorPixels > 0 && asked;
   const auto value = [known](double x) { return known ? Json(x) : Json(nullptr); };
-  return {{"mean_rel", value(s.errorMean)},
-          {"mean_rel_interval", value(s.errorMeanInterval)},
-          {"half_width", value(s.errorHalfWidth)},
-          {"p99", value(s.errorP99)},
-          {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
-          {"unmet", value(s.errorUnmet)},
-          {"level", s.errorLevel},
-          {"method",
-           asked ? s.errorMethod : "none: --channels rgba,error,trust or --error tells it"}};
+  return {
+      {"mean_rel", value(s.errorMean)},
+      {"mean_rel_interval", value(s.errorMeanInterval)},
+      {"half_width", value(s.errorHalfWidth)},
+      {"p99", value(s.errorP99)},
+      {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
+      {"unmet", value(s.errorUnmet)},
+      {"level", s.errorLevel},
+      {"method", asked ? s.errorMethod : "none: --channels rgba,error,trust or --error tells it"}};
 }
 
 Json transportJson(const Options& options, const RTstats& s) {
@@ -166,8 +166,8 @@ void addMachine(Json& json, const Options& options, const picture::RenderResult&
   const RTstats& s = result.stats;
   json["transport"] = transportJson(options, result.stats);
   const picture::RenderSettings& r = options.render;
-  json["error"] = errorEstimate(
-      s, (r.channels & (RT_ERROR | RT_TRUST)) || r.error > 0 || r.timeLimit > 0);
+  json["error"] =
+      errorEstimate(s, (r.channels & (RT_ERROR | RT_TRUST)) || r.error > 0 || r.timeLimit > 0);
   json["left_out"] = {{"cut_by_depth", s.cutByDepth},
                       {"cut_by_energy", s.cutByEnergy},
                       {"clipped", s.clipped},

@@ -42,8 +42,8 @@ uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   const double pixels = std::max(double(frame.width) * frame.height / (stride * stride),
                                  frame.measure ? fewestSensors : 1.0);
   const double samples = frame.samples,
-               paths = pixels *
-                       (open ? std::min(samples, openLightPaths(frame.targetError)) : samples);
+               paths =
+                   pixels * (open ? std::min(samples, openLightPaths(frame.targetError)) : samples);
   return uint32_t(std::min(paths, 4e9));
 }
 

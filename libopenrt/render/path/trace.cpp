@@ -78,9 +78,8 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   auto* to = arena_.take<uint32_t>(request.count);
   Wave wave;
   wave.rays = raysOf(batch, request, to, [&](uint32_t hit) {
-    return level_ < depth ||
-           (batch.order &&
-            isWithinDepth(batch.states->flagsOf(batch.order[hit]), level_ + 1, depth));
+    return level_ < depth || (batch.order && isWithinDepth(batch.states->flagsOf(batch.order[hit]),
+                                                           level_ + 1, depth));
   });
   const uint32_t n = wave.rays.count;
   if (n == 0) return;

@@ -175,8 +175,8 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
     Bits flags = flagsAfter(sample, gather(states.flags, lane), load(paths.count + i));
     if (!sample.deflected) {
       pdf = gather(states.pdf, lane);
-      const Mask lost = paths.unsampled ? hn::And(loadMask(paths.unsampled + i), pdf > zero)
-                                        : noLanes();
+      const Mask lost =
+          paths.unsampled ? hn::And(loadMask(paths.unsampled + i), pdf > zero) : noLanes();
       pdf = select(lost, zero, pdf);
       flags = hn::Or(flags, bitsWhere(lost, PathFlags::passedUnsampledBit));
     }
