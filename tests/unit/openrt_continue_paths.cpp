@@ -161,6 +161,9 @@ struct ScalarRays {
       if (!specular) ray.flags.set(PathFlags::scatteredBit, true);
       ray.flags.set(PathFlags::specularSinceDiffuseBit, ray.flags.scattered() && specular);
       ray.flags.set(PathFlags::deflectedBit, true);
+    } else {
+      ray.flags.addPassage();
+      ray.pdf = hits.plane.states[i].pdf;
     }
     if (w) ray.branch = hash(ray.branch + w, 4);
     ray.flags.setChannel(sample.channel);
@@ -290,7 +293,10 @@ TEST(ContinuePaths, AHiddenBoundaryIsPassedStraight) {
     const RayState before = hits.plane.states[i], after = next.states()[i];
     expectEqual(load(next.direction(), i), load(hits.plane.points.hits.direction, i), "way", i);
     expectEqual(after.throughput, before.throughput, "throughput", i);
-    EXPECT_EQ(after.flags.bits, before.flags.bits);
+    PathFlags passed = before.flags;
+    passed.addPassage();
+    EXPECT_EQ(after.flags.bits, passed.bits);
+    EXPECT_EQ(after.pdf, before.pdf);
     EXPECT_EQ(after.media, glass.boundaries.crossing[i].behind);
     EXPECT_EQ(hits.samples.random[i], 0);
   }

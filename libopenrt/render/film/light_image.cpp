@@ -89,70 +89,11 @@ void LightImage::addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const 
   if (variance > 0) out.hits = std::min(out.hits, mean * mean / variance);
 }
 
-// Returns the mean light of a pixel and those around it, colour k.
-double LightImage::brightness(uint32_t x, uint32_t y, int k) const {
-  double sum = 0, count = 0;
-  for (uint32_t j = y - std::min(y, 1u); j <= std::min(y + 1, height_ - 1); j++)
-    for (uint32_t i = x - std::min(x, 1u); i <= std::min(x + 1, width_ - 1); i++) {
-      sum += pixels_[size_t(j) * width_ + i].mean[k];
-      count++;
-    }
-  return sum / count;
-}
-
-// Replaces the variance of a pixel, colour k, by one that is pooled over the surrounding 5x5 pixels
-// as those of camera samples are (error.cpp): absolutely, or relative to the brightness, whichever
-// differs less, and weighed against a smaller own one by how much they differ beyond chance. A
-// variance is proportional to the light where all paths carry about the same.
-void LightImage::pool(uint32_t x, uint32_t y, int k, LightSums& out) const {
-  constexpr uint32_t reach = 2;
-  struct Sums {
-    double count = 0, sum = 0, squares = 0;
-    void add(double v) {
-      count++;
-      sum += v;
-      squares += v * v;
-    }
-    double mean() const { return sum / count; }
-    // Returns the variance of the values, relative to their squared mean.
-    double differing() const {
-      return count > 1 && sum > 0
-                 ? std::max(0.0, squares / count / (mean() * mean()) - 1) * count / (count - 1)
-                 : 0;
-    }
-  } plain, scaled;
-  double light = 0;
-  const double bright = brightness(x, y, k);
-  for (uint32_t j = y - std::min(y, reach); j <= std::min(y + reach, height_ - 1); j++)
-    for (uint32_t i = x - std::min(x, reach); i <= std::min(x + reach, width_ - 1); i++) {
-      const Pixel& p = pixels_[size_t(j) * width_ + i];
-      const double v = variance(p, k), around = brightness(i, j, k);
-      plain.add(v);
-      light += p.mean[k];
-      if (around > 0) scaled.add(v / around);
-    }
-  if (!(plain.sum > 0) || !std::isfinite(plain.sum)) return;
-  const bool byLight = bright > 0 && scaled.differing() < plain.differing();
-  const Sums& window = byLight ? scaled : plain;
-  const double unit = byLight ? bright : 1, own = variance(pixels_[size_t(y) * width_ + x], k);
-  // Chance: that of the variance of `parts` values, each the light of a few equal paths.
-  const double n = added_, paths = light * light / (plain.sum * plain.count),
-               chance = 2 / (n - 1) + 1 / paths, real = std::max(0.0, window.differing() - chance),
-               weight = real / (real + chance);
-  // A few bright paths make the light too large and its variance with it: where the own variance is
-  // larger it counts as it is.
-  const double pooled = unit * window.mean();
-  out.variance[k] = own > pooled ? own : pooled + weight * (own - pooled);
-}
-
 LightSums LightImage::at(uint32_t x, uint32_t y) const {
   LightSums out;
   out.hits = std::numeric_limits<double>::infinity();
   out.parts = std::max(added(), parts);
-  for (int k = 0; k < 3; k++) {
-    addWindow(x, y, k, out);
-    pool(x, y, k, out);
-  }
+  for (int k = 0; k < 3; k++) addWindow(x, y, k, out);
   return out;
 }
 

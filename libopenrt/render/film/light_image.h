@@ -58,8 +58,6 @@ class LightImage {
   void summarise();
   double variance(const Pixel& pixel, int k) const;
   void addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const;
-  double brightness(uint32_t x, uint32_t y, int k) const;
-  void pool(uint32_t x, uint32_t y, int k, LightSums& out) const;
   LightSums at(uint32_t x, uint32_t y) const;
   LightSums ofSensor(uint32_t x, uint32_t y) const;
 

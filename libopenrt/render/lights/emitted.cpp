@@ -243,12 +243,21 @@ SeenThrough traceThrough(const RtsBatch& batch, const LightSamples& samples,
   ShadowRays shadows = allocateShadowRays(*batch.scene, n, arena, true);
   shadows.hit = samples.hit;
   shadows.lastOrigin = seen.origin;
-  shadows.rays = copyRays(samples.rays, arena.takeNumbers(n), n, arena);
-  for (uint32_t r = 0; r < n; r++) {
-    const uint32_t i = samples.hit[r];
-    shadows.lane[r] = r;
+  // Without media, most rays meet nothing, which one search tells.
+  auto* lanes = arena.takeNumbers(n);
+  uint32_t count = n;
+  if (!shadows.media) {
+    findBlocked(*batch.scene, samples.rays, blocked);
+    batch.counters->shadow += n;
+    count = 0;
+    for (uint32_t r = 0; r < n; r++)
+      if (blocked[r]) lanes[count++] = r;
+  }
+  shadows.rays = copyRays(samples.rays, lanes, count, arena);
+  for (uint32_t r = 0; r < count; r++) {
+    const uint32_t ray = shadows.lane[r] = lanes[r], i = samples.hit[ray];
     if (shadows.media)
-      shadows.media[r] = mediaTowards(*batch.points, i, load(samples.rays.dir, r), boundaries,
+      shadows.media[r] = mediaTowards(*batch.points, i, load(samples.rays.dir, ray), boundaries,
                                       batch.states->media[batch.order[i]]);
   }
   traceTransmittance(batch, shadows, seen.transmittance);

@@ -218,10 +218,6 @@ bool samplesPass(const RenderScene& scene) {
   });
 }
 
-bool passesBoundary(const RenderScene& scene, const ShaderSlot& shader) {
-  return (shader.traits & RTS_TRANSPARENT) && scene.samplesPass;
-}
-
 namespace {
 
 // Makes rays dark that have passed as many surfaces as are allowed, and counts what is cut: the

@@ -28,13 +28,10 @@ struct ShadowRays {
   float* const* lastOrigin = nullptr; // gets the origins of the rays' last parts, by `lane`
 };
 // Returns whether light samples pass what the surfaces of a shader transmit straight on. Those of
-// media let them pass where the boundary has no effect (passesBoundary()).
+// media with RTS_TRANSPARENT let them pass where the boundary has no effect.
 bool passesStraight(const ShaderSlot& shader);
 // Returns RenderScene::samplesPass of a scene whose other members are set. [commit]
 bool samplesPass(const RenderScene& scene);
-// Returns whether light samples pass a surface of the shader where it bounds a medium without any
-// effect.
-bool passesBoundary(const RenderScene& scene, const ShaderSlot& shader);
 // Allocates shadow rays. Their number is still to be set.
 ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena,
                               bool toEmitters = false);

@@ -64,17 +64,18 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   const bool path = tracesPaths(batch.scene->frame.transport),
              straight = std::any_of(samples.begin(), samples.end(),
                                     [](const SampleArrays&sample) { return !sample.deflected; });
-  const Continuation from{.points = batch.points,
-                          .states = batch.states,
-                          .level = paths.level,
-                          .choice = sampling.choices[0],
-                          .survival = sampling.choices[1],
-                          .energyCut = batch.scene->frame.energyCut,
-                          .crossing = boundaries.crossing,
-                          .twoSided = path ? transmitsByHit(batch) : nullptr,
-                          .unsampled = straight && path ? findUnsampled(batch) : nullptr,
-                          .count = arena.take<uint32_t>(padded(n)),
-                          .random = arena.take<uint32_t>(padded(n))};
+  const Continuation from{
+      .points = batch.points,
+      .states = batch.states,
+      .level = paths.level,
+      .choice = sampling.choices[0],
+      .survival = sampling.choices[1],
+      .energyCut = batch.scene->frame.energyCut,
+      .crossing = boundaries.crossing,
+      .twoSided = path ? transmitsByHit(batch) : nullptr,
+      .unsampled = straight && path && batch.scene->emitters.any() ? findUnsampled(batch) : nullptr,
+      .count = arena.take<uint32_t>(padded(n)),
+      .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);
   if (path)
     markRandom(paths, samples, boundaries, from.random);
@@ -90,7 +91,9 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
 
 // Spawns a ray through a boundary that has no effect.
 void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
-  const bool sampled = passesBoundary(*paths.batch.scene, shaderAt(paths.batch, i));
+  const RenderScene& scene = *paths.batch.scene;
+  const bool sampled = !scene.emitters.any() ||
+                       (scene.samplesPass && (shaderAt(paths.batch, i).traits & RTS_TRANSPARENT));
   spawnStraightRay(paths, i, {1, 1, 1}, behind, {.guided = true, .sampled = sampled});
 }
 
