@@ -152,6 +152,12 @@ bool Parser::field() {
     good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
   if (!good && listOfValues) skipRestOfList();
+  const bool nodes = target.type == FieldType::SFNode || target.type == FieldType::MFNode;
+  if (Token type; !good && nodes && nodeAhead(type)) { // it belongs to what is wrong
+    for (Token token = lexer_.next(); !token.is(TokenKind::braceOpen); token = lexer_.next())
+      noteLost(token);
+    skipBlock();
+  }
   return good;
 }
 
