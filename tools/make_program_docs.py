@@ -258,7 +258,8 @@ def main():
     version, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     emulator = [word for word in os.environ.get("EMULATOR", "").split("|") if word]
     for path in map(pathlib.Path, sys.argv[3:]):
-        done = subprocess.run([*emulator, path, "--help"],
+        topic = ["all"] if path.name == "vv" else []
+        done = subprocess.run([*emulator, path, "--help", *topic],
                               capture_output=True,
                               text=True,
                               timeout=60,

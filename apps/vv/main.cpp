@@ -8,6 +8,7 @@
 #include "enough_stack.h"
 #include "headless.h"
 #include "inputs.h"
+#include "options/help.h"
 #include "options/options.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
@@ -29,7 +30,7 @@ int run(int argc, char** argv) {
   vv::Options options = vv::readCommandLine(argc, argv);
   const vv::JobInfo* job = options.job();
   if (job && job->job == vv::Job::help) {
-    vv::writeOut(vv::helpText());
+    vv::writeOut(vv::helpText(options.helpTopic));
     return vv::exitDone;
   }
   if (job && job->job == vv::Job::version) {

@@ -38,7 +38,8 @@ def options_of(program):
     if not (build / "bin" / program).exists():
         skipped.append(f"{program} is not built")
         return None
-    return set(re.findall(r"--[a-z][a-z-]+", run(build / "bin" / program, "--help").stdout))
+    topic = ["all"] if program == "vv" else []
+    return set(re.findall(r"--[a-z][a-z-]+", run(build / "bin" / program, "--help", *topic).stdout))
 
 
 known = {program: options_of(program) for program in ("vv", "openrt-worker")}

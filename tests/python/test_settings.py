@@ -71,7 +71,7 @@ def stub(module, name):
 
 
 def test_vv_has_an_option_for_each_setting(vv):
-    words = vv("--help").text.split()
+    words = vv("--help", "all").text.split()
     for name in settings():
         assert "--" + RENAMED.get(name, name).replace("_", "-") in words
 

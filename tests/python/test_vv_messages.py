@@ -1,5 +1,6 @@
 """Tests exit codes and messages of the program vv on the command line."""
 import os
+import re
 import resource
 import subprocess
 
@@ -85,8 +86,24 @@ def test_folders_that_do_not_exist(vv):
         assert done.talk == f"vv: warning: {option}: there is no folder /nix\n"
 
 
+def test_help_is_short_and_has_topics(vv):
+    short = vv("--help")
+    assert short.returncode == 0 and short.talk == "" and vv("-h").text == short.text
+    assert len(short.text.splitlines()) <= 50 and "--output" in short.text
+    whole = vv("--help", "all").text
+    topics = re.search(r"vv --help TOPIC\s+([^;]*);", short.text).group(1)
+    for topic in re.sub(r"\s+", " ", topics).strip().split(", "):
+        one = vv("--help", topic)
+        assert one.returncode == 0 and one.text.strip() in whole, topic
+    assert vv("--help", "View").text == vv("--help", "view").text
+    size = vv("--help", "--size").text
+    assert size.startswith("  --size WxH ") and size in whole and vv("-h", "size").text == size
+    wrong = vv("--help", "qualty")
+    assert wrong.returncode == 2 and "did you mean quality?" in wrong.talk
+
+
 def test_help_and_version(vv):
-    done = vv("--help")
+    done = vv("--help", "all")
     assert done.returncode == 0 and done.talk == ""
     for option in ("--output", "--size", "--viewpoint", "--camera", "--fit", "--fov", "--headlight",
                    "--spp", "--depth", "--shadows", "--seed", "--threads", "--colour", "--stats",
@@ -95,7 +112,7 @@ def test_help_and_version(vv):
                    "--shader-path", "--quiet", "--verbose", "--version"):
         assert option in done.text
     assert max(map(len, done.text.splitlines())) <= 130
-    assert vv("-h").text == vv("merge", "--help").text == done.text
+    assert vv("-h", "all").text == vv("merge", "--help", "all").text == done.text
     version = vv("--version")
     assert vv("merge", "--version").text == version.text
     assert version.returncode == 0 and version.text.startswith("vv ")

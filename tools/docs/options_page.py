@@ -7,8 +7,10 @@ def escape(text):
     return re.sub(r"([*|\\`])|_(?=\W|$)", lambda m: "\\" + m.group(0), text)
 
 
-def help_of(program):
-    return subprocess.run([str(program), "--help"], capture_output=True, text=True,
+def help_of(program, *topic):
+    return subprocess.run([str(program), "--help", *topic],
+                          capture_output=True,
+                          text=True,
                           timeout=60).stdout
 
 
@@ -18,7 +20,7 @@ def vv_page(vv):
         "vv", "==", "", "*Made from the table of options of the program.*", "", ".. program:: vv",
         "", ".. code-block:: text", ""
     ]
-    text = help_of(vv).split("\n")
+    text = help_of(vv, "all").split("\n")
     first = next(i for i, line in enumerate(text) if re.fullmatch(r"[A-Z]\w+", line))
     lines += ["   " + line if line else "" for line in text[1:first]]
     tail = next(i for i, line in enumerate(text) if line == "Exit codes")

@@ -647,8 +647,12 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.verbose = true; }},
     {"--version", "", "Talk", "Print the version.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::version); }},
-    {"-h,--help", "", "Talk", "Print this text.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::help); }},
+    {"-h,--help", "[TOPIC]", "Talk",
+     "Print a short help; with a topic, an option or all, what there is to say about it.",
+     [](Options& o, const std::string& v) {
+       o.jobs.push_back(Job::help);
+       o.helpTopic = v == "-" ? "" : v;
+     }},
 };
 
 } // namespace

@@ -76,7 +76,7 @@ std::string unknownOption(std::string option) {
   option = option.substr(0, option.find('='));
   if (const std::string hint = optionHint(option); !hint.empty()) return hint;
   const std::string near = nearest::word(option, allNames());
-  if (near.empty()) return fmt::format("there is no option {}; vv --help lists them", option);
+  if (near.empty()) return fmt::format("there is no option {}; vv --help all lists them", option);
   return fmt::format("there is no option {}; did you mean {}?", option, near);
 }
 
@@ -149,8 +149,16 @@ void readMerge(Options& options, const std::vector<std::string>& files,
   checkTogether(options);
 }
 
+const OptionInfo* optionCalled(std::string_view word) {
+  for (const OptionInfo& option : optionTable())
+    for (std::string_view name : split(option.names, ','))
+      if (name == word) return &option;
+  return nullptr;
+}
+
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
-// its argument only if it is a whole number. The words after "--" are files: they go to `files`.
+// its argument only if it is a whole number, or may be a topic of --help. The words after "--" are
+// files: they go to `files`.
 std::vector<std::string> withOptionalArguments(int argc, char** argv,
                                                std::vector<std::string>& files) {
   std::vector<std::string> out;
@@ -161,22 +169,17 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv,
       break;
     }
     out.emplace_back(argv[i]);
+    if (isValue) continue;
     for (const OptionInfo& option : optionTable()) {
-      if (option.argument[0] != '[' || out.back() != longName(option)) continue;
-      const bool given = i + 1 < argc && isWholeNumber(argv[i + 1]);
+      if (option.argument[0] != '[' || optionCalled(out.back()) != &option) continue;
+      out.back() = longName(option);
+      const bool given = i + 1 < argc && (isWholeNumber(argv[i + 1]) || out.back() == "--help");
       out.back() += std::string("=") + (given ? argv[++i] : "-");
       break;
     }
   }
   std::reverse(out.begin(), out.end()); // CLI11 expects a vector in reverse order
   return out;
-}
-
-const OptionInfo* optionCalled(std::string_view word) {
-  for (const OptionInfo& option : optionTable())
-    for (std::string_view name : split(option.names, ','))
-      if (name == word) return &option;
-  return nullptr;
 }
 
 // Refuses an option whose value is missing, so that the next option would be taken for it.
@@ -268,74 +271,6 @@ Options readCommandLine(int argc, char** argv) {
                                : render.preview                                ? previewSamples
                                                                                : render.samples);
   return options;
-}
-
-namespace {
-
-// Breaks `text` into lines of at most `width`; all lines except the first are indented by `indent`
-// blanks.
-std::string wrapped(std::string_view text, size_t indent, size_t width) {
-  std::string out;
-  size_t column = 0;
-  for (std::string_view word : split(text, ' ')) {
-    if (column && column + 1 + word.size() > width) {
-      out += "\n" + std::string(indent, ' ');
-      column = 0;
-    }
-    if (column) {
-      out += ' ';
-      ++column;
-    }
-    out += word;
-    column += word.size();
-  }
-  return out;
-}
-
-} // namespace
-
-std::string helpText() {
-  constexpr size_t indent = 26, width = 100;
-  std::string out =
-      "vv: renders worlds in VRML and X3D, and meshes.\n"
-      "\n"
-      "  vv world.wrl                    opens the world in a window; F1 lists the keys\n"
-      "  vv world.wrl -o picture.png     writes a picture from the first viewpoint, or of the "
-      "whole world\n"
-      "  vv world.wrl --check            reports what is wrong with the world\n"
-      "  vv merge a.exr b.exr -o c.exr   adds pictures of different seeds, written with --sums\n"
-      "  vv serve world.wrl              shows the world on a page for browsers; prints its "
-      "address\n"
-      "\n"
-      "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), STL, PLY, OBJ, OFF or "
-      "glTF\n(.gltf, .glb), packed with gzip or not; - is standard input.\n";
-  const char* group = "";
-  for (const OptionInfo& option : optionTable()) {
-    if (std::string_view(group) != option.group) out += fmt::format("\n{}\n", group = option.group);
-    std::string head = "  ";
-    for (std::string_view name : split(option.names, ','))
-      head += fmt::format("{}{}", head.size() > 2 ? ", " : "", name);
-    if (*option.argument) head += fmt::format(" {}", option.argument);
-    out += head;
-    out += head.size() + 1 < indent ? std::string(indent - head.size(), ' ')
-                                    : "\n" + std::string(indent, ' ');
-    out += wrapped(option.text, indent, width - indent) + "\n";
-  }
-  return out +
-         "\nExit codes\n"
-         "  0    done\n"
-         "  1    the picture could not be made or written\n"
-         "  2    the command line is wrong\n"
-         "  3    unusable input: the world, or another file that the command line names, "
-         "cannot be read\n"
-         "  4    --check, --strict or --audit found problems; --measure found no sensor or a wrong "
-         "one\n"
-         "  5    under --strict: a plug-in or a texture is missing\n"
-         "  6    fewer workers than --require-workers asks for\n"
-         "  7    --time-limit has ended a run with --resume; the same command goes on\n"
-         "  75   out of memory or another resource, try again\n"
-         "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
-         "SIGUSR1 saves and goes on\n";
 }
 
 } // namespace vv

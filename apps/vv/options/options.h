@@ -87,6 +87,7 @@ struct Options {
   std::string viewpoint;           // viewpoint as given: a name, a number or "all"
   bool check = false, strict = false;
   bool json = false;
+  std::string helpTopic; // of --help; empty: none
   std::vector<Job> jobs; // requested jobs, in any order
   bool watch = false;
   std::string inputScript, recordInput;      // files of user input; empty: none
@@ -166,7 +167,5 @@ std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 int inspectionsOf(const Options& options);
 // Throws UsageError with one line that names the option and says what was expected.
 Options readCommandLine(int argc, char** argv);
-
-std::string helpText();
 
 } // namespace vv

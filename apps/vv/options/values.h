@@ -14,7 +14,7 @@
 
 namespace vv {
 
-// Exit codes of the program (documented in vv --help).
+// Exit codes of the program (documented in vv --help all).
 enum ExitCode {
   exitDone = 0,
   exitRender = 1,     // the picture could not be made or written

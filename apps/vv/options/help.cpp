@@ -1,0 +1,164 @@
+// help.cpp: The texts of `vv --help`: a short one, those of its topics, and all of it. [main
+// thread]
+#include "help.h"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "nearest.h"
+#include "options.h"
+#include "values.h"
+
+namespace vv {
+
+namespace {
+
+constexpr size_t indent = 26, width = 100;
+constexpr std::string_view exitCodes = "exit codes", everything = "all";
+
+// The options of the short text.
+constexpr std::string_view usual[] = {
+    "--output", "--size",      "--spp",   "--error",   "--preset", "--from",  "--viewpoint",
+    "--fit",    "--exposure",  "--time",  "--frames",  "--shader", "--check", "--explain",
+    "--stats",  "--transport", "--watch", "--control", "--help"};
+
+// Breaks `text` into lines of at most `columns`; all lines except the first are indented by
+// `indent` blanks.
+std::string wrapped(std::string_view text, size_t columns) {
+  std::string out;
+  size_t column = 0;
+  for (std::string_view word : split(text, ' ')) {
+    if (column && column + 1 + word.size() > columns) {
+      out += "\n" + std::string(indent, ' ');
+      column = 0;
+    }
+    if (column) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += word.size();
+  }
+  return out;
+}
+
+std::string lowered(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return out;
+}
+
+bool isCalled(const OptionInfo& option, std::string_view name) {
+  const auto names = split(std::string_view(option.names), ',');
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string describe(const OptionInfo& option, std::string_view text) {
+  std::string head = "  ";
+  for (std::string_view name : split(option.names, ','))
+    head += fmt::format("{}{}", head.size() > 2 ? ", " : "", name);
+  if (*option.argument) head += fmt::format(" {}", option.argument);
+  const std::string gap = head.size() + 1 < indent ? std::string(indent - head.size(), ' ')
+                                                   : "\n" + std::string(indent, ' ');
+  return head + gap + wrapped(text, width - indent) + "\n";
+}
+
+// Returns the options of a group below its name; all groups if it is empty.
+std::string describeGroups(std::string_view wanted) {
+  std::string out, group;
+  for (const OptionInfo& option : optionTable()) {
+    if (!wanted.empty() && wanted != lowered(option.group)) continue;
+    if (group != option.group) {
+      group = option.group;
+      out += fmt::format("\n{}\n", group);
+    }
+    out += describe(option, option.text);
+  }
+  return out;
+}
+
+// Returns the topics: the groups of options, in lower case and in their order.
+std::vector<std::string> topics() {
+  std::vector<std::string> out;
+  for (const OptionInfo& option : optionTable())
+    if (const std::string topic = lowered(option.group); out.empty() || out.back() != topic)
+      out.push_back(topic);
+  return out;
+}
+
+std::string usage() {
+  return "vv: renders worlds in VRML and X3D, and meshes.\n"
+         "\n"
+         "  vv world.wrl                    opens the world in a window; F1 lists the keys\n"
+         "  vv world.wrl -o picture.png     writes a picture from the first viewpoint, or of the "
+         "whole world\n"
+         "  vv world.wrl --check            reports what is wrong with the world\n"
+         "  vv merge a.exr b.exr -o c.exr   adds pictures of different seeds, written with --sums\n"
+         "  vv serve world.wrl              shows the world on a page for browsers; prints its "
+         "address\n"
+         "\n"
+         "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), STL, PLY, OBJ, OFF or "
+         "glTF\n(.gltf, .glb), packed with gzip or not; - is standard input.\n";
+}
+
+std::string describeExitCodes() {
+  return "\nExit codes\n"
+         "  0    done\n"
+         "  1    the picture could not be made or written\n"
+         "  2    the command line is wrong\n"
+         "  3    unusable input: the world, or another file that the command line names, "
+         "cannot be read\n"
+         "  4    --check, --strict or --audit found problems; --measure found no sensor or a wrong "
+         "one\n"
+         "  5    under --strict: a plug-in or a texture is missing\n"
+         "  6    fewer workers than --require-workers asks for\n"
+         "  7    --time-limit has ended a run with --resume; the same command goes on\n"
+         "  75   out of memory or another resource, try again\n"
+         "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
+         "SIGUSR1 saves and goes on\n";
+}
+
+// Returns the first sentence of a text.
+std::string_view firstSentence(std::string_view text) {
+  const size_t end = text.find(". ");
+  return end == text.npos ? text : text.substr(0, end + 1);
+}
+
+std::string shortHelp() {
+  std::string out = usage() + "\nOften used\n";
+  for (const std::string_view name : usual)
+    for (const OptionInfo& option : optionTable())
+      if (isCalled(option, name)) out += describe(option, firstSentence(option.text));
+  std::string all;
+  for (const std::string& topic : topics()) all += topic + ", ";
+  all += fmt::format("{}, {}; or an option, such as vv --help --size", exitCodes, everything);
+  return fmt::format("{}\nMore\n  {:24}{}\n", out, "vv --help TOPIC", wrapped(all, width - indent));
+}
+
+} // namespace
+
+std::string helpText(std::string_view about) {
+  if (about.empty()) return shortHelp();
+  const std::string topic = lowered(about);
+  if (topic == everything) return usage() + describeGroups("") + describeExitCodes();
+  if (topic == exitCodes || topic == "exit") return describeExitCodes().substr(1);
+  if (const std::string group = describeGroups(topic); !group.empty()) return group.substr(1);
+  std::vector<std::string> known = topics();
+  known.insert(known.end(), {std::string(exitCodes), std::string(everything)});
+  for (const OptionInfo& option : optionTable()) {
+    if (isCalled(option, about) || isCalled(option, fmt::format("--{}", about)))
+      return describe(option, option.text);
+    for (std::string_view name : split(std::string_view(option.names), ','))
+      known.emplace_back(name);
+  }
+  const std::string near = nearest::word(topic, known);
+  throw UsageError(fmt::format("--help: there is no topic \"{}\"{}; vv --help lists them", about,
+                               near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+} // namespace vv
