@@ -215,6 +215,22 @@ TEST(FrameWorkByHand, UnderATimeLimitPathsFromLampsAreAsManyAsSamples) {
   }
 }
 
+// The error of light paths falls with the root of their number (docs/error-bars.md).
+TEST(FrameWorkByHand, TheNumberOfPathsFromLampsFollowsATargetBelowFivePercent) {
+  for (const auto& [target, perPixel] :
+       {std::pair{.1, 64.}, {.05, 64.}, {.025, 256.}, {.01, 1600.}}) {
+    Room room({.samples = 4096, .transport = RT_TRANSPORT_LIGHT, .targetError = target});
+    const edit::FrameSettingsT& frame = room.scene()->frame;
+    const double pixels = double(frame.width) * frame.height;
+    FrameWork work(frame, factsOf(*room.scene()), 1);
+    double paths = 0;
+    Job job; // jobs of light come first
+    while (work.next(job) == FrameWork::Next::job && job.kind == Job::Kind::light)
+      paths += job.count;
+    EXPECT_NEAR(paths, perPixel * pixels, 16) << target;
+  }
+}
+
 TEST(FrameWorkByHand, FourHundredPicturesOfOnePixel) {
   Room room({.samples = 64, .width = 1, .height = 1, .channels = allChannels}, 5);
   const Picture expected = Player(room.scene(), {}).picture();
