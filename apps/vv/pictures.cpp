@@ -495,7 +495,8 @@ class Pictures {
       if (options_.quiet) break;
       say("vv: " + oneLine(measurementText(sensor)));
       for (const std::string& text :
-           measurementWarnings(sensor, options_.render.error, uint32_t(options_.render.samples)))
+           measurementWarnings(sensor, {options_.render.error, uint32_t(options_.render.samples),
+                                        options_.render.timeLimit > 0}))
         sayWarning(oneLine(text));
     }
     return interrupted() ? stopped("vv: interrupted; the readings so far are saved") : exitDone;
@@ -701,16 +702,17 @@ class Pictures {
       largest = double(*std::max_element(all.begin(), all.end()));
     }
     const bool lamps = picture::transportInfo(result.stats.transport).tracesLamps;
-    const std::string paths =
-        lamps ? ". Paths from lamps are limited as well (docs/error-bars.md): --spp N without "
-                "--error and --time-limit takes N of both per pixel"
-              : "";
+    const std::string paths = lamps && options_.render.timeLimit <= 0
+                                  ? ". Paths from lamps are limited as well (docs/error-bars.md): "
+                                    "--spp N without --error "
+                                    "takes N of both per pixel"
+                                  : "";
     if (full > 0)
       return fmt::format(
           "{:.3g} % of the pixels took {} samples, the most allowed; --spp allows more{}",
           100 * full, options_.render.samples, paths);
     if (options_.render.timeLimit > 0)
-      return "the time limit ended the rendering; --time-limit allows more time" + paths;
+      return "the time limit ended the rendering; --time-limit allows more time";
     const std::string taken =
         fmt::format("its pixels took at most {:.0f} of the {} samples allowed, ", largest, most);
     if (lamps)

@@ -78,6 +78,33 @@ TEST_F(Faults, BodiesThatAreLeftButWereNeverEnteredAreNamed) {
   EXPECT_TRUE(log.has("(16 points)"));
 }
 
+// Camera paths enter the sheet and never leave; paths from the lamp behind it leave only.
+TEST_F(Faults, BodiesThatPathsFromLampsLeaveButNeverEnteredAreNamed) {
+  rtUseLight(shader("VRML97PointLight", nullptr));
+  const RTid glass = shader("Glass", nullptr);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
+  constexpr const char* said = "bounds bodies that paths have left but never entered";
+  const auto body = [&](const auto& faces) {
+    const RTid object = rtBeginObject(0);
+    rtBindShader(glass);
+    faces();
+    rtEndObject();
+    return rtInstantiateObject(object);
+  };
+  const RTid around = body([] { rtSphere(0.5f); }); // the lamp is inside
+  picture(16);
+  rtDeleteInstance(around);
+  EXPECT_EQ(log.count(said), 0u);
+  rtTranslatef(0, 0, 1);
+  body([] {
+    rtBegin(RT_QUADS);
+    squareVertices();
+    rtEnd();
+  });
+  picture(16);
+  EXPECT_EQ(log.count(said), 1u);
+}
+
 TEST_F(Faults, GoodShadersHaveNone) {
   rtBindShader(0);
   const RTid object = rtBeginObject(0);

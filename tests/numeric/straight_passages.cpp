@@ -250,6 +250,32 @@ TEST_F(StraightPassages, AnEvenSkyOverASensorIsTrusted) {
 
 // A slab of index n between surfaces of two shaders: a point behind it appears nearer by (1 - 1/n)
 // of the thickness. Equal parameters make one body.
+// All paths find the same light behind the sheet, though each takes a random decision there.
+TEST_F(StraightPassages, AnEvenSkyBehindASheetOverASensorIsTrusted) {
+  Shader sky("VRML97Environment");
+  sky.setList("skyColor", {.5f, .5f, .5f});
+  rtUseEnvironment(sky);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  placeAt(1, square(sheet(.5), 1e6));
+  const Reading behind = read({0, 0, 0}, up);
+  EXPECT_TRUE(behind.trusted);
+  EXPECT_NEAR(behind.value, .25 * pi, 1e-4);
+  EXPECT_GT(behind.halfWidth, 0); // a small thing may be hidden
+  EXPECT_LT(behind.halfWidth, .001 * behind.value);
+}
+
+// The lamp's light is equal in all samples. But what grey things send back was found by none.
+TEST_F(StraightPassages, EqualLightOfALampDoesNotTellThatNoneIsMissing) {
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_MAX_DEPTH, 4);
+  Shader lampShader = bulb({0, 0, 3}, 4 * pi);
+  use(lampShader);
+  placeAt(-5, square(matt(.5), 1));
+  const Reading lit = read({0, 0, 0}, up);
+  EXPECT_GT(lit.value, 0);
+  EXPECT_FALSE(lit.trusted);
+}
+
 TEST_F(StraightPassages, SurfacesWithEqualGlassBoundOneBody) {
   Shader lampShader = bulb({0, 0, 4}, 400 * pi);
   use(lampShader);

@@ -89,6 +89,26 @@ def test_a_target_that_is_missed_says_what_was_promised_and_reached(room):
     assert "--error promised 0.001 %, reached" in line
 
 
+def test_a_missed_target_does_not_advise_what_leaves_paths_from_lamps_as_they_are(room):
+    """With --error the target decides how many paths from lamps are taken; --spp changes none."""
+    (room.folder / "lens.wrl").write_text("""#VRML V2.0 utf8
+NavigationInfo { headlight FALSE }
+Transform { translation 0 2 0 children ORTLight { shader ORTShader {
+  name "Luminaire" file "luminaire" options "1f lumen 1000" } } }
+Transform { translation 0 1 0 children Shape {
+  appearance ORTAppearance { shader ORTShader { name "Glass" file "glass" options "1f index 1.5" } }
+  geometry Sphere { radius .4 } } }
+DEF Desk ORTSensor { size 2 2 columns 4 rows 4 direction 0 1 0 }
+""")
+    done = room("lens.wrl", "--measure", "out.csv", "--error", ".1%", "--spp", "256",
+                "--transport", "light")
+    (line,) = [line for line in done.talk.splitlines() if "promised" in line]
+    assert "--spp N without --error takes N of both" in line
+    done = room("lens.wrl", "--measure", "out.csv", "--error", ".1%", "--spp", "64")
+    lines = [line for line in done.talk.splitlines() if "promised" in line]
+    assert all("of both" not in line for line in lines), done.talk
+
+
 @pytest.mark.parametrize("fields, expected", [
     ('quantity "LUX"', "quantity is ILLUMINANCE or LUMINANCE"),
     ("direction 0 0 0", "direction has no length"),

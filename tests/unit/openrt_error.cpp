@@ -96,12 +96,23 @@ const Replicates sixteen{0, 3};
 TEST(Error, inTheDarkAnUpperBoundFromThePixelsAround) {
   PixelSums dark = sumsOf(std::vector<float>(128, 0.0f), sixteen),
             lit = sumsOf(calmSamples(1), sixteen);
-  dark.random = lit.random = true;
+  dark.random = lit.random = RandomPath::all;
   EXPECT_TRUE(std::isinf(errorOf({&dark}, sixteen).halfWidth[0])); // nothing is known
   // Out of the window's reach: 3 / N of the largest sample, N those of the window's three pixels.
   const PixelError far = errorOf({&dark, &dark, &dark, &lit}, sixteen);
   EXPECT_NEAR(far.halfWidth[0], lit.largest[0] * 2.9957 / 128 / 3, 1e-4);
   EXPECT_FALSE(far.trusted);
+}
+
+// A small thing that all paths have missed may still hide some of that light.
+TEST(Error, equalLightIsTrustedWithABoundWhereAllRandomPathsHaveFoundIt) {
+  PixelSums lit = sumsOf(std::vector<float>(128, 0.3f), sixteen);
+  lit.random = RandomPath::all;
+  EXPECT_FALSE(errorOf({&lit}, sixteen).trusted); // it may be light that needs no random path
+  lit.random = RandomPath::decided;
+  const PixelError e = errorOf({&lit}, sixteen);
+  EXPECT_TRUE(e.trusted && !e.constant && !e.dark);
+  EXPECT_NEAR(e.halfWidth[0], 2.9957 / 128 * .3, 1e-6);
 }
 
 TEST(Error, whereNothingIsRandomEqualSamplesAreExact) {
@@ -115,7 +126,7 @@ TEST(Error, pixelsThatDifferByChanceShareTheirVariance) {
   std::vector<PixelSums> sums;
   for (uint32_t i = 0; i < 25; i++) {
     sums.push_back(sumsOf(calmSamples(i), sixteen));
-    sums.back().random = true;
+    sums.back().random = RandomPath::all;
   }
   std::vector<PixelError> errors(25);
   tileErrors(5, sums, sixteen, errors);
@@ -134,7 +145,7 @@ TEST(Error,
     for (uint32_t x = 0; x < 5; x++) {
       std::vector<float> samples = calmSamples(5 * y + x, scale);
       sums.push_back(sumsOf(samples, sixteen));
-      sums.back().random = true;
+      sums.back().random = RandomPath::all;
     }
   std::vector<PixelError> errors(25);
   tileErrors(5, sums, sixteen, errors);
@@ -147,7 +158,7 @@ TEST(Error,
 
 TEST(Error, pixelsThatReallyDifferKeepTheirOwn) {
   PixelSums calm = sumsOf(calmSamples(1), sixteen), wild = sumsOf(calmSamples(2, 50), sixteen);
-  calm.random = wild.random = true;
+  calm.random = wild.random = RandomPath::all;
   const float alone = errorOf({&wild}, sixteen).halfWidth[0];
   EXPECT_NEAR(errorOf({&wild, &calm, &calm}, sixteen).halfWidth[0], alone, .25 * alone);
 }
@@ -157,7 +168,7 @@ TEST(Error, oneBrightSampleIsNotTrusted) {
   std::vector<float> samples = calmSamples(2);
   samples[20] = 10000;
   PixelSums wild = sumsOf(samples, sixteen);
-  calm.random = wild.random = true;
+  calm.random = wild.random = RandomPath::all;
   EXPECT_TRUE(errorOf({&calm, &calm}, sixteen).trusted);
   EXPECT_FALSE(errorOf({&wild, &calm}, sixteen).trusted);
   EXPECT_FALSE(errorOf({&calm, &wild}, sixteen).trusted)

@@ -186,6 +186,51 @@ TEST(FrameWorkByHand, PathsFromLamps) {
                            .targetError = .3});
 }
 
+// More time would otherwise not make caustics better. The limit is never reached: the samples end
+// the frame.
+TEST(FrameWorkByHand, UnderATimeLimitPathsFromLampsAreAsManyAsSamples) {
+  for (const int samples : {32, 512}) {
+    Room room({.samples = samples,
+               .transport = RT_TRANSPORT_LIGHT,
+               .channels = RT_RGBA | RT_ERROR | RT_TRUST | RT_SAMPLES,
+               .timeLimit = 600});
+    const edit::FrameSettingsT& frame = room.scene()->frame;
+    const double pixels = double(frame.width) * frame.height;
+    FrameWork work(frame, factsOf(*room.scene()), 1);
+    JobRunner runner(room.scene());
+    double paths = 0;
+    Job job;
+    while (work.next(job) == FrameWork::Next::job) {
+      JobResult result;
+      ASSERT_TRUE(runner.run(job, never, result));
+      if (job.kind == Job::Kind::light) paths += job.count;
+      ASSERT_TRUE(work.take(job, std::move(result)));
+    }
+    EXPECT_TRUE(work.over());
+    const Picture picture = pictureOf(work, frame);
+    for (const float n : picture.at(RT_SAMPLES)) EXPECT_EQ(n, float(samples));
+    // Whole parts of 2048 paths, and at least sixteen of them.
+    EXPECT_GE(paths, std::max(double(samples) * pixels - 2048, 16 * 2048.0));
+    EXPECT_LE(paths, std::max(double(samples) * pixels + 2048, 16 * 2048.0));
+  }
+}
+
+// The error of light paths falls with the root of their number (docs/error-bars.md).
+TEST(FrameWorkByHand, TheNumberOfPathsFromLampsFollowsATargetBelowFivePercent) {
+  for (const auto& [target, perPixel] :
+       {std::pair{.1, 64.}, {.05, 64.}, {.025, 256.}, {.01, 1600.}}) {
+    Room room({.samples = 4096, .transport = RT_TRANSPORT_LIGHT, .targetError = target});
+    const edit::FrameSettingsT& frame = room.scene()->frame;
+    const double pixels = double(frame.width) * frame.height;
+    FrameWork work(frame, factsOf(*room.scene()), 1);
+    double paths = 0;
+    Job job; // jobs of light come first
+    while (work.next(job) == FrameWork::Next::job && job.kind == Job::Kind::light)
+      paths += job.count;
+    EXPECT_NEAR(paths, perPixel * pixels, 16) << target;
+  }
+}
+
 TEST(FrameWorkByHand, FourHundredPicturesOfOnePixel) {
   Room room({.samples = 64, .width = 1, .height = 1, .channels = allChannels}, 5);
   const Picture expected = Player(room.scene(), {}).picture();

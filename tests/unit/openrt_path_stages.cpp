@@ -241,7 +241,7 @@ TEST(PathStages, OneLobeAndManyLobesContinuePathsAlike) {
                                            pairAtLevel(1, 4), plane.arena));
     sampleLobes(batch, sampling);
     spawnRays(paths.at(batch, 4), sampling, {});
-    for (uint32_t i = 0; i < 8; i++) EXPECT_EQ(paths.samples.random[i], 1);
+    for (uint32_t i = 0; i < 8; i++) EXPECT_EQ(paths.samples.random[i], RandomPath::all);
     std::swap(queues[many], paths.next);
   }
   ASSERT_EQ(queues[0].size(), queues[1].size());

@@ -83,7 +83,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
       s.grey[k] = value();
       s.largest[k] = float(value());
     }
-    s.random = g.error && random() % 2;
+    s.random = g.error ? uint8_t(random() % 4) : 0;
     if (g.error && job.replicates.many() && job.count >= job.replicates.size())
       s.replicates = job.count / job.replicates.size();
   }

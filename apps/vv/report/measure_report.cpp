@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "describe.h"
+#include "libpicture/transport.h"
 #include "printable.h"
 
 namespace vv {
@@ -70,6 +71,22 @@ std::string wayToReach(const Measurement& m) {
 }
 
 Json numberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+// Says why a sensor has missed --error.
+std::string whyMissed(const Measurement& m, const Promise& promise) {
+  const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
+  if (promise.timed && taken < promise.allowed)
+    return "the time limit ended the measurement; --time-limit allows more time";
+  const bool capped = picture::transportInfo(m.stats.transport).tracesLamps && !promise.timed;
+  if (taken < promise.allowed)
+    return capped ? "--error alone decides how many paths from lamps are taken; --spp N without "
+                    "--error takes N of both"
+                  : "a smaller --error takes more";
+  return std::string("--spp allows more") +
+         (capped ? ". Paths from lamps are limited as well (docs/error-bars.md): --spp N without "
+                   "--error takes N of both"
+                 : "");
+}
 
 } // namespace
 
@@ -143,17 +160,16 @@ std::string measurementText(const Measurement& m) {
   return out;
 }
 
-std::vector<std::string> measurementWarnings(const Measurement& m, double target,
-                                             uint32_t allowed) {
+std::vector<std::string> measurementWarnings(const Measurement& m, const Promise& promise) {
   std::vector<std::string> out;
   const Summary all(m);
   if (all.points == 0) return out;
   const auto add = [&](const std::string& text) { out.push_back(m.sensor.name + ": " + text); };
-  if (target > 0 && m.stats.errorHalfWidth > 1.001 * target) {
+  if (promise.error > 0 && m.stats.errorHalfWidth > 1.001 * promise.error) {
     const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
-    add(fmt::format("--error promised {:.3g} %, reached {:.3g} % with {} samples; {}", 100 * target,
-                    100 * m.stats.errorHalfWidth, taken,
-                    taken < allowed ? "a smaller --error takes more" : "--spp allows more"));
+    add(fmt::format("--error promised {:.3g} %, reached {:.3g} % with {} samples; {}",
+                    100 * promise.error, 100 * m.stats.errorHalfWidth, taken,
+                    whyMissed(m, promise)));
   }
   if (const size_t doubtful = all.points - all.trusted)
     add(fmt::format("the intervals of {} of {} points are not trusted: too few paths have found "

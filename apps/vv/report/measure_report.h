@@ -16,9 +16,16 @@ std::string measurementsJson(const std::vector<picture::Measurement>& sensors,
                              const std::string& commandLine);
 // Describes one sensor in a line: mean with its interval, range, uniformity.
 std::string measurementText(const picture::Measurement& sensor);
-// Returns what a reader of the readings must know, a sentence each: a missed --error (target, with
-// at most so many samples allowed), light that is missing, readings that are not trusted.
-std::vector<std::string> measurementWarnings(const picture::Measurement& sensor, double target,
-                                             uint32_t allowed);
+// What was asked for: a target error (0: none), with at most so many samples; whether a time limit
+// could end the measurement before.
+struct Promise {
+  double error = 0;
+  uint32_t allowed = 0;
+  bool timed = false;
+};
+// Returns what a reader of the readings must know, a sentence each: a missed --error, light that is
+// missing, readings that are not trusted.
+std::vector<std::string> measurementWarnings(const picture::Measurement& sensor,
+                                             const Promise& promise);
 
 } // namespace vv

@@ -209,6 +209,8 @@ class TileErrors {
     bool few = false;  // only few replicates carry the window's variance
   };
 
+  bool isRandom(size_t i) const { return pixels_[i].random != 0; }
+
   // Pools variances. Random and non-random pixels are pooled separately, and exact pixels not at
   // all. Noise may be equally strong everywhere, or proportional to the light. So two kinds of
   // variances are compared, and the kind that differs less within the window is pooled: the
@@ -218,7 +220,7 @@ class TileErrors {
     std::vector<Cell> cells(pixels_.size()), relative;
     const std::vector<double> bright = brightness(random, k);
     for (size_t i = 0; i < pixels_.size(); i++) {
-      if (pixels_[i].random != random || out_[i].constant || pixels_[i].replicates < 2) continue;
+      if (isRandom(i) != random || out_[i].constant || pixels_[i].replicates < 2) continue;
       const Spread s = spreadOf(pixels_[i], k, replicates_.size());
       noteNoise(pixels_[i], s, out_[i].noise);
       cells[i] = {1, s.variance, s.variance * s.variance, s.uncertainty, s.fourth};
@@ -256,7 +258,7 @@ class TileErrors {
         for (uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, height_ - 1); v++)
           for (uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, width_ - 1); u++) {
             const size_t at = size_t(v) * width_ + u;
-            if (pixels_[at].random != random || out_[at].constant) continue;
+            if (isRandom(at) != random || out_[at].constant) continue;
             sum += std::fabs(double(out_[at].mean[k]));
             n++;
           }
@@ -277,12 +279,16 @@ class TileErrors {
   }
 
   void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
-    // dark: all samples of the pixel and of its window are equal.
-    const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0);
+    // equal: all samples of the pixel and of its window are equal. dark: and so because random
+    // paths may have found nothing. Where all have found light, and the same, as under an even sky,
+    // only what covers a small part of the directions can be missing, and the rule of three bounds
+    // that.
+    const bool equal = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0);
+    const bool dark = equal && (s.random & RandomPath::inVain);
     double half = 0;
     for (int k = 0; k < 3; k++) {
       double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]);
-      if (dark) // the rule of three applies, because no sample has hit anything
+      if (equal) // the rule of three applies, because no sample has hit anything else
         h = rare_.largest[k] > 0 ? ruleOfThree / (s.samples * p.window) * rare_.largest[k]
                                  : std::numeric_limits<double>::infinity();
       e.halfWidth[k] = float(h);
@@ -340,7 +346,7 @@ PixelError independentError(const PixelSums& s) {
   e.samples = s.samples;
   e.constant = s.samples > 1 && !varies && !s.random;
   e.noise.scale = scaleOf(e.mean);
-  e.noise.random = s.random;
+  e.noise.random = s.random != 0;
   e.noise.finished = true;
   finish(e);
   return e;

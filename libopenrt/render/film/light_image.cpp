@@ -24,10 +24,11 @@ LightImage::LightImage(uint32_t width, uint32_t height, uint32_t all, Kept kept)
 
 void LightImage::add(uint32_t number, std::vector<float>&& part) {
   std::unique_lock turn(turn_);
+  if (number >= waiting_.size()) waiting_.resize(number + 1);
   waiting_[number] = std::move(part);
   if (adding_) return; // another thread is adding parts and will find this one
   adding_ = true;
-  for (uint32_t next; (next = added_) < all_ && !waiting_[next].empty();) {
+  for (uint32_t next; (next = added_) < waiting_.size() && !waiting_[next].empty();) {
     const std::vector<float> now = std::move(waiting_[next]);
     waiting_[next].clear();
     turn.unlock();

@@ -20,7 +20,8 @@ namespace openrt {
 
 class LightImage {
  public:
-  static constexpr uint32_t parts = 16; // number of parts of a frame, at most
+  // Number of parts of a frame, at most; and with a time limit, where later rounds have parts, too.
+  static constexpr uint32_t parts = 16, mostParts = 1 << 20;
   // Returns the number of parts of a frame. Those with light in few pixels are previews: their
   // parts have few paths, and to add up whole pictures would cost more than to trace them.
   static uint32_t partsOf(const edit::FrameSettingsT& frame);
@@ -28,10 +29,11 @@ class LightImage {
   // variance with its neighbours; a sensor has one of its own.
   enum class Kept : uint8_t { means, pixels, sensors };
   LightImage(uint32_t width, uint32_t height, uint32_t all = parts, Kept kept = Kept::pixels);
-  // Adds a part: rgb by pixel, row by row. Each number may be added once.
+  // Adds a part: rgb by pixel, row by row. Each number may be added once; numbers beyond the last
+  // are parts that a time limit leaves time for.
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
-  bool complete() const { return added() == all_; }
+  bool complete() const { return added() >= all_; }
   // Returns a tile's sums, row by row, from the parts added so far. The variance is infinite with
   // fewer than two parts, and 0 where it is not kept.
   void read(const Tile& tile, std::vector<LightSums>& out) const;

@@ -26,6 +26,13 @@ struct RequiredSums {
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
+// What is known of a path's random decisions.
+namespace RandomPath {
+inline constexpr uint8_t decided = 1; // it has taken one
+inline constexpr uint8_t inVain = 2;  // none of its random rays is known to have found light
+inline constexpr uint8_t all = decided | inVain;
+} // namespace RandomPath
+
 // Sums of one pixel, samples added in order. What most frames need comes first: a frame touches
 // only as much of each pixel as its channels need.
 struct PixelSums {
@@ -41,7 +48,7 @@ struct PixelSums {
   double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float largest[3] = {};
   uint32_t replicates = 0; // number of complete replicates
-  bool random = false;     // a path has taken a random decision
+  uint8_t random = 0;      // RandomPath bits of all paths; not 0: one has taken a random decision
 
   void add(const float radiance[3], float alpha) {
     for (int k = 0; k < 3; k++) {

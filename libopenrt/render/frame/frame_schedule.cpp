@@ -32,20 +32,28 @@ double openLightPaths(float targetError) {
   return paths * finer * finer;
 }
 
-// Returns the number of light paths: as many as camera paths that get light, and for sensors at
-// least as many as for 16x16 of them, because the light of few sensors is no easier to find. If the
-// number of camera paths is open, at most openLightPaths() per pixel.
-uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
+// Returns how many light paths go with one sample of the picture: as many as camera paths that get
+// light, and for sensors at least as many as for 16x16 of them, because the light of few sensors is
+// no easier to find.
+double lightPathsOfSample(const edit::FrameSettingsT& frame) {
   constexpr double fewestSensors = 256;
-  const bool open = frame.targetError > 0 || frame.timeLimit > 0;
   const uint32_t stride = lightStrideOf(frame);
-  const double pixels = std::max(double(frame.width) * frame.height / (stride * stride),
-                                 frame.measure ? fewestSensors : 1.0);
+  return std::max(double(frame.width) * frame.height / (stride * stride),
+                  frame.measure ? fewestSensors : 1.0);
+}
+
+// Returns the number of light paths. If the number of camera paths is open, at most
+// openLightPaths() per pixel; with a time limit more may follow.
+uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
+  const bool open = frame.targetError > 0 || frame.timeLimit > 0;
   const double samples = frame.samples,
-               paths =
-                   pixels * (open ? std::min(samples, openLightPaths(frame.targetError)) : samples);
+               paths = lightPathsOfSample(frame) *
+                       (open ? std::min(samples, openLightPaths(frame.targetError)) : samples);
   return uint32_t(std::min(paths, 4e9));
 }
+
+// Parts of timed frames have at least this many paths, because there may be very many parts.
+constexpr uint32_t fewestOfTimedPart = 2048;
 
 } // namespace
 
@@ -98,6 +106,7 @@ FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts
   if (lamps_) {
     parts_ = LightImage::partsOf(frame);
     partPaths_ = lightPathsOf(frame) / parts_ + 1;
+    if (timed_) partPaths_ = std::max(partPaths_, fewestOfTimedPart);
     earlyPaths_ =
         frame.width * frame.height / 2 / earlyParts_ + 1; // altogether half a path per pixel
     all_ += double(parts_) * partPaths_;
@@ -113,7 +122,7 @@ double FrameSchedule::costOf(const TileGrid& grid, const Job& job) {
 }
 
 void FrameSchedule::give(const OutstandingJob& out, Job& job, double now) {
-  if (!begun_ && out.job.kind == Job::Kind::samples) {
+  if (!begun_ && (out.job.kind == Job::Kind::samples || !pilot_)) {
     begun_ = true;
     began_ = now;
   }
@@ -318,11 +327,7 @@ bool FrameSchedule::endTimed(double now) {
   const double took = now - began_, left = double(frame_.timeLimit) - (now - started_);
   bool more = true;
   if (pilot_) {
-    // About sixteen rounds fill the remaining time.
-    const double samples = left / 16 / std::max(took, 1e-9) * samples_;
-    const uint32_t most = std::max(frame_.samples / 16, 1u);
-    replicates_ = {frame_.seed,
-                   uint32_t(std::bit_width(uint32_t(std::clamp(samples, 1.0, double(most))))) - 1};
+    replicates_ = {frame_.seed, uint32_t(std::bit_width(timedSamples(took, left))) - 1};
     most_ = *std::max_element(wanted_.begin(), wanted_.end());
     pilot_ = false;
   } else {
@@ -334,6 +339,21 @@ bool FrameSchedule::endTimed(double now) {
   samples_ = std::min(replicates_.size(), frame_.samples - std::min(first_, frame_.samples));
   begun_ = false;
   return more && first_ < most_;
+}
+
+// Returns the samples of a timed round, of which about sixteen fill the time that is left. The
+// first light paths are done; later ones are as many as camera paths. took: time of the pilot's
+// samples.
+uint32_t FrameSchedule::timedSamples(double took, double left) const {
+  const double camera = std::max(took, 1e-9) / samples_;
+  double samples = left / camera;
+  if (lamps_) {
+    const double known = double(parts_) * partPaths_ / lightPathsOfSample(frame_),
+                 light = std::max(began_ - started_, 0.0) / known;
+    if (samples > known) samples = (left + known * light) / (camera + light);
+  }
+  const uint32_t most = std::max(frame_.samples / 16, 1u);
+  return uint32_t(std::clamp(samples / 16, 1.0, double(most)));
 }
 
 // Prepares the next progressive round. Rounds consist of leaves (sums.h), so the picture's bytes
@@ -360,7 +380,24 @@ void FrameSchedule::wantLight() {
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
   const bool whole = !rounds_ || timed_ || first_ + samples_ >= all;
   const auto share = uint32_t(double(first_) / most_ * parts_);
-  partsUntil_ = whole ? parts_ : std::clamp(share, std::max(partsUntil_, nextPart_), parts_);
+  if (whole)
+    partsUntil_ = std::max(partsUntil_, parts_);
+  else
+    partsUntil_ = std::clamp(share, std::max(partsUntil_, nextPart_), parts_);
+  if (timed_ && !pilot_) wantMoreLight();
+}
+
+// Releases the light paths of a timed round, so that they are as many as camera paths. Without them
+// a longer time would not make caustics better.
+void FrameSchedule::wantMoreLight() {
+  const double samples = double(first_) + samples_,
+               wanted = samples * lightPathsOfSample(frame_) / partPaths_;
+  const auto until = uint32_t(std::min(wanted, double(LightImage::mostParts)));
+  if (until <= partsUntil_) return;
+  const double more = double(until - partsUntil_) * partPaths_;
+  undone_ += more;
+  all_ += more;
+  partsUntil_ = until;
 }
 
 float FrameSchedule::progress(double now) const {

@@ -117,6 +117,8 @@ class FrameSchedule {
   bool endTimed(double now);
   bool endProgressive();
   void wantLight();
+  void wantMoreLight();
+  uint32_t timedSamples(double took, double left) const;
 
   std::optional<KnownBlocks> known_; // none: sums are not kept
   const edit::FrameSettingsT frame_;
@@ -148,6 +150,7 @@ class FrameSchedule {
   double started_, began_;              // start times of the frame and of the round
   bool begun_ = false;
   // Light.
+  // parts_: number of parts that are made in any case; timed frames add parts as rounds go on.
   uint32_t parts_ = 0, nextPart_ = 0, partsUntil_ = 0, partPaths_ = 0, nextEarly_ = 0,
            earlyUntil_ = 0, earlyPaths_ = 0;
   const uint32_t earlyParts_;

@@ -96,6 +96,7 @@ struct FrameWork::Impl {
     return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels());
   }
   void judgeErrors();
+  void showAllLight();
   void advance();
   void finishWaitingTiles();
   void notifyChange();
@@ -412,18 +413,32 @@ void FrameWork::Impl::judgeErrors() {
   }
 }
 
+// Writes the tiles of a frame with a time limit again. When they were stored, light paths of their
+// round may have been missing.
+void FrameWork::Impl::showAllLight() {
+  for (uint32_t i = 0; i < count; i++) {
+    TileState& state = tiles[i];
+    std::lock_guard tileLock(state.mutex);
+    SumBlock all;
+    if (state.sums.fold(nullptr, all, required, state.replicates))
+      store(grid.at(i), all, state.replicates, true);
+  }
+}
+
 // Finishes waiting tiles, and the frame if nothing is left to do. Called after each change.
 void FrameWork::Impl::advance() {
   finishWaitingTiles();
-  bool last = false;
+  bool last = false, more = false; // more: light paths may have come after the tiles were stored
   {
     std::lock_guard lock(mutex);
     last = !finishing && busy == 0 && (cancelled || (schedule.over() && waiting.empty()));
     finishing |= last;
+    more = last && !cancelled && light && schedule.timed();
   }
   if (last) {
     {
       std::unique_lock alone(ending);
+      if (more) showAllLight();
       judgeErrors();
     }
     std::lock_guard lock(mutex);

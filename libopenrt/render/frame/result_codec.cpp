@@ -117,9 +117,9 @@ bool getLedger(Source& source, Ledger& ledger) {
   return true;
 }
 
-// Reads a field; only validates it if `sums` is null.
+// Reads a field; only validates it if `sums` is null. largest: of a field of one byte.
 bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_t offset,
-              size_t bytes, bool flag) {
+              size_t bytes, uint8_t largest) {
   uint8_t form = 0;
   if (!source.get(&form, 1) || form > uint8_t(Form::all) ||
       (Form(form) == Form::floats && bytes != sizeof(double)))
@@ -128,8 +128,8 @@ bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_
                count = Form(form) == Form::one ? 1 : pixels;
   const std::byte* from = source.skip(each * count);
   if (!from) return false;
-  for (size_t i = 0; flag && i < count; i++)
-    if (from[i] > std::byte(1)) return false;
+  for (size_t i = 0; bytes == 1 && i < count; i++)
+    if (from[i] > std::byte(largest)) return false;
   for (size_t i = 0; sums && i < pixels; i++) {
     const std::byte* value = from + (count == 1 ? 0 : i * each);
     std::byte* to = reinterpret_cast<std::byte*>(&(*sums)[i]) + offset;
@@ -152,7 +152,7 @@ bool getTile(const edit::FrameSettingsT& frame, Source& source, std::vector<Pixe
   for (const Field& field : fieldsOf(frame))
     for (size_t k = 0; k < field.count; k++)
       if (!getField(source, sums, pixels, field.offset + k * field.bytes, field.bytes,
-                    field.offset == offsetof(PixelSums, random)))
+                    RandomPath::all))
         return false;
   return true;
 }

@@ -78,4 +78,11 @@ MediaStack mediaAroundEye(const RenderScene& scene) {
   return probe({scene, arena, counters}, scene.eye).stack();
 }
 
+bool isInMedium(const RenderScene& scene, const Vec3f& point, uint16_t medium) {
+  Arena arena;
+  RayCounters counters; // a warning must not change the statistics
+  const std::vector<uint16_t> left = probe({scene, arena, counters}, point).left;
+  return std::find(left.begin(), left.end(), medium) != left.end();
+}
+
 } // namespace openrt

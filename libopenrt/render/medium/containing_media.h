@@ -11,5 +11,7 @@ namespace openrt {
 void findContainingMedia(const StageContext& context, const Rays& rays, MediaStack* media);
 // Returns the media that contain the eye of a scene; none if it has no media.
 MediaStack mediaAroundEye(const RenderScene& scene);
+// Returns whether a point lies in a body of the medium.
+bool isInMedium(const RenderScene& scene, const Vec3f& point, uint16_t medium);
 
 } // namespace openrt

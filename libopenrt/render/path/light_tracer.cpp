@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/lights/luminance.h"
+#include "render/medium/containing_media.h"
 #include "render/path/camera_connections.h"
 #include "render/surface/adjoint.h"
 #include "render/surface/bsdf_choice.h"
@@ -29,6 +30,7 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
   picture_.assign(size_t(scene_.frame.width) * scene_.frame.height * 3, 0.0f);
   seed_ = seed;
   scale_ = 1.0 / paths;
+  probes_ = 0;
   for (uint32_t first = 0, n; first < paths; first += n) {
     if (stop) return false;
     n = std::min(pathsInFlight, paths - first);
@@ -42,6 +44,7 @@ std::vector<Photon> LightTracer::tracePhotons(uint32_t paths, uint32_t seed,
   std::vector<Photon> photons;
   photons_ = &photons;
   seed_ = seed;
+  probes_ = 0;
   for (uint32_t first = 0; first < paths && !stop; first += pathsInFlight)
     tracePaths(first, std::min(pathsInFlight, paths - first));
   photons_ = nullptr;
@@ -79,7 +82,7 @@ void LightTracer::traceWave(Wave& wave) {
   selectMet(wave);
   forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
     if (bucket.shaderClass->surface)
-      scatter(points, wave.states, *bucket.shaderClass);
+      scatter(points, wave, *bucket.shaderClass);
     else if (bucket.shaderClass->transmit)
       transmitRays(points, wave.states, *bucket.shaderClass);
   });
@@ -121,12 +124,37 @@ void LightTracer::transmitRays(const Points& points, const PathStates& states,
   }
 }
 
-void LightTracer::scatter(const Points& points, const PathStates& states,
-                          const RtsClass& shaderClass) {
+// Counts the hits at which paths leave a body right behind their lamp, though the lamp is not in
+// it. Only the first surface tells: further ones may belong to a body that the first one has
+// opened.
+void LightTracer::countNeverEntered(const Points& points, const Rays& rays,
+                                    const Boundaries& boundaries, const RtsClass& shaderClass) {
+  constexpr uint32_t mostProbes = 64; // lamps with extent have many origins
+  if (level_ > 0 || !scene_.mediumLights.empty()) return;
+  uint64_t left = 0;
+  for (uint32_t i = 0; i < points.hits.count; i++) {
+    const openrt::Crossing& c = boundaries.crossing[i];
+    if (!c.unknown) continue;
+    const Vec3f lamp = load(rays.org, points.order[i]);
+    if (probes_ == 0 || !(lamp == probed_) || c.from != probedMedium_) {
+      if (probes_ == mostProbes) continue;
+      probes_++;
+      probed_ = lamp;
+      probedMedium_ = c.from;
+      probedInside_ = isInMedium(scene_, lamp, c.from);
+    }
+    left += !probedInside_;
+  }
+  if (left) counters_.faults.add(shaderClass, Fault::neverEntered, left);
+}
+
+void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass& shaderClass) {
+  const PathStates& states = wave.states;
   const uint32_t n = points.hits.count;
   RtsBatch batch = makeBatch(context_, points, states);
   runSurfaceShader(batch, shaderClass);
   const Boundaries boundaries = crossBoundaries(batch, shaderClass);
+  if (boundaries.crossing) countNeverEntered(points, wave.rays, boundaries, shaderClass);
   const RandomNumbers random = randomNumbersAt(
       samples_, states, points.order, n, pairAtLevel(uint32_t(LightPair::count), level_), arena_);
   bool scatters = false;

@@ -43,7 +43,9 @@ class LightTracer {
   void traceWave(Wave& wave);
   void selectMet(Wave& wave);
   void transmitRays(const Points& points, const PathStates& states, const RtsClass& shaderClass);
-  void scatter(const Points& points, const PathStates& states, const RtsClass& shaderClass);
+  void scatter(const Points& points, const Wave& wave, const RtsClass& shaderClass);
+  void countNeverEntered(const Points& points, const Rays& rays, const Boundaries& boundaries,
+                         const RtsClass& shaderClass);
   void leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
                     uint32_t n);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
@@ -74,6 +76,11 @@ class LightTracer {
     Vec3f flux; // without the attenuation of lamps
   };
   std::vector<Crossing> crossings_;
+  // Where paths of the current call were found to start, and whether in the medium; how often.
+  Vec3f probed_;
+  uint16_t probedMedium_ = 0;
+  bool probedInside_ = false;
+  uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
   PathSamples samples_{};                  // of the paths in flight
   RayQueue queue_, next_;                  // rays of the current wave, and of the next one

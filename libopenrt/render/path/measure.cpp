@@ -69,10 +69,9 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
   }
   // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is
   // exact and needs no random path.
-  if (scene_.records.empty() && !scene_.skyShines)
-    addLamps(batch, sent);
-  else
-    gatherLight(batch, {}, sent);
+  addLamps(batch, sent);
+  for (uint32_t i = 0; i < n; i++) store(load(sent.radiance, i), lampLight_, wave.states.path[i]);
+  if (!scene_.records.empty() || scene_.skyShines) continueFromLobes(batch, {}, sent);
   // Under a sky of one radiance and nothing else every path finds the same light.
   const SkySampler* sky = scene_.emitters.sky();
   const bool even = scene_.records.empty() && sky && !sky->black() && !sky->usable();
@@ -82,6 +81,16 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
     found.alpha[path] = 1;
     found.first[path] = 0;
     if (even) samples_.random[path] = 0;
+  }
+}
+
+// Notes which random paths of sensors have found light beside that of the lamps without extent. If
+// all have, and the same amount, no light is missing by chance (error.cpp).
+void TileRenderer::noteFoundLight(uint32_t n, const PixelSamples& found) {
+  for (uint32_t i = 0; i < n; i++) {
+    const Vec3f light = load(found.radiance, i), lamps = load(lampLight_, i);
+    if (light.x > lamps.x || light.y > lamps.y || light.z > lamps.z)
+      samples_.random[i] &= uint8_t(~RandomPath::inVain);
   }
 }
 

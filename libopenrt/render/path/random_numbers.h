@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "render/film/sums.h"
 #include "render/path/path_states.h"
 #include "render/path/sampler.h"
 
@@ -12,7 +13,7 @@ namespace openrt {
 // The samples that the paths of a wave are, by path.
 struct PathSamples {
   uint32_t *key, *index;     // the sequence: hash(pixel, seed); the number of the point in it
-  uint8_t* random = nullptr; // 1 if the path has taken a random decision; null: nobody asks
+  uint8_t* random = nullptr; // RandomPath bits (film/sums.h); null: nobody asks
 
   void allocate(Arena& arena, uint32_t n) {
     key = arena.take<uint32_t>(n);
@@ -22,7 +23,7 @@ struct PathSamples {
     key[path] = hash(pixel, seed);
     index[path] = point;
   }
-  void markRandom(uint32_t path) const { random[path] = 1; }
+  void markRandom(uint32_t path) const { random[path] = RandomPath::all; }
 };
 
 // The random decisions at a surface. Each has a pair of dimensions of the sampler.

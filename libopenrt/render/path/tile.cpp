@@ -117,7 +117,12 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
 }
 
 void TileRenderer::renderPaths(bool light, Wave& wave, PixelSamples& found) {
-  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE) return follow(wave, found);
+  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE) {
+    const uint32_t n = wave.rays.count; // follow() uses the wave again
+    for (float*& lamps : lampLight_) lamps = arena_.takeZero<float>(n);
+    follow(wave, found);
+    return noteFoundLight(n, found);
+  }
   guides_.begin(wave.rays);
   if (showsNoLight_) {
     guides_.describe(context_, wave, found);
@@ -144,7 +149,7 @@ void TileRenderer::describe(Wave& wave, PixelSamples& found) {
 // order.
 void TileRenderer::follow(Wave& wave, PixelSamples& found) {
   const uint32_t most = wave.rays.count;
-  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE)
+  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE && nesting_ == 0)
     measureIlluminance(wave, found);
   else
     traceWave(wave, found);
@@ -317,7 +322,7 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
         sums.addColor(radiance, found.alpha[i]);
       if (required_.error) {
         sums.addTails(radiance);
-        sums.random |= samples_.random[i] != 0;
+        sums.random |= samples_.random[i];
         // Replicates larger than the leaf are closed where leaves are merged.
         const uint32_t next = firstSample + s + 1;
         if (replicates_.many() && replicates_.indexOf(next) == 0 &&

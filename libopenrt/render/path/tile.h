@@ -74,6 +74,7 @@ class TileRenderer {
   void traceWave(Wave& wave, PixelSamples& found);
   // measure.cpp: the first wave of RT_MEASURE_ILLUMINANCE.
   void measureIlluminance(const Wave& wave, PixelSamples& found);
+  void noteFoundLight(uint32_t n, const PixelSamples& found);
   // medium/tile_media.cpp: scenes with media that scatter.
   bool scattersInMedia() const { return !scene_.mediumLights.empty(); }
   void startInMedia(const Wave& wave);
@@ -139,9 +140,10 @@ class TileRenderer {
   Replicates replicates_;
   uint32_t leaf_ = 0; // first sample of the current leaf
   bool centred_ = false;
-  PathSamples samples_{}; // of the paths in flight; inside trace() those of the nested paths
-  uint32_t nesting_ = 0;  // nesting depth of trace()
-  RayQueue queue_, next_; // rays of the current wave, and of the next one
+  PathSamples samples_{};    // of the paths in flight; inside trace() those of the nested paths
+  uint32_t nesting_ = 0;     // nesting depth of trace()
+  float* lampLight_[3] = {}; // of RT_MEASURE_ILLUMINANCE: what lamps without extent give, by path
+  RayQueue queue_, next_;    // rays of the current wave, and of the next one
   GuidedRays guided_{context_};
   uint32_t level_ = 0; // depth of the current wave
 };

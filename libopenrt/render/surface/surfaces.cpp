@@ -197,7 +197,7 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     }
   }
   if (any) out.disperses = disperses;
-  // Only camera paths tell: paths from lamps may start in a body.
+  // Only camera paths tell here: paths from lamps may start in a body (light_tracer.cpp).
   if (left && batch.tracer) batch.counters->faults.add(shaderClass, Fault::neverEntered, left);
   return out;
 }

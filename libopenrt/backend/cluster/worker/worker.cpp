@@ -141,10 +141,11 @@ void Worker::jobs(const message::Jobs& m) {
   const edit::FrameSettingsT& f = frame->second;
   const uint64_t pixels = uint64_t(f.width) * f.height;
   constexpr uint64_t maxSamples = uint64_t(1) << 17; // per pixel
+  const uint32_t parts = f.timeLimit > 0 ? LightImage::mostParts : LightImage::parts;
   for (const LeasedJob& job : m.jobs) {
     const bool samples = job.job.kind == Job::Kind::samples;
     if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > maxSamples
-                : job.job.number >= LightImage::parts)
+                : job.job.number >= parts)
       return bad("a job is not in the frame");
   }
   size_t out = m.jobs.size();
