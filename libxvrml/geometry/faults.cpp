@@ -11,6 +11,7 @@ static constexpr const char* faultTexts[] = {
     "left out: coordinates that are not finite",
     "left out: no area",
     "left out: too large or tangled to be cut into triangles",
+    "crossing itself, in a list without -1: is -1 missing between faces?",
     "with many points named again: is -1 missing between faces?",
     "left out beyond ",
     "without a colour, drawn white",

@@ -19,6 +19,7 @@ enum class Fault : uint8_t {
   notFinite,       // NaN or infinite coordinates
   noArea,          // all vertices are collinear
   tangled,         // crosses itself too often to be tessellated, or too large for that
+  crossed,         // the only face of a list without -1, which crosses itself
   repeated,        // a face that names many of its points again, as if -1 were missing
   overLimit,       // beyond limits.triangles or the world's budget
   colorMissing,    // no colour for a face or vertex: white is used

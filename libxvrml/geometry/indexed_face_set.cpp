@@ -83,6 +83,8 @@ class FaceReader {
       if (end > begin) readFace(begin, end, face);
       begin = end + 1; // the last -1 may be missing
     }
+    // Two triangles at least, of which nothing says where one ends.
+    set_.reportCrossed = face == 1 && index.size() >= 6 && index.back() != -1 && !repeats_;
   }
 
  private:
@@ -104,7 +106,8 @@ class FaceReader {
       faults_.add(Fault::fewVertices, begin);
       return;
     }
-    if (namesPointsAgain(index)) faults_.add(Fault::repeated, begin);
+    repeats_ = namesPointsAgain(index);
+    if (repeats_) faults_.add(Fault::repeated, begin);
     for (size_t place : places_) {
       set_.corners.push_back(uint32_t(index[place]));
       colors_.corner(place, index[place], faults_);
@@ -137,6 +140,7 @@ class FaceReader {
   Bound<Vec2f> texCoords_;
   std::vector<size_t> places_;
   std::vector<int32_t> named_;
+  bool repeats_ = false; // the last face
 };
 
 // Reads the indices of a list of valid triangles only. Returns false at the first anything else.

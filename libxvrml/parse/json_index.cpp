@@ -13,6 +13,32 @@
 namespace xvrml {
 namespace {
 
+// Where the parser is. Numbers that are too large for a double are well-formed JSON, but the parser
+// would end at them: it gets other digits, because only the places of numbers matter here.
+struct Position {
+  const char* at;
+  const char* const end;
+  bool string = false, escaped = false, exponent = false;
+  int digits = 0; // of the number, up to `at`
+
+  static bool isDigit(char c) { return c >= '0' && c <= '9'; }
+  char character() const { return exponent && isDigit(*at) ? '0' : *at; }
+  void next() {
+    constexpr int mostDigits = 300;
+    const char c = *at++;
+    if (string) {
+      string = escaped || c != '"';
+      escaped = !escaped && c == '\\';
+      return;
+    }
+    string = c == '"';
+    exponent = ((c == 'e' || c == 'E') && digits > 0) ||
+               (exponent && (isDigit(c) || c == '+' || c == '-'));
+    digits = isDigit(c) ? digits + 1 : 0;
+    while (digits >= mostDigits && at < end && isDigit(*at)) ++at;
+  }
+};
+
 // An iterator whose copies share one position, so that the events know where the parser is.
 class SharedPosition {
  public:
@@ -20,18 +46,20 @@ class SharedPosition {
   using value_type = char;
   using difference_type = std::ptrdiff_t;
   using pointer = const char*;
-  using reference = const char&;
-  explicit SharedPosition(const char** position) : position_(position) {}
-  reference operator*() const { return **position_; }
+  using reference = char;
+  explicit SharedPosition(Position& position) : position_(&position) {}
+  reference operator*() const { return position_->character(); }
   SharedPosition& operator++() {
-    ++*position_;
+    position_->next();
     return *this;
   }
-  bool operator==(const SharedPosition& other) const { return *position_ == *other.position_; }
+  bool operator==(const SharedPosition& other) const {
+    return position_->at == other.position_->at;
+  }
   bool operator!=(const SharedPosition& other) const { return !(*this == other); }
 
  private:
-  const char** position_;
+  Position* position_;
 };
 
 // A node takes at most three levels: its object, that of its type, and the list of its children.
@@ -42,11 +70,13 @@ constexpr size_t deepest = 3 * Parser::maximumNesting + 100;
 class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
  public:
   Reader(Locator& locator, JsonIndex& index)
-      : locator_(locator), index_(index), end_(locator.text().data() + locator.text().size()),
-        position_(locator.text().data()), done_(position_) {}
+      : locator_(locator), index_(index),
+        end_(locator.text().data() + locator.text().size()), position_{locator.text().data(), end_},
+        done_(position_.at) {}
 
   void read() {
-    nlohmann::json::sax_parse(SharedPosition(&position_), SharedPosition(&end_), this);
+    Position end{end_, end_};
+    nlohmann::json::sax_parse(SharedPosition(position_), SharedPosition(end), this);
     while (!open_.empty()) { // after an error
       index_.values_[open_.back()].complete = false;
       leave();
@@ -68,8 +98,8 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
   bool start_object(size_t) override { return enter(Value::Kind::object); }
   bool key(string_t&) override {
     const char* const first = tokenStart();
-    key_ = {first + 1, static_cast<size_t>(position_ - first - 2)};
-    done_ = position_;
+    key_ = {first + 1, static_cast<size_t>(position_.at - first - 2)};
+    done_ = position_.at;
     return true;
   }
   bool end_object() override { return leave(); }
@@ -81,9 +111,10 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
       text.remove_prefix(what);
     else if (const size_t behind = text.find("] "); behind != text.npos)
       text.remove_prefix(behind + 2);
-    locator_.error(position_, fmt::format("this is not well-formed JSON: {}; what follows is left "
-                                          "out",
-                                          text.substr(0, 160)));
+    locator_.error(position_.at,
+                   fmt::format("this is not well-formed JSON: {}; what follows is left "
+                               "out",
+                               text.substr(0, 160)));
     return false;
   }
 
@@ -103,9 +134,10 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
 
   bool add(Value::Kind kind, const char* end) {
     if (!index_.share_.take(sizeof(Value))) {
-      locator_.error(position_, fmt::format("the index of this file takes, together with the rest "
-                                            "of the world, more than {}; what follows is left out",
-                                            index_.share_.budget()->name()));
+      locator_.error(position_.at,
+                     fmt::format("the index of this file takes, together with the rest "
+                                 "of the world, more than {}; what follows is left out",
+                                 index_.share_.budget()->name()));
       return false;
     }
     const char* const first = tokenStart();
@@ -120,7 +152,7 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
 
   // The parser reads one character behind a number.
   bool single(Value::Kind kind, bool number) {
-    const char* const end = number && position_ < end_ ? position_ - 1 : position_;
+    const char* const end = number && position_.at < end_ ? position_.at - 1 : position_.at;
     const bool good = (inArray() && kind == Value::Kind::other) || add(kind, end);
     done_ = end;
     return good;
@@ -128,31 +160,31 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
 
   bool enter(Value::Kind kind) {
     if (open_.size() >= deepest) {
-      locator_.error(position_ - 1, fmt::format("objects and lists nested deeper than {}; what "
-                                                "follows is left out",
-                                                deepest));
+      locator_.error(position_.at - 1, fmt::format("objects and lists nested deeper than {}; what "
+                                                   "follows is left out",
+                                                   deepest));
       return false;
     }
-    if (!add(kind, position_)) return false;
+    if (!add(kind, position_.at)) return false;
     open_.push_back(index_.values_.size() - 1);
-    done_ = position_;
+    done_ = position_.at;
     return true;
   }
 
   bool leave() {
     Value& value = index_.values_[open_.back()];
     open_.pop_back();
-    value.text = {value.text.data(), static_cast<size_t>(position_ - value.text.data())};
+    value.text = {value.text.data(), static_cast<size_t>(position_.at - value.text.data())};
     value.next = index_.values_.size();
-    done_ = position_;
+    done_ = position_.at;
     return true;
   }
 
   Locator& locator_;
   JsonIndex& index_;
   const char* end_;
-  const char* position_; // behind the last character that the parser has read
-  const char* done_;     // behind the last token
+  Position position_; // behind the last character that the parser has read
+  const char* done_;  // behind the last token
   std::string_view key_;
   std::vector<size_t> open_; // the objects and arrays around the token
 };

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "base/x3d.h"
+
 namespace xvrml {
 
 Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget, bool x3d)
@@ -88,10 +90,15 @@ bool Parser::node(const Name* def) {
   }
   const bool known = sink_.openNode(type, def);
   if (opens) lexer_.next();
-  if (!known) {
-    skipBlock();
-    return true;
-  }
+  if (known)
+    openBody(type);
+  else
+    unknownNode(type);
+  return true;
+}
+
+// Reads the body of a node that the sink has opened.
+void Parser::openBody(const Token& type) {
   ++depth_;
   open_.push_back(type);
   nodeBody(type);
@@ -99,7 +106,21 @@ bool Parser::node(const Name* def) {
   if (open_.size() <= keep_) keep_ = SIZE_MAX;
   --depth_;
   sink_.closeNode(true);
-  return true;
+}
+
+// Skips the body of a node that was not opened. A node of VRML97 whose type nobody knows may have a
+// field `children`: a Group with these nodes then takes its place, if one may stand there. All its
+// other fields are left out.
+void Parser::unknownNode(const Token& type) {
+  const bool keeps = !x3d_ && !sink_.typeNamed(type.text) && !isX3dNode(type.text) &&
+                     sink_.wouldAccept(sink_.nodeTarget(), "Group", false);
+  bool atChildren = false;
+  skipBlock('{', keeps ? &atChildren : nullptr);
+  if (!atChildren) return;
+  if (!sink_.openNode({"Group", type.at()}, nullptr)) return skipBlock();
+  groups_.push_back(open_.size());
+  openBody(type);
+  groups_.pop_back();
 }
 
 // nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty
@@ -125,7 +146,9 @@ bool Parser::nodeBodyElement() {
 
 bool Parser::field() {
   const Token id = lexer_.next();
-  if (lexer_.peek().is("IS")) {
+  const bool foreign =
+      !groups_.empty() && groups_.back() + 1 == open_.size() && id.text != "children";
+  if (lexer_.peek().is("IS") && !foreign) {
     lexer_.next();
     Token interfaceName;
     if (!name(interfaceName, "a name of the prototype's interface after IS")) return false;
@@ -135,7 +158,7 @@ bool Parser::field() {
   if ((lexer_.peek().is(TokenKind::braceOpen) || id.text == "DEF" || id.text == "USE") &&
       nodeInBody(id))
     return true;
-  const FieldTarget target = sink_.openField(id);
+  const FieldTarget target = foreign ? FieldTarget() : sink_.openField(id);
   if (!target.known) {
     skipField();
     return true;

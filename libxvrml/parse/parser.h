@@ -44,6 +44,8 @@ class Parser {
   bool statement();
   bool nodeStatement();
   bool node(const Name* def);
+  void unknownNode(const Token& type);
+  void openBody(const Token& type);
   void nodeBody(const Token& type);
   bool nodeBodyElement();
   bool field();
@@ -91,8 +93,9 @@ class Parser {
   bool closeListBefore(const Token& brace);
   void passBrace(bool holdsFields);
   void noteLost(const Token& token);
-  void skipBlock(char kind = '{');
-  bool skipNested(char opened, bool inList);
+  void skipBlock(char kind = '{', bool* atChildren = nullptr);
+  bool skipNested(char opened, bool inList, bool* atChildren = nullptr);
+  bool childrenFollow();
   void skipOne();
   void skipToNode();
   void skipField();
@@ -118,7 +121,8 @@ class Parser {
   size_t keep_ = SIZE_MAX;
   // Closing brackets to ignore, because their lists were already taken as closed.
   uint64_t brackets_ = 0;
-  bool listEnded_ = false; // a list was taken as closed before the field that follows
+  bool listEnded_ = false;     // a list was taken as closed before the field that follows
+  std::vector<size_t> groups_; // numbers in open_ of unknown nodes that a Group stands for
 };
 
 } // namespace xvrml

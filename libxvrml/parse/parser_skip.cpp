@@ -30,9 +30,22 @@ void Parser::noteLost(const Token& token) {
   if (lost.is(TokenKind::identifier)) sink_.lostName(lost);
 }
 
-// Skips from inside a block to behind its closing brace. kind: see skipNested().
-void Parser::skipBlock(char kind) {
-  if (!skipNested(kind, recoveryPoints_.back().kind != RecoveryPoint::Kind::statements))
+// Returns whether the next token is the field `children` of the node whose body is skipped, with a
+// list or a node.
+bool Parser::childrenFollow() {
+  const Token field = lexer_.peek();
+  if (!field.is("children")) return false;
+  lexer_.next();
+  Token type;
+  const bool follow = lexer_.peek().is(TokenKind::bracketOpen) || lexer_.peek().is("USE") ||
+                      (lexer_.peek().is(TokenKind::identifier) && nodeAhead(type));
+  lexer_.seek(field.at());
+  return follow;
+}
+
+// Skips from inside a block to behind its closing brace. kind and atChildren: see skipNested().
+void Parser::skipBlock(char kind, bool* atChildren) {
+  if (!skipNested(kind, recoveryPoints_.back().kind != RecoveryPoint::Kind::statements, atChildren))
     fail(lexer_.peek(), "}");
 }
 
@@ -42,8 +55,9 @@ void Parser::skipBlock(char kind) {
 // - the end of the file, where the result is false;
 // - a closing bracket of an enclosing list (inList);
 // - a node where only a field is allowed;
-// - a closing brace before a bracket's partner.
-bool Parser::skipNested(char opened, bool inList) {
+// - a closing brace before a bracket's partner;
+// - if atChildren is not null, the field `children` of the block itself; *atChildren becomes true.
+bool Parser::skipNested(char opened, bool inList, bool* atChildren) {
   std::string open(1, opened);
   uint64_t lists = opened == '[', bodies = opened == 's'; // number of [ and of s in `open`
   const auto pop = [&] {
@@ -78,6 +92,7 @@ bool Parser::skipNested(char opened, bool inList) {
       pop();
       break;
     case TokenKind::identifier:
+      if (atChildren && open.size() == 1 && childrenFollow()) return *atChildren = true;
       if (open.back() != '{' || !endsValue(previous) || !nodeAhead(type)) break;
       if (lists + bodies > 0)
         while (open.back() == '{') pop();

@@ -147,11 +147,11 @@ bool looksLikeVrml(std::string_view text) {
 } // namespace
 
 std::string_view withoutDosEnd(std::string_view text) {
-  constexpr std::string_view tail = " \t\r\n\x1a";
-  const size_t end = text.find_last_not_of(tail) + 1; // 0 if there is nothing else
-  const size_t mark = text.find('\x1a', end);
-  const bool wide = end > 0 && text[end - 1] == '\0'; // a text in UTF-16
-  return mark == text.npos || wide ? text : text.substr(0, mark);
+  using namespace std::string_view_literals;
+  if (text.substr(0, 4).find('\0') != text.npos) return text;      // in UTF-16
+  const size_t end = text.find_last_not_of(" \t\r\n\x1a\0"sv) + 1; // 0 if there is nothing else
+  const size_t mark = text.find_first_of("\x1a\0"sv, end);
+  return mark == text.npos ? text : text.substr(0, mark);
 }
 
 char* TextBuffer::grow(size_t more) {

@@ -51,8 +51,8 @@ void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVe
 double lengthUnit(const std::shared_ptr<const std::string>& file);
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres);
 
-// Returns a text without the byte 0x1A that editors of DOS put behind its end, and without the
-// blanks around that.
+// Returns a text without what old systems put behind its end: the byte 0x1A, zeros up to the end of
+// a disk's sector, and the blanks around these.
 std::string_view withoutDosEnd(std::string_view text);
 
 class Source {

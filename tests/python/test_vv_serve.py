@@ -437,7 +437,7 @@ def test_the_views_of_all_pages_share_a_budget_and_give_it_back(serve):
     for page in pages:  # four views of a quarter of maxViewPixels
         shown = page.until(lambda p: p.facts["finished"] and p.width < 4096)
         assert 2_000_000 < shown.width * shown.height <= 8388608 / 4
-    assert memory(server, "VmHWM") < before + 2000  # docs/limits.md: 1.2 GB, 1.5 GB for all views
+    assert memory(server, "VmHWM") < before + 2000  # docs/limits.md: 1.8 GB for all views
     for page in pages:
         page.close()
     wait_for(lambda: memory(server, "VmRSS") < before + 150, "the memory is given back")

@@ -59,6 +59,14 @@ def test_a_worker_without_file_descriptors_is_a_message(vv):
     assert done.returncode == 75 and "file descriptors (ulimit -n)" in done.stderr
 
 
+@pytest.mark.parametrize("number", [4, 5, 12])
+def test_a_server_without_file_descriptors_is_a_message(vv, number):
+    done = limited(vv, number, "serve", "box.wrl", "--port", "0")
+    assert done.returncode == 75, (done.returncode, done.stdout, done.stderr)
+    assert done.stdout == "" and "vv serve needs" in done.stderr
+    assert "file descriptors (ulimit -n)" in done.stderr and len(done.stderr.splitlines()) == 1
+
+
 @pytest.mark.parametrize("option", ["--connect", "--key", "--allow", "--new-key"])
 def test_a_worker_refuses_empty_values(vv, option):
     for words in ([option, ""], [option + "="]):

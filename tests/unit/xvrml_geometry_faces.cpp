@@ -276,6 +276,28 @@ TEST(GeometryFaces, FacesWithoutTheirEndsAreReported) {
   EXPECT_EQ(plain.diagnostics.warnings(), 0u);
 }
 
+TEST(GeometryFaces, AListWithoutEndsThatCrossesItselfIsReported) {
+  const MFVec3f squares{{-3, -1, 0}, {-1, -1, 0}, {-1, 1, 0}, {-3, 1, 0},
+                        {1, -1, 0},  {3, -1, 0},  {3, 1, 0},  {1, 1, 0}};
+  for (const MFInt32& joined :
+       {MFInt32{0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}, MFInt32{0, 1, 2, 3, 4, 5, 6, 7}}) {
+    Faces garbage = faceSet(squares, joined);
+    Built built = build(garbage);
+    ASSERT_EQ(built.diagnostics.warnings(), 1u);
+    EXPECT_NE(built.diagnostics.list()[0].message.find("is -1 missing between faces?"),
+              std::string::npos);
+  }
+  // The last -1 may be missing; a bridge to a hole, and edges that touch, cross nothing.
+  const MFVec3f outline{{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {4, 0, 0}, {0, 9, 0},
+                        {1, 2, 0}, {1, 3, 0}, {2, 3, 0}, {2, 2, 0}};
+  for (const MFInt32& simple :
+       {MFInt32{0, 1, 2, 3, 4}, MFInt32{0, 3, 1, 2, 4}, MFInt32{0, 5, 6, 7, 8, 5, 0, 1, 2, 4}}) {
+    Faces face = faceSet(outline, simple);
+    Built built = build(face);
+    EXPECT_EQ(built.diagnostics.warnings(), 0u);
+  }
+}
+
 TEST(GeometryFaces, HopelesslyTangledFacesAreRefused) {
   MFVec3f star; // every edge crosses nearly all others
   const int n = 5001;

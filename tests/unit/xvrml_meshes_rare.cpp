@@ -1,6 +1,7 @@
 // xvrml_meshes_rare.cpp: meshes and X3D that are legal but rare, and files that would make a reader
 // do far more work than they have bytes. The values follow from the formats' own documents.
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -133,6 +134,80 @@ TEST(RareMeshes, StlTextWithLinesOfItsOwn) {
   binary.resize(80, ' ');
   binary += std::string("\x01\0\0\0", 4) + std::string(50, '\0') + "tail";
   EXPECT_EQ(messages(*loadWorldFromMemory(binary, "a.stl")).find("lines"), std::string::npos);
+}
+
+TEST(RareMeshes, ABackslashContinuesEveryStatementOfObj) {
+  fileWith("two lines.mtl", "newmtl red\nKd 0.5 0 0\n");
+  for (const char* const end : {"\n", "\r\n"}) {
+    std::string text =
+        "mtllib \\\n two \\\nlines.mtl\nv 0 0 0\nv 1 \\\n 0 0\nv 0 1 0\ng \\\nplate\n"
+        "# not here \\\nusemtl \\\n red\ncurv 0 \\\n 1 2\nf 1 \\\n 2 3 \\";
+    for (size_t at = 0; (at = text.find('\n', at)) != text.npos; at += std::strlen(end))
+      text.replace(at, 1, end);
+    const auto world = loadWorld(fileWith("continued.obj", text));
+    const std::string said = messages(*world);
+    EXPECT_NE(said.find("1 statements of free-form"), std::string::npos) << said;
+    EXPECT_EQ(world->diagnostics.warnings() + world->diagnostics.errors(), 1u) << said;
+    EXPECT_TRUE(holds(*world, "diffuseColor 0.5 0 0")) << writeWorld(*world);
+    EXPECT_TRUE(holds(*world, "DEF plate Shape")) << writeWorld(*world);
+    EXPECT_TRUE(holds(*world, "coordIndex [ 0 1 2 -1 ]")) << writeWorld(*world);
+  }
+  // A library that is not there is reported in the line of its statement.
+  const auto lost = loadWorld(fileWith("lost.obj", "# a\nmtllib \\\nno.mtl\n" + triangleObj));
+  EXPECT_NE(messages(*lost).find("lost.obj:2:"), std::string::npos) << messages(*lost);
+  EXPECT_NE(messages(*lost).find("no.mtl"), std::string::npos) << messages(*lost);
+}
+
+TEST(RareMeshes, StlTextMayStandInOneLine) {
+  const std::string facet = " facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0"
+                            " endloop endfacet";
+  const std::string bad = " facet normal 0 0 1 outer loop vertex nan 0 0 vertex 1 0 0 vertex 0 1 0"
+                          " endloop endfacet";
+  for (const std::string& text :
+       {"solid a facet\n" + facet + facet + " endsolid a facet\n",
+        "solid a facet" + facet + facet + " endsolid a facet",
+        "solid one solid" + facet + facet + " endsolid one solid solid two endsolid two\n",
+        "SOLID\n FACET" + facet.substr(19) + facet + " END SOLID"}) {
+    const auto world = loadWorldFromMemory(text, "a.stl");
+    EXPECT_EQ(messages(*world), "") << text;
+    EXPECT_TRUE(holds(*world, "coordIndex [ 0 1 2 -1 0 1 2 -1 ]")) << text << writeWorld(*world);
+    // The content decides, too.
+    EXPECT_TRUE(holds(*loadWorldFromMemory(text, "a"), "IndexedFaceSet")) << text;
+  }
+  const auto two = loadWorldFromMemory(
+      "solid a" + facet + " endsolid a solid b" + facet + bad + " endsolid b", "a.stl");
+  EXPECT_TRUE(holds(*two, "DEF a Shape") && holds(*two, "DEF b Shape")) << writeWorld(*two);
+  EXPECT_NE(messages(*two).find("1 facets are left out"), std::string::npos) << messages(*two);
+  EXPECT_EQ(messages(*two).find("lines are left out"), std::string::npos) << messages(*two);
+}
+
+TEST(RareMeshes, BytesBehindABinaryGltfFileAreLeftOut) {
+  std::string json =
+      gltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"camera":0}],"cameras":[{"type":"perspective",)"
+           R"("perspective":{"yfov":1,"znear":0.1}}])");
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto word = [](size_t value) {
+    std::string bytes;
+    for (int i = 0; i < 4; ++i) bytes += char(value >> 8 * i & 255);
+    return bytes;
+  };
+  const auto glb = [&](size_t length) {
+    return "glTF" + word(2) + word(length) + word(json.size()) + "JSON" + json;
+  };
+  const size_t whole = 20 + json.size();
+  EXPECT_EQ(messages(*loadWorldFromMemory(glb(whole), "a.glb")), "");
+  for (const char* const rest : {"x", "trailing", "trailing bytes of another file"}) {
+    const auto world = loadWorldFromMemory(glb(whole) + rest, "a.glb");
+    EXPECT_TRUE(holds(*world, "Viewpoint")) << messages(*world);
+    EXPECT_NE(messages(*world).find(std::to_string(std::strlen(rest)) +
+                                    " bytes behind the binary glTF file are left out"),
+              std::string::npos)
+        << messages(*world);
+    EXPECT_EQ(messages(*world).find("error"), std::string::npos) << messages(*world);
+  }
+  // A length that stops within the file's chunks, or that is none, loses nothing.
+  for (const size_t length : {size_t(0), size_t(13), whole - 4})
+    EXPECT_TRUE(holds(*loadWorldFromMemory(glb(length), "a.glb"), "Viewpoint")) << length;
 }
 
 TEST(RareMeshes, PlyHeadersOfOtherPrograms) {

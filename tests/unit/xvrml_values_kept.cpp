@@ -192,7 +192,7 @@ TEST(ValuesKept, ColoursAsPagesWriteThem) {
   EXPECT_EQ(colour("#FF00"), Color{});
 }
 
-TEST(ValuesKept, TheEndMarkOfDosIsNoContent) {
+TEST(ValuesKept, PaddingBehindTheEndIsNoContent) {
   const char* const texts[][2] = {{"#VRML V2.0 utf8\nGroup { }\r\n\x1a", "a.wrl"},
                                   {"#VRML V1.0 ascii\nSeparator { }\x1a\x1a", "a.wrl"},
                                   {"#X3D V3.3 utf8\nPROFILE Full\nGroup { }\n\x1a\n", "a.x3dv"},
@@ -204,8 +204,67 @@ TEST(ValuesKept, TheEndMarkOfDosIsNoContent) {
                                   {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex "
                                    "1 0 0\nvertex 0 1 0\nendloop\n"
                                    "endfacet\nendsolid a\n\x1a",
-                                   "a.stl"}};
-  for (const auto& [text, name] : texts) EXPECT_EQ(Read(text, name).errors, "") << name;
+                                   "a.stl"},
+                                  {R"({"asset":{"version":"2.0"}})"
+                                   "\x1a",
+                                   "a.gltf"},
+                                  {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n\x1a", "a.off"},
+                                  {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                                   "property float y\nproperty float z\nend_header\n0 0 0\n\x1a",
+                                   "a.ply"}};
+  for (const auto& [text, name] : texts) {
+    EXPECT_EQ(Read(text, name).errors, "") << name;
+    // Files of CP/M and of tapes end with a whole sector.
+    const std::string zeros(100, '\0');
+    EXPECT_EQ(Read(text + zeros, name).errors, "") << name;
+    std::string plain = text;
+    plain.erase(plain.find('\x1a'));
+    EXPECT_EQ(Read(plain + zeros, name).errors, "") << name;
+    EXPECT_EQ(Read(plain + zeros + "\r\n", name).errors, "") << name;
+  }
+  // Zeros before other text are no padding.
+  EXPECT_NE(vrml("Group { }" + std::string(9, '\0') + "Group { }").errors, "");
+}
+
+TEST(ValuesKept, ChildrenOfUnknownNodes) {
+  const Read r =
+      vrml("DEF M MegaGroup { power 9 label \"} children [\" parts [ Gear { children Fog { "
+           "} } ]\n children [ DEF A Group { } Gear { children DEF B Group { } } ]\n"
+           "  bboxSize 1 2 3 glow 1 mood NULL other DEF X Group { } }\nDEF C Group { }");
+  EXPECT_EQ(r.errors, "2:7 'MegaGroup' is not a known node type\n"
+                      "3:29 'Gear' is not a known node type\n");
+  ASSERT_EQ(r.world->scope.roots.size(), 2u) << writeWorld(*r.world);
+  auto* const kept = r.node<nodes::Group>();
+  ASSERT_TRUE(kept && r.named<nodes::Group>("C"));
+  EXPECT_EQ(kept->bboxSize, (Vec3f{-1, -1, -1})); // no field of the unknown node but its children
+  ASSERT_EQ(kept->children.size(), 2u) << writeWorld(*r.world);
+  EXPECT_EQ(kept->children[0].get(), r.named<nodes::Group>("A"));
+  auto* const inner = nodeCast<nodes::Group>(kept->children[1].get());
+  ASSERT_TRUE(inner && inner->children.size() == 1);
+  EXPECT_EQ(inner->children[0].get(), r.named<nodes::Group>("B"));
+  EXPECT_FALSE(r.named<nodes::Group>("X"));
+}
+
+TEST(ValuesKept, UnknownNodesWhereNoGroupMayStandAreLeftOut) {
+  const Read r = vrml("Shape { appearance Look { children [ Group { } ] } geometry Box { } }\n"
+                      "Collision { proxy Gear { } children [ DEF A Group { } ] }\n"
+                      "Gear { children 5 }\nGear { size 1 }\nDEF B Group { }");
+  EXPECT_EQ(r.errors, "2:20 'Look' is not a known node type\n3:19 'Gear' is not a known node type\n"
+                      "4:1 'Gear' is not a known node type\n5:1 'Gear' is not a known node type\n");
+  EXPECT_EQ(r.world->scope.roots.size(), 3u) << writeWorld(*r.world);
+  EXPECT_TRUE(r.named<nodes::Group>("A") && r.named<nodes::Group>("B"));
+  // Braces that are missing lose no more than in other nodes.
+  const Read open = vrml("Group { children [ Gear { children [ DEF A Group { } ]\n ] }\n"
+                         "DEF C Group { }");
+  EXPECT_TRUE(open.named<nodes::Group>("A") && open.named<nodes::Group>("C")) << open.errors;
+}
+
+TEST(ValuesKept, UnknownNodesTakeLinearTime) {
+  std::string deep, wide;
+  for (int i = 0; i < 2000; ++i) deep += "Gear { a [ 1 2 3 ] children [ ";
+  for (int i = 0; i < 100'000; ++i) wide += "Gear { a 1 ";
+  EXPECT_GT(vrml(deep).world->diagnostics.errors(), 0u);
+  EXPECT_GT(vrml(wide).world->diagnostics.errors(), 0u);
 }
 
 // --- Names of files ---

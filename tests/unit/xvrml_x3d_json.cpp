@@ -55,6 +55,23 @@ TEST(X3dJson, NumbersComeFromTheBytesOfTheFile) {
   EXPECT_EQ(first<nodes::Transform>(*world).translation, (Vec3f{0.1f, -2e-3f, 33554433.0f}));
 }
 
+TEST(X3dJson, NumbersThatAreTooLargeLoseTheirValueAlone) {
+  for (const std::string& number :
+       {std::string("1e999"), std::string("-2.5E+400"), std::string(400, '9')}) {
+    const auto world = load(scene(R"({"Transform":{"@class":"e9 \\\"","@translation":[1,)" + number +
+                                  R"(,3],"@scale":[1.5e1,2,3]}},{"Group":{"@DEF":"B"}})"));
+    const std::string said = messages(*world);
+    EXPECT_EQ(said.find("test.x3dj:1:"), 0u) << said;
+    EXPECT_EQ(said.find("well-formed"), said.npos) << said;
+    EXPECT_EQ(said.find('\n'), said.size() - 1) << said;
+    ASSERT_EQ(world->scope.roots.size(), 2u) << said;
+    EXPECT_EQ(first<nodes::Transform>(*world).translation, Vec3f{});
+    EXPECT_EQ(first<nodes::Transform>(*world).scale, (Vec3f{15, 2, 3}));
+  }
+  const auto wrong = load(scene(R"({"Transform":{"@translation":[1,2e,3]}})"));
+  EXPECT_NE(messages(*wrong).find("not well-formed JSON"), std::string::npos);
+}
+
 TEST(X3dJson, NumbersInStringsAreRead) {
   const auto world = load(scene(R"({"Transform":{"@translation":"1 2 3","@DEF":"A"}})"));
   EXPECT_EQ(messages(*world), "");

@@ -20,6 +20,7 @@
 #include "server/idle_connections.h"
 #include "server/limits.h"
 #include "server/server.h"
+#include "spare_descriptors.h"
 
 namespace vv::server {
 
@@ -396,6 +397,9 @@ bool Host::Impl::listenAt(const std::string& address) {
 }
 
 void Host::Impl::listen() {
+  // The library would start, but not listen, and could not be woken.
+  constexpr int descriptors = 12; // its own, the sockets that listen, and a few connections
+  needDescriptors(descriptors, "vv serve");
   lws_set_log_level(0, nullptr); // a library never prints
   lws_context_creation_info info{};
   info.port = CONTEXT_PORT_NO_LISTEN;

@@ -57,8 +57,9 @@ struct FaceSet {
   bool convex = true; // promised by the author; checked
   // This many leading faces are split without checks (strips of quadrilaterals).
   uint32_t uncheckedFaces = 0;
-  bool ignoreNoArea = false; // faces without area are not reported
-  float creaseAngle = 0;     // in radians; 0: flat
+  bool ignoreNoArea = false;  // faces without area are not reported
+  bool reportCrossed = false; // a face that crosses itself is reported
+  float creaseAngle = 0;      // in radians; 0: flat
 
   // The faces of the corners added where edges cross (from faceStart.back() on).
   std::vector<uint32_t> extraFaces;

@@ -2,6 +2,7 @@
 // up to a budget by halving the plane until few edges are left. So a polygon built to have a
 // billion of them is rejected.
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/polygons/tessellator.h"
 
@@ -16,9 +17,17 @@ double side(const V2d& a, const V2d& b, const V2d& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-bool cross(const Edge& e, const Edge& f) {
-  return side(e.a, e.b, f.a) * side(e.a, e.b, f.b) < 0 &&
-         side(f.a, f.b, e.a) * side(f.a, f.b, e.b) < 0;
+// Returns whether both ends of each edge lie on different sides of the other, at least so far away
+// from it.
+bool cross(const Edge& e, const Edge& f, double distance) {
+  const double fa = side(e.a, e.b, f.a), fb = side(e.a, e.b, f.b), ea = side(f.a, f.b, e.a),
+               eb = side(f.a, f.b, e.b);
+  if (!(fa * fb < 0 && ea * eb < 0)) return false;
+  if (distance == 0) return true;
+  const double alongE = distance * std::hypot(e.b.x - e.a.x, e.b.y - e.a.y),
+               alongF = distance * std::hypot(f.b.x - f.a.x, f.b.y - f.a.y);
+  return std::min(std::abs(fa), std::abs(fb)) > alongE &&
+         std::min(std::abs(ea), std::abs(eb)) > alongF;
 }
 
 bool touches(const Edge& e, const V2d& low, const V2d& high) {
@@ -33,6 +42,7 @@ bool touches(const Edge& e, const V2d& low, const V2d& high) {
 struct Counter {
   std::vector<Edge> edges;
   uint64_t crossings = 0, work = 0, crossingBudget = 0, workBudget = 0;
+  double distance = 0; // see cross()
 
   bool exhausted() const { return crossings > crossingBudget || work > workBudget; }
 
@@ -43,7 +53,7 @@ struct Counter {
       for (size_t i = 0; i < list.size() && !exhausted(); i++) {
         work += list.size() - i;
         for (size_t k = i + 1; k < list.size(); k++)
-          crossings += cross(edges[list[i]], edges[list[k]]);
+          crossings += cross(edges[list[i]], edges[list[k]], distance);
       }
       return;
     }
@@ -99,10 +109,9 @@ uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis) {
   return work;
 }
 
-bool isTangled(std::span<const V3d> polygon, uint64_t budget) {
-  size_t n = polygon.size();
-  if (n < 4) return false;
-  if (uint64_t(n) * n / 2 <= budget) return false; // it cannot have that many
+// Counts the crossings of edges that are clearer than a part of the polygon's size.
+static Counter count(std::span<const V3d> polygon, uint64_t budget, double clearness) {
+  const size_t n = polygon.size();
   Counter counter;
   counter.crossingBudget = budget;
   // Long edges beside each other, as of a comb or a star, pass many of the small parts. The second
@@ -119,8 +128,20 @@ bool isTangled(std::span<const V3d> polygon, uint64_t budget) {
     high = {std::max(high.x, a.x), std::max(high.y, a.y)};
     all[i] = uint32_t(i);
   }
+  counter.distance = clearness * std::max(high.x - low.x, high.y - low.y);
   counter.visit(all, low, high, 0);
-  return counter.exhausted();
+  return counter;
+}
+
+bool isTangled(std::span<const V3d> polygon, uint64_t budget) {
+  const size_t n = polygon.size();
+  if (n < 4) return false;
+  if (uint64_t(n) * n / 2 <= budget) return false; // it cannot have that many
+  return count(polygon, budget, 0).exhausted();
+}
+
+bool crossesItself(std::span<const V3d> polygon) {
+  return polygon.size() >= 4 && count(polygon, 0, 1e-4).crossings > 0;
 }
 
 } // namespace xvrml

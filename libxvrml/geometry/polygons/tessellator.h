@@ -77,4 +77,8 @@ uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis);
 // quickly. Tessellating it (quadratic in the worst case) would take too much time or memory.
 bool isTangled(std::span<const V3d> flatPolygon, uint64_t budget);
 
+// Returns whether two edges of a flat polygon, which is not tangled, clearly cross each other: by
+// more than rounding and what programs that write outlines let pass.
+bool crossesItself(std::span<const V3d> flatPolygon);
+
 } // namespace xvrml

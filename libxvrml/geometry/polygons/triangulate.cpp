@@ -129,6 +129,8 @@ class Triangulation {
       return;
     }
     size_t crossings = tessellator_->crossings().size();
+    if (set_.reportCrossed && crossings > 0 && crossesItself(contour_))
+      faults_.add(Fault::crossed, set_.name(face));
     crossingBudget_ -= std::min<uint64_t>(crossingBudget_, crossings);
     walkBudget_ -= std::min<uint64_t>(walkBudget_, crossings * count);
     // The tessellator numbers the face's corners, then the crossings, which become corners here.

@@ -2,6 +2,7 @@
 // materials, smoothing groups and colours of vertices. Faces of one object, group, material and
 // smoothing group become one Shape. Free-form curves and surfaces are left out.
 #include <algorithm>
+#include <deque>
 #include <set>
 
 #include <fmt/format.h>
@@ -79,24 +80,37 @@ class ObjReader {
   }
 
  private:
+  // A backslash at the end of a line joins the next line to the statement, but not to a comment.
   void statement(std::string_view word) {
-    if (word.back() == '\\') { // the statement continues in the next line
+    if (word[0] == '#') return;
+    if (word.back() == '\\') {
       word.remove_suffix(1);
       text_.seek(text_.at() - 1);
     }
+    const bool numbers = isOfNumbers(word) || isOfNumbers(lowerKeyword(word));
+    if (numbers ? isPlainLine() : !TextCursor(text_).rest().ends_with('\\'))
+      return readStatement(word);
+    const TextCursor whole = text_;
+    joinLines(numbers);
+    readStatement(word);
+    text_ = whole;
+    text_.seek(lastLine_);
+  }
+
+  void readStatement(std::string_view word) {
     if (!readNumbers(word) && !readState(word) && !readNumbers(lowerKeyword(word)) &&
         !readState(lowerKeyword(word)))
       readOther(word);
   }
 
+  static bool isOfNumbers(std::string_view word) {
+    constexpr std::string_view keywords[] = {"v", "vt", "vn", "f", "fo", "l", "p"};
+    return std::find(std::begin(keywords), std::end(keywords), word) != std::end(keywords);
+  }
+
   // Statements of numbers and indices. Returns false for other keywords.
   bool readNumbers(std::string_view word) {
-    constexpr std::string_view keywords[] = {"v", "vt", "vn", "f", "fo", "l", "p"};
-    if (std::find(std::begin(keywords), std::end(keywords), word) == std::end(keywords))
-      return false;
-    const TextCursor whole = text_;
-    const bool plain = isPlainLine();
-    if (!plain) joinLines();
+    if (!isOfNumbers(word)) return false;
     if (word == "v")
       readVertex();
     else if (word == "vt")
@@ -109,9 +123,6 @@ class ObjReader {
       readElement(MeshKind::points);
     else
       readElement(MeshKind::faces);
-    if (plain) return true;
-    text_ = whole;
-    text_.seek(lastLine_);
     return true;
   }
 
@@ -123,29 +134,32 @@ class ObjReader {
     return true;
   }
 
-  // Goes on with a copy of the statement in one line: without comments, which begin at any '#', and
-  // with the lines that a backslash at the end of a line joins.
-  void joinLines() {
-    joined_.clear();
+  // Goes on with a copy of the statement in one line, with the lines that a backslash at the end of
+  // a line joins. numbers: without comments, which begin at any '#'; names may hold that character,
+  // and need a copy that stays.
+  void joinLines(bool numbers) {
+    std::string& joined = numbers ? numbers_ : names_.emplace_back();
+    joined.clear();
     for (bool continues = true; continues;) {
       std::string_view line = text_.rest();
       lastLine_ = text_.at();
-      line = line.substr(0, line.find('#'));
+      if (numbers) line = line.substr(0, line.find('#'));
       continues = line.ends_with('\\') && !text_.atEnd();
       if (line.ends_with('\\')) line.remove_suffix(1);
-      if (joined_.capacity() < joined_.size() + line.size() + 1) {
-        scratch_.take(joined_.size() + line.size() + 1);
-        joined_.reserve(2 * (joined_.size() + line.size() + 1));
+      while (!line.empty() && TextCursor::isSpace(line.back())) line.remove_suffix(1);
+      if (joined.capacity() < joined.size() + line.size() + 1) {
+        scratch_.take(joined.size() + line.size() + 1);
+        joined.reserve(2 * (joined.size() + line.size() + 1));
       }
-      joined_.append(line) += ' ';
+      joined.append(line) += ' ';
       if (continues) text_.nextLine();
     }
-    text_ = TextCursor(joined_);
+    text_ = TextCursor(joined);
   }
 
   // Statements that say how the following elements are. Returns false for other keywords.
   bool readState(std::string_view word) {
-    if (word.empty() || word[0] == '#') return true;
+    if (word.empty()) return true;
     if (word == "o") {
       object_ = text_.rest();
       group_ = {};
@@ -188,7 +202,10 @@ class ObjReader {
   // A file name may contain blanks; several names stand in one line.
   void readLibraries() {
     text_.skipBlanks();
-    const char* at = text_.at();
+    const char* from = text_.at();
+    // A joined statement is no part of the file.
+    const bool joined = text_.end() != file_.bytes.data() + file_.bytes.size();
+    const auto place = [&](const char* at) { return joined ? at_ : at; };
     const std::string_view whole = text_.rest();
     if (whole.empty() || !libraries_.emplace(whole).second) return;
     if (libraries_.size() > mostLibraries)
@@ -196,17 +213,17 @@ class ObjReader {
                                        "left out",
                                        mostLibraries)};
     try {
-      readMtl(file_, whole, at, materials_);
+      readMtl(file_, whole, place(from), materials_);
       return;
     } catch (const MeshFault& fault) {
       if (whole.find_first_of(" \t") == whole.npos) return report(fault);
     }
-    text_.seek(at);
+    text_.seek(from);
     while (!text_.atLineEnd()) {
       const std::string_view name = text_.word();
       if (name[0] == '#') return; // a comment
       try {
-        readMtl(file_, name, name.data(), materials_);
+        readMtl(file_, name, place(name.data()), materials_);
       } catch (const MeshFault& fault) { report(fault); }
     }
   }
@@ -405,8 +422,9 @@ class ObjReader {
   TextCursor text_;
   Scratch scratch_;
   NodeStream nodes_;
-  const char* at_ = nullptr;       // the statement that is being read
-  std::string joined_;             // a copy of that statement, if it is not plain
+  const char* at_ = nullptr;      // the statement that is being read
+  std::string numbers_;           // a copy of that statement, if it is one of numbers in many lines
+  std::deque<std::string> names_; // copies of the other statements in many lines
   const char* lastLine_ = nullptr; // where the last line of the joined statement ends
   MFVec3f points_, normals_;
   MFColor colors_;

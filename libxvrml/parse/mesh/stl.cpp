@@ -33,6 +33,38 @@ bool is(std::string_view word, std::string_view keyword) {
                     [](char a, char b) { return a == b || (a >= 'A' && a <= 'Z' && a + 32 == b); });
 }
 
+// Reads one of the two spellings of a statement's end behind its first word: "endloop" or "end
+// loop". Moves behind both words if they are these.
+bool ends(TextCursor& text, std::string_view first, std::string_view what) {
+  if (first.size() > 3 && is(first.substr(0, 3), "end")) return is(first.substr(3), what);
+  if (!is(first, "end")) return false;
+  const char* const before = text.at();
+  if (is(text.word(), what)) return true;
+  text.seek(before);
+  return false;
+}
+
+// Reads the name of a solid: the rest of the line, or what stands before the first facet or the end
+// if these are in the same line. Names may hold the word facet.
+std::string_view nameOfSolid(TextCursor& text) {
+  text.skipBlanks();
+  const char* const from = text.at();
+  const char* to = from;
+  while (!text.atLineEnd()) {
+    const char* const before = text.at();
+    const std::string_view word = text.word();
+    const char* const behind = text.at();
+    const bool facet = is(word, "facet");
+    const std::string_view next = facet ? text.word() : std::string_view();
+    if (is(word, "endsolid") || (facet && (is(next, "normal") || is(next, "outer")))) {
+      text.seek(before);
+      break;
+    }
+    text.seek(to = behind);
+  }
+  return {from, size_t(to - from)};
+}
+
 bool isFinite(const Vec3f& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -62,7 +94,7 @@ void writeSolid(const MeshFile& file, NodeStream& nodes, Solid&& solid) {
 }
 
 // "solid name", facets of "facet normal x y z", "outer loop", three times "vertex x y z",
-// "endloop", "endfacet", then "endsolid name"; in any case of letters, on any lines.
+// "endloop", "endfacet", then "endsolid name"; in any case of letters, on any lines or all in one.
 class TextReader {
  public:
   explicit TextReader(const MeshFile& file)
@@ -88,36 +120,53 @@ class TextReader {
     if (is(word, "vertex")) {
       Vec3f p;
       const bool good = text_.number(p.x) && text_.number(p.y) && text_.number(p.z);
-      if (!good) text_.nextLine();
+      if (!good) skipToKeyword();
       if (good && vertices_ < 3) facet_[vertices_] = p;
       vertices_ += good ? 1 : 4; // 4: the facet is bad
     } else if (is(word, "facet")) {
       facetAt_ = at;
       vertices_ = 0;
-      text_.nextLine();
-    } else if (is(word, "endfacet") || endsTwoWords(word, "facet")) {
+      skipToKeyword(); // the normal follows from the vertices
+    } else if (ends(text_, word, "facet")) {
       endFacet();
     } else if (is(word, "solid")) {
       if (open_) finish();
       open_ = true;
-      solid_.name = text_.rest();
-    } else if (is(word, "endsolid") || endsTwoWords(word, "solid")) {
-      text_.nextLine();
+      solid_.name = nameOfSolid(text_);
+    } else if (ends(text_, word, "solid")) {
+      skipNameBehindEnd();
       finish();
-    } else if (!is(word, "endloop") && !is(word, "outer") && !is(word, "loop") &&
-               !endsTwoWords(word, "loop")) {
+    } else if (!is(word, "outer") && !is(word, "loop") && !ends(text_, word, "loop")) {
       unknown_.add(at);
       text_.nextLine();
     }
   }
 
-  // Some programs write "end loop" for "endloop". Moves behind both words if they are these.
-  bool endsTwoWords(std::string_view first, std::string_view second) {
-    if (!is(first, "end")) return false;
-    const char* before = text_.at();
-    if (is(text_.word(), second)) return true;
-    text_.seek(before);
-    return false;
+  // Skips what is left of a statement. The next one may stand in the same line.
+  void skipToKeyword() {
+    constexpr std::string_view keywords[] = {"outer", "vertex", "endloop",  "endfacet",
+                                             "end",   "facet",  "endsolid", "solid"};
+    while (!text_.atLineEnd()) {
+      const char* const before = text_.at();
+      const std::string_view word = text_.word();
+      if (std::any_of(std::begin(keywords), std::end(keywords),
+                      [&](std::string_view one) { return is(word, one); }))
+        return text_.seek(before);
+    }
+  }
+
+  // The name of the solid follows, then perhaps the next solid in the same line.
+  void skipNameBehindEnd() {
+    text_.skipBlanks();
+    const std::string_view name = solid_.name;
+    if (!name.empty() &&
+        std::string_view(text_.at(), size_t(text_.end() - text_.at())).starts_with(name))
+      text_.seek(text_.at() + name.size());
+    const char* const before = text_.at();
+    if (is(text_.word(), "solid"))
+      text_.seek(before);
+    else
+      text_.nextLine();
   }
 
   void endFacet() {
@@ -234,22 +283,35 @@ bool beginsAsText(std::string_view begin) {
          });
 }
 
-} // namespace
-
 // Some programs write lines of their own between "solid" and the first "facet".
-bool isAsciiStl(std::string_view bytes) {
-  const std::string_view begin = bytes.substr(0, 4096);
-  if (!beginsAsText(begin)) return false;
+bool hasFacetOrEnd(std::string_view begin) {
   TextCursor text(begin);
-  for (text.nextLine(); !text.atEnd(); text.nextLine()) {
+  text.skipSpace();
+  text.word();
+  nameOfSolid(text);
+  for (; !text.atEnd(); text.nextLine()) {
     const std::string_view word = text.word();
-    if (is(word, "facet") || is(word, "endsolid")) return true;
+    if (is(word, "facet") || ends(text, word, "solid")) return true;
   }
   return false;
 }
 
+// Returns the beginning of a file without the zeros that may pad a short text. Those of a binary
+// file stay.
+std::string_view beginOf(std::string_view bytes) {
+  const std::string_view begin = bytes.substr(0, 4096), text = withoutDosEnd(begin);
+  return hasFacetOrEnd(text) ? text : begin;
+}
+
+} // namespace
+
+bool isAsciiStl(std::string_view bytes) {
+  const std::string_view begin = beginOf(bytes);
+  return beginsAsText(begin) && hasFacetOrEnd(begin);
+}
+
 void readStl(const MeshFile& file) {
-  if (!isBinaryStl(file.bytes) && beginsAsText(file.bytes.substr(0, 4096)))
+  if (!isBinaryStl(file.bytes) && beginsAsText(beginOf(file.bytes)))
     TextReader(file).read();
   else
     readBinary(file);

@@ -7,6 +7,7 @@
 
 #include "parse/mesh/gltf/scene.h"
 #include "parse/mesh/gltf/version1.h"
+#include "parse/source.h"
 
 namespace xvrml {
 
@@ -26,14 +27,18 @@ struct Chunks {
   std::string_view json, binary;
 };
 
-// Header: "glTF", version, length; then chunks: length, type, bytes (glTF 2.0, 4.4).
-Chunks chunksOf(std::string_view bytes) {
-  if (!bytes.starts_with("glTF")) return {bytes, {}};
+// Header: "glTF", version, length; then chunks: length, type, bytes (glTF 2.0, 4.4). Bytes behind
+// the length are no chunks.
+Chunks chunksOf(std::string_view bytes, Locator& locator) {
+  if (!bytes.starts_with("glTF")) return {withoutDosEnd(bytes), {}};
   if (bytes.size() < 12 || wordAt(bytes, 4) != 2)
     throw MeshFault{nullptr, fmt::format("this binary glTF file has version {}: expected 2",
                                          bytes.size() < 12 ? 0 : wordAt(bytes, 4))};
   Chunks chunks;
-  for (size_t at = 12; bytes.size() - at >= 8;) {
+  const size_t announced = wordAt(bytes, 8);
+  const size_t end = announced < 12 ? bytes.size() : std::min(announced, bytes.size());
+  size_t at = 12;
+  while (at < end && bytes.size() - at >= 8) {
     const uint32_t length = wordAt(bytes, at), type = wordAt(bytes, at + 4);
     at += 8;
     if (length > bytes.size() - at)
@@ -45,6 +50,11 @@ Chunks chunksOf(std::string_view bytes) {
       chunk = bytes.substr(at, length);
     at += length;
   }
+  if (at < bytes.size() && end < bytes.size())
+    locator.warn(nullptr,
+                 fmt::format("{} bytes behind the binary glTF file are left out: its header "
+                             "announces {} bytes",
+                             bytes.size() - at, announced));
   if (chunks.json.empty()) throw MeshFault{nullptr, "the binary glTF file has no JSON chunk"};
   return chunks;
 }
@@ -108,7 +118,7 @@ bool isGltf(std::string_view bytes) {
 }
 
 void readGltf(const MeshFile& file) {
-  const Chunks chunks = chunksOf(file.bytes);
+  const Chunks chunks = chunksOf(file.bytes, file.locator);
   Scratch memory(file.budget);
   Json document = parseJson(chunks.json, file.options.limits, memory);
   if (!document.is_object())
