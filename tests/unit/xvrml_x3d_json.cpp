@@ -58,8 +58,8 @@ TEST(X3dJson, NumbersComeFromTheBytesOfTheFile) {
 TEST(X3dJson, NumbersThatAreTooLargeLoseTheirValueAlone) {
   for (const std::string& number :
        {std::string("1e999"), std::string("-2.5E+400"), std::string(400, '9')}) {
-    const auto world = load(scene(R"({"Transform":{"@class":"e9 \\\"","@translation":[1,)" + number +
-                                  R"(,3],"@scale":[1.5e1,2,3]}},{"Group":{"@DEF":"B"}})"));
+    const auto world = load(scene(R"({"Transform":{"@class":"e9 \\\"","@translation":[1,)" +
+                                  number + R"(,3],"@scale":[1.5e1,2,3]}},{"Group":{"@DEF":"B"}})"));
     const std::string said = messages(*world);
     EXPECT_EQ(said.find("test.x3dj:1:"), 0u) << said;
     EXPECT_EQ(said.find("well-formed"), said.npos) << said;
