@@ -32,7 +32,7 @@ def draw_with_program(vv, path, size, spp, seeds):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder, "picture.pfm")
         for seed in seeds:
-            subprocess.run([vv, path, "-o", out, "--size", f"{size[0]}x{size[1]}", "--spp", str(spp), "--seed", str(seed), "--transport", "path",
+            subprocess.run([vv, path, "-o", out, "--size", f"{size[0]}x{size[1]}", "--spp", str(spp), "--seed", str(seed), "--transport", "path", "--viewpoint", "0",
                             "--headlight", "off", "-q"], check=True)
             yield read_pfm(out)
 
@@ -41,7 +41,7 @@ def draw_with_package(path, size, spp, seeds):
     import xvrml
     world = xvrml.load(path)
     for seed in seeds:
-        picture = world.render(size=size, spp=spp, seed=seed, transport="path", headlight="off")
+        picture = world.render(size=size, spp=spp, seed=seed, transport="path", headlight="off", viewpoint=0, studio=False)
         yield picture.array[..., :3].astype(float)
 
 

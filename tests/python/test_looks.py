@@ -231,38 +231,3 @@ def test_signatures_have_names_and_defaults():
     parameters = inspect.signature(xvrml.World.render).parameters
     assert parameters["size"].default == (800, 600) and parameters["spp"].default is None
     assert parameters["crop"].kind is inspect.Parameter.KEYWORD_ONLY
-
-
-def model_with_camera(place, yfov=0.6, mesh=(0, 1)):
-    """Returns a glTF file with tetrahedra from -2 to 2, one for each number in mesh, and a camera on
-    the z axis."""
-    points = np.array([[-2, -2, -2], [2, -2, 2], [-2, 2, 2], [2, 2, -2]], np.float32)
-    index = np.array([0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2], np.uint16)
-    data = base64.b64encode(points.tobytes() + index.tobytes()).decode()
-    return json.dumps({
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": list(range(len(mesh) + 1))}],
-        "nodes": [*({"mesh": 0, "translation": [0.1 * i, 0, 0]} for i in mesh),
-                  {"camera": 0, "translation": [0, 0, place], "name": "View"}],
-        "cameras": [{"type": "perspective", "perspective": {"yfov": yfov, "znear": 0.1}}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "buffers": [{"byteLength": 72, "uri": "data:application/octet-stream;base64," + data}],
-        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
-                       "min": [-2, -2, -2], "max": [2, 2, 2]},
-                      {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}]
-    })  # yapf: disable
-
-
-@pytest.mark.parametrize("place, yfov, moved", [(4, 0.6, True), (30, 0.6, False), (1, 0.6, False),
-                                                (4, 0.05, True)])
-def test_a_camera_of_a_gltf_file_that_cuts_the_model_goes_back(vv, place, yfov, moved):
-    """A camera that sees all of the model, or stands in it, stays where it is."""
-    vv.write("model.gltf", model_with_camera(place, yfov))
-    world = load(vv, "model.gltf")
-    matrix = xvrml.Browser(world.to_x3d("classic").encode()).camera()
-    assert matrix[0, 3] == pytest.approx(0.05 if moved else 0, abs=0.06)
-    assert (matrix[2, 3] > place + 0.5) if moved else matrix[2, 3] == pytest.approx(place)
-    if moved:
-        assert min(margins(world.render(size=(60, 60), spp=1, studio=False).array[..., 3] > 0)) > 0

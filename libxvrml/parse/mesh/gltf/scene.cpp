@@ -117,9 +117,9 @@ Scene::Scene(const MeshFile& file, NodeStream& nodes, const Item& root, Accessor
       primitives_(file, nodes, root, accessors, materials_), nodes_(root.list("nodes")),
       scenes_(root.list("scenes")), cameras_(root.list("cameras")),
       lights_(root.extension("KHR_lights_punctual").list("lights")), skins_(root.list("skins")),
-      accessorItems_(root.list("accessors")), scene_(root.index("scene", scenes_.size())),
-      children_(nodes_.size()), parents_(nodes_.size(), nodes_.size()), defs_(nodes_.size()),
-      isJoint_(nodes_.size()), hasMorphAnimation_(nodes_.size()), inThisScene_(nodes_.size()) {
+      scene_(root.index("scene", scenes_.size())), children_(nodes_.size()),
+      parents_(nodes_.size(), nodes_.size()), defs_(nodes_.size()), isJoint_(nodes_.size()),
+      hasMorphAnimation_(nodes_.size()), inThisScene_(nodes_.size()) {
   findParents();
   findAnimated(root);
 }
@@ -208,7 +208,7 @@ void Scene::writeNode(size_t number, uint64_t depth) {
   out_.openField("children");
   writeMesh(number);
   if (const auto camera = node.index("camera", cameras_.size()))
-    gltf::writeCamera(out_, cameras_[*camera], cutsModel(number, cameras_[*camera]));
+    gltf::writeCamera(out_, cameras_[*camera]);
   if (const auto light = node.extension("KHR_lights_punctual").index("light", lights_.size()))
     gltf::writeLight(out_, lights_[*light]);
   for (const size_t child : children_[number]) writeNode(child, depth + 1);
@@ -313,60 +313,6 @@ const M44d& Scene::worldMatrix(size_t node) {
     worlds_.emplace(next, parent == worlds_.end() ? own : own * parent->second);
   }
   return worlds_.at(node);
-}
-
-// Every accessor of positions has its minimum and maximum (3.6.2.4).
-void Scene::findBox() {
-  box_.emplace();
-  for (size_t number = 0; number < nodes_.size(); ++number) {
-    const auto mesh = nodes_[number].index("mesh", primitives_.size());
-    if (!mesh) continue;
-    for (const Item& primitive : primitives_.mesh(*mesh).list("primitives")) {
-      const auto place = primitive.object("attributes").index("POSITION", accessorItems_.size());
-      if (!place) continue;
-      const auto low = accessorItems_[*place].numbers("min", 3),
-                 high = accessorItems_[*place].numbers("max", 3);
-      if (low.empty() || high.empty()) continue;
-      const M44d& world = worldMatrix(number);
-      for (size_t corner = 0; corner < 8; ++corner) {
-        const auto side = [&](size_t i) { return corner & (1u << i) ? high[i] : low[i]; };
-        V3d point;
-        world.multVecMatrix(V3d(side(0), side(1), side(2)), point);
-        box_->extendBy(point);
-      }
-    }
-  }
-}
-
-// Tells whether a camera stands outside of the model and does not see all of it. Modellers write
-// the camera of their window, which may show a part. A camera inside shows a room, as it is meant
-// to.
-bool Scene::cutsModel(size_t node, const Item& camera) {
-  if (!box_) findBox();
-  const M44d world = worldMatrix(node);
-  const V3d eye = world.translation();
-  if (box_->isEmpty() || box_->intersects(eye)) return false;
-  M44d toCamera;
-  try {
-    toCamera = world.inverse(true);
-  } catch (const std::exception&) { return false; } // it has no volume
-  const bool parallel = camera.text("type") == "orthographic";
-  const Item size = camera.object(parallel ? "orthographic" : "perspective");
-  const double rounding = 1.001,
-               y = rounding * (parallel
-                                   ? std::abs(size.number("ymag", 1))
-                                   : std::tan(std::clamp(size.number("yfov", 0.8), 0.01, 3.0) / 2)),
-               aspect = size.number("aspectRatio", 4.0 / 3),
-               x = parallel ? rounding * std::abs(size.number("xmag", 1))
-                            : y * (aspect > 0 ? aspect : 1);
-  for (size_t corner = 0; corner < 8; ++corner) {
-    const auto side = [&](int i) { return corner & (1u << i) ? box_->max[i] : box_->min[i]; };
-    V3d seen;
-    toCamera.multVecMatrix(V3d(side(0), side(1), side(2)), seen);
-    const double away = parallel ? 1 : -seen.z;
-    if (-seen.z <= 0 || std::abs(seen.x) > x * away || std::abs(seen.y) > y * away) return true;
-  }
-  return false;
 }
 
 } // namespace xvrml::gltf

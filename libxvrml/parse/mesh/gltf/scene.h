@@ -7,8 +7,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include <Imath/ImathBox.h>
-
 #include "parse/mesh/gltf/primitives.h"
 
 namespace xvrml::gltf {
@@ -40,8 +38,6 @@ class Scene {
   const std::vector<Imath::M44d>& jointsOf(size_t skin);
   Imath::M44d matrixOf(const Item& node) const;
   const Imath::M44d& worldMatrix(size_t node);
-  void findBox();
-  bool cutsModel(size_t node, const Item& camera);
 
   const MeshFile& file_;
   NodeStream& out_;
@@ -49,7 +45,7 @@ class Scene {
   Scratch scratch_;
   Materials materials_;
   Primitives primitives_;
-  std::vector<Item> nodes_, scenes_, cameras_, lights_, skins_, accessorItems_;
+  std::vector<Item> nodes_, scenes_, cameras_, lights_, skins_;
   std::optional<size_t> scene_;
   std::vector<std::vector<size_t>> children_;
   std::vector<size_t> parents_; // size(): none
@@ -59,14 +55,12 @@ class Scene {
   std::map<size_t, std::vector<Primitives::Morph>> morphs_;
   std::map<size_t, std::vector<Imath::M44d>> joints_; // of skins
   std::unordered_map<size_t, Imath::M44d> worlds_;    // of joints and the nodes above
-  std::optional<Imath::Box3d> box_;                   // of all meshes as they are at rest
 };
 
 // The lights of KHR_lights_punctual and the cameras, into the open list of nodes. They look along
 // -z of the node that holds them.
 void writeLight(NodeStream& out, const Item& light);
-// showsAll: the camera goes back until everything is seen.
-void writeCamera(NodeStream& out, const Item& camera, bool showsAll);
+void writeCamera(NodeStream& out, const Item& camera);
 
 // Returns the angle and axis of a quaternion x y z w; no rotation if it has no length.
 Rotation rotationOf(double x, double y, double z, double w);

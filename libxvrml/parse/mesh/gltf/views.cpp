@@ -18,7 +18,7 @@ static float fieldOfView(const Item& perspective) {
   return float(2 * std::atan(aspect * std::tan(y / 2)));
 }
 
-void writeCamera(NodeStream& out, const Item& camera, bool showsAll) {
+void writeCamera(NodeStream& out, const Item& camera) {
   if (!camera) return;
   const std::string name = camera.text("name");
   const bool ortho = camera.text("type") == "orthographic";
@@ -36,8 +36,6 @@ void writeCamera(NodeStream& out, const Item& camera, bool showsAll) {
   } else if (!ortho) {
     out.set("fieldOfView", fieldOfView(camera.object("perspective")));
   }
-  if (showsAll && out.knows(parallel ? "OrthoViewpoint" : "Viewpoint", "viewAll"))
-    out.set("viewAll", true);
   out.close();
 }
 
