@@ -130,10 +130,10 @@ def test_a_key_shows_the_raw_samples(window, screen):
     w.move(0, -0.95)
 
     def noise():
-        """Returns the standard deviation of the wall, which has one colour."""
+        """Returns the standard deviation of the wall, which has one colour, below the overlay."""
         text = w.tool("getwindowgeometry", "--shell", w.id)
         left, top = (int(re.search(rf"\b{n}=(\d+)", text)[1]) for n in "XY")
-        rows = framebuffer(screen[1])[top + SIZE[1] // 2 - 12:top + SIZE[1] // 2 + 12]
+        rows = framebuffer(screen[1])[top + SIZE[1] // 2 + 12:top + SIZE[1] // 2 + 32]
         values = [row[left + SIZE[0] // 2 + x][1] for row in rows for x in range(-15, 15)]
         mean = sum(values) / len(values)
         return (sum((v - mean)**2 for v in values) / len(values))**0.5
