@@ -2,6 +2,7 @@
 // them (ISO/IEC 14772-1 4.5.3), absolute ones only if allowed; nothing is fetched from the network.
 // Used by the loader and the mapper. Pure except for file look-ups. [any thread]
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <unordered_map>
 
@@ -84,7 +85,9 @@ class Listing {
     const fs::path place = folder.empty() ? fs::path(".") : fs::path(folder);
     const auto changed = fs::last_write_time(place, error);
     if (error) return {};
-    if (folder != folder_ || changed != changed_ || names_.empty()) {
+    if (folder != folder_ || changed != changed_ || !isSettled_ || names_.empty()) {
+      // Times of files are coarse: a folder that has just changed may change again unnoticed.
+      isSettled_ = changed + std::chrono::seconds(1) < fs::file_time_type::clock::now();
       names_.clear();
       for (fs::directory_iterator one(place, error), end;
            !error && one != end && names_.size() < most; one.increment(error)) {
@@ -103,6 +106,7 @@ class Listing {
   static constexpr size_t most = 100'000; // names that are looked at
   std::string folder_;
   std::filesystem::file_time_type changed_;
+  bool isSettled_ = false; // the folder had not changed for a while when it was read
   std::unordered_map<std::string, std::string> names_; // by their names in lower case
 };
 

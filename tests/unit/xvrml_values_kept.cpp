@@ -271,7 +271,9 @@ TEST(ValuesKept, UnknownNodesTakeLinearTime) {
 
 class FilesNamed : public testing::Test {
  protected:
-  std::string folder = testing::TempDir() + "files_named/";
+  // Each test has a folder of its own: tests run side by side.
+  std::string folder = testing::TempDir() + "files_named_" +
+                       testing::UnitTest::GetInstance()->current_test_info()->name() + "/";
   void SetUp() override {
     std::filesystem::create_directories(folder + "Maps");
     for (const char* name : {"Maps/Red.PNG", "a#1.png", "b.wrl", "B2.WRL"})
