@@ -26,7 +26,7 @@ FUZZ_RUNS = 10_000_000  # executions of each fuzz target on one state of the sou
 FUZZ_ROUND = 600  # seconds of one target before the next has its turn
 HEAD = ["stage", "runs", "date", "commit", "result", "figure"]
 
-# What a tool's output says about itself, for the column "figure".
+# These patterns find what a tool's output says about itself, for the column "figure".
 SUMS = (
     r"(\d+% tests passed, \d+ tests failed out of \d+)",  # ctest
     r"^((?:\d+ (?:passed|failed|skipped|errors?|deselected)(?:, )?)+) in ",  # pytest

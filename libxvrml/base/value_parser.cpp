@@ -61,7 +61,7 @@ ValueParser::AfterFault ValueParser::passFault(const char* at) {
   const bool ends = token.is(TokenKind::identifier) && endsList_ && endsList_(token);
   lexer_.seek(at);
   if (ends) return AfterFault::listEnds;
-  // What is glued to the token belongs to it: "e-..e" stands in the place of one number.
+  // Letters that are glued to the token belong to it: "e-..e" stands for one number.
   const char* p = at;
   while (p < lexer_.end() && !isVrmlSeparator(*p)) ++p;
   lexer_.seek(std::max(p, token.at() + token.text.size()));

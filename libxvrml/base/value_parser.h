@@ -48,7 +48,7 @@ class ValueParser {
   bool single(Image& out);
   bool single(NodeRef& out);
   template <Numeric T> bool single(T& out);
-  // What follows a number or a string of a list that cannot be read.
+  // Says how a list goes on behind a number or a string that cannot be read.
   enum class AfterFault : uint8_t {
     next,      // it is passed, and the list goes on
     listEnds,  // the list ends before it
@@ -70,7 +70,7 @@ class ValueParser {
   bool refused_ = false;   // the budget has refused memory; reported once
   bool keepsElements_ = false;
   std::function<bool(const Token&)> endsList_;
-  // Of the list that is being read:
+  // These belong to the list that is being read:
   uint64_t faults_ = 0;          // elements that cannot be read; the first is reported in its place
   const char* second_ = nullptr; // the second of them
   bool listEnded_ = false;       // the list has ended without its bracket, which is reported

@@ -49,25 +49,28 @@ TEST_F(Faults, ALobeThatIsNotFiniteHasNoWeight) {
   EXPECT_EQ(log.count("shader NanLobe of faulty"), 1u);
 }
 
+constexpr const char* said = "bounds bodies that paths have left but never entered";
+
+// Places a body of these faces.
+template <class Faces> RTid body(RTid shader, const Faces& faces) {
+  const RTid object = rtBeginObject(0);
+  rtBindShader(shader);
+  faces();
+  rtEndObject();
+  return rtInstantiateObject(object);
+}
+
 TEST_F(Faults, BodiesThatAreLeftButWereNeverEnteredAreNamed) {
   const RTid glass = shader("Glass", nullptr);
-  const auto body = [&](const auto& faces) {
-    const RTid object = rtBeginObject(0);
-    rtBindShader(glass);
-    faces();
-    rtEndObject();
-    return rtInstantiateObject(object);
-  };
-  constexpr const char* said = "bounds bodies that paths have left but never entered";
-  RTid placed = body([] { rtSphere(0.5f); });
+  RTid placed = body(glass, [] { rtSphere(0.5f); });
   picture(16);
   rtDeleteInstance(placed);
-  placed = body([] { rtSphere(100); }); // the camera is inside
+  placed = body(glass, [] { rtSphere(100); }); // the camera is inside
   picture(16);
   EXPECT_EQ(log.count(said), 0u);
   rtDeleteInstance(placed);
   rtRotatef(180, 1, 0, 0);
-  body([] {
+  body(glass, [] {
     rtBegin(RT_QUADS);
     squareVertices();
     rtEnd();
@@ -83,20 +86,12 @@ TEST_F(Faults, BodiesThatPathsFromLampsLeaveButNeverEnteredAreNamed) {
   rtUseLight(shader("VRML97PointLight", nullptr));
   const RTid glass = shader("Glass", nullptr);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
-  constexpr const char* said = "bounds bodies that paths have left but never entered";
-  const auto body = [&](const auto& faces) {
-    const RTid object = rtBeginObject(0);
-    rtBindShader(glass);
-    faces();
-    rtEndObject();
-    return rtInstantiateObject(object);
-  };
-  const RTid around = body([] { rtSphere(0.5f); }); // the lamp is inside
+  const RTid around = body(glass, [] { rtSphere(0.5f); }); // the lamp is inside
   picture(16);
   rtDeleteInstance(around);
   EXPECT_EQ(log.count(said), 0u);
   rtTranslatef(0, 0, 1);
-  body([] {
+  body(glass, [] {
     rtBegin(RT_QUADS);
     squareVertices();
     rtEnd();

@@ -16,8 +16,8 @@ std::string measurementsJson(const std::vector<picture::Measurement>& sensors,
                              const std::string& commandLine);
 // Describes one sensor in a line: mean with its interval, range, uniformity.
 std::string measurementText(const picture::Measurement& sensor);
-// What was asked for: a target error (0: none), with at most so many samples; whether a time limit
-// could end the measurement before.
+// The user asked for a target error (0: none), with at most so many samples. A time limit may end
+// the measurement before.
 struct Promise {
   double error = 0;
   uint32_t allowed = 0;

@@ -26,7 +26,7 @@ struct RequiredSums {
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
-// What is known of a path's random decisions.
+// Facts about a path's random decisions, as bits.
 namespace RandomPath {
 inline constexpr uint8_t decided = 1; // it has taken one
 inline constexpr uint8_t inVain = 2;  // none of its random rays is known to have found light

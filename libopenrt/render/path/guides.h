@@ -40,7 +40,7 @@ class Guides {
   // Follows the paths that were taken over, and records what they see.
   void finish(PixelSamples& found);
 
-  // What is passed straight does not count.
+  // Surfaces that a path passes straight on do not count.
   static constexpr uint32_t mostSurfaces = 8;
   // Least share of images in what the lobes of a hit carry. Where less is reflected, as by
   // varnished wood at a low angle, the grain of the surface matters more than the image in it.
