@@ -12,9 +12,10 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# A shell that runs the tests in the background starts them with SIGINT ignored. The programs under
-# test would inherit that.
+# A shell that runs the tests in the background starts them with SIGINT ignored, and nohup with
+# SIGHUP ignored. The programs under test would inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Previews are filtered in the same way on every machine, unless a test asks for the library.
 os.environ["OPENRT_OIDN_LIBRARY"] = "none"
