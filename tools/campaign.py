@@ -72,6 +72,9 @@ STAGES = [
           "make test-often"),
     Stage("asan", "`make asan`", "make asan"),
     Stage("tsan", "`make tsan`", "make tsan"),
+    Stage("script-worlds", "100,000 random worlds of Scripts with ASan and UBSan (after `asan`)",
+          "XVRML_RANDOM_WORLDS=1:100000 build/asan-ubsan/bin/conformance "
+          "--gtest_filter='ScriptEnds.Worlds*'"),
     Stage("fuzz", f"every target of `make fuzz` {FUZZ_RUNS:,} times; executions on the same "
           "sources add up", ""),
     Stage("embree-4", "`make test-embree4`: all tests against Embree 4 in a Debian 13",
