@@ -52,11 +52,6 @@ std::string lowered(std::string_view text) {
   return out;
 }
 
-bool isCalled(const OptionInfo& option, std::string_view name) {
-  const auto names = split(std::string_view(option.names), ',');
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 std::string describe(const OptionInfo& option, std::string_view text) {
   std::string head = "  ";
   for (std::string_view name : split(option.names, ','))
@@ -131,8 +126,8 @@ std::string_view firstSentence(std::string_view text) {
 std::string shortHelp() {
   std::string out = usage() + "\nOften used\n";
   for (const std::string_view name : usual)
-    for (const OptionInfo& option : optionTable())
-      if (isCalled(option, name)) out += describe(option, firstSentence(option.text));
+    if (const OptionInfo* option = optionCalled(name))
+      out += describe(*option, firstSentence(option->text));
   std::string all;
   for (const std::string& topic : topics()) all += topic + ", ";
   all += fmt::format("{}, {}; or an option, such as vv --help --size", exitCodes, everything);
@@ -147,14 +142,12 @@ std::string helpText(std::string_view about) {
   if (topic == everything) return usage() + describeGroups("") + describeExitCodes();
   if (topic == exitCodes || topic == "exit") return describeExitCodes().substr(1);
   if (const std::string group = describeGroups(topic); !group.empty()) return group.substr(1);
+  for (const std::string& name : {std::string(about), fmt::format("--{}", about)})
+    if (const OptionInfo* option = optionCalled(name)) return describe(*option, option->text);
   std::vector<std::string> known = topics();
   known.insert(known.end(), {std::string(exitCodes), std::string(everything)});
-  for (const OptionInfo& option : optionTable()) {
-    if (isCalled(option, about) || isCalled(option, fmt::format("--{}", about)))
-      return describe(option, option.text);
-    for (std::string_view name : split(std::string_view(option.names), ','))
-      known.emplace_back(name);
-  }
+  for (const OptionInfo& option : optionTable())
+    for (std::string_view name : split(option.names, ',')) known.emplace_back(name);
   const std::string near = nearest::word(topic, known);
   throw UsageError(fmt::format("--help: there is no topic \"{}\"{}; vv --help lists them", about,
                                near.empty() ? "" : fmt::format("; did you mean {}?", near)));

@@ -17,6 +17,13 @@
 
 namespace vv {
 
+const OptionInfo* optionCalled(std::string_view word) {
+  for (const OptionInfo& option : optionTable())
+    for (std::string_view name : split(option.names, ','))
+      if (name == word) return &option;
+  return nullptr;
+}
+
 namespace {
 
 // If several jobs are asked for, the first of the table is done.
@@ -120,13 +127,9 @@ bool servesPage(int argc, char** argv) { return isCommand(argc, argv, "serve"); 
 bool mergesSums(int argc, char** argv) { return isCommand(argc, argv, "merge"); }
 
 // Tells whether the word after an option is its value.
-bool takesNext(const std::string& word) {
-  return std::any_of(optionTable().begin(), optionTable().end(), [&](const OptionInfo& option) {
-    const std::string names = option.names; // "-o,--output"
-    for (const std::string_view name : split(names, ','))
-      if (word == name) return *option.argument && option.argument[0] != '[';
-    return false;
-  });
+bool takesNext(std::string_view word) {
+  const OptionInfo* const option = optionCalled(word);
+  return option && *option->argument && option->argument[0] != '[';
 }
 
 // Takes the files of vv merge, and refuses options that say how to render.
@@ -149,13 +152,6 @@ void readMerge(Options& options, const std::vector<std::string>& files,
   checkTogether(options);
 }
 
-const OptionInfo* optionCalled(std::string_view word) {
-  for (const OptionInfo& option : optionTable())
-    for (std::string_view name : split(option.names, ','))
-      if (name == word) return &option;
-  return nullptr;
-}
-
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
 // its argument only if it is a whole number, or may be a topic of --help. The words after "--" are
 // files: they go to `files`.
@@ -170,13 +166,11 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv,
     }
     out.emplace_back(argv[i]);
     if (isValue) continue;
-    for (const OptionInfo& option : optionTable()) {
-      if (option.argument[0] != '[' || optionCalled(out.back()) != &option) continue;
-      out.back() = longName(option);
-      const bool given = i + 1 < argc && (isWholeNumber(argv[i + 1]) || out.back() == "--help");
-      out.back() += std::string("=") + (given ? argv[++i] : "-");
-      break;
-    }
+    const OptionInfo* const option = optionCalled(argv[i]);
+    if (!option || option->argument[0] != '[') continue;
+    out.back() = longName(*option);
+    const bool given = i + 1 < argc && (isWholeNumber(argv[i + 1]) || out.back() == "--help");
+    out.back() += std::string("=") + (given ? argv[++i] : "-");
   }
   std::reverse(out.begin(), out.end()); // CLI11 expects a vector in reverse order
   return out;
@@ -187,8 +181,7 @@ void refuseSwallowedOptions(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; ++i) {
     const std::string_view word = argv[i], next = argv[i + 1];
     if (word == "--") return;
-    const OptionInfo* const option = optionCalled(word);
-    if (!option || !*option->argument || option->argument[0] == '[') continue;
+    if (!takesNext(word)) continue;
     if (next.starts_with("--") && optionCalled(next.substr(0, next.find('='))))
       throw UsageError(fmt::format("{}, not the option {}", missingValue(word), next));
     ++i; // any other value

@@ -160,6 +160,8 @@ struct OptionInfo {
   RTenum quality = 0; // RT_*; only used without `apply`
 };
 std::span<const OptionInfo> optionTable();
+// Returns the option with this name, such as "-o" or "--size", or null.
+const OptionInfo* optionCalled(std::string_view word);
 std::span<const OptionInfo> qualityOptions(); // the rows of quality settings, group Quality
 std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 
