@@ -3,19 +3,21 @@
 #include <exception>
 #include <new>
 
-#include "checkpoint.h"
 #include "control/unattended.h"
 #include "enough_stack.h"
-#include "headless.h"
-#include "inputs.h"
+#include "feature_list.h"
 #include "options/help.h"
 #include "options/options.h"
+#include "process/messages.h"
+#include "process/signals.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
-#include "report/messages.h"
+#include "run/checkpoint.h"
+#include "run/headless.h"
+#include "run/inputs.h"
 #include "server/server.h"
 #include "session/input/keys.h"
-#include "signals.h"
+#include "session/replay.h"
 #include "window/window.h"
 
 namespace {
@@ -41,6 +43,7 @@ int run(int argc, char** argv) {
     vv::writeOut(vv::listKeys());
     return vv::exitDone;
   }
+  vv::readScript(options);
   if (!options.merge.empty()) return vv::runMerge(options, quoted(argc, argv));
   vv::warnOfFolders(options);
   vv::joinCluster(options);
@@ -52,6 +55,10 @@ int run(int argc, char** argv) {
     vv::checkInputs(options);
     if (options.noWindow) return vv::control::runUnattended(options);
     return vv::runWindow(options, {argv + 1, argv + argc});
+  }
+  if (job && job->job == vv::Job::listFeatures) {
+    vv::writeOut(vv::listFeatures(options.running.scriptPath, options.json));
+    return vv::exitDone;
   }
   return vv::runHeadless(options, quoted(argc, argv));
 }

@@ -2,6 +2,7 @@
 // the records when it builds a scene; they are immutable while a frame renders.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "openrt/openrts.h"
@@ -119,6 +120,11 @@ struct Record {
   // Maps a vertex that the kernel sees to render space.
   template <class T> Vec3<T> placeOf(const Vec3<T>& vertex) const {
     return instanced ? toRender.point(vertex) : vertex * T(scale);
+  }
+  // Returns the corners of a triangle in render space.
+  std::array<Vec3f, 3> cornersOf(uint32_t triangle) const {
+    return {placeOf(corner(triangle, 0)), placeOf(corner(triangle, 1)),
+            placeOf(corner(triangle, 2))};
   }
 };
 

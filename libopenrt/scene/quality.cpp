@@ -124,4 +124,8 @@ const char* invalidQuality(const edit::FrameSettingsT& frame) {
   return nullptr;
 }
 
+bool wantsError(const edit::FrameSettingsT& frame) {
+  return (frame.channels & (RT_ERROR | RT_TRUST)) || frame.targetError > 0 || frame.timeLimit > 0;
+}
+
 } // namespace openrt

@@ -34,6 +34,8 @@ std::span<const QualitySetting> qualitySettings();
 const QualitySetting* findQuality(RTenum quality);
 // Returns the name of the first setting of a frame that is out of its range; null if all are valid.
 const char* invalidQuality(const edit::FrameSettingsT& frame);
+// Returns whether the frame's settings request error estimates.
+bool wantsError(const edit::FrameSettingsT& frame);
 
 inline constexpr uint32_t largestTile = 128; // largest tile edge in pixels
 

@@ -121,6 +121,13 @@ const std::vector<float>& rgbaOf(const Picture& picture) {
   return found->second;
 }
 
+Picture withChannels(const Picture& picture, uint32_t channels) {
+  Picture out{picture, {}};
+  for (const auto& [bit, plane] : picture.planes)
+    if (channels & bit) out.planes[bit] = plane;
+  return out;
+}
+
 void cut(Picture& picture, int x, int y, int width, int height) {
   for (const Channel& channel : table) {
     const auto found = picture.planes.find(channel.bit);

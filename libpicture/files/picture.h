@@ -30,7 +30,8 @@ const Channel* findChannel(std::string_view name);
 // Returns whether one of the channels has numbers of Shapes.
 bool hasNames(uint32_t channels);
 
-struct Picture {
+// All of a picture but its pixels.
+struct PictureFacts {
   int width = 0, height = 0;
   bool linear = true;         // true: rgba is linear radiance; false: rgba holds display values
   bool depthAlongRay = false; // channel z is the distance along the ray, not along the view axis
@@ -38,8 +39,6 @@ struct Picture {
   bool transparent = false;   // files of the picture have alpha if their format keeps it
   // display values of what screens show behind the shapes, by alpha; rgba does not have it
   std::optional<std::array<float, 3>> backdrop;
-  // Indexed by Channel::bit; width*height*components floats, first row at the top.
-  std::map<uint32_t, std::vector<float>> planes;
   // The picture is a part of a larger one of this size: its left upper corner there. Not of a
   // larger one: 0.
   int wholeWidth = 0, wholeHeight = 0, left = 0, top = 0;
@@ -50,6 +49,14 @@ struct Picture {
   // The library that has denoised rgba (libpicture/denoiser.h); "": none has.
   std::string denoisedBy;
 };
+
+struct Picture : PictureFacts {
+  // Indexed by Channel::bit; width*height*components floats, first row at the top.
+  std::map<uint32_t, std::vector<float>> planes;
+};
+
+// Returns the picture with those of its channels that are named.
+Picture withChannels(const Picture& picture, uint32_t channels);
 
 // Keeps a rectangle of the pixels of a whole picture, which must lie within it.
 void cut(Picture& picture, int x, int y, int width, int height);

@@ -153,7 +153,7 @@ void lensAt(double x, double y, double z, double degrees, float radius, float fo
 }
 
 double randomNumber(unsigned number,
-                    unsigned which) { // T. Mueller's hash, as in render/path/sampler.h
+                    unsigned which) { // T. Mueller's hash, as in render/wave/sampler.h
   uint32_t x = number * 0x9e3779b9u + which * 0x85ebca6bu + 1;
   x = (x ^ (x >> 16)) * 0x7feb352du;
   x = (x ^ (x >> 15)) * 0x846ca68bu;

@@ -19,7 +19,7 @@
 
 #include "backend/cluster/messages/messages.h"
 #include "render/frame/result_codec.h"
-#include "render/frame/tiles.h"
+#include "render/wave/tiles.h"
 
 namespace sim {
 

@@ -12,7 +12,7 @@
 
 #include "bench/raw_embree.h"
 #include "openrt/openrt.h"
-#include "render/path/sampler.h"
+#include "render/wave/sampler.h"
 
 namespace {
 

@@ -11,12 +11,13 @@
 #include "render/lights/light_tree.h"
 #include "render/path/accumulate.h"
 #include "render/path/camera_rays.h"
-#include "render/path/random_numbers.h"
 #include "render/path/spawn_rays.h"
-#include "render/surface/faults.h"
 #include "render/surface/lambert.h"
-#include "render/surface/point_block.h"
 #include "render/surface/sample_lobes.h"
+#include "render/surface/sanitize_output.h"
+#include "render/wave/faults.h"
+#include "render/wave/point_block.h"
+#include "render/wave/random_numbers.h"
 #include "unit/plane_hits.h"
 
 using namespace openrt;

@@ -49,14 +49,35 @@ TABLE = [
          "api-h common"),
     part("openrt-shading", "libopenrt/shading/", "shader plug-ins, parameters, textures",
          "shader-sdk openrt-scene common system"),
-    part("openrt-render", "libopenrt/render/",
-         "rays, light transport, samples, film and its errors",
-         "api-h shader-sdk openrt-scene openrt-shading common system"),
+    part("render-scene", "libopenrt/render/",
+         "the snapshot of a scene that a frame renders: records, shaders, media; rays and their hits",
+         "api-h shader-sdk openrt-scene openrt-shading"),
+    part("render-lanes", "libopenrt/render/lanes/", "arithmetic on vector lanes", "render-scene"),
+    part("render-wave", "libopenrt/render/wave/",
+         "many rays at once: their paths, samples and random numbers, what they hit, shading points",
+         "api-h shader-sdk openrt-scene openrt-shading render-scene render-lanes"),
+    part("render-film", "libopenrt/render/film/",
+         "sums of samples, error bars, trust, the channels of a picture",
+         "api-h openrt-scene render-wave common"),
+    part("render-surface", "libopenrt/render/surface/",
+         "calls shaders; lobes, and rays that are sampled from them",
+         "shader-sdk openrt-scene openrt-shading render-scene render-lanes render-wave"),
+    part("render-lights", "libopenrt/render/lights/",
+         "light sampling of lamps, shapes and the sky; shadow rays",
+         "shader-sdk openrt-scene openrt-shading render-scene render-lanes render-wave render-film render-surface"),
+    part("render-medium", "libopenrt/render/medium/", "paths within media that scatter",
+         "shader-sdk openrt-scene render-scene render-wave render-lights"),
+    part("render-path", "libopenrt/render/path/",
+         "paths from the camera and from lamps; the transports, and the functions that shaders call",
+         "api-h openrt-scene openrt-shading render-scene render-lanes render-wave render-film render-surface render-lights render-medium"),
+    part("render-frame", "libopenrt/render/frame/",
+         "divides a frame into jobs, does them, and merges their results",
+         "api-h openrt-scene render-scene render-wave render-film render-path common system"),
     part("openrt-backend", "libopenrt/backend/",
          "the interface between the API and whoever renders", "api-h openrt-scene common"),
     part("backend-local", "libopenrt/backend/local/",
          "renders in this process; the only part that knows Embree",
-         "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend common"),
+         "api-h openrt-scene openrt-shading render-scene render-lanes render-wave render-lights render-medium render-path render-frame openrt-backend common"),
     part("backend-record", "libopenrt/backend/record/",
          "writes edits to a file, and reads it; checks them against class tables",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
@@ -68,14 +89,14 @@ TABLE = [
     part(
         "backend-cluster", "libopenrt/backend/cluster/",
         "renders with the help of other machines: net/ connects machines, messages/ says what they send each other, master/ gives jobs out, worker/ does them on a local backend",
-        "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend backend-local backend-record common system"
+        "api-h shader-sdk openrt-scene openrt-shading render-film render-frame openrt-backend backend-local backend-record common system"
     ),
     part("openrt-api", "libopenrt/api/",
          "the rt* functions: they make edits and hand them to a backend",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
     part("openrt-api-sums", "libopenrt/api/sums.cpp",
          "the rt* functions for kept sums, which are used without a context",
-         "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend openrt-api common"),
+         "api-h openrt-scene render-frame openrt-api"),
     part("openrt-tools", "libopenrt/tools/", "openrt-replay and openrt-worker",
          "api-h openrt-scene openrt-shading openrt-backend backend-record backend-cluster common"),
     part("xvrml-base", "libxvrml/base/ libxvrml/nodes/",
@@ -124,19 +145,33 @@ TABLE = [
     part("picture", "libpicture/",
          "renders worlds to pictures and writes files; shared by vv and the Python bindings",
          "api-h xvrml-h mapper-h common system"),
-    part("session", "apps/vv/session/",
+    part("vv-process", "apps/vv/process/",
+         "what stands between vv and the operating system: messages, signals, exit codes",
+         "api-h common picture"),
+    part("vv-options", "apps/vv/options/", "the command line, and the files that set options",
+         "xvrml-h picture vv-process common"),
+    part("vv-report", "apps/vv/report/",
+         "what vv says of worlds and pictures, for people and as JSON; --list-shaders reads the tables of plug-ins",
+         "api-h shader-sdk xvrml-h picture vv-process vv-options common system"),
+    part("vv-start", "apps/vv/start/", "starts worlds as the options say, and runs their clock",
+         "xvrml-h picture vv-process vv-options vv-report common system"),
+    part("vv-input", "apps/vv/session/input/", "what a user does, as events, keys and scripts",
+         "xvrml-h picture vv-options"),
+    part("vv-session", "apps/vv/session/",
          "a world that is shown to somebody: input, time, the pace of its pictures",
-         "api-h xvrml-h mapper-h app picture common"),
-    part("control", "apps/vv/control/",
+         "xvrml-h picture vv-process vv-options vv-report vv-start vv-input"),
+    part("vv-run", "apps/vv/run/", "pictures and facts for files, without a window",
+         "xvrml-h picture vv-process vv-options vv-report vv-start vv-session common"),
+    part("vv-control", "apps/vv/control/",
          "the control channel: commands of other programs, as lines of JSON over sockets",
-         "api-h xvrml-h mapper-h app session picture common system"),
-    part("window", "apps/vv/window/", "vv's window; the only part that knows SDL",
-         "api-h xvrml-h mapper-h app session control picture common"),
-    part("server", "apps/vv/server/",
+         "xvrml-h picture vv-process vv-options vv-report vv-session vv-run common system"),
+    part("vv-window", "apps/vv/window/", "vv's window; the only part that knows SDL",
+         "xvrml-h vv-process vv-options vv-report vv-start vv-input vv-session vv-control common"),
+    part("vv-server", "apps/vv/server/",
          "vv serve: a world on a page; the only part that knows libwebsockets",
-         "api-h xvrml-h mapper-h app session picture common system"),
-    part("app", "apps/", "vv on the command line; --list-shaders reads the tables of plug-ins",
-         "api-h shader-sdk xvrml-h mapper-h picture session control window server common system"),
+         "xvrml-h picture vv-process vv-options vv-report vv-start vv-input vv-session common system"),
+    part("vv", "apps/vv/", "the program: chooses what runs",
+         "picture vv-process vv-options vv-report vv-input vv-session vv-run vv-control vv-window vv-server common"),
     part("binding", "bindings/", "the Python package", "api-h xvrml-h mapper-h picture common"),
     part("example", "examples/", "programs for readers",
          "api-h shader-sdk script-sdk xvrml-h mapper-h"),
@@ -150,16 +185,16 @@ PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"),
-     {"backend-cluster", "script-remote", "control", "server", "system", "test"}, "sockets"),
+     {"backend-cluster", "script-remote", "vv-control", "vv-server", "system", "test"}, "sockets"),
     (re.compile(
         r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
-     {"xvrml-geometry", "xvrml-image", "picture", "window", "test"}, "picture and font libraries"),
-    (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"window"}, "SDL"),
-    (re.compile(r"libwebsockets"), {"server"}, "libwebsockets"),
+     {"xvrml-geometry", "xvrml-image", "picture", "vv-window", "test"}, "picture and font libraries"),
+    (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"vv-window"}, "SDL"),
+    (re.compile(r"libwebsockets"), {"vv-server"}, "libwebsockets"),
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "picture", "test"}, "the ffmpeg libraries"),
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
-    (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
-    (re.compile(r"toml\+\+/"), {"app", "binding"}, "toml++"),
+    (re.compile(r"(CLI/|CLI11)"), {"vv-options", "openrt-tools", "nodegen"}, "CLI11"),
+    (re.compile(r"toml\+\+/"), {"vv-options", "binding"}, "toml++"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
     (re.compile(r"expat\.h$"), {"xvrml-parse", "test"}, "expat"),
 ]
@@ -255,6 +290,7 @@ def self_test():
         "libopenrt/include/openrt/openrts.h": "",
         "libopenrt/scene/commit.h": "",
         "libopenrt/render/film/film.h": "",
+        "libopenrt/render/wave/wave.h": "",
         "libopenrt/backend/backend.h": "",
         "libopenrt/backend/local/accel/embree.h": "",
         "libxvrml/include/xvrml/world.h": "",
@@ -262,12 +298,16 @@ def self_test():
         "libxvrml/include/xvrml/mapper.h": "",
         "libxvrml/parse/builder.h": "",
         "libxvrml/geometry/mesh.h": "",
+        "apps/vv/window/window.h": "",
+        "apps/vv/options/options.h": "",
     }
     refused = [
         ("libopenrt/api/a.cpp", "<embree3/rtcore.h>"),
         ("libopenrt/render/a.cpp", '"backend/local/accel/embree.h"'),
         ("libopenrt/scene/a.cpp", '"render/film/film.h"'),
         ("libopenrt/scene/a.cpp", '"../render/film.h"'),
+        ("libopenrt/render/wave/a.cpp", '"render/film/film.h"'),
+        ("apps/vv/report/a.cpp", '"apps/vv/window/window.h"'),
         ("libopenrt/api/a.cpp", '"xvrml/world.h"'),
         ("libxvrml/parse/a.cpp", '"openrt/openrt.h"'),
         ("libxvrml/parse/a.cpp", "<openrt/openrt.h>"),
@@ -290,8 +330,10 @@ def self_test():
         ("somewhere/a.cpp", "<vector>"),
     ]
     passing = [
+        ("libopenrt/render/film/a.cpp", '"render/wave/wave.h"'),
+        ("apps/vv/report/a.cpp", '"options/options.h"'),
         ("libopenrt/backend/local/a.cpp", "<embree3/rtcore.h>"),
-        ("libopenrt/backend/local/a.cpp", '"render/film/film.h"'),
+        ("libopenrt/backend/local/a.cpp", '"render/wave/wave.h"'),
         ("libopenrt/api/a.cpp", '"scene/commit.h"'),
         ("libopenrt/api/a.cpp", '"edits_generated.h"'),
         ("libxvrml/mapper/a.cpp", "<openrt/openrt.h>"),
@@ -300,7 +342,7 @@ def self_test():
         ("plugins/shaders/a.cpp", "<openrt/openrts.h>"),
         ("plugins/shaders/a.cpp", "<cmath>"),
         ("plugins/script/test/a.c", "<xvrml/xscript.h>"),
-        ("apps/vv/a.cpp", '"xvrml/mapper.h"'),
+        ("apps/vv/run/a.cpp", '"xvrml/world.h"'),
         ("tests/unit/a.cpp", '"parse/builder.h"'),
     ]
     wrong = []
@@ -317,25 +359,22 @@ BEGIN, END = "<!-- begin of the map: tests/checks/layering.py --write makes it -
 
 
 def levels():
-    """Lists the parts (except tests) by height: each includes only parts of lower rows. Parts that
-    include each other share a row."""
-    names = [p.name for p in TABLE if p.name != "test"]
-    reach = {name: set(ARROWS[name]) for name in names}
-    for via in names:  # Warshall's transitive closure
-        for name in names:
-            if via in reach[name]:
-                reach[name] |= reach[via]
+    """Lists the parts (except tests) by height: each includes only parts of lower rows. Raises
+    ValueError if parts include each other."""
     height = {}
 
-    def height_of(name):
+    def height_of(name, above=()):
+        if name in above:
+            raise ValueError("parts include each other: " + " > ".join((*above, name)))
         if name not in height:
-            height[name] = 1 + max(
-                (height_of(lower) for lower in reach[name] if name not in reach[lower]), default=-1)
+            height[name] = 1 + max((height_of(lower, (*above, name)) for lower in ARROWS[name]),
+                                   default=-1)
         return height[name]
 
     rows = {}
-    for name in names:
-        rows.setdefault(height_of(name), []).append(name)
+    for p in TABLE:
+        if p.name != "test":
+            rows.setdefault(height_of(p.name), []).append(p.name)
     return [rows[h] for h in sorted(rows, reverse=True)]
 
 

@@ -3,9 +3,9 @@
 // samples are in openrt_light_lanes.cpp.
 #include <gtest/gtest.h>
 
-#include "render/path/path_states.h"
 #include "render/surface/lambert.h"
-#include "render/surface/point_block.h"
+#include "render/wave/path_states.h"
+#include "render/wave/point_block.h"
 #include "unit/lanes_support.h"
 
 using namespace openrt;

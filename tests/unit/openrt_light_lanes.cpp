@@ -9,7 +9,7 @@
 #include "render/lights/light_tree.h"
 #include "render/lights/spherical.h"
 #include "render/surface/lobes.h"
-#include "render/surface/points.h"
+#include "render/wave/points.h"
 #include "unit/lanes_support.h"
 
 using namespace openrt;

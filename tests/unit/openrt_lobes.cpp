@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "render/path/sampler.h"
 #include "render/surface/lobes.h"
 #include "render/surface/scatter.h"
+#include "render/wave/sampler.h"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include "render/lights/environment.h"
 #include "render/path/camera_rays.h"
 #include "render/path/spawn_rays.h"
-#include "render/path/wave.h"
 #include "render/surface/bsdf_choice.h"
 #include "render/surface/sample_lobes.h"
+#include "render/wave/wave.h"
 #include "unit/plane_hits.h"
 
 using namespace openrt;

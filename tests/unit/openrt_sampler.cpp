@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "render/path/sampler.h"
+#include "render/wave/sampler.h"
 
 using namespace openrt;
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "render/frame.h"
 #include "render/lights/spherical.h"
-#include "render/path/sampler.h"
+#include "render/orthonormal_basis.h"
+#include "render/wave/sampler.h"
 
 using namespace openrt;
 

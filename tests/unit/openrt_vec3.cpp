@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "render/records.h"
-#include "render/surface/points.h"
 #include "render/surface/scatter.h"
+#include "render/wave/points.h"
 
 using namespace openrt;
 

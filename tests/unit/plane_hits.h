@@ -7,8 +7,8 @@
 #include <numeric>
 #include <vector>
 
-#include "render/path/path_states.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
+#include "render/wave/path_states.h"
 
 namespace openrt::test {
 

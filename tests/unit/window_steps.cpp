@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "session/input/replay.h"
-#include "timeline.h"
+#include "session/replay.h"
+#include "start/world_clock.h"
 #include "xvrml/browser.h"
 #include "xvrml/world.h"
 

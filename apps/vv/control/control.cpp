@@ -14,9 +14,9 @@
 #include "control/pictures_sent.h"
 #include "control/world_commands.h"
 #include "libpicture/files/atomic_file.h"
-#include "outputs.h"
+#include "process/messages.h"
 #include "report/describe.h"
-#include "report/messages.h"
+#include "run/outputs.h"
 
 namespace vv::control {
 

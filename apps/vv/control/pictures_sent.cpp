@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/atomic_file.h"
-#include "pictures.h"
 
 namespace vv::control {
 
@@ -22,7 +21,7 @@ std::atomic<int> threads{0}; // that encode
 Encoded encoded(const picture::Picture& picture, uint32_t channels, const Render& render) {
   try {
     const picture::Format& format = formatOf(render);
-    const std::string bytes = format.encode(wantedPart(picture, channels));
+    const std::string bytes = format.encode(picture::withChannels(picture, channels));
     const std::string facts =
         fmt::format(R"("format":{},"width":{},"height":{})", jsonText(format.suffixes[0]),
                     picture.width, picture.height);

@@ -9,13 +9,13 @@
 
 #include "control/control.h"
 #include "options/shader_text.h"
+#include "process/messages.h"
+#include "process/signals.h"
 #include "report/cluster_report.h"
-#include "report/messages.h"
 #include "report/problems.h"
 #include "session/ending.h"
 #include "session/session.h"
 #include "session/world_loader.h"
-#include "signals.h"
 #include "xvrml/node_plugin.h"
 
 namespace vv::control {

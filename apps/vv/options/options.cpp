@@ -248,11 +248,6 @@ Options readCommandLine(int argc, char** argv) {
     apply(setting, options);
   mergeBackdrop(options);
   checkTogether(options);
-  if (!options.inputScript.empty()) {
-    options.script = std::make_shared<InputScript>(readInputScript(options.inputScript));
-    if (!options.time && !options.frames && !options.opensWindow())
-      options.time = options.script->end;
-  }
   const picture::RenderSettings& render = options.render;
   if (options.from.size() == 1 || options.opensWindow())
     options.view.side = options.from.empty() ? std::optional<picture::Side>() : options.from[0];

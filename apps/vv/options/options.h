@@ -15,11 +15,12 @@
 #include "libpicture/files/formats.h"
 #include "libpicture/renderer.h"
 #include "libpicture/shader_rules.h"
-#include "session/input/input_script.h"
-#include "values.h"
+#include "options/values.h"
 #include "xvrml/world.h"
 
 namespace vv {
+
+struct InputScript;
 
 struct Output {
   std::string path;                        // "-": standard output
@@ -91,7 +92,7 @@ struct Options {
   std::vector<Job> jobs; // requested jobs, in any order
   bool watch = false;
   std::string inputScript, recordInput;      // files of user input; empty: none
-  std::shared_ptr<const InputScript> script; // contents of inputScript
+  std::shared_ptr<const InputScript> script; // contents of inputScript (readScript)
   std::string write, stats;
   xvrml::Encoding writeEncoding = xvrml::Encoding::vrml97; // of --write
   std::string compare;                                     // reference picture; empty: none

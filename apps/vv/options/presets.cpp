@@ -17,7 +17,7 @@
 
 #include "libpicture/built_in_presets.h"
 #include "nearest.h"
-#include "report/messages.h"
+#include "process/messages.h"
 
 namespace vv {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "messages.h"
+#include "process/messages.h"
 
 namespace vv {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "messages.h"
 #include "printable.h"
+#include "process/messages.h"
 #include "xvrml/script_engines.h"
 
 namespace vv {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "describe.h"
-#include "messages.h"
+#include "process/messages.h"
 
 namespace vv {
 

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
-#include "messages.h"
 #include "printable.h"
+#include "process/messages.h"
 
 namespace vv {
 

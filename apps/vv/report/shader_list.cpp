@@ -13,12 +13,12 @@
 #include <nlohmann/json.hpp>
 
 #include "folder_files.h"
-#include "messages.h"
 #include "openrt/openrt.h"
 #include "openrt/openrts.h"
 #include "options/shader_text.h"
 #include "plugin_library.h"
 #include "printable.h"
+#include "process/messages.h"
 #include "system/libraries.h"
 
 namespace vv {

@@ -8,7 +8,6 @@
 
 #include "libpicture/files/formats.h"
 #include "options/names.h"
-#include "pictures.h"
 #include "server/limits.h"
 #include "server/texts.h"
 #include "session/saving.h"
@@ -62,7 +61,8 @@ void Saves::makeFile(const SaveQueue::Wish& wish, const picture::Picture& pictur
   std::string name =
       fileNamePart(std::filesystem::path(world_.session().browser().world().path).stem().string());
   name = fmt::format("{}-{}.{}", name.empty() || name == "-" ? "vv" : name, ++begun_, suffix);
-  auto wanted = std::make_shared<picture::Picture>(wantedPart(picture, options_.render.channels));
+  auto wanted =
+      std::make_shared<picture::Picture>(picture::withChannels(picture, options_.render.channels));
   encoder_.post(
       [this, number = wish.page, name, suffix, wanted] { encode(number, name, suffix, *wanted); });
 }

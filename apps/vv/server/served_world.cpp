@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "report/messages.h"
+#include "process/messages.h"
 #include "server/texts.h"
-#include "world_start.h"
+#include "start/world_start.h"
 
 namespace vv::server {
 

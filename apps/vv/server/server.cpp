@@ -12,9 +12,9 @@
 
 #include "libpicture/files/formats.h"
 #include "options/shader_text.h"
-#include "pictures.h"
+#include "process/messages.h"
+#include "process/signals.h"
 #include "report/cluster_report.h"
-#include "report/messages.h"
 #include "server/address.h"
 #include "server/host.h"
 #include "server/pages.h"
@@ -23,7 +23,6 @@
 #include "server/served_world.h"
 #include "server/texts.h"
 #include "server/worker.h"
-#include "signals.h"
 #include "xvrml/node_plugin.h"
 
 namespace vv::server {

@@ -9,8 +9,7 @@
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "options/names.h"
-#include "pictures.h"
-#include "report/messages.h"
+#include "process/messages.h"
 
 namespace vv {
 
@@ -47,7 +46,7 @@ void PictureWriter::begin(picture::Picture picture, const std::string& path, uin
       if (!format)
         throw std::runtime_error(
             fmt::format("{}: the suffix is none of {}", path, picture::formatSuffixes()));
-      picture::writeRegularFile(path, format->encode(wantedPart(picture, channels)));
+      picture::writeRegularFile(path, format->encode(picture::withChannels(picture, channels)));
       told_ = "saved as " + path + note;
       failed_ = false;
     } catch (const std::bad_alloc&) {

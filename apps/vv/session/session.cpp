@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "look.h"
-#include "report/messages.h"
-#include "timeline.h"
-#include "world_start.h"
+#include "process/messages.h"
+#include "start/look.h"
+#include "start/world_clock.h"
+#include "start/world_start.h"
 
 namespace vv {
 

@@ -19,11 +19,11 @@
 #include "session/fit.h"
 #include "session/guests.h"
 #include "session/inline_queue.h"
-#include "session/input/replay.h"
 #include "session/input/step_order.h"
 #include "session/pick_preparation.h"
 #include "session/picture_loop.h"
 #include "session/pilot.h"
+#include "session/replay.h"
 #include "session/saving.h"
 #include "session/session_clock.h"
 

@@ -2,7 +2,7 @@
 // user, and the facts of the overlay.
 #include <utility>
 
-#include "report/messages.h"
+#include "process/messages.h"
 #include "session/input/view_command.h"
 #include "session/session.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "options/options.h"
-#include "report/messages.h"
-#include "watched.h"
+#include "process/messages.h"
+#include "start/watched.h"
 
 namespace vv {
 

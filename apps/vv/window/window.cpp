@@ -15,8 +15,9 @@
 
 #include "control/control.h"
 #include "options/shader_text.h"
+#include "process/messages.h"
+#include "process/signals.h"
 #include "report/cluster_report.h"
-#include "report/messages.h"
 #include "report/progress.h"
 #include "session/ending.h"
 #include "session/overlay.h"
@@ -24,10 +25,9 @@
 #include "session/session.h"
 #include "session/world_loader.h"
 #include "session/world_watch.h"
-#include "signals.h"
+#include "start/world_start.h"
 #include "window/screen.h"
 #include "window/sound/speaker.h"
-#include "world_start.h"
 #include "xvrml/node_plugin.h"
 
 namespace vv {

@@ -16,6 +16,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "render/lights/emitters.h"
+#include "render/lights/light_sampler.h"
 #include "render/lights/light_sources.h"
 #include "render/lights/shadows.h"
 #include "render/medium/containing_media.h"
@@ -23,6 +25,7 @@
 #include "render/path/guides.h"
 #include "render/path/photon_pass.h"
 #include "render/path/transport.h"
+#include "render/wave/nearest_hits.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -60,6 +63,7 @@ void LocalBackend::prepare() {
   if (snapshot_ && accel_ && !changes_.any() && !motionsDiffer) return;
   auto next = std::make_shared<RenderScene>();
   next->frame = scene_.frame;
+  next->emitters = std::make_shared<Emitters>();
   makeShaders(*next);
   try {
     updateAccel(*next);
@@ -83,9 +87,9 @@ void LocalBackend::prepare() {
   next->absorbingShadows =
       !next->mediumLights.empty() || (next->transparentShadows && hasAbsorption(*next));
   next->samplesPass = samplesPass(*next);
-  next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
+  next->emitters->build(*next, snapshot_.get(), recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
-      next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
+      next->emitters->shapes() != (snapshot_ ? snapshot_->emitters->shapes() : nullptr)) {
     const std::string warning = warnOfNearLamps(*next);
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     warnedOfNearLamp_ = !warning.empty();

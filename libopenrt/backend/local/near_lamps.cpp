@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "render/lights/emitters.h"
 #include "render/rays.h"
 
 namespace openrt {
@@ -45,12 +46,12 @@ void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<
     }
 }
 
-// Returns the offset of rays spawned at a hit, about as computed by render/surface/points.cpp. Sets
+// Returns the offset of rays spawned at a hit, about as computed by render/wave/points.cpp. Sets
 // `unit` to the spacing of floats there.
 double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, double& unit) {
   Vec3d reach = abs(p.origin + t * p.direction);
   if (r.primitive == edit::Primitive::Triangles)
-    for (const Vec3f& corner : cornersOf(r, primitive)) reach = max(reach, abs(Vec3d(corner)));
+    for (const Vec3f& corner : r.cornersOf(primitive)) reach = max(reach, abs(Vec3d(corner)));
   const double along = dot(reach, abs(p.direction));
   unit = 0x1p-23 * along;
   return 7 * 0x1p-24 * std::max(along, 0x1p-6 * largest(reach));
@@ -59,7 +60,7 @@ double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, do
 } // namespace
 
 std::string warnOfNearLamps(const RenderScene& scene) {
-  const EmissiveShapes* shapes = scene.emitters.shapes();
+  const EmissiveShapes* shapes = scene.emitters->shapes();
   if (!shapes || shapes->size() == 0) return {};
   std::vector<Probe> probes;
   const auto count = uint32_t(shapes->size()), stride = std::max(1u, count / most);

@@ -20,6 +20,8 @@
 #include <limits>
 
 #include "render/film/light_image.h"
+#include "render/wave/random_numbers.h"
+#include "scene/quality.h"
 #include "student.h"
 
 namespace openrt {
@@ -316,10 +318,6 @@ class TileErrors {
 } // namespace
 
 double student95(double v) { return student::quantile95(v); }
-
-bool wantsError(const edit::FrameSettingsT& frame) {
-  return (frame.channels & (RT_ERROR | RT_TRUST)) || frame.targetError > 0 || frame.timeLimit > 0;
-}
 
 Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uint32_t seed) {
   uint32_t count = frame.replicates;

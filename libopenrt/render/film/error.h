@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/film/film.h"
-#include "render/path/sampler.h"
+#include "render/wave/sampler.h"
 #include "scene/scene.h"
 
 namespace openrt {
@@ -16,8 +16,6 @@ namespace openrt {
 // Returns the quantile of Student's distribution for two-sided intervals of level 95 %.
 double student95(double degreesOfFreedom);
 
-// Returns whether the frame's settings request error estimates.
-bool wantsError(const edit::FrameSettingsT& frame);
 // Returns the replicates of a frame with the given number of samples. [any]
 Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uint32_t seed);
 

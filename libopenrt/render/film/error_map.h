@@ -10,7 +10,7 @@
 
 #include "render/film/ledger.h"
 #include "render/film/picture_error.h"
-#include "render/frame/tiles.h"
+#include "render/wave/tiles.h"
 
 namespace openrt {
 

@@ -9,7 +9,7 @@
 #include "openrt/openrt.h"
 #include "render/film/error_map.h"
 #include "render/film/sums.h"
-#include "render/frame/tiles.h"
+#include "render/wave/tiles.h"
 #include "scene/channels.h"
 
 namespace openrt {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "render/path/light_stride.h"
+#include "render/wave/light_stride.h"
 
 namespace openrt {
 

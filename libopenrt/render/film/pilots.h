@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "render/film/error.h"
-#include "render/frame/tiles.h"
+#include "render/wave/tiles.h"
 #include "scene/scene.h"
 
 namespace openrt {

@@ -9,6 +9,7 @@
 
 #include "openrt/openrt.h"
 #include "render/film/error.h"
+#include "scene/quality.h"
 
 namespace openrt {
 namespace {

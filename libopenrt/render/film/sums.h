@@ -11,7 +11,7 @@
 
 #include "render/film/hit_counts.h"
 #include "render/film/ledger.h"
-#include "render/path/sampler.h"
+#include "render/wave/sampler.h"
 #include "scene/scene.h"
 
 namespace openrt {
@@ -25,13 +25,6 @@ struct RequiredSums {
   bool names = false;   // true if the names of hits are counted
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
-
-// Facts about a path's random decisions, as bits.
-namespace RandomPath {
-inline constexpr uint8_t decided = 1; // it has taken one
-inline constexpr uint8_t inVain = 2;  // none of its random rays is known to have found light
-inline constexpr uint8_t all = decided | inVain;
-} // namespace RandomPath
 
 // Sums of one pixel, samples added in order. What most frames need comes first: a frame touches
 // only as much of each pixel as its channels need.
@@ -48,7 +41,8 @@ struct PixelSums {
   double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float largest[3] = {};
   uint32_t replicates = 0; // number of complete replicates
-  uint8_t random = 0;      // RandomPath bits of all paths; not 0: one has taken a random decision
+  uint8_t random = 0; // RandomPath bits (wave/random_numbers.h) of all paths; not 0: one has taken
+                      // a random decision
 
   void add(const float radiance[3], float alpha) {
     for (int k = 0; k < 3; k++) {

@@ -8,7 +8,7 @@
 #include "render/film/error.h"
 #include "render/film/light_image.h"
 #include "render/film/pilots.h"
-#include "render/path/light_stride.h"
+#include "render/wave/light_stride.h"
 
 namespace openrt {
 namespace {

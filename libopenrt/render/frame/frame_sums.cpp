@@ -11,7 +11,8 @@
 #include "render/film/error.h"
 #include "render/flush_denormals.h"
 #include "render/frame/result_codec.h"
-#include "render/path/light_stride.h"
+#include "render/wave/light_stride.h"
+#include "scene/quality.h"
 #include "scene/transports.h"
 
 namespace openrt {

@@ -20,7 +20,8 @@
 #include "render/frame/frame_schedule.h"
 #include "render/frame/frame_sums.h"
 #include "render/frame/result_codec.h"
-#include "render/path/light_stride.h"
+#include "render/wave/light_stride.h"
+#include "scene/quality.h"
 
 namespace openrt {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "render/film/film.h"
 #include "render/frame/job.h"
-#include "render/frame/tiles.h"
+#include "render/wave/tiles.h"
 #include "scene/scene.h"
 
 namespace openrt {

@@ -9,9 +9,9 @@
 
 #include "render/film/ledger.h"
 #include "render/film/sums.h"
-#include "render/frame/tiles.h"
-#include "render/path/sampler.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
+#include "render/wave/sampler.h"
+#include "render/wave/tiles.h"
 
 namespace openrt {
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "openrt/openrt.h"
+#include "render/wave/random_numbers.h"
 
 namespace openrt {
 namespace {

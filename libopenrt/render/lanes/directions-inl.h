@@ -1,5 +1,5 @@
-// directions-inl.h: frames and sampled directions of vector lanes: the formulas of render/frame.h
-// and render/surface/scatter.h.
+// directions-inl.h: frames and sampled directions of vector lanes: the formulas of
+// render/orthonormal_basis.h and render/surface/scatter.h.
 
 #if defined(OPENRT_LANES_DIRECTIONS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef OPENRT_LANES_DIRECTIONS_INL_H
@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace openrt {
 namespace HWY_NAMESPACE {
 
-// Moves points off their surfaces: offsetPoint() of render/surface/points.h.
+// Moves points off their surfaces: offsetPoint() of render/wave/points.h.
 inline LaneVec offsetPoint(const LaneVec& p, const LaneVec& n, Lanes error) {
   const auto along = [](Lanes place, Lanes step) {
     const Lanes zero = lanesOf(0), moved = place + step;
@@ -52,7 +52,8 @@ inline Vec3<V> refractAt(const Vec3<V>& d, const Vec3<V>& n, V eta, V cosine, V 
   return r * select(square > zero, constant<V>(1) / sqrt(square), zero);
 }
 
-// Completes unit vectors to right-handed orthonormal frames s, t, n: basisOf() of render/frame.h.
+// Completes unit vectors to right-handed orthonormal frames s, t, n: basisOf() of
+// render/orthonormal_basis.h.
 inline void basisOf(const LaneVec& n, LaneVec& s, LaneVec& t) {
   const auto vector = [](float x, float y, float z) {
     return LaneVec{lanesOf(x), lanesOf(y), lanesOf(z)};

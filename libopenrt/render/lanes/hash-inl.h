@@ -1,4 +1,4 @@
-// hash-inl.h: the hash functions of render/path/sampler.h in vector lanes, with the same results.
+// hash-inl.h: the hash functions of render/wave/sampler.h in vector lanes, with the same results.
 
 #if defined(OPENRT_LANES_HASH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef OPENRT_LANES_HASH_INL_H

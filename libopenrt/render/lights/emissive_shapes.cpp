@@ -7,7 +7,7 @@
 
 #include "render/lights/emissive_surfaces.h"
 #include "render/lights/luminance.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 #include "scene/analytic.h"
 #include "shading/running.h"
 
@@ -251,11 +251,6 @@ Vec3f kernelNormal(const Record& r, const Vec3f& normal) {
   return r.instanced ? r.toRender.transposed(normal) : normal;
 }
 
-std::array<Vec3f, 3> cornersOf(const Record& r, uint32_t primitive) {
-  return {r.placeOf(r.corner(primitive, 0)), r.placeOf(r.corner(primitive, 1)),
-          r.placeOf(r.corner(primitive, 2))};
-}
-
 EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.records.size(), none) {
   std::vector<LightBounds> bounds;
   for (uint32_t id = 0; id < scene.records.size(); id++) add(scene, id, bounds);
@@ -329,7 +324,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     const size_t begin = shapes_.size();
     for (uint32_t i = 0; i < n; i++) {
       Shape& s = shapes_.emplace_back(Shape{id, first + i, 0, false, {}, mirrored, 0});
-      s.corner = cornersOf(r, s.primitive);
+      s.corner = r.cornersOf(s.primitive);
       if (mirrored) std::swap(s.corner[1], s.corner[2]);
     }
     front.assign(n, {});

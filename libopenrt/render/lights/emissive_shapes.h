@@ -86,7 +86,4 @@ class EmissiveShapes {
 // Returns a unit normal in render space as the kernel would return it for a triangle of the record.
 Vec3f kernelNormal(const struct Record& record, const Vec3f& normal);
 
-// Returns the corners of a record's triangle in render space.
-std::array<Vec3f, 3> cornersOf(const Record& record, uint32_t primitive);
-
 } // namespace openrt

@@ -7,6 +7,7 @@
 #include "render/lights/sampled_points.h"
 #include "render/lights/shadows.h"
 #include "render/surface/surface_shader.h"
+#include "render/wave/nearest_hits.h"
 
 namespace openrt {
 
@@ -18,15 +19,15 @@ LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool two
 bool startsLightPaths(const RtsBatch& batch, uint32_t i) {
   const RayHits& hits = *batch.points->rayHits;
   const uint32_t lane = batch.order[i];
-  return batch.scene->emitters.startsLightPaths(hits.record[lane], hits.primitive[lane],
-                                                load(batch.points->hits.direction, i));
+  return batch.scene->emitters->startsLightPaths(hits.record[lane], hits.primitive[lane],
+                                                 load(batch.points->hits.direction, i));
 }
 
 namespace {
 
 // Returns the number of the emissive shape at hit i, or `none`.
 uint32_t shapeAt(const RtsBatch& batch, uint32_t i) {
-  const EmissiveShapes* shapes = batch.scene->emitters.shapes();
+  const EmissiveShapes* shapes = batch.scene->emitters->shapes();
   const RayHits& hits = *batch.points->rayHits;
   const uint32_t lane = batch.order[i];
   return shapes ? shapes->find(hits.record[lane], hits.primitive[lane]) : EmissiveShapes::none;
@@ -63,7 +64,7 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
     bsdfPdf[f] = states.pdf[lane];
     place[f] = j;
   }
-  batch.scene->emitters.pdf(found, lightPdf);
+  batch.scene->emitters->pdf(found, lightPdf);
   for (uint32_t f = 0; f < found.count; f++)
     weight[place[f]] = std::isfinite(lightPdf[f]) ? bsdfPdf[f] / (bsdfPdf[f] + lightPdf[f]) : 0.0f;
   return weight;
@@ -134,7 +135,7 @@ LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampl
                                 wanted};
   SampledLights sampled;
   sampled.allocate(arena, hits.count);
-  batch.scene->emitters.choose(lightPoints, pick[1], arena, sampled);
+  batch.scene->emitters->choose(lightPoints, pick[1], arena, sampled);
   startShadowRays(lightPoints, sampled, out);
   Rays& rays = out.rays;
   for (uint32_t r = 0; r < rays.count; r++)
@@ -169,7 +170,7 @@ namespace {
 // have left the last surface that they have passed.
 void blockUncertain(const StageContext& context, const LightSamples& samples,
                     const float* const origin[3], uint8_t* blocked) {
-  const EmissiveShapes& shapes = *context.scene.emitters.shapes();
+  const EmissiveShapes& shapes = *context.scene.emitters->shapes();
   if (!shapes.anyUncertain()) return;
   const Rays& rays = samples.rays;
   Arena& arena = context.arena;
@@ -288,7 +289,7 @@ void addSeen(const TracedSamples& traced, const float* const response[3],
   const RtsBatch& batch = traced.batch;
   const StageContext context = contextOf(batch);
   const RenderScene& scene = context.scene;
-  const EmissiveShapes& shapes = *scene.emitters.shapes();
+  const EmissiveShapes& shapes = *scene.emitters->shapes();
   const Rays& rays = samples.rays;
   const uint32_t n = rays.count;
   Arena& arena = context.arena;

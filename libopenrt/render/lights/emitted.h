@@ -6,7 +6,7 @@
 #include "render/lights/unsampled_lights.h"
 #include "render/surface/sample_lobes.h"
 #include "render/surface/sent_light.h"
-#include "render/surface/surfaces.h"
+#include "render/wave/boundaries.h"
 
 namespace openrt {
 

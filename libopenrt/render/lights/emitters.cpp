@@ -7,7 +7,7 @@
 #include "render/lights/emissive_surfaces.h"
 #include "render/lights/spherical.h"
 #include "render/render_scene.h"
-#include "render/surface/points.h"
+#include "render/wave/points.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -27,10 +27,10 @@ bool sameEmission(const RenderScene& a, const RenderScene& b) {
 
 const SkySampler& Emitters::tabulateSky(const RenderScene& scene, const RenderScene* before) {
   const ShaderSlot& environment = scene.environment.shader;
-  if (!sky_ && before && before->textures == scene.textures && before->emitters.sky_ &&
+  if (!sky_ && before && before->textures == scene.textures && before->emitters->sky_ &&
       before->environment.shader.params == environment.params &&
       before->environment.shader.shaderClass == environment.shaderClass)
-    sky_ = before->emitters.sky_;
+    sky_ = before->emitters->sky_;
   if (!sky_) sky_ = std::make_shared<const SkySampler>(scene);
   return *sky_;
 }
@@ -40,8 +40,8 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
   scene_ = &scene;
   tabulateSky(scene, before);
   const bool sameTextures = before && before->textures == scene.textures;
-  if (sameTextures && samePlaces && before->emitters.shapes_ && sameEmission(scene, *before))
-    shapes_ = before->emitters.shapes_;
+  if (sameTextures && samePlaces && before->emitters->shapes_ && sameEmission(scene, *before))
+    shapes_ = before->emitters->shapes_;
   else
     shapes_ = std::make_shared<const EmissiveShapes>(scene);
   const Affine& m = scene.environment.toLocal;

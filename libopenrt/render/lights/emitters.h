@@ -10,18 +10,11 @@
 
 #include "render/lights/emissive_shapes.h"
 #include "render/lights/sky_sampler.h"
-#include "render/rays.h"
+#include "render/wave/path_states.h"
 
 namespace openrt {
 
 struct RenderScene;
-
-// The reference point that light is sampled for.
-struct LightSampleContext {
-  Vec3f position;
-  // Unit normal if light counts from its side only; 0 0 0: light counts from everywhere.
-  Vec3f normal;
-};
 
 // A sampled direction towards an emitter.
 struct LightSample {

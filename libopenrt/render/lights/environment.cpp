@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/emitters.h"
+#include "render/surface/sanitize_output.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -35,7 +37,7 @@ SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const ui
 
 void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLights& unsampled,
                     PixelSamples& found) {
-  const Emitters& emitters = context.scene.emitters;
+  const Emitters& emitters = *context.scene.emitters;
   const RtsClass* shaderClass = context.scene.environment.shader.shaderClass;
   const uint32_t n = uint32_t(wave.missed.size());
   if (n == 0 || !shaderClass || !shaderClass->miss) return;

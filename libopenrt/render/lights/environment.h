@@ -3,8 +3,8 @@
 #pragma once
 
 #include "render/lights/unsampled_lights.h"
-#include "render/path/pixel_samples.h"
-#include "render/path/wave.h"
+#include "render/wave/pixel_samples.h"
+#include "render/wave/wave.h"
 
 namespace openrt {
 

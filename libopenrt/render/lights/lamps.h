@@ -2,8 +2,8 @@
 // by lobes. [render]
 #pragma once
 
-#include "render/surface/batch.h"
 #include "render/surface/sent_light.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 

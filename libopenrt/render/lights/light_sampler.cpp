@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 #include "scene/transports.h"
 #include "shading/running.h"
 

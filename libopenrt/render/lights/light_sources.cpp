@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "render/frame.h"
-#include "render/surface/points.h"
+#include "render/lights/emitters.h"
+#include "render/orthonormal_basis.h"
+#include "render/wave/points.h"
 #include "scene/analytic.h"
 
 namespace openrt {
@@ -65,7 +66,7 @@ void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
       }
     } else if (r.primitive == edit::Primitive::Triangles && r.vertices) {
       for (uint32_t t = 0; t < r.primitives; t++)
-        for (const Vec3f& p : cornersOf(r, t)) add(p);
+        for (const Vec3f& p : r.cornersOf(t)) add(p);
     }
   }
   if (!(low.x <= high.x) || !(low.y <= high.y) || !(low.z <= high.z)) return;
@@ -94,11 +95,11 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before, 
     sources_.push_back(source);
     cumulative_.push_back(total += power);
   };
-  const EmissiveShapes* shapes = scene.emitters.shapes();
+  const EmissiveShapes* shapes = scene.emitters->shapes();
   for (uint32_t i = 0; shapes && i < shapes->size(); i++)
     add({none, i, {}}, (*shapes)[i].power * M_PI);
-  if (scene.emitters.hasSun())
-    add({none, none, {}}, scene.emitters.sky()->sunIrradiance() * M_PI * radius_ * radius_);
+  if (scene.emitters->hasSun())
+    add({none, none, {}}, scene.emitters->sky()->sunIrradiance() * M_PI * radius_ * radius_);
   if (kind == Kind::emitters) return;
   for (uint32_t i = 0; i < scene.lights.size(); i++) {
     // Without shadows a light shines straight through glass, so its light paths would count twice.
@@ -159,14 +160,14 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
   }
   if (source.shape == none) {
     const double rest = std::clamp((at - before) / power, 0.0, 1 - 0x1p-53),
-                 pdf = scene.emitters.sampleSun(rest, direction[0], direction[1], axis);
+                 pdf = scene.emitters->sampleSun(rest, direction[0], direction[1], axis);
     start.sun = true;
     start.direction = -axis;
     start.origin = startOfParallel(start.direction, place);
     start.weight = pdf > 0 ? M_PI * radius_ * radius_ / (probability * pdf) : 0;
     return start;
   }
-  const EmissiveShapes& shapes = *scene.emitters.shapes();
+  const EmissiveShapes& shapes = *scene.emitters->shapes();
   start.place = shapes.place(scene, source.shape, place[0], place[1]);
   const Vec3f position = start.place.position, normal = start.place.normal;
   start.origin = position;

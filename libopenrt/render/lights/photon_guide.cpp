@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "render/frame.h"
+#include "render/orthonormal_basis.h"
 
 namespace openrt {
 namespace {

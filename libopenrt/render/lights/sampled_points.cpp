@@ -80,7 +80,7 @@ Rounding roundingOfSurface(const Record& r, const Vec3f& direction, const Vec3f&
 float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const Vec3f& eye,
                    const Vec3f& origin) {
   if (sample.shape == EmissiveShapes::none) return std::numeric_limits<float>::infinity();
-  const EmissiveShapes::Shape& s = (*scene.emitters.shapes())[sample.shape];
+  const EmissiveShapes::Shape& s = (*scene.emitters->shapes())[sample.shape];
   const Record& r = scene.records[s.record];
   const double distance = sample.distance;
   const Rounding rounding = s.sphere    ? roundingOfSphere(r, sample.direction, origin, distance)
@@ -104,7 +104,7 @@ const Vec3f* uniformRadiance(const EmissiveShapes::Shape& s, const Vec3f& direct
 
 void writeSampledHit(const RenderScene& scene, const LightSample& sample, const Rays& rays,
                      uint32_t lane, RayHits& hits) {
-  const EmissiveShapes::Shape& s = (*scene.emitters.shapes())[sample.shape];
+  const EmissiveShapes::Shape& s = (*scene.emitters->shapes())[sample.shape];
   hits.record[lane] = s.record;
   hits.primitive[lane] = s.primitive;
   hits.t[lane] = sample.distance;

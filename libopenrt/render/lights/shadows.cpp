@@ -9,7 +9,7 @@
 #include "render/film/ledger.h"
 #include "render/surface/lobes.h"
 #include "render/surface/surface_shader.h"
-#include "render/surface/surfaces.h"
+#include "render/wave/boundaries.h"
 #include "scene/transports.h"
 #include "shading/running.h"
 

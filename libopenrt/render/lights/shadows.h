@@ -1,7 +1,7 @@
 // shadows.h: shadow rays: visibility of one light from the points of a batch. [render]
 #pragma once
 
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "render/lights/luminance.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 #include "shading/running.h"
 
 namespace openrt {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/frame.h"
+#include "render/orthonormal_basis.h"
 
 namespace openrt {
 namespace {

@@ -4,8 +4,9 @@
 #pragma once
 
 #include "render/film/ledger.h"
-#include "render/path/path_states.h"
+#include "render/lights/emitters.h"
 #include "render/render_scene.h"
+#include "render/wave/path_states.h"
 
 namespace openrt {
 
@@ -18,8 +19,8 @@ inline bool canOnlyReachSky(const RenderScene& scene, PathFlags path) {
 class UnsampledLights {
  public:
   UnsampledLights(const RenderScene& scene, Ledger& ledger)
-      : scene_(scene), ledger_(ledger), brightestShape_(scene.emitters.brightestShape()),
-        brightestSky_(scene.emitters.brightestSky()), hasSun_(scene.emitters.hasSun()) {}
+      : scene_(scene), ledger_(ledger), brightestShape_(scene.emitters->brightestShape()),
+        brightestSky_(scene.emitters->brightestSky()), hasSun_(scene.emitters->hasSun()) {}
   // Counts a ray, if light sampling cannot find the emitter that it may hit. unguidedWeight: as in
   // RayState. A sky without sun has no brighter part that rays could be guided to. Without its sun
   // a sky has none that rays could miss.

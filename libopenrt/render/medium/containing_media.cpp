@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "render/surface/surfaces.h"
+#include "render/wave/nearest_hits.h"
 
 namespace openrt {
 namespace {

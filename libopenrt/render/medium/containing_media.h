@@ -1,7 +1,7 @@
 // containing_media.h: the media that a point lies in. [render]
 #pragma once
 
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/surface/point_block.h"
+#include "render/wave/point_block.h"
 
 namespace openrt {
 namespace {

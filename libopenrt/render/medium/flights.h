@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "render/path/random_numbers.h"
-#include "render/path/wave.h"
+#include "render/wave/random_numbers.h"
+#include "render/wave/wave.h"
 
 namespace openrt {
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "render/surface/media.h"
+#include "render/lights/light_sampler.h"
+#include "render/media.h"
 #include "scene/transports.h"
 
 namespace openrt {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/frame.h"
+#include "render/orthonormal_basis.h"
 
 namespace openrt {
 

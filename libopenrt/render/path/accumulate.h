@@ -3,9 +3,9 @@
 #pragma once
 
 #include "render/lights/environment.h"
-#include "render/path/pixel_samples.h"
 #include "render/path/spawn_rays.h"
 #include "render/surface/sent_light.h"
+#include "render/wave/pixel_samples.h"
 
 namespace openrt {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 

@@ -12,7 +12,7 @@
 
 #include "render/film/sums.h"
 #include "render/lights/photon_guide.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 

@@ -6,6 +6,7 @@
 #include "render/lights/emitted.h"
 #include "render/lights/environment.h"
 #include "render/surface/bsdf_choice.h"
+#include "render/surface/sanitize_output.h"
 #include "render/surface/surface_shader.h"
 
 namespace openrt {
@@ -213,7 +214,7 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
 // Adds the light of a sky with a sun that rays see which have left the scene.
 void GuidedRays::addSun(const Stage& stage, const Wave& wave) {
   const auto n = uint32_t(wave.missed.size());
-  if (n == 0 || !context_.scene.emitters.hasSun()) return;
+  if (n == 0 || !context_.scene.emitters->hasSun()) return;
   ArenaScope scope(context_.arena);
   const SkyAlongRays sky = evaluateSky(context_, wave.rays, wave.missed.data(), n);
   for (uint32_t i = 0; i < n; i++) {

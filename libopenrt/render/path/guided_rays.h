@@ -8,9 +8,9 @@
 
 #include "render/lights/photon_guide.h"
 #include "render/path/guide_trial.h"
-#include "render/path/pixel_samples.h"
 #include "render/path/spawn_rays.h"
-#include "render/path/wave.h"
+#include "render/wave/pixel_samples.h"
+#include "render/wave/wave.h"
 
 namespace openrt {
 

@@ -7,8 +7,10 @@
 #include "render/film/error.h"
 #include "render/motion.h"
 #include "render/surface/bsdf_samples.h"
+#include "render/surface/sanitize_output.h"
 #include "render/surface/scatter.h"
 #include "render/surface/surface_shader.h"
+#include "scene/quality.h"
 #include "scene/transports.h"
 #include "shading/running.h"
 

@@ -13,9 +13,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/path/pixel_samples.h"
-#include "render/path/wave.h"
-#include "render/surface/surfaces.h"
+#include "render/wave/boundaries.h"
+#include "render/wave/pixel_samples.h"
+#include "render/wave/wave.h"
 
 namespace openrt {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/emitters.h"
 #include "render/lights/environment.h"
 #include "shading/running.h"
 
@@ -91,7 +92,7 @@ bool LightDepartures::applyEmission(const Points& points, uint32_t i, RayState& 
   Departure& departure = departures_[state.path];
   Vec3f flux;
   if (start.shape != LightSources::none) {
-    const Vec3f radiance = context_.scene.emitters.shapes()->radiance(
+    const Vec3f radiance = context_.scene.emitters->shapes()->radiance(
         context_.scene, start.shape, start.place, start.direction, context_.arena);
     flux = checked(Vec3f(Vec3d(radiance) * start.weight));
   } else if (start.sun) {

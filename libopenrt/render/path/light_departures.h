@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "render/lights/light_sources.h"
-#include "render/path/random_numbers.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
+#include "render/wave/random_numbers.h"
 
 namespace openrt {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/lights/emitters.h"
 #include "render/path/camera_rays.h"
 #include "render/path/guided_rays.h"
 #include "render/surface/lobes.h"
@@ -76,7 +77,7 @@ void addLightPathBound(const CameraPaths& paths, const LobeSampling& sampling,
                        const TileFootprint& footprint) {
   const RtsBatch& batch = paths.batch;
   const double flux = concentration * batch.scene->lightPathFlux;
-  const Emitters& emitters = batch.scene->emitters;
+  const Emitters& emitters = *batch.scene->emitters;
   const bool shapes = emitters.brightestShape() > 0, sun = emitters.hasSun();
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const RayState state = (*batch.states)[batch.order[i]];

@@ -4,9 +4,9 @@
 // three), in a part of its pixels. [render]
 #pragma once
 
-#include "render/frame/tiles.h"
 #include "render/path/spawn_rays.h"
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
+#include "render/wave/tiles.h"
 
 namespace openrt {
 

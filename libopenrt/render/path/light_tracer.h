@@ -17,9 +17,9 @@
 #include "render/lights/photon_guide.h"
 #include "render/path/light_departures.h"
 #include "render/path/sensor_plane.h"
-#include "render/path/wave.h"
 #include "render/surface/sample_lobes.h"
-#include "render/surface/surfaces.h"
+#include "render/wave/boundaries.h"
+#include "render/wave/wave.h"
 
 namespace openrt {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "render/lights/emitters.h"
 #include "render/lights/lamps.h"
 #include "render/path/tile.h"
 
@@ -73,7 +74,7 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
   for (uint32_t i = 0; i < n; i++) store(load(sent.radiance, i), lampLight_, wave.states.path[i]);
   if (!scene_.records.empty() || scene_.skyShines) continueFromLobes(batch, {}, sent);
   // Under a sky of one radiance and nothing else every path finds the same light.
-  const SkySampler* sky = scene_.emitters.sky();
+  const SkySampler* sky = scene_.emitters->sky();
   const bool even = scene_.records.empty() && sky && !sky->black() && !sky->usable();
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t path = wave.states.path[i];

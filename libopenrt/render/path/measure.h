@@ -4,7 +4,7 @@
 // [render]
 #pragma once
 
-#include "render/surface/points.h"
+#include "render/wave/points.h"
 #include "scene/scene.h"
 
 namespace openrt {

@@ -9,8 +9,9 @@
 #include "render/lights/light_sources.h"
 #include "render/path/guides.h"
 #include "render/path/light_tracer.h"
-#include "render/path/sampler.h"
 #include "render/path/tile.h"
+#include "render/wave/sampler.h"
+#include "scene/quality.h"
 #include "scene/transports.h"
 
 namespace openrt {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "render/lights/emitters.h"
 #include "render/lights/shadows.h"
 #include "render/path/guided_rays.h"
-#include "render/path/wave.h"
 #include "render/surface/continue_paths.h"
+#include "render/wave/wave.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -64,18 +65,19 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   const bool path = tracesPaths(batch.scene->frame.transport),
              straight = std::any_of(samples.begin(), samples.end(),
                                     [](const SampleArrays&sample) { return !sample.deflected; });
-  const Continuation from{
-      .points = batch.points,
-      .states = batch.states,
-      .level = paths.level,
-      .choice = sampling.choices[0],
-      .survival = sampling.choices[1],
-      .energyCut = batch.scene->frame.energyCut,
-      .crossing = boundaries.crossing,
-      .twoSided = path ? transmitsByHit(batch) : nullptr,
-      .unsampled = straight && path && batch.scene->emitters.any() ? findUnsampled(batch) : nullptr,
-      .count = arena.take<uint32_t>(padded(n)),
-      .random = arena.take<uint32_t>(padded(n))};
+  const Continuation from{.points = batch.points,
+                          .states = batch.states,
+                          .level = paths.level,
+                          .choice = sampling.choices[0],
+                          .survival = sampling.choices[1],
+                          .energyCut = batch.scene->frame.energyCut,
+                          .crossing = boundaries.crossing,
+                          .twoSided = path ? transmitsByHit(batch) : nullptr,
+                          .unsampled = straight && path && batch.scene->emitters->any()
+                                           ? findUnsampled(batch)
+                                           : nullptr,
+                          .count = arena.take<uint32_t>(padded(n)),
+                          .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);
   if (path)
     markRandom(paths, samples, boundaries, from.random);
@@ -92,7 +94,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
 // Spawns a ray through a boundary that has no effect.
 void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
   const RenderScene& scene = *paths.batch.scene;
-  const bool sampled = !scene.emitters.any() ||
+  const bool sampled = !scene.emitters->any() ||
                        (scene.samplesPass && (shaderAt(paths.batch, i).traits & RTS_TRANSPARENT));
   spawnStraightRay(paths, i, {1, 1, 1}, behind, {.guided = true, .sampled = sampled});
 }

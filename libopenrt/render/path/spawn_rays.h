@@ -3,9 +3,9 @@
 #pragma once
 
 #include "render/lights/unsampled_lights.h"
-#include "render/path/random_numbers.h"
 #include "render/surface/sample_lobes.h"
-#include "render/surface/surfaces.h"
+#include "render/wave/boundaries.h"
+#include "render/wave/random_numbers.h"
 
 namespace openrt {
 

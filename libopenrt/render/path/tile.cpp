@@ -11,9 +11,10 @@
 #include "render/lights/lamps.h"
 #include "render/path/accumulate.h"
 #include "render/path/camera_rays.h"
-#include "render/path/light_stride.h"
 #include "render/path/measure.h"
+#include "render/surface/sanitize_output.h"
 #include "render/surface/surface_shader.h"
+#include "render/wave/light_stride.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -247,7 +248,7 @@ bool TileRenderer::goesOn(const RtsBatch& batch, uint32_t i) const {
 }
 
 bool TileRenderer::samplesEmitters(const RtsBatch& batch) const {
-  if (!scene_.emitters.any()) return false;
+  if (!scene_.emitters->any()) return false;
   if (level_ < scene_.frame.depth) return true;
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
     if (goesOn(batch, i)) return true;

@@ -11,17 +11,17 @@
 
 #include "render/film/ledger.h"
 #include "render/film/sums.h"
-#include "render/frame/tiles.h"
 #include "render/lights/unsampled_lights.h"
 #include "render/path/guided_rays.h"
 #include "render/path/guides.h"
 #include "render/path/light_path_bound.h"
-#include "render/path/light_stride.h"
-#include "render/path/pixel_samples.h"
-#include "render/path/random_numbers.h"
 #include "render/path/spawn_rays.h"
-#include "render/path/wave.h"
 #include "render/surface/sent_light.h"
+#include "render/wave/light_stride.h"
+#include "render/wave/pixel_samples.h"
+#include "render/wave/random_numbers.h"
+#include "render/wave/tiles.h"
+#include "render/wave/wave.h"
 #include "scene/transports.h"
 
 namespace openrt {

@@ -7,7 +7,8 @@
 
 #include "render/lights/shadows.h"
 #include "render/path/tile.h"
-#include "render/surface/surfaces.h"
+#include "render/surface/sanitize_output.h"
+#include "render/wave/nearest_hits.h"
 #include "shading/running.h"
 
 namespace openrt {

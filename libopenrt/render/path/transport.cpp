@@ -2,10 +2,11 @@
 
 #include <cstring>
 
+#include "render/lights/emitters.h"
+#include "render/media.h"
 #include "render/medium/medium_lights.h"
 #include "render/path/sensor_plane.h"
 #include "render/render_scene.h"
-#include "render/surface/media.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -115,7 +116,7 @@ bool sunMatters(RenderScene& scene, const SceneContents& contents, const RenderS
   if (scene.frame.transport != RT_TRANSPORT_AUTO || (contents.bits & needed) != needed ||
       (contents.bits & hasStarts) || scene.frame.measure)
     return false;
-  return scene.emitters.tabulateSky(scene, before).hasSun();
+  return scene.emitters->tabulateSky(scene, before).hasSun();
 }
 
 } // namespace

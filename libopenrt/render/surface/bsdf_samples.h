@@ -3,8 +3,8 @@
 // paths compute the same numbers for all hits of a batch at once (sample_arrays.h). [render]
 #pragma once
 
+#include "render/media.h"
 #include "render/surface/lobes.h"
-#include "render/surface/media.h"
 #include "scene/vec3.h"
 
 namespace openrt {

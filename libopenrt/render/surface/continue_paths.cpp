@@ -1,7 +1,7 @@
 #include "render/surface/continue_paths.h"
 
-#include "render/path/sampler.h"
 #include "render/surface/bsdf_choice.h"
+#include "render/wave/sampler.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/surface/continue_paths.cpp"

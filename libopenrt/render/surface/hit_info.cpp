@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 namespace {
@@ -30,7 +30,7 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
   const Record& r = recordAt(batch, i);
   if (!r.texCoords) return;
   const uint32_t primitive = primitiveAt(batch, i);
-  const auto p = cornersOf(r, primitive);
+  const auto p = r.cornersOf(primitive);
   const uint32_t* corner = r.indices + 3 * size_t(primitive);
   const float *a = r.texCoords + 2 * size_t(corner[0]), *b = r.texCoords + 2 * size_t(corner[1]),
               *c = r.texCoords + 2 * size_t(corner[2]);

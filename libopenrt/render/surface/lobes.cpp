@@ -11,10 +11,10 @@
 #include <initializer_list>
 #include <optional>
 
-#include "render/frame.h"
-#include "render/surface/batch.h"
+#include "render/orthonormal_basis.h"
 #include "render/surface/lambert.h"
 #include "render/surface/scatter.h"
+#include "render/wave/batch.h"
 #include "shading/running.h"
 
 namespace openrt {

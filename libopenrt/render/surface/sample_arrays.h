@@ -4,7 +4,7 @@
 #pragma once
 
 #include "render/surface/sample_lobes.h"
-#include "render/surface/surfaces.h"
+#include "render/wave/boundaries.h"
 
 namespace openrt {
 

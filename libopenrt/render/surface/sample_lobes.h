@@ -2,9 +2,9 @@
 // batch: a direction for each non-specular lobe, and the numbers that select one sample. [render]
 #pragma once
 
-#include "render/path/random_numbers.h"
-#include "render/surface/batch.h"
 #include "render/surface/lobes.h"
+#include "render/wave/batch.h"
+#include "render/wave/random_numbers.h"
 
 namespace openrt {
 

@@ -2,7 +2,7 @@
 // are the BSDF of each hit. [render]
 #pragma once
 
-#include "render/surface/batch.h"
+#include "render/wave/batch.h"
 
 namespace openrt {
 

@@ -1,0 +1,38 @@
+#include "start/look.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "libpicture/bare_model.h"
+#include "start/world_start.h"
+
+namespace vv {
+
+namespace {
+
+// PPM and PFM are for programs. EXR is both: it has the light of the studio, but no backdrop.
+bool isForScreens(const Output& output) {
+  if (output.film != picture::FilmKind::none) return true;
+  const std::string_view name = output.format->name;
+  return name != "PPM" && name != "PFM";
+}
+
+} // namespace
+
+void chooseLook(const Options& options, const xvrml::World& world,
+                picture::RenderSettings& settings) {
+  if (!picture::leavesLookOpen(options.render) || !options.compare.empty() || options.audit ||
+      options.falseColour || options.render.channels != RT_RGBA)
+    return;
+  if (!options.outputs.empty() &&
+      std::none_of(options.outputs.begin(), options.outputs.end(), isForScreens))
+    return;
+  picture::Look look =
+      picture::lookOf(world, !options.shaders.empty() && isOfCommandLine(options, world));
+  if (look == picture::Look::studio && options.measures()) look = picture::Look::backdrop;
+  const picture::ViewTransform view = settings.view;
+  picture::choose(look, settings);
+  if (options.viewGiven) settings.view = view;
+}
+
+} // namespace vv
