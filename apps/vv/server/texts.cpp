@@ -34,8 +34,10 @@ std::string nameOf(const xvrml::ViewpointName& viewpoint, size_t number) {
 
 std::string helloText() {
   Json keys = Json::array(), mouse = Json::array();
+  // Pages do not end vv, and they have no legend of false colours.
   for (const KeyInfo& key : keyTable())
-    if (key.action != Action::quit) keys.push_back({key.keys, key.text});
+    if (key.action != Action::quit && key.action != Action::falseColours)
+      keys.push_back({key.keys, key.text});
   for (const MouseInfo& one : mouseTable()) mouse.push_back({one.what, one.text});
   return written({{"type", "hello"}, {"version", version()}, {"keys", keys}, {"mouse", mouse}});
 }
