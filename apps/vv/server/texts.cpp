@@ -1,11 +1,11 @@
 #include "server/texts.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "lower_case.h"
 #include "report/describe.h"
 #include "session/input/keys.h"
 
@@ -90,12 +90,7 @@ std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, i
 
 std::string webUrlOf(std::span<const std::string> urls) {
   for (const std::string& url : urls)
-    for (const std::string_view scheme : {"http://", "https://"}) {
-      const std::string_view begin = std::string_view(url).substr(0, scheme.size());
-      if (std::equal(begin.begin(), begin.end(), scheme.begin(), scheme.end(),
-                     [](unsigned char a, unsigned char b) { return std::tolower(a) == b; }))
-        return url;
-    }
+    if (beginsWithoutCase(url, "http://") || beginsWithoutCase(url, "https://")) return url;
   return {};
 }
 
