@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/film/error.h"
+#include "render/wave/random_numbers.h"
 
 using namespace openrt;
 
