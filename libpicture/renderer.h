@@ -55,7 +55,7 @@ struct RenderSettings {
   bool linear = true;
   ViewTransform view;            // how files for screens, and screens, show linear light
   bool exactShapes = false;      // value of xvrml::OpenRTMapper::setExactShapes
-  bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
+  bool multiplyTextures = false; // value of xvrml::OpenRTMapper::setMultiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
   std::string backend = "local";

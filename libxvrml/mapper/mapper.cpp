@@ -1,5 +1,5 @@
 // mapper.cpp: OpenRTMapper: the steps from a world to rt* calls, frame by frame. The interface is
-// in xvrml/openrt.h.
+// in xvrml/mapper.h.
 #include <algorithm>
 #include <cmath>
 #include <new>

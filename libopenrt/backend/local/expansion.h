@@ -101,8 +101,8 @@ class Expansion {
   }
 
  private:
-  // The largest expansions are those of insideInterval() in crossing.cpp: 3 x 16 products of 4
-  // terms.
+  // The largest expansions are those of sideOfPoint() in crossing.cpp: three products of 16 terms
+  // with 4 terms, and each product of two terms has two, 384 in all.
   static constexpr size_t capacity = 800;
   size_t count_ = 0;
   std::array<double, capacity> terms_;

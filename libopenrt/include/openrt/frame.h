@@ -302,8 +302,9 @@ typedef struct RTstats {
                          after 512 straight passages; times the radiance beyond it is the loss */
   double cutByEnergy; /* the same of branches that RT_ENERGY_CUT ended */
   double clipped;     /* radiance that RT_CLAMP took away */
-  uint64_t unreachedLights; /* lights without extent that can be reached only through mirrors or
-                               glass; RT_TRANSPORT_LIGHT alone follows these, and has 0 here */
+  uint64_t unreachedLights; /* lights whose rays by way of mirrors or glass are not followed;
+                               RT_TRANSPORT_LIGHT follows them if the class of the light has an
+                               extent and that of the camera has project */
   uint64_t shaderFaults; /* hits at which a shader returned NaN or infinity, which counts as 0; the
                             log names the class */
   uint64_t wrongHits;    /* hits of slivers that single precision reported and double precision

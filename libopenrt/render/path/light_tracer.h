@@ -7,8 +7,9 @@
 // Illuminance sensors have no lens to connect to. There a path adds its flux to each cell of the
 // grid that it crosses (sensor_plane.h): "crossed" instead of "connected" below.
 //
-// The path tracer leaves out exactly these paths (RayState::pathClass): the surface seen by the
-// camera is non-specular, and the vertex next to the light is specular.
+// The camera paths of the same frame leave out exactly these paths (PathFlags::pathClass,
+// PathClass::caustic): the surface seen by the camera is non-specular, and the vertex next to the
+// light is specular. They keep the light of the sky beside its sun (unsampled_lights.h).
 #pragma once
 
 #include <atomic>

@@ -30,8 +30,8 @@ struct SensorInfo {
 };
 
 struct MapOptions {
-  // Decodes sRGB colours (vv-cli.md "Colour"). If false, the standard's equation is applied to the
-  // numbers as written.
+  // Decodes sRGB colours (docs/decisions/0007-two-colour-modes.md). If false, the standard's
+  // equation is applied to the numbers as written.
   bool linearColor = true;
   enum class Headlight : uint8_t { automatic, on, off } headlight = Headlight::automatic;
   // aspect: width / height. The smaller angle of view is the Viewpoint's fieldOfView (clause 6.53).

@@ -154,10 +154,11 @@ struct PlanContext {
 };
 
 using PlanFunction = void (*)(PlanContext& context, Node& node, Plan& plan);
-// Returns the plan function of a node type; null if nothing is drawn for the type. Plug-ins
-// register their node types with setPlan.
+// Returns the plan function of a node type; null if nothing is drawn for the type. The table of
+// plans.cpp has them. Types of plug-ins have none: what their nodes expand to is planned instead
+// (renderedNode() in xvrml/world.h).
 PlanFunction planOf(const NodeType& type);
-void setPlan(const NodeType& type, PlanFunction plan);
+void setPlan(const NodeType& type, PlanFunction plan); // replaces it; nothing calls this today
 
 class Graph {
  public:
