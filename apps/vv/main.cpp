@@ -17,7 +17,7 @@
 #include "run/inputs.h"
 #include "server/server.h"
 #include "session/input/keys.h"
-#include "session/replay.h"
+#include "session/read_script.h"
 #include "window/window.h"
 
 namespace {

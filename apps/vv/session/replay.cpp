@@ -2,13 +2,6 @@
 
 namespace vv {
 
-void readScript(Options& options) {
-  if (options.inputScript.empty()) return;
-  options.script = std::make_shared<InputScript>(readInputScript(options.inputScript));
-  if (!options.time && !options.frames && !options.opensWindow())
-    options.time = options.script->end;
-}
-
 bool Replay::step(double time) {
   if (waiting_) return false;
   if (time != stepped_) {

@@ -5,16 +5,11 @@
 
 #include <functional>
 
-#include "options/options.h"
 #include "session/input/input_script.h"
 #include "session/input/step_order.h"
 #include "session/pilot.h"
 
 namespace vv {
-
-// Reads the script of --input, if there is one. A still picture shows the end of it by default.
-// Throws Failure with exitInput. [main thread]
-void readScript(Options& options);
 
 class Replay {
  public:
