@@ -92,7 +92,7 @@ class OidnFilter {
   // Replaces images.colour. The same images give the same result on the same machine with the same
   // library. Waits until it is done. Throws OidnError; the images are as they were then.
   void denoise(OidnImages& images);
-  const std::string& name() const; // of the library
+  const std::string& name() const; // the library's name
 
  private:
   struct Impl;

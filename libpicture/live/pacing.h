@@ -59,7 +59,7 @@ class Pacing {
   // enough apart that small variations of the time do not change the step.
   FrameSize at(int step, int width, int height) const;
   int best() const;                             // the best step
-  double costOf(const FrameSize& frame) const;  // of a pixel, in costs of one with light
+  double costOf(const FrameSize& frame) const;  // the cost of a pixel, in costs of one with light
   double seconds(const FrameSize& frame) const; // as predicted(), with a guess at first
 
   double budget_; // seconds per frame

@@ -63,7 +63,7 @@ struct Guides {
   // 1: the surface has moved in the world since the frame before, or is new. isGone: it has
   // vanished in the frame after.
   Plane moves;
-  Plane3 normal; // of length 1
+  Plane3 normal; // has the length 1
 };
 
 // What is accumulated over time for each pixel, or for each cell.
@@ -75,7 +75,7 @@ struct Accumulated {
 
   Plane3 light;       // illumination: radiance / albedo; luma and colour differences
   Plane3 recent;      // the same over the last few frames only
-  Plane mean, square; // of the illumination's luma and of its square
+  Plane mean, square; // those of the illumination's luma and of its square
   Plane frames;       // number of frames in `light`; 0: nothing is known
   Plane noise;        // 0 to 1: whether illumination was found to be noisy around here
 };

@@ -47,7 +47,7 @@ struct Columns {
 
   int first;
   Table table;
-  Lanes part; // of the pixel's centre from the centre of its cell, in cells
+  Lanes part; // how far the pixel's centre is from the centre of its cell, in cells
 };
 
 // Weights of three cells for a place `part` from the middle one: the quadratic B-spline.

@@ -48,7 +48,7 @@ inline double random(uint32_t pixel, uint32_t frame, uint32_t dimension) {
 struct Shot {
   int width = 96, height = 72;
   picture::live::FrameCamera camera;
-  uint32_t number = 0;  // of the frame: places of samples and noise follow from it
+  uint32_t number = 0;  // the number of the frame: places of samples and noise follow from it
   bool centred = false; // samples lie in the middles of the pixels
   bool noisy = false;   // a sample has light only by chance, one in four, and then four times more
 };

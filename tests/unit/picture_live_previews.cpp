@@ -141,7 +141,7 @@ TEST(LivePreview, accumulatesWhatStandsStill) {
   LiveRenderer live(*browser, settingsOf());
   const std::vector<uint8_t> truth =
       displayBytes(headless(*other, settingsOf(), frameOf(Purpose::still, 64, 48, 512)));
-  const auto errorOf = [&](const LivePicture& picture) { // of the box
+  const auto errorOf = [&](const LivePicture& picture) { // that of the box
     return differenceIn(picture, truth, 30, 18, 34, 30);
   };
   const double first = errorOf(finish(live, previewOf()));

@@ -28,7 +28,7 @@ struct Client {
   NodeNumbers numbers;
   struct Subscription {
     xvrml::NodeRef node;
-    uint64_t number = 0; // of Browser::listen
+    uint64_t number = 0; // the number that Browser::listen gave
   };
   std::map<std::string, Subscription> subscriptions; // by node and field as the client names them
 };

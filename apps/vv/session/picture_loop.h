@@ -95,7 +95,7 @@ class PictureLoop {
   bool hasStill() const { return isRefining() && still_ != Progress::none; }
   // Tells whether the still frame was cancelled for another viewer's.
   bool isInterrupted() const;
-  uint64_t number() const { return number_; } // of the last frame
+  uint64_t number() const { return number_; } // the number of the last frame
   // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
@@ -115,7 +115,7 @@ class PictureLoop {
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   picture::FrameSize sizeOf(Phase phase);
-  int previewSide(int side) const; // of a preview as large as may be
+  int previewSide(int side) const; // the side of a preview as large as may be
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   picture::View stillViewOf(const Pilot& pilot, double aspect) const;
   void advanceStill(const Pilot& pilot, Fit& fit);
@@ -142,7 +142,7 @@ class PictureLoop {
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
-  double exposure_ = 0; // of the pilot
+  double exposure_ = 0; // the pilot's exposure
   picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
   double lastStart_ = 0, motionBegan_ = 0, settlingEnds_ = 0, gap_ = 0;

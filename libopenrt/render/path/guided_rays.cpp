@@ -69,7 +69,7 @@ Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
 }
 
 struct Response {
-  Vec3f light;    // of the hit to the guided ray: BSDF times MIS weight over pdf
+  Vec3f light;    // from the hit to the guided ray: BSDF times MIS weight over pdf
   Vec3f unguided; // the part of `light` that BSDF sampling contributes as often
 };
 
