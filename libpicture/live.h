@@ -24,9 +24,10 @@ struct LiveFrame {
   View view;
   int width = 0, height = 0;
   int samples = 1;
-  // Of a preview: pixels each way of the blocks in which one pixel gets light (RT_LIGHT_STRIDE).
+  // Holds for a preview the pixels each way of the blocks in which one pixel gets light
+  // (RT_LIGHT_STRIDE).
   int lightStride = 1;
-  // Of a preview: seconds that Denoiser::automatic may take (live/denoise_choice.h).
+  // Holds for a preview the seconds that Denoiser::automatic may take (live/denoise_choice.h).
   double denoising = 0;
   // still: refined from 1 sample per pixel on, with the bytes of Renderer::render.
   // preview: of something that moves; the picture is rebuilt from this frame and earlier previews

@@ -27,7 +27,7 @@ class Cluster;
 class Sums;
 struct Measurement;
 
-// What smooths the light of previews (live/reconstruction.h).
+// Says what smooths the light of previews (live/reconstruction.h).
 enum class Denoiser : uint8_t {
   own,      // the filter that is always there
   oidn,     // beside it Open Image Denoise 2, a library that may be installed

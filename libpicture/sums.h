@@ -32,7 +32,7 @@ class Sums {
   std::shared_ptr<RTsumsObject> sums_;
 };
 
-// What the sums of a picture do not tell.
+// Holds what the sums of a picture do not tell.
 struct SumsFacts {
   uint32_t channels = RT_RGBA; // those of the files; the sums may have more
   bool linear = true;

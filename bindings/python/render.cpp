@@ -182,7 +182,7 @@ std::vector<picture::Measurement> measure(const WorldPtr& self, const RenderArgu
   return sensors;
 }
 
-// What Python gets for a Measurement: pickled objects have the statistics, not the struct of C.
+// Python gets this for a Measurement: pickled objects have the statistics, not the struct of C.
 struct MeasurementObject {
   picture::Measurement readings;
   py::dict stats;

@@ -11,7 +11,7 @@ constexpr int smallest = -12;                     // scale 2^(-12/4): an eighth 
 constexpr int mostDoublings = 4;                  // the best step has 2^4 samples
 constexpr int quarter = -8, half = -4, whole = 0; // steps: size in each direction
 
-// What Pacing::Light decides.
+// Holds what Pacing::Light decides.
 struct Rule {
   // Pixels each way of the blocks in which one pixel gets light in motion; there is a step of the
   // full size for each smaller number.

@@ -45,7 +45,7 @@ constexpr float isGone = 2;       // in Guides::moves
 constexpr float outsideName = -1; // the pixel does not exist
 constexpr float emptyName = -2;   // the pixel has no sample
 
-// What is known about the surface that a pixel's first sample shows.
+// Holds what is known about the surface that a pixel's first sample shows.
 struct Guides {
   void resize(const Layout& layout) {
     name.assign(layout.size(), outsideName);
@@ -66,7 +66,7 @@ struct Guides {
   Plane3 normal; // has the length 1
 };
 
-// What is accumulated over time for each pixel, or for each cell.
+// Holds what is accumulated over time for each pixel, or for each cell.
 struct Accumulated {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&light, &recent}) planes->assign(layout.size(), 0);

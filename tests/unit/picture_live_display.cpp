@@ -97,7 +97,8 @@ TEST(LiveDisplay, aStillPictureFadesInAndEndsAsItIs) {
   EXPECT_EQ(finished.rgb, displayBytes(uniform(100)));
 }
 
-// A preview is biased, a still picture is noisy. What is shown gets better with every sample.
+// A preview is biased, a still picture is noisy. The picture that is shown gets better with every
+// sample.
 TEST(LiveDisplay, whatIsShownGetsBetterSteadily) {
   constexpr int width = 64, height = 64;
   constexpr double truth = 128, bias = 20, noise = 60;

@@ -25,7 +25,7 @@ inline Vec turned(Vec v, double angle) { // about the y axis
   return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
 }
 
-// What a ray meets. Without a hit the light is that of the environment.
+// Holds what a ray meets. Without a hit the light is that of the environment.
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   Vec normal, motion;
@@ -126,7 +126,7 @@ inline picture::Picture render(const World& world, const Shot& shot) {
   return frame;
 }
 
-// What the frame would show with very many samples: red, green, blue of each pixel.
+// Returns what the frame would show with very many samples: red, green, blue of each pixel.
 inline std::vector<float> converged(const World& world, const Shot& shot, int grid = 6) {
   std::vector<float> rgb(size_t(shot.width) * size_t(shot.height) * 3);
   for (int y = 0; y < shot.height; y++)

@@ -344,7 +344,7 @@ TEST(LivePreview, fewViewersAreRemembered) {
   const size_t before = previews.viewers();
   previews.forget(2 * live::mostRecentViewers - 1);
   EXPECT_EQ(previews.viewers(), before - 1);
-  // What cannot be rebuilt is forgotten, too.
+  // A picture that cannot be rebuilt is forgotten, too.
   frame.planes.erase(RT_MOTION);
   EXPECT_THROW(previews.rebuild(2 * live::mostRecentViewers - 2, frame, camera, 1, {}),
                std::invalid_argument);

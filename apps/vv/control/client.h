@@ -1,5 +1,5 @@
-// client.h: What the browser's thread knows about a client: its commands that wait, the numbers of
-// nodes that it has, and its subscriptions. [the browser's thread]
+// client.h: Holds what the browser's thread knows about a client: its commands that wait, the
+// numbers of nodes that it has, and its subscriptions. [the browser's thread]
 #pragma once
 
 #include <deque>

@@ -70,7 +70,7 @@ struct Control::Impl {
     }
   }
 
-  // Forgets clients that have left, with what they hold of the world. What they sent is done
+  // Forgets clients that have left, with what they hold of the world. All that they sent is done
   // first.
   void bury() {
     for (auto at = clients.begin(); at != clients.end();) {

@@ -27,7 +27,7 @@ class PictureLoop {
     settling,  // the last frame is a preview of what has just stopped, larger than those before
     refining   // the last frame is a still one: it fills the window and gets all samples
   };
-  // What is shown while something moves.
+  // Says what is shown while something moves.
   enum class Motion : uint8_t {
     rebuilt, // previews
     samples  // the samples as they are
@@ -51,8 +51,8 @@ class PictureLoop {
   Motion motion() const { return motion_; }
 
   Urgency urgency(const Pilot& pilot, const Fit& fit) const;
-  // Starts the next frame or cancels the one in flight, if that is due. Of several loops, the one
-  // with the greatest urgency is called. now: time of any clock.
+  // Starts the next frame or cancels the one in flight, if that is due. Where there are several
+  // loops, the one with the greatest urgency is called. now: time of any clock.
   void advance(const Pilot& pilot, Fit& fit, double now, Need need);
   // Places the viewer for a fit after its frame has read the world. Returns false if no fit waits
   // for that.
@@ -108,7 +108,7 @@ class PictureLoop {
   using RendererState = picture::LiveRenderer::State;
   enum class Shown : uint8_t { nothing, something };
   enum class Decision : uint8_t { wait, cancel, move, settle, refine };
-  // What is there of the still frame that was started last.
+  // Says how much there is of the still frame that was started last.
   enum class Progress : uint8_t { none, covered, finished };
 
   Decision decide(bool outdated, const Fit& fit, double now, Need need) const;

@@ -110,7 +110,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool guided_ = false;            // it has the photons that it needs
   std::atomic<bool> stop_ = false; // cancel() was called since prepareFrame()
   std::shared_ptr<Accel> accel_;
-  // Of accel_; null until a query needs them. Those before a change are kept for their meshes.
+  // They belong to accel_, and are null until a query needs them. Those before a change are kept
+  // for their meshes.
   std::unique_ptr<const ExactScene> exact_;
   std::unique_ptr<const PreciseScene> precise_;
   std::unique_ptr<const ClosedBodies> bodies_;

@@ -186,7 +186,8 @@ void GuidedRays::follow(const PathSamples& samples, uint32_t level, PixelSamples
 
 void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& bucket,
                        const PathStates& states) {
-  // What `shade` lets through is not told here: BSDF sampling finds light behind such surfaces.
+  // The light that `shade` lets through is not told here: BSDF sampling finds light behind such
+  // surfaces.
   if (!bucket.shaderClass->surface) return;
   RtsBatch batch = makeBatch(context_, points, states);
   batch.lightSet = bucket.lightSet;

@@ -59,7 +59,8 @@ class Guides {
     Vec3f direction, tint{1, 1, 1};
     bool reflected = false, straight = false;
   };
-  // What a guide ray does at a hit: it passes a boundary that has no effect, or follows an image.
+  // Says what a guide ray does at a hit: it passes a boundary that has no effect, or follows an
+  // image.
   enum class Step : uint8_t { pass, image };
   void visit(const StageContext& context, Wave& wave, PixelSamples& found);
   void describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
