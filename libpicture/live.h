@@ -48,8 +48,8 @@ struct LivePicture {
   // picture. A still picture with few samples is mixed with the preview before it.
   std::vector<uint8_t> rgb;
   uint64_t number = 0;                                    // what start() returned for the frame
-  LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // that of the frame
-  int lightStride = 1;                                    // that of the frame
+  LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // as in the frame
+  int lightStride = 1;                                    // as in the frame
   double covered = 0;    // fraction of the pixels that have samples, 0 to 1
   double samples = 0;    // samples taken so far, mean over the pixels
   double seconds = 0;    // seconds since the frame was started
@@ -61,7 +61,7 @@ struct LivePicture {
   bool ended = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;
-  std::string denoisedBy; // for a preview: the library that has filtered it; "": none has
+  std::string denoisedBy; // the library that has filtered a preview; "": none has
   double rebuilding = 0;  // part of `seconds` after tracing: the time of the Reconstruction
   xvrml::MapStats map{};
   RTstats stats{};

@@ -42,7 +42,7 @@ struct Measurement {
   std::vector<uint8_t> trusted; // 1 where the interval can be trusted (docs/error-bars.md)
   std::vector<uint32_t> samples;
   bool interrupted = false; // points that were not finished have 0 samples
-  RTstats stats;            // those of the sensor's frame
+  RTstats stats;            // statistics of the sensor's frame
 };
 
 } // namespace picture

@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 // A part of the picture is noisy if more than this fraction of its pixels is unlike its neighbours;
 // entirely if that many more are. Among samples that are either light or dark, 14 % are.
 constexpr float fewUnlike = 0.1f, moreUnlike = 0.2f;
-constexpr float fewestPixels = 16; // for a shape
+constexpr float fewestPixels = 16; // fewest pixels of a shape
 // Samples are limited to so many standard deviations of the samples around them.
 constexpr float limitSpread = 32;
 

@@ -75,7 +75,7 @@ struct Accumulated {
 
   Plane3 light;       // illumination: radiance / albedo; luma and colour differences
   Plane3 recent;      // the same over the last few frames only
-  Plane mean, square; // those of the illumination's luma and of its square
+  Plane mean, square; // means of the illumination's luma and of its square
   Plane frames;       // number of frames in `light`; 0: nothing is known
   Plane noise;        // 0 to 1: whether illumination was found to be noisy around here
 };

@@ -68,7 +68,7 @@ struct Work {
   // Square of what a cell's luma differs from its neighbours', scaled to the variance of noise
   // without correlation; 1 where that is more than edges and smooth shading explain.
   Plane deviation, unlike;
-  Plane variance; // that of the illumination's luma as it goes into the filter
+  Plane variance; // variance of the illumination's luma as it goes into the filter
   Plane limit;    // luma beyond that is taken for a rare bright sample
   Plane noise;    // whether this frame's samples are noisy around here, 0 to 1
   // By how much the luma differs from the accumulated one, the accumulated one, and the variance of

@@ -45,7 +45,7 @@ TEST_F(ErrorBars, HoldUnderALamp) {
   const audit::Coverage c = measure("lamp", 40, 8192, 8);
   expectTrue(c);
   EXPECT_GT(c.trustedShare(), .9);
-  EXPECT_NEAR(c.meanError, c.promised, .1 * c.promised); // for the whole picture
+  EXPECT_NEAR(c.meanError, c.promised, .1 * c.promised); // errors of the whole picture
 }
 
 TEST_F(ErrorBars, HoldUnderASmallLamp) { // one replicate in a few meets the lamp by itself:

@@ -43,7 +43,7 @@ struct Control::Impl {
   uint64_t arrived = 0;               // letters so far
 
   Session* session = nullptr;
-  uint64_t generation = 0; // that of the session's browser
+  uint64_t generation = 0; // the browser's generation in the session
   // The client whose picture is rendered or encoded; 0: none. Others wait for their turn.
   ClientId renderer = 0;
   uint32_t channels = 0; // the channels of its picture

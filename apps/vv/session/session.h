@@ -202,7 +202,7 @@ class Session {
   SessionClock clock_;
   Fit fit_;
   StepOrder order_;              // the order of the user's events
-  double mostPreviewPixels_ = 0; // for each viewer; 0: there is no bound
+  double mostPreviewPixels_ = 0; // bound of each viewer's previews; 0: there is none
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted

@@ -50,7 +50,7 @@ class PhotonGuide {
   std::vector<float> focus_[3];
   std::vector<float> side_;   // 1: light comes from the focus; -1: it goes to a focus further on
   std::vector<float> spread_; // the spread of the lobe
-  std::vector<float> probability_; // that of the lobe within its cell
+  std::vector<float> probability_; // selection probability of the lobe within its cell
   struct Cell {
     uint32_t begin, end; // the range of its lobes
     Vec3f low, high;     // where the photons are taken as valid

@@ -38,7 +38,7 @@ class GuideTrial {
 
  private:
   struct Block {
-    double mean, variance; // for samples summed over colours; variance: also over the samples
+    double mean, variance; // samples summed over colours; variance: also over the samples
     size_t end;            // where its gains end
   };
   struct Gain {

@@ -80,7 +80,7 @@ class Guides {
   // No renderer: shaders get the middle of every sequence of random points, and trace nothing.
   const StageContext context_{scene_, arena_, counters_};
   const bool follows_;
-  const float* origin_[3] = {};    // those of the camera rays, by path
+  const float* origin_[3] = {};    // origins of the camera rays, by path
   const float* direction_[3] = {}; // unit
   uint32_t paths_ = 0;
   uint32_t surface_ = 0; // number of surfaces that the rays of the wave have met before

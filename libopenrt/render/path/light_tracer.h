@@ -82,7 +82,7 @@ class LightTracer {
   bool probedInside_ = false;
   uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
-  PathSamples samples_{};                  // for the paths in flight
+  PathSamples samples_{};                  // samples of the paths in flight
   RayQueue queue_, next_;                  // rays of the current wave, and of the next one
 };
 

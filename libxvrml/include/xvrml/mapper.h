@@ -30,7 +30,7 @@ struct SensorInfo {
 };
 
 struct MapOptions {
-  // Decodes sRGB colours (vv-cli.md "Colour"). If false, the standard's equation is applied to the
+  // Decodes sRGB colours (docs/old-worlds.md). If false, the standard's equation is applied to the
   // numbers as written.
   bool linearColor = true;
   enum class Headlight : uint8_t { automatic, on, off } headlight = Headlight::automatic;
@@ -88,7 +88,7 @@ struct ExplainedObject {
   // Path of names from the root, "Town/House". A node without a name appears as its type and line.
   std::string name;
   std::string reason; // "static geometry of 5312 shapes", "ROUTE from Clock.fraction_changed" ...
-  uint64_t triangles = 0; // in one instance, without those of the objects that it instantiates
+  uint64_t triangles = 0; // triangles of one instance, without those of nested objects
   uint64_t shapes = 0;
   uint64_t bytes = 0;     // estimated: arrays and acceleration structure
   uint64_t instances = 0; // instances of this object in the definitions of all objects

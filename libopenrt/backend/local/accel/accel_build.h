@@ -21,7 +21,7 @@ struct BuildInput {
   const ShaderTable& shaders;
   Vec3d origin; // origin of render space, in the world
   double scale = 1;
-  double reach = 0; // the scene's (Survey), in the units of the kernels
+  double reach = 0; // the size of the scene (Survey), in the units of the kernels
   PixelFootprint footprint;
 };
 
@@ -30,7 +30,7 @@ class AccelBuilder {
   explicit AccelBuilder(std::shared_ptr<EmbreeDevice> device)
       : device_(std::move(device)), spheres_(*device_) {}
 
-  Survey survey; // the scene's at the last build or update
+  Survey survey; // the scene at the last build or update
 
   std::shared_ptr<Accel> build(const BuildInput& input);
   // Changes an Accel in place.

@@ -23,7 +23,7 @@ auto keyOf(const PreciseScene::Hit& h) { return std::tuple(h.at.t, h.record, h.p
 struct PreciseScene::Mesh {
   ArrayPtr points, indices;
   uint32_t count = 0;
-  Vec3d center, half; // those of the bounds
+  Vec3d center, half; // the bounds
   double unit = 1;
   bool empty = true;
   std::unique_ptr<CandidateScene> boxes; // null if the triangles are few
