@@ -4,7 +4,7 @@
 // motion, names) that follow mirror images. Its radiance is divided by the albedo, accumulated over
 // the earlier frames by reprojection, filtered across the pixels under the guidance of the measured
 // variance, and multiplied by the albedo again (C. Schied et al., "Spatiotemporal Variance-Guided
-// Filtering", HPG 2017). docs/decisions/0050 says what differs from the paper.
+// Filtering", HPG 2017). docs/decisions/0050-live-previews.md says what differs from the paper.
 //
 // The result is a preview: it is biased, and no error bar, no file and no still picture may be
 // made from it. LiveRenderer owns one Reconstruction for each viewer. [one thread at a time; a call
