@@ -3,7 +3,6 @@
 #include "libpicture/background.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 
 #include "libpicture/files/picture.h"
 #include "libpicture/files/radiance.h"
+#include "lower_case.h"
 #include "xvrml/image.h"
 
 namespace picture {
@@ -68,17 +68,14 @@ bool isRadiance(std::string_view suffix) {
 
 std::string suffixOf(const std::string& path) {
   const size_t dot = path.rfind('.');
-  std::string suffix = dot == path.npos ? "" : path.substr(dot + 1);
-  for (char& c : suffix) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return suffix;
+  return dot == path.npos ? "" : lowerCase(path.substr(dot + 1));
 }
 
 } // namespace
 
 Background readBackground(const std::string& text) {
   using Kind = Background::Kind;
-  std::string low = text;
-  for (char& c : low) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string low = lowerCase(text);
   if (low == "none" || low == "transparent") return {Kind::none, {}, {}};
   for (const Named& one : colours)
     if (low == one.name) return {Kind::colour, unpacked(one.rgb), {}};

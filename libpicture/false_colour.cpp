@@ -124,6 +124,67 @@ std::vector<float> smoothed(const std::vector<float>& values, int width, int hei
   return out;
 }
 
+// The sizes of a picture of some height in false colours, in pixels.
+struct Sizes {
+  explicit Sizes(int height) : dot(std::max(1, height / 300)) {}
+  int dot; // size of dots of letters and isolines
+  int line() const { return letterHeight * dot; }
+  int bar() const { return 12 * dot; }
+  int gap() const { return 3 * dot; }
+};
+
+constexpr std::string_view unit = "cd/m2";
+int labelsOf(const LuminanceScale& scale) { return int(std::lround(scale.top / scale.step)); }
+std::string labelOf(const LuminanceScale& scale, int i) {
+  return fmt::format("{:g}", scale.step * i);
+}
+
+int legendWidth(const LuminanceScale& scale, const Sizes& sizes) {
+  size_t letters = unit.size();
+  for (int i = 0; i <= labelsOf(scale); i++) letters = std::max(letters, labelOf(scale, i).size());
+  return 3 * sizes.gap() + sizes.bar() + int(letters) * letterWidth * sizes.dot;
+}
+
+// Draws the colours of the luminances, and isolines over them.
+void drawLuminances(const std::vector<float>& luminance, int width, int height,
+                    const LuminanceScale& scale, Canvas& canvas) {
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++)
+      canvas.set(x, y, turbo(double(luminance[size_t(y) * size_t(width) + size_t(x)]) / scale.top));
+  const std::vector<float> smooth = smoothed(luminance, width, height);
+  const double highest = labelsOf(scale);
+  const auto levelAt = [&](int x, int y) {
+    return std::min(std::floor(double(smooth[size_t(y) * size_t(width) + size_t(x)]) / scale.step),
+                    highest);
+  };
+  const int dot = Sizes(height).dot;
+  for (int y = 0; y + 1 < height; y++)
+    for (int x = 0; x + 1 < width; x++) {
+      const double here = levelAt(x, y);
+      if (here != levelAt(x + 1, y) || here != levelAt(x, y + 1))
+        canvas.fill(x, y, dot, dot, black);
+    }
+}
+
+// Draws the unit, then the bar with a label at each isoline that has room. x: the left side.
+void drawLegend(const LuminanceScale& scale, int x, int height, Canvas& canvas) {
+  const Sizes sizes(height);
+  const int line = sizes.line(), bar = sizes.bar(), gap = sizes.gap(), labels = labelsOf(scale);
+  const int top = 2 * line, bottom = height - line, left = x + gap;
+  canvas.write(left, line / 2, sizes.dot, unit);
+  const int length = std::max(bottom - top, 1);
+  for (int y = top; y < bottom; y++)
+    canvas.fill(left, y, bar, 1, turbo(1 - double(y - top) / length));
+  int last = height + line;
+  for (int i = 0; i <= labels; i++) {
+    const int y = bottom - int(std::lround(double(length) * i / labels));
+    canvas.fill(left, std::min(y, bottom - 1), bar, 1, black);
+    if (last - y < line + gap || y - line / 2 < line * 3 / 2) continue;
+    canvas.write(left + bar + gap, y - line / 2, sizes.dot, labelOf(scale, i));
+    last = y;
+  }
+}
+
 } // namespace
 
 LuminanceScale luminanceScale(double most) {
@@ -141,50 +202,24 @@ LuminanceScale luminanceScale(double most) {
 
 double mostLuminance(const Picture& picture) { return mostOf(luminancesOf(picture)); }
 
-Picture falseColours(const Picture& picture, std::optional<double> most) {
+Picture falseColours(const Picture& picture, std::optional<double> most, Legend legend) {
   const int width = picture.width, height = picture.height;
   const std::vector<float> luminance = luminancesOf(picture);
   const LuminanceScale scale = luminanceScale(most ? *most : mostOf(luminance));
-  const int size = std::max(1, height / 300), line = letterHeight * size;
-  const int bar = 12 * size, gap = 3 * size;
-  const int labels = int(std::lround(scale.top / scale.step));
-  size_t letters = std::string_view("cd/m2").size();
-  const auto textOf = [&](int i) { return fmt::format("{:g}", scale.step * i); };
-  for (int i = 0; i <= labels; i++) letters = std::max(letters, textOf(i).size());
-  Canvas canvas(width + 3 * gap + bar + int(letters) * letterWidth * size, height);
-
-  for (int y = 0; y < height; y++)
-    for (int x = 0; x < width; x++)
-      canvas.set(x, y, turbo(double(luminance[size_t(y) * size_t(width) + size_t(x)]) / scale.top));
-  const std::vector<float> smooth = smoothed(luminance, width, height);
-  const auto levelAt = [&](int x, int y) {
-    return std::floor(double(smooth[size_t(y) * size_t(width) + size_t(x)]) / scale.step);
-  };
-  for (int y = 0; y + 1 < height; y++)
-    for (int x = 0; x + 1 < width; x++) {
-      const double here = std::min(levelAt(x, y), double(labels));
-      if (here != std::min(levelAt(x + 1, y), double(labels)) ||
-          here != std::min(levelAt(x, y + 1), double(labels)))
-        canvas.fill(x, y, size, size, black);
-    }
-
-  // The legend: the unit, then the bar with a label at each isoline that has room.
-  const int top = 2 * line, bottom = height - line, left = width + gap;
-  canvas.write(left, line / 2, size, "cd/m2");
-  const int length = std::max(bottom - top, 1);
-  for (int y = top; y < bottom; y++)
-    canvas.fill(left, y, bar, 1, turbo(1 - double(y - top) / length));
-  int last = height + line;
-  for (int i = 0; i <= labels; i++) {
-    const int y = bottom - int(std::lround(double(length) * i / labels));
-    canvas.fill(left, std::min(y, bottom - 1), bar, 1, black);
-    if (last - y < line + gap || y - line / 2 < line * 3 / 2) continue;
-    canvas.write(left + bar + gap, y - line / 2, size, textOf(i));
-    last = y;
-  }
+  const bool beside = legend == Legend::beside;
+  Canvas canvas(width + (beside ? legendWidth(scale, Sizes(height)) : 0), height);
+  drawLuminances(luminance, width, height, scale, canvas);
+  if (beside) drawLegend(scale, width, height, canvas);
   Picture out = canvas.take();
   out.note = picture.note;
   return out;
+}
+
+Picture falseColourLegend(double most, int height) {
+  const LuminanceScale scale = luminanceScale(most);
+  Canvas canvas(legendWidth(scale, Sizes(height)), height);
+  drawLegend(scale, 0, height, canvas);
+  return canvas.take();
 }
 
 } // namespace picture

@@ -2,6 +2,7 @@
 // legend in cd/m2. Pure functions. [any thread]
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "libpicture/files/picture.h"
@@ -18,9 +19,18 @@ LuminanceScale luminanceScale(double most);
 // Returns the luminance that 99.5 % of the pixels stay below; 1 if the picture is black.
 double mostLuminance(const Picture& picture);
 
-// Returns a picture in display colours (Picture::linear is false), wider than the given one by its
-// legend. The given picture holds linear radiance, where 1 is 1 cd/m2. most: the luminance at the
-// end of the scale; none: mostLuminance() of the picture.
-Picture falseColours(const Picture& picture, std::optional<double> most);
+enum class Legend : uint8_t {
+  beside, // makes the picture wider
+  apart   // drawn by itself, with falseColourLegend()
+};
+
+// Returns a picture in display colours (Picture::linear is false). The given picture holds linear
+// radiance, where 1 is 1 cd/m2. most: the luminance at the end of the scale; none: mostLuminance()
+// of the picture.
+Picture falseColours(const Picture& picture, std::optional<double> most,
+                     Legend legend = Legend::beside);
+
+// Returns the legend of such a picture of this height by itself, in display colours.
+Picture falseColourLegend(double most, int height);
 
 } // namespace picture

@@ -365,7 +365,8 @@ struct LiveRenderer::Impl {
     if (now() != State::idle && now() != State::ready)
       throw std::logic_error("a frame is in flight");
     stage.reportMessages();
-    current = {current.number + 1, frame.purpose, frame.viewer, frame.samples, frame.lightStride};
+    current = {current.number + 1, frame.purpose,     frame.viewer,
+               frame.samples,      frame.lightStride, frame.falseColour};
     stage.settings = settingsOf(given, frame);
     if (frame.purpose != Purpose::still)
       makePreview(stage.settings, frame.purpose, frame.lightStride, current.number);

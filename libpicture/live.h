@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct LiveFrame {
   // Whom the frame is for. Each viewer has accumulated frames of its own, and a still frame fades
   // in over what its viewer was shown last. At most eight viewers are remembered.
   uint32_t viewer = 0;
+  // How the picture is shown: none: in its own colours; otherwise its luminance in false colours,
+  // up to this end of the scale in cd/m2, or to one that fits the picture (0).
+  std::optional<double> falseColour;
 };
 
 // The state of a frame when it was polled.
@@ -61,6 +65,7 @@ struct LivePicture {
   bool ended = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;
+  double scaleEnd = 0;    // the luminance at the end of the scale of false colours; 0: own colours
   std::string denoisedBy; // the library that has filtered a preview; "": none has
   double rebuilding = 0;  // part of `seconds` after tracing: the time of the Reconstruction
   xvrml::MapStats map{};

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "libpicture/environment_map.h"
+#include "srgb.h"
 
 namespace picture {
 
@@ -57,8 +58,6 @@ double boxesAt(Vec d) {
   return sum;
 }
 
-double linearOf(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-
 } // namespace
 
 // The backdrop rises a little above the horizon, for views from just above the ground, and fades to
@@ -70,7 +69,7 @@ StudioLight makeStudioLight(const std::array<float, 3>& backdrop, bool linear) {
   light.rgb.resize(size_t(mapWidth) * mapHeight * 3);
   std::array<double, 3> base{};
   for (size_t c = 0; c < 3; ++c)
-    base[c] = linear ? linearOf(double(backdrop[c])) : double(backdrop[c]);
+    base[c] = linear ? decodeSrgb(double(backdrop[c])) : double(backdrop[c]);
   const double mean = (base[0] + base[1] + base[2]) / 3;
   const double room = 0.25 + 0.15 * mean;
   std::array<double, 3> irradiance{}; // what the ground gets from the upper half

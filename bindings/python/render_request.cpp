@@ -9,6 +9,7 @@
 #include "libpicture/quality.h"
 #include "numbers.h"
 #include "picture_object.h"
+#include "picture_size.h"
 #include "quality_parameters.h"
 
 using namespace xvrml;
@@ -152,8 +153,7 @@ void setSize(const char* name, const Given& given, RenderRequest& request) {
   const auto [width, height] = sizeOf(given.size);
   request.settings.width = inRange(name, width, 1, 65536);
   request.settings.height = inRange(name, height, 1, 65536);
-  if (int64_t(request.settings.width) * request.settings.height > (int64_t(1) << 28))
-    throw py::value_error("size: at most 2^28 pixels expected");
+  if (!isPictureSize(width, height)) throw py::value_error("size: at most 2^28 pixels expected");
 }
 
 // Sets True or False, which need no check.

@@ -10,6 +10,7 @@
 
 #include "libpicture/live/denoise_choice.h"
 #include "parameters.h"
+#include "picture_size.h"
 #include "quality_parameters.h"
 
 using namespace xvrml;
@@ -103,7 +104,7 @@ void Viewer::close() {
 }
 
 void Viewer::resize(long long width, long long height) {
-  if (width < 1 || height < 1 || width > 65536 || height > 65536 || width * height > 1LL << 28)
+  if (!isPictureSize(width, height))
     throw py::value_error(fmt::format("size: (width, height) from 1 to 65536 and at most 2^28 "
                                       "pixels expected, not ({}, {})",
                                       width, height));

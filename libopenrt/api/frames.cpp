@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "api/guard.h"
+#include "picture_size.h"
 #include "scene/channels.h"
 #include "scene/quality.h"
 #include "scene/transports.h"
@@ -22,11 +23,8 @@ size_t componentsOf(RTenum channel) {
 }
 
 void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
-  constexpr int maxSide = 65536;
-  constexpr size_t maxPixels = size_t(1) << 28;
-  require(width >= 1 && height >= 1 && width <= maxSide && height <= maxSide &&
-              static_cast<size_t>(width) * static_cast<size_t>(height) <= maxPixels,
-          RT_INVALID_VALUE, "a frame has 1 to 65536 pixels a side and at most 2^28 in all");
+  require(isPictureSize(width, height), RT_INVALID_VALUE,
+          "a frame has 1 to 65536 pixels a side and at most 2^28 in all");
   require(channels != 0 && (channels & ~allChannels) == 0, RT_INVALID_VALUE,
           "the channels are 0 or contain an unknown one");
   c.scene.frame.width = static_cast<uint32_t>(width);
@@ -108,40 +106,6 @@ void getStats(Context& c, RTstats* out) {
   std::memcpy(out, &stats, std::min(size, sizeof(stats)));
 }
 
-void castRays(Context& c, size_t count, const RTray* rays, RThit* hits) {
-  require((rays && hits) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
-  if (c.everCommitted()) {
-    c.backend().castRays({rays, count}, {hits, count});
-    return;
-  }
-  RThit nothing{};
-  nothing.t = std::numeric_limits<float>::infinity();
-  std::fill_n(hits, count, nothing);
-}
-
-void occludedRays(Context& c, size_t count, const RTray* rays, uint8_t* occluded) {
-  require((rays && occluded) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
-  if (c.everCommitted())
-    c.backend().occludedRays({rays, count}, {occluded, count});
-  else
-    std::fill_n(occluded, count, uint8_t(0));
-}
-
-int pick(Context& c, double x, double y, RThit* hit) {
-  require(hit != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
-  require(std::isfinite(x) && std::isfinite(y) && std::fabs(x) <= 1e9 && std::fabs(y) <= 1e9,
-          RT_INVALID_VALUE, "x or y is not finite, or far outside any picture");
-  require(c.scene.frame.width > 0, RT_INVALID_OPERATION,
-          "no frame buffer: call rtFrameBuffer first");
-  require(c.scene.camera.shader != 0, RT_INVALID_OPERATION,
-          "no camera: call rtUseCamera, rtPerspective or rtOrtho first");
-  RThit found{};
-  require(c.everCommitted() && c.backend().pick(x, y, found), RT_INVALID_OPERATION,
-          "no frame with a camera was committed yet: call rtRender or rtSwapBuffers first");
-  *hit = found;
-  return std::isfinite(found.t) ? 1 : 0;
-}
-
 // Copies a description into the caller's structure. Returns 1, or 0 if that is null or its size is
 // not set.
 template <class Info> int copyInfo(const Info& known, Info* info) {
@@ -221,16 +185,4 @@ void rtReadPixels(RTenum channel, float* out, size_t count) {
 
 void rtGetStats(RTstats* stats) {
   guarded("rtGetStats", [&](Context& c) { getStats(c, stats); });
-}
-
-void rtCastRays(size_t count, const RTray* rays, RThit* hits) {
-  guarded("rtCastRays", [&](Context& c) { castRays(c, count, rays, hits); });
-}
-
-int rtPick(double x, double y, RThit* hit) {
-  return guarded("rtPick", 0, [&](Context& c) { return pick(c, x, y, hit); });
-}
-
-void rtOccludedRays(size_t count, const RTray* rays, uint8_t* occluded) {
-  guarded("rtOccludedRays", [&](Context& c) { occludedRays(c, count, rays, occluded); });
 }

@@ -3,13 +3,11 @@
 #include <cstring>
 
 #include "api/guard.h"
+#include "picture_size.h"
 
 using namespace openrt;
 
 namespace {
-
-constexpr int maxSide = 65536;
-constexpr size_t maxTexels = size_t(1) << 28;
 
 TextureState& bound(Context& c) {
   require(c.boundTexture != 0, RT_INVALID_OPERATION, "no texture is bound");
@@ -21,9 +19,8 @@ void setImage(Context& c, int components, int width, int height, RTenum type, co
   require(type == RT_UNSIGNED_BYTE || type == RT_FLOAT, RT_INVALID_ENUM,
           "the type must be RT_UNSIGNED_BYTE or RT_FLOAT");
   require(components >= 1 && components <= 4, RT_INVALID_VALUE, "an image has 1 to 4 components");
-  require(width >= 1 && height >= 1 && width <= maxSide && height <= maxSide &&
-              static_cast<size_t>(width) * static_cast<size_t>(height) <= maxTexels,
-          RT_INVALID_VALUE, "an image has 1 to 65536 pixels a side and at most 2^28 in all");
+  require(isPictureSize(width, height), RT_INVALID_VALUE,
+          "an image has 1 to 65536 pixels a side and at most 2^28 in all");
   require(pixels != nullptr, RT_INVALID_VALUE, "the pixels are NULL");
   const size_t values =
       static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(components);

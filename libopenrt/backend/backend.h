@@ -17,6 +17,7 @@
 
 namespace openrt {
 
+class Queries;
 class ShaderRegistry;
 struct FrameSums;
 
@@ -90,11 +91,9 @@ class Backend {
   virtual void stats(RTstats& stats) const = 0;
   // Returns the workers of a cluster. [any thread]
   virtual std::vector<RTworker> workers() const { return {}; }
-  virtual void castRays(std::span<const RTray> rays, std::span<RThit> hits) = 0;
-  virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
-  // Writes the hit of the committed camera's ray through the picture at (x, y) (pixels), in the
-  // form of castRays. Returns false if no camera or no frame is committed.
-  virtual bool pick(double x, double y, RThit& hit) = 0;
+  // Returns the queries of the committed scene. Null: this backend has no surfaces, so that they
+  // find nothing.
+  virtual Queries* queries() { return nullptr; }
   // Completes the file that the backend writes, if any; throws if it is incomplete. Afterwards only
   // the destructor may be called.
   virtual void finish() {}

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "folder_files.h"
+#include "lower_case.h"
 #include "nearest.h"
 #include "plugin_files.h"
 #include "shading/library.h"
@@ -19,16 +20,6 @@ namespace openrt {
 struct ShaderRegistry::Library : ShaderLibrary {
   using ShaderLibrary::ShaderLibrary;
 };
-
-namespace {
-
-std::string lowerCase(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
-} // namespace
 
 ShaderRegistry::ShaderRegistry(std::vector<std::string> folders) : folders_(std::move(folders)) {}
 ShaderRegistry::~ShaderRegistry() = default;

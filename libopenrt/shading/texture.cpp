@@ -1,6 +1,7 @@
 // texture.cpp: bilinear and nearest texture look-up. Bytes stay bytes in memory; a table decodes
 // each texel before filtering, because filtering encoded values would darken every edge.
 #include "shading/texture.h"
+#include "srgb.h"
 
 #include <algorithm>
 #include <array>
@@ -14,15 +15,10 @@ namespace {
 
 using Decoding = std::array<float, 256>;
 
-// IEC 61966-2-1.
-double srgbToLinear(double v) {
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
 Decoding makeDecoding(bool srgb) {
   Decoding table;
   for (int i = 0; i < 256; i++)
-    table[i] = static_cast<float>(srgb ? srgbToLinear(i / 255.0) : i / 255.0);
+    table[i] = static_cast<float>(srgb ? decodeSrgb(i / 255.0) : i / 255.0);
   return table;
 }
 

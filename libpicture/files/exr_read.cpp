@@ -17,6 +17,7 @@
 
 #include "libpicture/files/picture.h"
 #include "openrt/openrt.h"
+#include "picture_size.h"
 
 namespace picture {
 
@@ -64,8 +65,7 @@ Picture readExr(const std::string& path) {
     const Imath::Box2i window = file.header().dataWindow();
     const int64_t width = int64_t(window.max.x) - window.min.x + 1,
                   height = int64_t(window.max.y) - window.min.y + 1;
-    if (width < 1 || height < 1 || width > 65536 || height > 65536 ||
-        width * height > (int64_t(1) << 28))
+    if (!isPictureSize(width, height))
       throw std::runtime_error(fmt::format("{} x {} pixels", width, height));
     Picture picture;
     picture.width = int(width);

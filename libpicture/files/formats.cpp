@@ -1,8 +1,8 @@
 // formats.cpp: Defines the table of file formats that pictures are written in.
 #include "libpicture/files/formats.h"
+#include "lower_case.h"
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,9 +27,7 @@ std::span<const Format> formatTable() { return table; }
 
 const Format* formatNamed(std::string_view suffix) {
   if (suffix.empty()) return nullptr; // a format may have an empty second suffix
-  std::string lower(suffix);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return c < 128 ? char(std::tolower(c)) : char(c); });
+  const std::string lower = lowerCase(suffix);
   for (const Format& format : table)
     if (lower == format.suffixes[0] || lower == format.suffixes[1]) return &format;
   return nullptr;

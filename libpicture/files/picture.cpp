@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include "openrt/openrt.h"
+#include "srgb.h"
 
 namespace picture {
 
@@ -58,11 +58,6 @@ constexpr Channel table[] = {
      "up to eight Shapes in the pixel, each with its share of the samples"},
 };
 
-// Encodes a linear value with the curve of IEC 61966-2-1 (sRGB).
-float srgb(float v) {
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-}
-
 uint8_t rounded(float v) { return uint8_t(v * 255 + 0.5f); }
 
 // Converts linear values to sRGB bytes; pictures are displayed thirty times a second. A table gives
@@ -72,7 +67,7 @@ class CurveBytes {
   CurveBytes() {
     for (uint32_t byte = 1; byte < 256; byte++) least_[byte] = leastOf(uint8_t(byte));
     least_[256] = std::numeric_limits<float>::infinity();
-    for (uint32_t i = 0; i < places; i++) near_[i] = rounded(srgb(float(i) / places));
+    for (uint32_t i = 0; i < places; i++) near_[i] = rounded(encodeSrgb(float(i) / places));
   }
   // Requires 0 < v < 1.
   uint8_t of(float v) const {
@@ -87,7 +82,7 @@ class CurveBytes {
     uint32_t below = 0, from = std::bit_cast<uint32_t>(1.0f);
     while (from - below > 1) {
       const uint32_t middle = below + (from - below) / 2;
-      (rounded(srgb(std::bit_cast<float>(middle))) >= byte ? from : below) = middle;
+      (rounded(encodeSrgb(std::bit_cast<float>(middle))) >= byte ? from : below) = middle;
     }
     return std::bit_cast<float>(from);
   }

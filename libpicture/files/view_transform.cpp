@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libpicture/files/picture.h"
+#include "srgb.h"
 
 namespace picture {
 
@@ -89,9 +90,7 @@ std::optional<ViewCurve> curveNamed(std::string_view name) {
   return {};
 }
 
-float linearOf(float v) {
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
+float linearOf(float v) { return decodeSrgb(v); }
 
 void toScreen(const ViewTransform& view, const float radiance[3], float screen[3]) {
   constexpr double most = 1e30; // keeps infinities out of differences

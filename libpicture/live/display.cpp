@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libpicture/false_colour.h"
+
 namespace picture::live {
 
 namespace {
@@ -87,16 +89,27 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
   return out;
 }
 
+double Display::scaleEndOf(const Picture& picture, const ShownFrame& frame, bool whole,
+                           Viewer& viewer) {
+  if (!frame.falseColour) return viewer.fitting = 0;
+  if (*frame.falseColour > 0) return *frame.falseColour;
+  const bool still = frame.purpose == LiveFrame::Purpose::still;
+  if (whole && (still || viewer.fitting <= 0)) viewer.fitting = mostLuminance(picture);
+  return viewer.fitting > 0 ? viewer.fitting : mostLuminance(picture);
+}
+
 void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
                    LivePicture& out) {
   const std::vector<float>& samples = picture.planes.at(RT_SAMPLES);
   out.width = picture.width;
   out.height = picture.height;
-  out.rgb = displayBytes(picture);
+  Viewer& viewer = viewers_.of(frame.viewer);
+  out.scaleEnd = scaleEndOf(picture, frame, whole, viewer);
+  out.rgb = frame.falseColour ? displayBytes(falseColours(picture, out.scaleEnd, Legend::apart))
+                              : displayBytes(picture);
   count(samples, out);
   out.preview = frame.purpose == LiveFrame::Purpose::preview;
 
-  Viewer& viewer = viewers_.of(frame.viewer);
   if (frame.number != viewer.belowFrame) {
     viewer.belowFrame = frame.number;
     viewer.below = {};

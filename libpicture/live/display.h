@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libpicture/live.h"
@@ -16,8 +17,9 @@ struct ShownFrame {
   uint64_t number = 0; // counts the frames that were started
   LiveFrame::Purpose purpose = LiveFrame::Purpose::still;
   uint32_t viewer = 0;
-  int samples = 1;     // samples per pixel that the frame was started with
-  int lightStride = 1; // RT_LIGHT_STRIDE
+  int samples = 1;                   // samples per pixel that the frame was started with
+  int lightStride = 1;               // RT_LIGHT_STRIDE
+  std::optional<double> falseColour; // the end of the scale of the LiveFrame
 };
 
 // Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the
@@ -31,8 +33,8 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
 
 class Display {
  public:
-  // Fills size, rgb, covered, samples and preview of `out`. picture: the finished part of the
-  // frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
+  // Fills size, rgb, scaleEnd, covered, samples and preview of `out`. picture: the finished part of
+  // the frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
   void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
   // Frees what a viewer was shown last.
@@ -49,7 +51,15 @@ class Display {
     Bytes last;              // the picture that was shown last
     Bytes below;             // the picture that a still frame fades over, in that frame's size
     uint64_t belowFrame = 0; // number of that frame
+    // The luminance that fits the last finished still picture, or the first picture in false
+    // colours while there is none; 0: own colours are shown.
+    double fitting = 0;
   };
+
+  // Returns the end of the scale for a picture in false colours, which stays the same while
+  // something moves. A finished still picture has the scale that its file would have.
+  static double scaleEndOf(const Picture& picture, const ShownFrame& frame, bool whole,
+                           Viewer& viewer);
 
   RecentViewers<Viewer> viewers_;
 };

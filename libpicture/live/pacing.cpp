@@ -32,7 +32,6 @@ constexpr int patience = 4;      // number of consecutive frames with room befor
 // Overlapping frames that are on time count as this fraction of their interval, so that the quality
 // step stays the same.
 constexpr double inTime = 0.7;
-constexpr double assumedPixel = 2e-7; // initial guess in seconds: 800x600 in a tenth of a second
 
 constexpr double leastSide = 64; // shortest side of a picture, in pixels
 
@@ -58,8 +57,7 @@ double Pacing::costOf(const FrameSize& f) const {
 }
 
 double Pacing::seconds(const FrameSize& f) const {
-  const double pixel = pixel_ > 0 ? pixel_ : assumedPixel;
-  return overhead_ + (rebuilt_ + pixel * costOf(f)) * f.width * f.height;
+  return overhead_ + (rebuilt_ + pixel_ * costOf(f)) * f.width * f.height;
 }
 
 double Pacing::predicted(const FrameSize& f) const { return pixel_ > 0 ? seconds(f) : 0; }
@@ -79,12 +77,16 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
     overhead = std::max(0.0, seconds - light);
   }
   // Slower times count mostly at once, faster ones slowly: a late frame is visible, a missed
-  // improvement is not.
-  const auto follow = [](double& value, double now) {
-    const double weight = now > 1.5 * value ? 0.8 : now > value ? 0.4 : 0.2;
+  // improvement is not. While the first frames grow, the last one alone counts.
+  const auto follow = [this](double& value, double now) {
+    const double weight = growing_ ? 1 : now > 1.5 * value ? 0.8 : now > value ? 0.4 : 0.2;
     value = value > 0 ? value + weight * (now - value) : now;
   };
-  follow(overhead_, overhead);
+  // A structure that is built once is not built again, so only what two frames in a row have needed
+  // counts.
+  follow(overhead_, std::min(overhead, lastOverhead_));
+  lastOverhead_ = overhead;
+  measured_ = true;
   const double pixels = double(frame.width) * frame.height,
                work = pixels * (frame.lightStride > 1 ? costOf(frame) : samples);
   if (rebuilding > 0 && pixels > 0) follow(rebuilt_, rebuilding / pixels);
@@ -112,8 +114,17 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
     while (step > smallest && load(step) > 1) --step;
     return step;
   };
+  // The first frame is as small as possible, and each one after it is as large as the one before
+  // allows, until they grow no more.
   const double now = load(step_);
-  if (begins || now > 2) {
+  if (!(pixel_ > 0)) {
+    step_ = smallest;
+  } else if (growing_) {
+    const int before = step_;
+    if (measured_ || begins) step_ = fitting();
+    growing_ = !measured_ || step_ > before;
+    framesWithRoom_ = 0;
+  } else if (begins || now > 2) {
     step_ = fitting();
     framesWithRoom_ = 0;
   } else if (now > tooLong) {
@@ -126,6 +137,7 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
     }
   } else
     framesWithRoom_ = 0;
+  measured_ = false;
   FrameSize frame = at(step_, width, height);
   frame.samples = std::min(frame.samples, std::max(samples, 1));
   return frame;
@@ -134,7 +146,7 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
 FrameSize Pacing::settle(int width, int height, int samples) const {
   width = std::max(width, 1);
   height = std::max(height, 1);
-  int step = best();
+  int step = pixel_ > 0 ? best() : step_;
   while (step > step_ && seconds(at(step, width, height)) > std::max(settling, 1.5 * overhead_))
     --step;
   FrameSize frame = at(step, width, height);

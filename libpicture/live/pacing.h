@@ -44,12 +44,13 @@ class Pacing {
   // that would make it smaller than a quarter of the window in each direction (Light::sparse: than
   // half of it, without sampled light: than the window), it may take half as long again before it
   // shrinks further. Where pictures are rebuilt, one pixel in 4 gets light unless there is time
-  // for more. It has at least an eighth of the window in each direction and 64 pixels. A frame that
-  // does not move fills the window and gets all requested samples.
+  // for more. It has at least an eighth of the window in each direction and 64 pixels, and no more
+  // while the cost of a pixel is unknown. A frame that does not move fills the window and gets all
+  // requested samples.
   FrameSize next(int width, int height, bool moving, int samples, Light light = Light::sampled);
 
   // Returns a frame between motion and rest: larger than the frames of the motion, because it may
-  // take a tenth of a second.
+  // take a tenth of a second, if the cost of a pixel is known.
   FrameSize settle(int width, int height, int samples) const;
 
   double predicted(const FrameSize& frame) const; // in seconds; 0: unknown
@@ -60,13 +61,16 @@ class Pacing {
   FrameSize at(int step, int width, int height) const;
   int best() const;                             // the best step
   double costOf(const FrameSize& frame) const;  // the cost of a pixel, in costs of one with light
-  double seconds(const FrameSize& frame) const; // as predicted(), with a guess at first
+  double seconds(const FrameSize& frame) const; // as predicted(); the cost of a pixel is known
 
   double budget_; // seconds per frame
   // seconds per sample of a pixel, to rebuild a pixel, and per frame; all smoothed
   double pixel_ = 0, rebuilt_ = 0, overhead_ = 0;
+  double lastOverhead_ = 0; // overhead of the last frame
   Light light_ = Light::sampled;
   int step_ = 0;
+  bool growing_ = true;    // the frames of the first motion have not found their size yet
+  bool measured_ = false;  // a frame has ended since the last one of a motion was chosen
   int framesWithRoom_ = 0; // consecutive frames that left enough time for a better step
   bool moving_ = false;
 };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "graph/url.h"
+#include "lower_case.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -68,12 +69,6 @@ bool exists(const std::string& path) {
   return std::filesystem::is_regular_file(path, error);
 }
 
-std::string lowered(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
-  return lower;
-}
-
 // The names in the folder that was searched last. Worlds name many files of one folder.
 class Listing {
  public:
@@ -92,13 +87,13 @@ class Listing {
       for (fs::directory_iterator one(place, error), end;
            !error && one != end && names_.size() < most; one.increment(error)) {
         const std::string its = one->path().filename().string();
-        std::string& known = names_[lowered(its)];
+        std::string& known = names_[lowerCase(its)];
         if (known.empty() || its < known) known = its;
       }
       folder_ = folder;
       changed_ = changed;
     }
-    const auto found = names_.find(lowered(name));
+    const auto found = names_.find(lowerCase(name));
     return found == names_.end() ? std::string() : found->second;
   }
 

@@ -1,11 +1,11 @@
 #include "mapper/model.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 
+#include "lower_case.h"
 #include "mapper/shading/appearance.h"
 #include "xvrml/comments.h"
 #include "xvrml/nodes.h"
@@ -33,14 +33,8 @@ constexpr double near = 0.02;
 constexpr double plate = 0.35;  // fraction of the smaller other extent: thinner is a plate
 constexpr double plane = 0.001; // fraction of the largest extent: thinner is a planar figure
 
-std::string lowered(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 const Exporter* exporterIn(std::string_view text) {
-  const std::string low = lowered(text);
+  const std::string low = lowerCase(text);
   for (const Exporter& one : exporters)
     if (low.find(one.word) != low.npos) return &one;
   return nullptr;

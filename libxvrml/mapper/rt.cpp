@@ -1,4 +1,5 @@
 #include "mapper/rt.h"
+#include "srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,7 @@ bool report(Diagnostics& diagnostics, const SourcePosition& where, std::string_v
 }
 
 namespace {
-float decode(float v) {
-  return v <= 0.04045f ? v / 12.92f : float(std::pow((double(v) + 0.055) / 1.055, 2.4));
-}
+float decode(float v) { return float(decodeSrgb(double(v))); }
 } // namespace
 
 Color convert(Color c, bool linear) {

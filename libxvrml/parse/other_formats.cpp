@@ -1,8 +1,8 @@
 // other_formats.cpp: recognises file formats by the signatures in their specifications.
 #include "parse/other_formats.h"
+#include "lower_case.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 
@@ -19,14 +19,6 @@ bool holds(std::string_view bytes, std::string_view word) {
 std::string_view withoutBlanks(std::string_view bytes) {
   const size_t first = bytes.find_first_not_of(" \t\r\n");
   return first == bytes.npos ? std::string_view() : bytes.substr(first);
-}
-
-bool beginsWithoutCase(std::string_view bytes, std::string_view word) {
-  return bytes.size() >= word.size() &&
-         std::equal(word.begin(), word.end(), bytes.begin(), [](char a, char b) {
-           return std::tolower(static_cast<unsigned char>(a)) ==
-                  std::tolower(static_cast<unsigned char>(b));
-         });
 }
 
 // The main chunk of a 3D Studio file contains its own length, and begins with the version or the

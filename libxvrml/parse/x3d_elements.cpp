@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/x3d.h"
+#include "lower_case.h"
 #include "parse/parser.h"
 
 namespace xvrml {
@@ -21,21 +22,14 @@ constexpr std::string_view statements[] = {
     "ProtoBody", "ROUTE",        "fieldValue", "field",         "ProtoInterface",
     "connect",   "IMPORT",       "EXPORT"};
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
 } // namespace
 
 X3dElements::X3dElements(Locator& locator, const Limits& limits, ParseSink& sink, Budget* budget)
     : locator_(locator), limits_(limits), sink_(sink), values_(locator, limits, budget),
       nesting_(std::min(limits.nesting, Parser::maximumNesting)) {
   push(Kind::file, {});
-  for (const std::string_view name : statements) lowerCase_.emplace(lower(name), name);
-  for (const NodeType* type : nodeTypes()) lowerCase_.emplace(lower(type->name), type->name);
+  for (const std::string_view name : statements) lowerCase_.emplace(lowerCase(name), name);
+  for (const NodeType* type : nodeTypes()) lowerCase_.emplace(lowerCase(type->name), type->name);
 }
 
 // Returns a text that lives as long as the sink: the file's own bytes or a copy.
@@ -54,7 +48,7 @@ Name X3dElements::canonical(const Name& element) {
       std::find(std::begin(statements), std::end(statements), name) != std::end(statements) ||
       sink_.typeNamed(name);
   if (!known)
-    if (const auto found = lowerCase_.find(lower(name)); found != lowerCase_.end())
+    if (const auto found = lowerCase_.find(lowerCase(name)); found != lowerCase_.end())
       return {found->second, element.at};
   return {keep(name), element.at};
 }

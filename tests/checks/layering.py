@@ -166,7 +166,7 @@ TABLE = [
          "the control channel: commands of other programs, as lines of JSON over sockets",
          "xvrml-h picture vv-process vv-options vv-report vv-session vv-run common system"),
     part("vv-window", "apps/vv/window/", "vv's window; the only part that knows SDL",
-         "xvrml-h vv-process vv-options vv-report vv-start vv-input vv-session vv-control common"),
+         "xvrml-h picture vv-process vv-options vv-report vv-start vv-input vv-session vv-control common"),
     part("vv-server", "apps/vv/server/",
          "vv serve: a world on a page; the only part that knows libwebsockets",
          "xvrml-h picture vv-process vv-options vv-report vv-start vv-input vv-session common system"),

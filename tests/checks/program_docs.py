@@ -75,6 +75,9 @@ with tempfile.TemporaryDirectory() as scratch:
                                    (["vv", "--channels",
                                      "nor"], {"normal"}), (["vv", "--channels",
                                                             "z,nor"], {"z,normal"}),
+                                   (["vv", "--preset",
+                                     ""], {"studio", "product", "technical",
+                                           "pcb"}), (["vv", "--preset", "p"], {"product", "pcb"}),
                                    (["vv", ""], {"world one.wrl", "two.wrz", "folder"}),
                                    (["vv", "-o", "n"], {"notes.txt"}), (["vv", "--shader-path",
                                                                          ""], set())):

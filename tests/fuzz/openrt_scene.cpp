@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "backend/backend.h"
+#include "backend/queries.h"
 #include "backend/record/validator.h"
-#include "backend/surface_queries.h"
 #include "fuzz_input.h"
 #include "scene/channels.h"
 #include "scene/transports.h"
@@ -241,7 +241,7 @@ class Game {
   }
 
   void ask() {
-    auto* const queries = dynamic_cast<SurfaceQueries*>(backend_.get());
+    Queries* const queries = backend_->queries();
     if (!queries || in_.empty()) return;
     RTrayd precise{};
     RTray ray{};
@@ -257,8 +257,8 @@ class Game {
     RThitd hitPrecise{};
     uint8_t occluded = 0;
     uint32_t count = 0;
-    backend_->castRays({&ray, 1}, {&hit, 1});
-    backend_->occludedRays({&ray, 1}, {&occluded, 1});
+    queries->castRays({&ray, 1}, {&hit, 1});
+    queries->occludedRays({&ray, 1}, {&occluded, 1});
     queries->countHits({&ray, 1}, {&count, 1});
     queries->castPrecise({&precise, 1}, {&hitPrecise, 1});
     queries->occludePrecise({&precise, 1}, {&occluded, 1});
@@ -266,7 +266,7 @@ class Game {
     // As rtPick allows.
     const auto place = [this] { return std::clamp(length() - 10, -1e9, 1e9); };
     const double x = place();
-    if (const double y = place(); std::isfinite(x + y)) backend_->pick(x, y, hit);
+    if (const double y = place(); std::isfinite(x + y)) queries->pick(x, y, hit);
   }
 
   static BackendOptions options() {

@@ -128,9 +128,10 @@ def test_worlds_without_sensors_and_wrong_options(vv):
     done = vv("box.wrl", "--measure", "out.csv")
     assert done.returncode == 4 and "no ORTSensor" in done.talk
     for arguments in (("--measure", "out.txt"), ("--measure", "out.csv", "--frames", "1-2"),
-                      ("--measure", "-", "--stats", "-", "-o", "x.png"), ("--false-colour", "auto"),
-                      ("--false-colour", "-3", "-o", "x.png"), ("--false-colour", "auto", "-o",
-                                                                "x.exr")):
+                      ("--measure", "-", "--stats", "-", "-o", "x.png"),
+                      ("--false-colour", "auto", "--check"), ("--false-colour", "-3", "-o",
+                                                              "x.png"), ("--false-colour", "auto",
+                                                                         "-o", "x.exr")):
         assert vv("box.wrl", *arguments).returncode == 2, arguments
 
 

@@ -156,6 +156,61 @@ def test_headlight_key(window):
     w.until(lambda s: s.at(0, 0) == (0, 0, 0))
 
 
+def seen_in(w, screen):
+    """Returns the rows of pixels that the X server shows of a window."""
+    text = w.tool("getwindowgeometry", "--shell", w.id)
+    left, top = (int(re.search(rf"\b{n}=(\d+)", text)[1]) for n in "XY")
+    width, height = w.size()
+    return [row[left:left + width] for row in framebuffer(screen[1])[top:top + height]]
+
+
+def test_false_colours_in_the_window_are_those_of_files(window, screen, vv):
+    """A red box of 0.2 cd/m2 is green on a scale to 0.5 cd/m2. The legend is white."""
+    world = coloured("1 0 0", "DEF Front Viewpoint { position 0 0 4 }")
+    w = window(world, "--false-colour", 0.5)
+    w.move(0, -0.9)  # the cursor is part of the screen
+
+    def look():
+        """Tells whether the box is red, and whether a legend is at the right."""
+        rows = seen_in(w, screen)
+        legend = [row[-2] for row in rows[SIZE[1] // 3:2 * SIZE[1] // 3]]
+        return red(*rows[SIZE[1] // 2][SIZE[0] // 2]), all(p == (255, 255, 255) for p in legend)
+
+    w.wait(lambda: look() == (False, True), "false colours and a legend")
+    shot = w.shot()
+    command = w.command()
+    assert command[command.index("--false-colour") + 1] == "0.5"
+    done = vv("world.wrl", "--false-colour", 0.5, "--spp", 1, "--size", "%dx%d" % SIZE, "-o", "o.png")
+    assert done.returncode == 0, done.talk
+    assert shot.bytes == (vv.folder / "o.png").read_bytes() and shot.width > SIZE[0]
+
+    w.key("l")
+    w.wait(lambda: look() == (True, False), "own colours without a legend")
+    assert w.shot().width == SIZE[0] and "--false-colour" not in w.command()
+    w.key("l")
+    w.wait(lambda: look() == (False, True), "false colours again")
+    assert w.shot().bytes == shot.bytes
+    assert w.end() == 0
+
+
+def test_a_key_shows_false_colours_where_there_is_luminance(window, screen, vv):
+    w = window(coloured("1 0 0"))
+    w.key("l")
+    shot = w.until(lambda s: s.width > SIZE[0])
+    command = w.command()
+    assert command[command.index("--false-colour") + 1] == "auto"
+    done = vv("world.wrl", "--false-colour", "auto", "--spp", 1, "--size", "%dx%d" % SIZE, "-o",
+              "o.png")
+    assert done.returncode == 0, done.talk
+    assert shot.bytes == (vv.folder / "o.png").read_bytes()
+    assert w.end() == 0
+    w = window(coloured("1 0 0"), "--colour", "vrml97")
+    before = w.still()
+    w.key("l")
+    assert w.still().bytes == before.bytes
+    assert w.end() == 0
+
+
 def test_frame_all_shows_a_world_far_away(window):
     w = window(
         HEADER +

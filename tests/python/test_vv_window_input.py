@@ -92,6 +92,25 @@ def test_events_after_a_save_happen_after_it_in_the_window_and_without(window, v
         assert (vv.folder / name).read_bytes() == (vv.folder / "h.png").read_bytes(), name
 
 
+def test_a_script_shows_the_same_false_colours_with_and_without_a_window(window, vv):
+    vv.write("world.wrl", EXAMINED)
+    vv.write("in.txt", "0.1 key L\n0.2 save on.png\n0.3 key L\n0.4 save off.png\n0.5 quit\n")
+    w = window("world.wrl", "--input", "in.txt", ready=False)
+    assert w.program.wait(PATIENCE) == 0
+    files = []
+    for name, time in ("on.png", .2), ("off.png", .4):
+        done = vv("world.wrl", "--input", "in.txt", "--time", time, "-o", "h.png", "--size",
+                  "%dx%d" % SIZE, "--spp", 1)
+        assert done.returncode == 0, done.talk
+        files.append((vv.folder / name).read_bytes())
+        assert files[-1] == (vv.folder / "h.png").read_bytes(), name
+    # The pictures of a sequence have one size.
+    done = vv("world.wrl", "--input", "in.txt", "--frames", "5-8", "-o", "film.gif", "--size",
+              "%dx%d" % SIZE, "--spp", 1)
+    assert done.returncode == 0, done.talk
+    assert files[0] != files[1]
+
+
 def test_a_recording_keeps_what_follows_a_save_behind_it(window, vv):
     # Steps of half a second: what follows the save comes in the same step.
     w = window(SPINNING, "--record-input", "in.txt", "--fps", 2, "--spp", 4)

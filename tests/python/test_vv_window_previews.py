@@ -125,6 +125,26 @@ def test_a_picture_that_is_waited_for_is_not_lost_with_its_world(window, vv):
     saved_picture(w, ended(w, "saved"), vv)
 
 
+def test_the_overlay_of_a_restless_world_names_the_key_that_stops_it(window, screen):
+    """After three seconds its line grows by " P pauses: full picture", until P is pressed."""
+    w = window(SPINNING, "--size", "640x480")
+    w.move(0, -0.95)
+
+    def length():
+        """Returns the first column behind the letters of the overlay's first line."""
+        rows = framebuffer(screen[1])[:18]
+        letters = [x for x in range(len(rows[0])) if any(min(row[x]) > 150 for row in rows)]
+        return letters[-1] + 1 if letters else 0
+
+    w.shot()  # the world rests for it, and then moves
+    time.sleep(0.5)
+    before = w.wait(length, "an overlay")
+    w.wait(lambda: length() > before + 100, "a longer line")
+    w.key("p")
+    w.wait(lambda: 0 < length() < before + 100, "a shorter line")
+    assert w.end() == 0
+
+
 def test_a_key_shows_the_raw_samples(window, screen):
     w = window(NOISY, "--transport", "path", "--spp", 4)
     w.move(0, -0.95)

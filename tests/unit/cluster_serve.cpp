@@ -66,7 +66,7 @@ struct Master {
   void say(message::Body&& body) { EXPECT_TRUE(wire.send(peer, encode(session, std::move(body)))); }
   // Returns the next message, which must be of this kind.
   template <class T> T next() {
-    for (const double end = steadyNow() + 120; steadyNow() < end;) {
+    for (const double end = steadySeconds() + 120; steadySeconds() < end;) {
       Event event = wire.receive(0.1);
       if (event.kind == Kind::joined) peer = event.peer;
       EXPECT_NE(event.kind, Kind::left) << event.text;
@@ -190,7 +190,7 @@ TEST_F(Serve, aWorkerThatCallsWithKeysAndEndsWithItsMaster) {
     Master master(withLongTimeouts({{}, address, keys}), shaders, 42);
     EXPECT_EQ(master.picture(commits[0], true), expected(1));
   }
-  for (const double end = steadyNow() + 60; !service.ended && steadyNow() < end;)
+  for (const double end = steadySeconds() + 60; !service.ended && steadySeconds() < end;)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_TRUE(service.ended);
 }

@@ -171,13 +171,14 @@ class UselessWorker {
       if (event.kind == Event::Kind::joined) {
         peer_ = event.peer;
         session_ = 0;
-        joined_ = steadyNow();
+        joined_ = steadySeconds();
         greet();
       }
       if (event.kind == Event::Kind::message) hear(read(std::move(event)));
-      if (session_ != 0 && way_ == Misbehaviour::comesAndGoes && steadyNow() > joined_ + 0.2) die();
+      if (session_ != 0 && way_ == Misbehaviour::comesAndGoes && steadySeconds() > joined_ + 0.2)
+        die();
       if (session_ != 0 && way_ == Misbehaviour::readyForEver && epoch_ > 0 &&
-          steadyNow() > told_ + 0.1)
+          steadySeconds() > told_ + 0.1)
         ready();
     }
   }
@@ -222,7 +223,7 @@ class UselessWorker {
     m.transport = found->second.frame.transport;
     m.stats = found->second.stats;
     if (way_ == Misbehaviour::liesAboutScene) m.stats.triangles++;
-    told_ = steadyNow();
+    told_ = steadySeconds();
     say(std::move(m));
     if (way_ == Misbehaviour::refusesLater)
       say(message::Failed{.epoch = epoch_, .why = "no memory"});
@@ -291,18 +292,18 @@ Outcome render(std::vector<Misbehaviour> ways, ClusterOptions cluster) {
     const auto backend = makeClusterBackend(options, cluster);
     for (uint32_t i = 0; i < frames; i++) {
       backend->apply(pictures().commits[i]);
-      const double begin = steadyNow();
+      const double begin = steadySeconds();
       backend->start();
       std::atomic<bool> over{false};
       std::thread watch([&] {
         float before = -1;
-        for (double since = steadyNow(); !over;
+        for (double since = steadySeconds(); !over;
              std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
           const float is = backend->progress();
-          if (is != before) since = steadyNow();
+          if (is != before) since = steadySeconds();
           before = is;
-          out.longest = std::max(out.longest, steadyNow() - since);
-          if (steadyNow() - since > promised + 2 * slack)
+          out.longest = std::max(out.longest, steadySeconds() - since);
+          if (steadySeconds() - since > promised + 2 * slack)
             backend->cancel(); // it would wait forever
         }
       });
@@ -312,7 +313,7 @@ Outcome render(std::vector<Misbehaviour> ways, ClusterOptions cluster) {
       } catch (const ClusterError& e) { out.failure = e.what(); }
       over = true;
       watch.join();
-      out.last = steadyNow() - begin;
+      out.last = steadySeconds() - begin;
     }
   }
   out.said = log.text;

@@ -59,10 +59,10 @@ std::pair<std::string, std::string> refusals(const KeyRing& server, const KeyRin
   Wires wires;
   const Wire& door = wires.add(listening(server));
   const Wire& caller = wires.add(calling(door, client, serverKey));
-  const double begin = steadyNow();
+  const double begin = steadySeconds();
   const std::string theirs = wires.next(caller, Kind::refused).text,
                     ours = wires.next(door, Kind::refused).text;
-  testing::Test::RecordProperty("milliseconds", int((steadyNow() - begin) * 1000));
+  testing::Test::RecordProperty("milliseconds", int((steadySeconds() - begin) * 1000));
   EXPECT_FALSE(wires.has(door, Kind::joined));
   EXPECT_FALSE(wires.has(caller, Kind::joined));
   return {theirs, ours};
@@ -145,7 +145,7 @@ TEST(Addresses, areReadAndShown) {
 TEST(Addresses, namesAreLookedUpWithoutWaiting) {
   const auto found = [](const char* name, std::string& why) {
     const Lookup lookup(Address::parse(name));
-    for (const double end = steadyNow() + 60; !lookup.ready() && steadyNow() < end;)
+    for (const double end = steadySeconds() + 60; !lookup.ready() && steadySeconds() < end;)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return lookup.result(why);
   };
@@ -295,7 +295,7 @@ TEST(Wire, silenceMeansLeftAndWhoComesToLifeBeginsAnew) {
   EXPECT_NE(left.text.find("it sent nothing"), std::string::npos);
   bare.send(hello()); // too late
   bool bye = false;
-  for (const double end = steadyNow() + 30; !bye && steadyNow() < end; wires.serve())
+  for (const double end = steadySeconds() + 30; !bye && steadySeconds() < end; wires.serve())
     for (Frames frames; bare.receive(frames);) {
       Message message;
       ASSERT_EQ(decode(std::move(frames), message), "");
@@ -317,7 +317,7 @@ TEST(Wire, beatsKeepTheIdleAliveAndMeasureTheWay) {
   options.silence = 2;
   Wire& caller = wires.add(options);
   const Peer there = wires.next(caller, Kind::joined).peer;
-  for (const double end = steadyNow() + 3; steadyNow() < end;) wires.serve();
+  for (const double end = steadySeconds() + 3; steadySeconds() < end;) wires.serve();
   EXPECT_FALSE(wires.has(door, Kind::left));
   EXPECT_FALSE(wires.has(caller, Kind::left));
   EXPECT_GT(caller.traffic(there).latency, 0);
@@ -442,8 +442,8 @@ TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
   }
   EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
   put(std::string("\x02\0\0\0\0\x03\0\0\0", 9)); // announces 48 MiB
-  for (const double end = steadyNow() + 30; !wires.has(door, Kind::left) && steadyNow() < end;
-       wires.serve()) {
+  for (const double end = steadySeconds() + 30;
+       !wires.has(door, Kind::left) && steadySeconds() < end; wires.serve()) {
     put(std::string(100, 'b'));
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

@@ -66,7 +66,7 @@ class Wires {
   // Waits for the next event of a kind on a wire, removes it and returns it. Returns `nothing`
   // after a long time.
   Event next(const Wire& wire, Event::Kind kind, double patience = 30) {
-    for (const double end = steadyNow() + patience;;) {
+    for (const double end = steadySeconds() + patience;;) {
       std::vector<Event>& events = of(wire).events;
       for (auto e = events.begin(); e != events.end(); ++e)
         if (e->kind == kind) {
@@ -74,7 +74,7 @@ class Wires {
           events.erase(e);
           return event;
         }
-      if (steadyNow() > end) return {};
+      if (steadySeconds() > end) return {};
       serve();
     }
   }

@@ -190,7 +190,7 @@ TEST_F(WorkerCoreTest, QuestionsSeeWhatWasAskedBefore) {
   core.scene(1, all[0], true, false);
   RThit hit{};
   bool seen = false;
-  core.ask([&](Backend& backend) { seen = backend.pick(10, 16, hit); });
+  core.ask([&](Backend& backend) { seen = backend.queries()->pick(10, 16, hit); });
   EXPECT_TRUE(seen);
   EXPECT_GT(hit.t, 0);
   EXPECT_THROW(core.ask([](Backend&) { throw std::runtime_error("no"); }), std::runtime_error);

@@ -30,9 +30,6 @@ class KeepingBackend final : public Backend {
   float progress() const override { return 1; }
   bool read(RTenum, std::span<float>) const override { return false; }
   void stats(RTstats&) const override {}
-  void castRays(std::span<const RTray>, std::span<RThit>) override {}
-  void occludedRays(std::span<const RTray>, std::span<uint8_t>) override {}
-  bool pick(double, double, RThit&) override { return false; }
 
  private:
   std::shared_ptr<Commits> commits_;

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "api/context.h"
+#include "backend/queries.h"
 #include "backend/record/validator.h"
 #include "openrt/openrt.h"
 
@@ -29,6 +30,37 @@ struct Captured {
   std::string backendCalls;  // backend calls so far: a apply, s start, w wait, c cancel
   std::string cancelIn;      // letters of the calls during which rtCancel() is called
   std::function<void()> end; // called by the backend's destructor
+};
+
+// Finds something at every ray, but not in lists and counts.
+class FakeQueries final : public Queries {
+ public:
+  void castRays(std::span<const RTray>, std::span<RThit> hits) override {
+    for (RThit& hit : hits) hit.t = 7;
+  }
+  void occludedRays(std::span<const RTray>, std::span<uint8_t> occluded) override {
+    for (uint8_t& o : occluded) o = 1;
+  }
+  bool pick(double, double, RThit& hit) override {
+    hit.t = 7;
+    return true;
+  }
+  void countHits(std::span<const RTray>, std::span<uint32_t> counts) override {
+    for (uint32_t& count : counts) count = 0;
+  }
+  void listHits(std::span<const RTray>, std::span<const size_t>, std::span<RThit>) override {}
+  void closestPoints(std::span<const float>, float, std::span<RTclosest>) override {}
+  void castPrecise(std::span<const RTrayd>, std::span<RThitd> hits) override {
+    for (RThitd& hit : hits) hit.t = 7;
+  }
+  void occludePrecise(std::span<const RTrayd>, std::span<uint8_t> occluded) override {
+    for (uint8_t& o : occluded) o = 1;
+  }
+  void countPrecise(std::span<const RTrayd>, std::span<uint32_t> counts) override {
+    for (uint32_t& count : counts) count = 0;
+  }
+  void listPrecise(std::span<const RTrayd>, std::span<const size_t>, std::span<RThitd>) override {}
+  void closestPrecise(std::span<const double>, double, std::span<RThitd>) override {}
 };
 
 class CaptureBackend final : public Backend {
@@ -76,16 +108,7 @@ class CaptureBackend final : public Backend {
     stats.cameraRays = 42;
     stats.degenerate = 1;
   }
-  void castRays(std::span<const RTray>, std::span<RThit> hits) override {
-    for (RThit& hit : hits) hit.t = 7;
-  }
-  void occludedRays(std::span<const RTray>, std::span<uint8_t> occluded) override {
-    for (uint8_t& o : occluded) o = 1;
-  }
-  bool pick(double, double, RThit& hit) override {
-    hit.t = 7;
-    return true;
-  }
+  Queries* queries() override { return &queries_; }
 
  private:
   void recordCall(char what) {
@@ -93,6 +116,7 @@ class CaptureBackend final : public Backend {
     if (captured_->cancelIn.find(what) != std::string::npos) rtCancel(rtGetCurrent());
   }
   std::shared_ptr<Captured> captured_;
+  FakeQueries queries_;
 };
 
 // A context whose commits can be inspected. TearDown() checks that no error is pending.

@@ -79,9 +79,26 @@ TEST(FalseColour, TheLegendHasTheColoursOfTheScale) {
   EXPECT_GT(at(p, 408, 270)[2], at(p, 408, 270)[1]) << "and blue at its lower end";
 }
 
+// A window draws the legend over its picture, whose size changes.
+TEST(FalseColour, TheLegendCanBeDrawnByItself) {
+  const Picture rising = ramp(200, 240, 100);
+  const Picture whole = falseColours(rising, 100), left = falseColours(rising, 100, Legend::apart),
+                right = falseColourLegend(100, 240);
+  ASSERT_EQ(left.width, 200);
+  ASSERT_EQ(left.width + right.width, whole.width);
+  ASSERT_EQ(right.height, 240);
+  EXPECT_FALSE(left.linear || right.linear);
+  int different = 0;
+  for (int y = 0; y < 240; y++)
+    for (int x = 0; x < whole.width; x++)
+      different += at(whole, x, y) != (x < 200 ? at(left, x, y) : at(right, x - 200, y));
+  EXPECT_EQ(different, 0);
+}
+
 TEST(FalseColour, OddPicturesAreShown) {
   Picture tiny = ramp(1, 1, 0);
   EXPECT_EQ(falseColours(tiny, {}).height, 1);
+  EXPECT_EQ(falseColourLegend(1, 1).height, 1);
   Picture wrong = ramp(8, 8, 1);
   wrong.planes[RT_RGBA][4] = std::nanf("");
   wrong.planes[RT_RGBA][8] = INFINITY;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "libpicture/false_colour.h"
 #include "libpicture/live/display.h"
 
 using namespace picture;
@@ -191,4 +192,32 @@ TEST(LiveDisplay, picturesAreScaledBetweenTheCentresOfPixels) {
   }
   const std::vector<uint8_t> grey(3 * 35 * 21, 77);
   EXPECT_EQ(live::scaled(grey, 35, 21, 9, 64), std::vector<uint8_t>(3 * 9 * 64, 77));
+}
+
+// A finished still picture has the scale that its file would have. The others keep that of the last
+// finished one, so that colours do not flicker while something moves.
+TEST(LiveDisplay, falseColoursKeepTheirScaleInMotion) {
+  Display display;
+  const auto inFalseColours = [](ShownFrame frame, double end) {
+    frame.falseColour = end;
+    return frame;
+  };
+  const auto endOf = [&](double byte, const ShownFrame& frame, bool whole) {
+    return 255 * show(display, uniform(byte), frame, whole).scaleEnd;
+  };
+  EXPECT_NEAR(endOf(100, inFalseColours(preview(1), 0), true), 100, .01);
+  EXPECT_NEAR(endOf(200, inFalseColours(preview(2), 0), true), 100, .01);
+  EXPECT_NEAR(endOf(200, inFalseColours(stillFrame(3), 0), false), 100, .01);
+  EXPECT_NEAR(endOf(200, inFalseColours(stillFrame(3), 0), true), 200, .01);
+  EXPECT_NEAR(endOf(50, inFalseColours(preview(4), 0), true), 200, .01);
+  EXPECT_NEAR(endOf(50, inFalseColours(preview(5, 1), 0), true), 50, .01) << "another viewer's";
+  EXPECT_EQ(endOf(50, preview(6), true), 0) << "own colours";
+  EXPECT_NEAR(endOf(50, inFalseColours(preview(7), 0), true), 50, .01) << "chosen anew";
+  EXPECT_NEAR(endOf(50, inFalseColours(preview(8), 9), true), 9 * 255, .01) << "given";
+
+  const LivePicture own = show(display, uniform(128), preview(9), true),
+                    shown = show(display, uniform(128), inFalseColours(preview(10), 1), true);
+  EXPECT_EQ(own.rgb[0], own.rgb[1]);
+  EXPECT_EQ(shown.rgb, displayBytes(falseColours(uniform(128), 1, Legend::apart)));
+  EXPECT_EQ(shown.width, own.width) << "without the legend";
 }

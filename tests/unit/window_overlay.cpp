@@ -82,6 +82,19 @@ TEST(Overlay, nothingIsSaidBeforeThereIsAPicture) {
   EXPECT_TRUE(overlayLines(SessionFacts(), false, OverlayLevel::none).empty());
 }
 
+// In such a world previews are all that there is.
+TEST(Overlay, aRestlessWorldIsSaidToHavePauses) {
+  SessionFacts restless = facts(Showing::preview, 29);
+  EXPECT_FALSE(has(brief(restless), "P pauses"));
+  restless.isRestless = true;
+  EXPECT_TRUE(has(brief(restless), "P pauses: full picture"));
+  EXPECT_FALSE(has(overlayLines(restless, true, OverlayLevel::brief)[0], "P pauses"));
+  InputEvent key;
+  key.kind = InputEvent::Kind::down;
+  key.text = "P";
+  EXPECT_EQ(actionOf(key), Action::pause);
+}
+
 TEST(Overlay, theHelpListsAllKeys) {
   const std::vector<std::string> lines = helpLines();
   EXPECT_EQ(lines.size(), keyTable().size() + mouseTable().size());

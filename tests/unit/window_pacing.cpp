@@ -230,6 +230,9 @@ TEST(Pacing, aPictureThatSettlesIsLarger) {
     EXPECT_LE(machine.seconds(settling), 0.1) << wholePicture;
     EXPECT_GE(settling.width, sizes.back().width) << wholePicture;
   }
+  Pacing unknown(30); // its first frame has not ended
+  const FrameSize first = unknown.next(width, height, true, 64);
+  EXPECT_EQ(unknown.settle(width, height, 64), first);
   const Pacing fresh(30);
   EXPECT_LE(fresh.settle(width, height, 2).samples, 2);
   EXPECT_EQ(fresh.settle(0, -1, 0), (FrameSize{1, 1, 1}));
@@ -311,6 +314,50 @@ TEST(Pacing, readingTheWorldIsNotHelpedByFewerPixels) {
   std::vector<FrameSize> sizes;
   move(pacing, machine, 40, &sizes);
   EXPECT_EQ(sizes.back().width, width); // 0.2 s or 0.21 s
+}
+
+// Nothing is known of a world before its first picture. A world of ten times the cost of a heavy
+// one must not hold the user up, and a quick one must soon fill the window.
+TEST(Pacing, theFirstPictureIsSmallAndTheNextOnesGrow) {
+  for (const auto light : {Pacing::Light::sampled, Pacing::Light::sparse, Pacing::Light::direct,
+                           Pacing::Light::sparseDirect})
+    for (const double wholePicture : {0.004, 0.02, 0.2, 1.0, 5.0}) {
+      SCOPED_TRACE(wholePicture);
+      Pacing pacing(30);
+      Machine machine{wholePicture / full, 0.001};
+      std::vector<FrameSize> sizes;
+      const std::vector<double> seconds = move(pacing, machine, 12, &sizes, light);
+      EXPECT_LE(sizes[0].width, width / 8);
+      EXPECT_EQ(sizes[0].samples, 1);
+      for (const double one : seconds) EXPECT_LE(one, 0.1);
+      for (size_t i = 1; i < sizes.size(); ++i) EXPECT_GE(sizes[i].width, sizes[i - 1].width);
+      EXPECT_TRUE(sizes[2].width == width || wholePicture > 0.02);
+    }
+}
+
+// A small picture has costs that do not grow with its size, so that a pixel of it seems to be dear.
+TEST(Pacing, theFirstPicturesGrowAsTheirPixelsBecomeCheaper) {
+  Pacing pacing(30);
+  std::vector<FrameSize> sizes;
+  for (int i = 0; i < 8; ++i) {
+    const FrameSize f = pacing.next(width, height, true, 64);
+    const double seconds = .006 + .015 * f.width * f.height / full;
+    pacing.took(f, seconds, seconds, 0, f.samples);
+    sizes.push_back(f);
+  }
+  EXPECT_EQ(sizes.back().width, width);
+}
+
+// A world is built once, in seconds. Its pictures need not wait as long for that again.
+TEST(Pacing, whatIsBuiltOnceDoesNotSlowLaterPictures) {
+  for (const auto light : {Pacing::Light::sampled, Pacing::Light::sparse, Pacing::Light::direct}) {
+    Pacing pacing(30);
+    Machine machine{2 / full, 5};
+    move(pacing, machine, 1, nullptr, light);
+    machine.overhead = 0.002;
+    EXPECT_LE(machine.seconds(pacing.settle(width, height, 64)), 0.1);
+    for (const double seconds : move(pacing, machine, 20, nullptr, light)) EXPECT_LE(seconds, 0.06);
+  }
 }
 
 TEST(Pacing, oddTimesAreNoReason) {

@@ -18,16 +18,13 @@
 
 #include "control/connection.h"
 #include "control/listener.h"
+#include "steady_clock.h"
 #include "system/sockets.h"
 #include "system/wake_up.h"
 
 namespace vv::control {
 
 namespace {
-
-double steadySeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Tells whether the other end of a unix socket belongs to this user, or to root. The folder may be
 // open to others.

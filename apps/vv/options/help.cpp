@@ -3,12 +3,12 @@
 #include "help.h"
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "lower_case.h"
 #include "nearest.h"
 #include "options.h"
 #include "values.h"
@@ -45,13 +45,6 @@ std::string wrapped(std::string_view text, size_t columns) {
   return out;
 }
 
-std::string lowered(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return out;
-}
-
 std::string describe(const OptionInfo& option, std::string_view text) {
   std::string head = "  ";
   for (std::string_view name : split(option.names, ','))
@@ -66,7 +59,7 @@ std::string describe(const OptionInfo& option, std::string_view text) {
 std::string describeGroups(std::string_view wanted) {
   std::string out, group;
   for (const OptionInfo& option : optionTable()) {
-    if (!wanted.empty() && wanted != lowered(option.group)) continue;
+    if (!wanted.empty() && wanted != lowerCase(option.group)) continue;
     if (group != option.group) {
       group = option.group;
       out += fmt::format("\n{}\n", group);
@@ -80,7 +73,7 @@ std::string describeGroups(std::string_view wanted) {
 std::vector<std::string> topics() {
   std::vector<std::string> out;
   for (const OptionInfo& option : optionTable())
-    if (const std::string topic = lowered(option.group); out.empty() || out.back() != topic)
+    if (const std::string topic = lowerCase(option.group); out.empty() || out.back() != topic)
       out.push_back(topic);
   return out;
 }
@@ -138,7 +131,7 @@ std::string shortHelp() {
 
 std::string helpText(std::string_view about) {
   if (about.empty()) return shortHelp();
-  const std::string topic = lowered(about);
+  const std::string topic = lowerCase(about);
   if (topic == everything) return usage() + describeGroups("") + describeExitCodes();
   if (topic == exitCodes || topic == "exit") return describeExitCodes().substr(1);
   if (const std::string group = describeGroups(topic); !group.empty()) return group.substr(1);

@@ -252,10 +252,11 @@ const OptionInfo table[] = {
          "numbers as written, without any curve.",
      setColour},
     {"--false-colour,--false-color", "auto|MAX", "Picture",
-     "Show luminance in colours, with isolines and a legend in cd/m2, in " +
+     "Show luminance in colours, with isolines and a legend in cd/m2, in the window and in " +
          picture::formatsWith(&picture::Format::appliesCurve) +
          " files and films. MAX is the luminance at the end of the scale; auto chooses a round one "
-         "by the first picture of the run. The file is wider than --size by the legend.",
+         "by the first picture of the run, in the window by each finished picture. The file is "
+         "wider than --size by the legend.",
      [](Options& o, const std::string& v) {
        o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
      }},

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,6 +15,7 @@
 #include <toml++/toml.h>
 
 #include "libpicture/built_in_presets.h"
+#include "lower_case.h"
 #include "nearest.h"
 #include "process/messages.h"
 
@@ -312,8 +312,7 @@ std::string inside(const std::string& folder, const std::string& path) {
 }
 
 bool isGltf(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
+  name = lowerCase(name);
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
   return name.ends_with(".glb") || name.ends_with(".gltf");
 }

@@ -104,12 +104,12 @@ constexpr Rule rules[] = {
      "--measure reads the sensors of one moment: it cannot be used with --audit, --frames, "
      "--turntable, --viewpoint all, --watch or --record"},
     {[](const Options& o) {
-       return o.falseColour &&
+       return o.falseColour && (!o.opensWindow() || o.noWindow) &&
               std::none_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
                 return output.film != picture::FilmKind::none || output.format->appliesCurve;
               });
      },
-     "--false-colour needs -o with a film or a file for a screen, such as .png"},
+     "--false-colour needs the window, or -o with a film or a file for a screen, such as .png"},
     {[](const Options& o) { return o.falseColour && !o.render.linear; },
      "--false-colour needs light that is added linearly: it cannot be used with --colour vrml97"},
     {[](const Options& o) {

@@ -1,7 +1,6 @@
 #include "values.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -12,6 +11,8 @@
 #include <fmt/format.h>
 
 #include "habits.h"
+#include "lower_case.h"
+#include "picture_size.h"
 
 namespace vv {
 
@@ -149,7 +150,7 @@ void readSize(std::string_view text, int& width, int& height) {
   std::vector<std::string_view> parts = split(text, 'x');
   int w = 0, h = 0;
   const bool read = parts.size() == 2 && whole(parts[0], w) && whole(parts[1], h);
-  if (!read || w < 1 || h < 1 || w > 65536 || h > 65536 || int64_t(w) * h > (int64_t(1) << 28))
+  if (!read || !isPictureSize(w, h))
     throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at "
                                  "most 2^28 pixels), not \"{}\"{}",
                                  text, sizeHint(text)));
@@ -274,10 +275,7 @@ picture::LookAt readPose(std::string_view text, std::string& file) {
 }
 
 xvrml::Axis readAxis(std::string_view text) {
-  std::string small(text);
-  std::transform(small.begin(), small.end(), small.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  const std::optional<xvrml::Axis> axis = picture::axisNamed(small);
+  const std::optional<xvrml::Axis> axis = picture::axisNamed(lowerCase(text));
   if (!axis) throw UsageError(fmt::format("x, y, z, -x, -y or -z was expected, not \"{}\"", text));
   return *axis;
 }

@@ -218,6 +218,8 @@ class Pictures {
     makeRenderer(settings);
     pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
+    if (options_.render.linear && !options_.denoise)
+      pilot_->allowFalseColours(options_.falseColour);
     if (pilot_->begin(options_.view, options_.viewpoint)) present();
     pilot_->animateTransitions();
     replay_ = std::make_unique<Replay>(*pilot_, *options_.script,
@@ -527,11 +529,18 @@ class Pictures {
     return exitInterrupted;
   }
 
+  // Returns the end of the scale of false colours, 0: chosen by the first picture; none: they are
+  // not wanted. A script may switch them, but not within a sequence, whose pictures have one size.
+  std::optional<double> falseColour() const {
+    return pilot_ && !options_.isSequence() ? pilot_->falseColour() : options_.falseColour;
+  }
+
   // Returns the picture in false colours, if they are wanted. All pictures of a run have one scale,
   // so that they can be compared and have one size: the given one, or that of the first picture.
   std::optional<picture::Picture> inFalseColours(const picture::Picture& made, bool complete) {
-    if (!options_.falseColour) return {};
-    double most = *options_.falseColour > 0 ? *options_.falseColour : endOfScale_;
+    const std::optional<double> wanted = falseColour();
+    if (!wanted) return {};
+    double most = *wanted > 0 ? *wanted : endOfScale_;
     if (!(most > 0)) most = picture::mostLuminance(made);
     if (complete) endOfScale_ = most;
     return picture::falseColours(made, most);
@@ -605,7 +614,7 @@ class Pictures {
         std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
           return output.film != picture::FilmKind::none || output.format->appliesCurve;
         });
-    if (options_.quiet || !shown || options_.falseColour || brightnessSaid_) return;
+    if (options_.quiet || !shown || falseColour() || brightnessSaid_) return;
     const std::string hint = tooBrightHint(made);
     brightnessSaid_ = !hint.empty();
     if (brightnessSaid_) say("vv: " + hint);

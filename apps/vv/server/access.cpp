@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "lower_case.h"
 #include "server/limits.h"
 #include "system/random.h"
 
@@ -14,13 +15,6 @@ namespace vv::server {
 namespace {
 
 constexpr std::string_view hexDigits = "0123456789abcdef";
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return out;
-}
 
 // Returns the host without its port: "[::1]:80" gives "[::1]". Text that is no port stays.
 std::string_view withoutPort(std::string_view host) {
@@ -31,7 +25,7 @@ std::string_view withoutPort(std::string_view host) {
 
 // Returns the host with its port, which is left out where it is the scheme's own.
 std::string normal(std::string_view host, std::string_view port) {
-  std::string out = lower(host);
+  std::string out = lowerCase(host);
   if (out.size() > port.size() && out.ends_with(port)) out.resize(out.size() - port.size());
   return out;
 }
@@ -94,13 +88,13 @@ std::string_view cookieNamed(std::string_view header, std::string_view name) {
 
 bool isLoopbackHost(std::string_view host) {
   const std::string_view name = withoutPort(host);
-  return lower(name) == "localhost" || name == "[::1]" || isLoopbackAddress(name);
+  return lowerCase(name) == "localhost" || name == "[::1]" || isLoopbackAddress(name);
 }
 
 bool isSameOrigin(std::string_view origin, std::string_view host) {
   for (const auto& [scheme, port] :
        {std::pair<std::string_view, std::string_view>{"http://", ":80"}, {"https://", ":443"}})
-    if (lower(origin.substr(0, scheme.size())) == scheme)
+    if (lowerCase(origin.substr(0, scheme.size())) == scheme)
       return !host.empty() && normal(origin.substr(scheme.size()), port) == normal(host, port);
   return false;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstring>
 #include <deque>
 #include <map>
@@ -21,6 +20,7 @@
 #include "server/limits.h"
 #include "server/server.h"
 #include "spare_descriptors.h"
+#include "steady_clock.h"
 
 namespace vv::server {
 
@@ -31,10 +31,6 @@ constexpr size_t bodyBlock = 65536; // bytes of a body that are written at once
 constexpr size_t mostTexts = 32;    // texts without a name that wait for a page
 constexpr size_t headerRoom = 4096; // for the headers of an answer
 constexpr auto tryAgainLater = static_cast<lws_close_status>(1013);
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string headerOf(lws* connection, lws_token_indexes token) {
   const int length = lws_hdr_total_length(connection, token);
@@ -195,7 +191,7 @@ struct Host::Impl {
     request.method = head                                                      ? "HEAD"
                      : lws_hdr_total_length(connection, WSI_TOKEN_GET_URI) > 0 ? "GET"
                                                                                : "";
-    const Answer given = answerTo(request, downloads, now());
+    const Answer given = answerTo(request, downloads, steadySeconds());
     unsigned char room[LWS_PRE + headerRoom];
     unsigned char *const start = room + LWS_PRE, *at = start, *const end = room + sizeof room - 1;
     const size_t size = given.body->size();
@@ -283,7 +279,7 @@ struct Host::Impl {
     Socket& socket = sockets[found->second];
     if (!socket.refusal.empty()) return 0;
     // A part of a message counts as one, too, because there may be many empty ones.
-    if (!socket.rate.allow(now()))
+    if (!socket.rate.allow(steadySeconds()))
       return close(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, "maxMessagesPerSecond");
     if (lws_frame_is_binary(connection))
       return close(connection, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "texts were expected");
@@ -464,7 +460,8 @@ void Host::sendPicture(uint64_t page, std::string bytes) {
 void Host::close(uint64_t page) { impl_->order({Impl::Order::Kind::close, page, {}, {}}); }
 
 std::string Host::offerDownload(std::string name, std::string type, std::string content) {
-  return impl_->downloads.offer(std::move(name), std::move(type), std::move(content), now());
+  return impl_->downloads.offer(std::move(name), std::move(type), std::move(content),
+                                steadySeconds());
 }
 
 } // namespace vv::server

@@ -1,11 +1,11 @@
 #include "server/texts.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "lower_case.h"
 #include "report/describe.h"
 #include "session/input/keys.h"
 
@@ -34,8 +34,10 @@ std::string nameOf(const xvrml::ViewpointName& viewpoint, size_t number) {
 
 std::string helloText() {
   Json keys = Json::array(), mouse = Json::array();
+  // Pages do not end vv, and they have no legend of false colours.
   for (const KeyInfo& key : keyTable())
-    if (key.action != Action::quit) keys.push_back({key.keys, key.text});
+    if (key.action != Action::quit && key.action != Action::falseColours)
+      keys.push_back({key.keys, key.text});
   for (const MouseInfo& one : mouseTable()) mouse.push_back({one.what, one.text});
   return written({{"type", "hello"}, {"version", version()}, {"keys", keys}, {"mouse", mouse}});
 }
@@ -88,12 +90,7 @@ std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, i
 
 std::string webUrlOf(std::span<const std::string> urls) {
   for (const std::string& url : urls)
-    for (const std::string_view scheme : {"http://", "https://"}) {
-      const std::string_view begin = std::string_view(url).substr(0, scheme.size());
-      if (std::equal(begin.begin(), begin.end(), scheme.begin(), scheme.end(),
-                     [](unsigned char a, unsigned char b) { return std::tolower(a) == b; }))
-        return url;
-    }
+    if (beginsWithoutCase(url, "http://") || beginsWithoutCase(url, "https://")) return url;
   return {};
 }
 

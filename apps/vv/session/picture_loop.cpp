@@ -37,7 +37,7 @@ void PictureLoop::resize(int width, int height) {
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
          shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
-         pilot.exposure() != exposure_ ||
+         pilot.exposure() != exposure_ || pilot.falseColour() != falseColour_ ||
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
@@ -208,6 +208,7 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
   frame.viewer = viewer_;
+  frame.falseColour = falseColour_ = pilot.falseColour();
   still_ = Progress::none;
   isStillLost_ = false;
   cancelled_ = false;

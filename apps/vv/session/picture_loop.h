@@ -142,7 +142,8 @@ class PictureLoop {
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
-  double exposure_ = 0; // the pilot's exposure
+  double exposure_ = 0;               // the exposure of the pilot
+  std::optional<double> falseColour_; // the scale of the pilot
   picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
   double lastStart_ = 0, motionBegan_ = 0, settlingEnds_ = 0, gap_ = 0;

@@ -182,6 +182,11 @@ void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
   gravityActs_ = false;
 }
 
+void Pilot::allowFalseColours(std::optional<double> given) {
+  scaleEnd_ = given.value_or(0);
+  showsFalseColours_ = given.has_value();
+}
+
 std::optional<picture::View> Pilot::initialView(const picture::View& view) const {
   if (viewer_->viewpoint() && !view.up && !view.lookAt && !view.side) return {};
   picture::View wanted = view;
@@ -296,6 +301,14 @@ Action Pilot::press(Action action) {
     exposure_ = std::clamp(exposure_ + (action == Action::brighter ? .5 : -.5),
                            -picture::mostExposure / 2, picture::mostExposure / 2);
     message_ = fmt::format("exposure {:+g}", exposure_);
+    break;
+  case Action::falseColours:
+    if (!scaleEnd_) {
+      message_ = "false colours need a window and light that is added linearly";
+      break;
+    }
+    showsFalseColours_ = !showsFalseColours_;
+    message_ = showsFalseColours_ ? "luminance in false colours" : "own colours";
     break;
   case Action::pause:
     if (!viewer_->isOfWorld()) {

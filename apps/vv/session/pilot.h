@@ -63,6 +63,9 @@ class Pilot {
   // Lets the world run for these seconds, in steps of 1/fps, although it is paused.
   void skip(double seconds, double fps);
   void putAt(const xvrml::CameraSettings& camera); // restores the camera of another session
+  // Lets the user show false colours. given: the end of their scale in cd/m2, or 0 if pictures
+  // choose it, and they are shown at once; none: pictures choose it when the user wants them.
+  void allowFalseColours(std::optional<double> given);
   // Sets the initial view of a world without a Viewpoint, and its up axis.
   void present(const xvrml::CameraSettings& camera, xvrml::Axis up);
   // Returns the request for that initial view, from the options' view. Returns nothing if a bound
@@ -74,7 +77,11 @@ class Pilot {
   bool paused() const { return time_.isPaused(); }
   // the user's choice; none: not switched
   std::optional<bool> headlight() const { return headlight_; }
-  double exposure() const { return exposure_; }    // stops that the user has added
+  double exposure() const { return exposure_; } // stops that the user has added
+  // the end of the scale of false colours, or 0 if pictures choose it; none: own colours are shown
+  std::optional<double> falseColour() const {
+    return showsFalseColours_ ? scaleEnd_ : std::nullopt;
+  }
   bool hasViewerMoved() const { return touched_; } // the user has moved the viewer
   bool overSensor() const { return pointer_.isOverSensor(); }
   xvrml::Navigation navigation() const { return viewer_->navigation(); }
@@ -108,6 +115,8 @@ class Pilot {
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
   double exposure_ = 0;
+  std::optional<double> scaleEnd_; // end of the scale, 0: chosen by pictures; none: not allowed
+  bool showsFalseColours_ = false;
   std::set<std::string> held_; // keys that are held down
   WorldKeys worldKeys_;        // keys that the world's sensors get
   bool shift_ = false, alt_ = false;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/false_colour.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "options/names.h"
@@ -36,17 +37,21 @@ PictureWriter::~PictureWriter() {
 }
 
 void PictureWriter::begin(picture::Picture picture, const std::string& path, uint32_t channels,
-                          const std::string& note) {
+                          std::optional<double> falseColour, const std::string& note) {
   wait();
   takeMessage();
   done_ = false;
-  thread_ = std::thread([this, picture = std::move(picture), path, channels, note] {
+  thread_ = std::thread([this, picture = std::move(picture), path, channels, falseColour, note] {
     try {
       const picture::Format* format = picture::formatOf(path);
       if (!format)
         throw std::runtime_error(
             fmt::format("{}: the suffix is none of {}", path, picture::formatSuffixes()));
-      picture::writeRegularFile(path, format->encode(picture::withChannels(picture, channels)));
+      const auto most = falseColour.value_or(0) > 0 ? falseColour : std::nullopt;
+      picture::writeRegularFile(path,
+                                format->encode(falseColour && format->appliesCurve
+                                                   ? picture::falseColours(picture, most)
+                                                   : picture::withChannels(picture, channels)));
       told_ = "saved as " + path + note;
       failed_ = false;
     } catch (const std::bad_alloc&) {

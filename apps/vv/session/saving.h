@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -24,10 +25,11 @@ class PictureWriter {
   PictureWriter(const PictureWriter&) = delete;
   PictureWriter& operator=(const PictureWriter&) = delete;
 
-  // Begins to write the channels of a picture; waits for an earlier file. note: is added to the
-  // message.
+  // Begins to write the channels of a picture; waits for an earlier file. falseColour: the end of
+  // the scale of false colours for screens, or 0 if the picture chooses it; none: own colours.
+  // note: is added to the message.
   void begin(picture::Picture picture, const std::string& path, uint32_t channels,
-             const std::string& note = "");
+             std::optional<double> falseColour, const std::string& note = "");
   // Returns, once and also on the terminal, where the picture was saved or why it was not; "" until
   // that is known.
   std::string takeMessage();

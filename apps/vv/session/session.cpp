@@ -56,6 +56,8 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
                                                     : SessionClock::Mode::real,
              options.fps),
       inlines_(*browser_) {
+  if (options_.render.linear && !options_.has(Job::serve))
+    pilot_.allowFalseColours(options_.falseColour);
   if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
   if (script)
     replay_ =
@@ -298,7 +300,7 @@ void Session::save(const std::string& path) {
   if (isSaving()) {
     message_ = fmt::format("{} is not saved: another picture is waited for", path);
   } else if (!replay_ && !pictures_.isOutdated(pilot_, fit_) && pictures_.copyStill(picture)) {
-    writer_.begin(std::move(picture), path, channels_);
+    writer_.begin(std::move(picture), path, channels_, pilot_.falseColour());
   } else {
     saveTo_ = path;
     saver_ = Saver::user;
@@ -336,7 +338,7 @@ void Session::saveIfFinished() {
   if (!isSaving() || inlines_.isLoading() || !pictures_.isFinished(pilot_)) return;
   picture::Picture picture;
   if (!pictures_.copyStill(picture)) return;
-  writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_);
+  writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_, pilot_.falseColour());
   if (replay_) replay_->resume();
 }
 
@@ -350,7 +352,7 @@ std::string Session::endSaving() {
       copied = pictures_.copyStill(picture);
     }
     if (copied)
-      writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_,
+      writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_, pilot_.falseColour(),
                     fmt::format(", with {:.0f} of {} samples", pictures_.facts().samples,
                                 options_.render.samples));
     else

@@ -18,7 +18,7 @@ std::string Session::command(const std::vector<std::string>& arguments, uint32_t
   if (options_.render.linear && (options_.viewGiven || pilot.exposure() != 0))
     transform = pictures.transformOf(pilot);
   return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
-                      browser_->now(), options_.epoch, headlight, transform},
+                      browser_->now(), options_.epoch, headlight, transform, pilot.falseColour()},
                      arguments);
 }
 

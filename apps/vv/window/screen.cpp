@@ -277,6 +277,7 @@ void Screen::present() {
     const Texture& panel = impl_->panels[size_t(place)];
     if (!panel.texture) continue;
     SDL_Rect at{0, 0, panel.width, panel.height};
+    if (place == right) at.x = w - panel.width;
     if (place == bottom) at.y = h - panel.height;
     if (place == middle) {
       at.x = (w - panel.width) / 2;

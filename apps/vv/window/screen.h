@@ -29,7 +29,7 @@ class Screen {
 
   // rgb: bytes, first row at the top; the picture fills the window.
   void setPicture(int width, int height, const std::vector<uint8_t>& rgb);
-  enum Place : uint8_t { top, bottom, middle, places };
+  enum Place : uint8_t { right, top, bottom, middle, places }; // each covers those before it
   void setPanel(Place place, const Panel& panel);
   void present(); // redraws if anything has changed
   void setHand(bool hand);

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "control/control.h"
+#include "libpicture/false_colour.h"
 #include "options/shader_text.h"
 #include "process/messages.h"
 #include "process/signals.h"
@@ -120,10 +121,20 @@ class Window {
 
   void show() {
     screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
+    showLegend();
     if (std::exchange(first_, false) && options_.verbose)
       say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
                       duration(seconds() - loadStart_)));
     if (options_.verbose && picture_.purpose == picture::LiveFrame::Purpose::preview) sayFilter();
+  }
+
+  // Shows the legend of false colours, in the height of the window.
+  void showLegend() {
+    const std::pair<double, int> legend(picture_.scaleEnd, screen_.height());
+    if (std::exchange(legend_, legend) == legend) return;
+    if (picture_.scaleEnd <= 0) return screen_.setPanel(Screen::right, Panel());
+    const picture::Picture drawn = picture::falseColourLegend(picture_.scaleEnd, screen_.height());
+    screen_.setPanel(Screen::right, {drawn.width, drawn.height, picture::displayBytesAlpha(drawn)});
   }
 
   // Says once of each filter that it has made a preview.
@@ -397,8 +408,9 @@ class Window {
   int failed_ = exitDone; // exit code of a world that could not be loaded
   bool ended_ = false, keepPlace_ = false, help_ = false;
   std::set<std::string> filtersSaid_;
-  bool first_ = false;  // the first picture of the world is still missing
-  double advanced_ = 0; // when the session advanced last
+  bool first_ = false;            // the first picture of the world is still missing
+  double advanced_ = 0;           // when the session advanced last
+  std::pair<double, int> legend_; // the end of its scale, 0: there is none, and its height
   PictureLoop::Motion motion_ = PictureLoop::Motion::rebuilt;
   double loadStart_ = 0;
 

@@ -5,9 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "backend/backend.h"
 #include "backend/debug/rules.h"
-#include "backend/surface_queries.h"
+#include "backend/forwarding.h"
 #include "shading/registry.h"
 
 namespace openrt {
@@ -15,10 +14,10 @@ namespace {
 
 using namespace debug;
 
-class DebugBackend final : public Backend, public ForwardedQueries {
+class DebugBackend final : public ForwardingBackend {
  public:
   DebugBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
-      : options_(options), renderer_(std::move(renderer)) {}
+      : ForwardingBackend(std::move(renderer)), options_(options) {}
 
   void apply(std::shared_ptr<const Commit> commit) override {
     const SceneChanges changes = scene_.apply(*commit);
@@ -35,37 +34,14 @@ class DebugBackend final : public Backend, public ForwardedQueries {
       }
     }
     changed_ |= changes.any();
-    renderer_->apply(std::move(commit));
+    ForwardingBackend::apply(std::move(commit));
   }
 
-  bool keepSums(const SumsRequest& request) override { return renderer_->keepSums(request); }
-  std::shared_ptr<FrameSums> sums() const override { return renderer_->sums(); }
   void start() override {
     if (changed_) checkRules();
     changed_ = false;
-    renderer_->start();
+    ForwardingBackend::start();
   }
-
-  bool pipelines() const override { return renderer_->pipelines(); }
-  std::vector<RTworker> workers() const override { return renderer_->workers(); }
-  void wait() override { renderer_->wait(); }
-  void cancel() override { renderer_->cancel(); }
-  float progress() const override { return renderer_->progress(); }
-  bool snapshot(RTenum channel, std::span<float> out) const override {
-    return renderer_->snapshot(channel, out);
-  }
-  bool read(RTenum channel, std::span<float> out) const override {
-    return renderer_->read(channel, out);
-  }
-  void stats(RTstats& stats) const override { renderer_->stats(stats); }
-  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
-    renderer_->castRays(rays, hits);
-  }
-  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
-    renderer_->occludedRays(rays, occluded);
-  }
-  bool pick(double x, double y, RThit& hit) override { return renderer_->pick(x, y, hit); }
-  void finish() override { renderer_->finish(); }
 
  private:
   const RtsClass* classOf(uint32_t shader) const {
@@ -101,9 +77,6 @@ class DebugBackend final : public Backend, public ForwardedQueries {
   }
 
   BackendOptions options_;
-  SurfaceQueries* target() const override { return dynamic_cast<SurfaceQueries*>(renderer_.get()); }
-
-  std::unique_ptr<Backend> renderer_;
   Scene scene_;
   std::map<uint32_t, ObjectHistory> histories_;
   UsageHistory memory_;

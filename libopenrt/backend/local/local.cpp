@@ -9,7 +9,6 @@
 #include "shading/running.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -27,13 +26,10 @@
 #include "render/path/transport.h"
 #include "render/wave/nearest_hits.h"
 #include "scene/transports.h"
+#include "steady_clock.h"
 
 namespace openrt {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string kernelText() { return std::string("Embree ") + RTC_VERSION_STRING; }
 
@@ -41,14 +37,18 @@ std::string kernelText() { return std::string("Embree ") + RTC_VERSION_STRING; }
 
 LocalBackend::LocalBackend(const BackendOptions& options)
     : options_(options), threads_(options.threads ? options.threads : availableThreads()),
-      device_(std::make_shared<EmbreeDevice>(threads_, options.isa)), builder_(device_) {}
+      device_(std::make_shared<EmbreeDevice>(threads_, options.isa)), builder_(device_),
+      queries_(device_, threads_, [this] {
+        prepareGeometry();
+        return PreparedGeometry{scene_, flat_, builder_.survey, *accel_, *snapshot_};
+      }) {}
 
 LocalBackend::~LocalBackend() = default;
 
 void LocalBackend::apply(std::shared_ptr<const Commit> commit) {
-  const double begin = now();
+  const double begin = steadySeconds();
   changes_.add(scene_.apply(*commit, &history_));
-  commitSeconds_ = now() - begin;
+  commitSeconds_ = steadySeconds() - begin;
 }
 
 Vec3d LocalBackend::eye() const {
@@ -56,7 +56,7 @@ Vec3d LocalBackend::eye() const {
                                                                : Vec3d{};
 }
 
-void LocalBackend::prepare() {
+void LocalBackend::prepareGeometry() {
   // A thing that moved in the last snapshot may rest in this one, and in another view other things
   // moved.
   const bool motionsDiffer =
@@ -64,14 +64,11 @@ void LocalBackend::prepare() {
   if (snapshot_ && accel_ && !changes_.any() && !motionsDiffer) return;
   auto next = std::make_shared<RenderScene>();
   next->frame = scene_.frame;
-  next->emitters = std::make_shared<Emitters>();
   makeShaders(*next);
   try {
     updateAccel(*next);
   } catch (...) { // incomplete: the next call rebuilds it
-    exact_ = nullptr;
-    precise_ = nullptr;
-    bodies_ = nullptr;
+    queries_.clear();
     accel_ = nullptr;
     throw;
   }
@@ -79,46 +76,55 @@ void LocalBackend::prepare() {
   next->records = accel_->records;
   next->buckets = accel_->buckets;
   next->transparentShadows = accel_->hasTransparent;
-  TransportChoice choice = chooseTransport(*next, snapshot_.get());
-  next->frame.transport = uint8_t(choice.transport);
+  snapshot_ = std::move(next);
+  snapshotFrame_ = history_.number();
+  changes_ = {};
+}
+
+void LocalBackend::prepareLight() {
+  prepareGeometry();
+  if (lit_ == snapshot_) return;
+  RenderScene& next = *snapshot_;
+  const RenderScene* const before = lit_.get();
+  next.emitters = std::make_shared<Emitters>();
+  TransportChoice choice = chooseTransport(next, before);
+  next.frame.transport = uint8_t(choice.transport);
   unreachedLights_ = choice.unreached;
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
-  next->mediumLights = findMediumLights(*next);
-  next->absorbingShadows =
-      !next->mediumLights.empty() || (next->transparentShadows && hasAbsorption(*next));
-  next->samplesPass = samplesPass(*next);
-  next->emitters->build(*next, snapshot_.get(), recordsUnmoved_);
+  next.mediumLights = findMediumLights(next);
+  next.absorbingShadows =
+      !next.mediumLights.empty() || (next.transparentShadows && hasAbsorption(next));
+  next.samplesPass = samplesPass(next);
+  next.emitters->build(next, before, recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
-      next->emitters->shapes() != (snapshot_ ? snapshot_->emitters->shapes() : nullptr)) {
-    const std::string warning = warnOfNearLamps(*next);
+      next.emitters->shapes() != (before ? before->emitters->shapes() : nullptr)) {
+    const std::string warning = warnOfNearLamps(next);
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     warnedOfNearLamp_ = !warning.empty();
   }
-  if (!warnedOfAnalyticLamp_ && options_.log && !recordsUnmoved_) {
-    const std::string warning = warnOfAnalyticLamps(*next);
+  if (!warnedOfAnalyticLamp_ && options_.log && !(before && recordsUnmoved_)) {
+    const std::string warning = warnOfAnalyticLamps(next);
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     warnedOfAnalyticLamp_ = !warning.empty();
   }
-  next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
+  next.lightSamplers = makeLightSamplers(next, before);
   // Sensors that light paths do not reach do not have such a transport (transport.cpp).
-  if (tracesLamps(choice.transport) && !showsNoLight(next->frame) &&
-      next->camera.shader.shaderClass &&
-      (next->camera.shader.shaderClass->project || next->frame.measure)) {
-    auto sources =
-        std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
-    if (!sources->empty()) next->lightSources = std::move(sources);
+  if (tracesLamps(choice.transport) && !showsNoLight(next.frame) &&
+      next.camera.shader.shaderClass &&
+      (next.camera.shader.shaderClass->project || next.frame.measure)) {
+    auto sources = std::make_shared<const LightSources>(next, recordsUnmoved_ ? before : nullptr);
+    if (!sources->empty()) next.lightSources = std::move(sources);
   }
-  snapshot_ = std::move(next);
+  lit_ = snapshot_;
+  recordsUnmoved_ = true;
   guided_ = false;
-  snapshotFrame_ = history_.number();
-  changes_ = {};
 }
 
 // Brings the acceleration structure up to date with the committed scene, and makes the camera and
 // the lights, which depend on its origin.
 void LocalBackend::updateAccel(RenderScene& next) {
-  const double begin = now();
+  const double begin = steadySeconds();
   const SceneChanges& c = changes_;
   bool scoped = false;
   for (const auto& [id, light] : scene_.lights) scoped |= light.scope != 0;
@@ -154,9 +160,9 @@ void LocalBackend::updateAccel(RenderScene& next) {
   const double scale = builder_.survey.scale(origin);
   const BuildInput input{
       scene_, flat_, *next.shaders, origin, scale, builder_.survey.reach(origin) * scale, pixel};
-  exactIsFormer_ = preciseIsFormer_ = bodiesAreFormer_ = true;
+  queries_.outdate();
   const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, input);
-  recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
+  recordsUnmoved_ = recordsUnmoved_ && !builds && moved.empty() && c.redefined.empty();
   if (builds)
     accel_ = builder_.build(input);
   else
@@ -164,18 +170,19 @@ void LocalBackend::updateAccel(RenderScene& next) {
   if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   footprint_ = pixel;
   updateMotions(next, std::move(moved), layOut);
-  buildSeconds_ = now() - begin;
+  buildSeconds_ = steadySeconds() - begin;
   makeLights(next, flat_, origin);
 }
 
 // Finds out what has moved since the frame before in the same view, for RT_MOTION.
-//   moved  clusters that moved since the last prepare()
+//   moved  clusters that moved since the last prepareGeometry()
 //   all    anything may have moved
 void LocalBackend::updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all) {
   if (!history_.watches()) return dropPaths(flat_);
   if (!history_.any()) return;
   if (flat_.paths.empty() && !history_.view().beginning()) addPaths(scene_, flat_);
-  // A prepare() after the frame before, also of another view, has already taken note of changes.
+  // A prepareGeometry() after the frame before, also of another view, has already taken note of
+  // changes.
   all |= snapshot_ && snapshotFrame_ > history_.numberBefore();
   for (const uint32_t object : changes_.redefined) {
     const uint32_t part = builder_.survey.partOf(object);
@@ -305,10 +312,9 @@ void LocalBackend::makeLights(RenderScene& next, const Flattened& flat, const Ve
   }
 }
 
-// Queries need no photons, so that these are made when a frame begins.
 void LocalBackend::prepareFrame() {
   stop_ = false;
-  prepare();
+  prepareLight();
   if (guided_) return;
   snapshot_->enclosed = isEnclosed(*snapshot_);
   snapshot_->aroundEye = mediaAroundEye(*snapshot_);
@@ -406,7 +412,7 @@ void LocalBackend::stats(RTstats& s) const {
     finished_->work().describeError(s);
     finished_->work().describeLedger(s);
   }
-  if (snapshot_) s.transport = snapshot_->frame.transport;
+  if (lit_) s.transport = lit_->frame.transport;
   s.unreachedLights = unreachedLights_;
   s.transportLeavesOut = transportLeavesOut_;
   std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());
@@ -419,38 +425,6 @@ void LocalBackend::stats(RTstats& s) const {
   s.threads = threads_;
   std::snprintf(s.isa, sizeof s.isa, "%s", device_->isa.c_str());
   std::snprintf(s.kernel, sizeof s.kernel, "%s", kernelText().c_str());
-}
-
-// The ray is in render space, which has the world's unit of length.
-bool LocalBackend::cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const {
-  const ShaderSlot& camera = snapshot_->camera.shader;
-  if (!camera.shaderClass || snapshot_->frame.width == 0) return false;
-  Arena arena;
-  RtsRays local;
-  for (int k = 0; k < 3; k++) {
-    local.origin[k] = arena.takeZero<float>(lanes);
-    local.direction[k] = arena.takeZero<float>(lanes);
-  }
-  float* xy[2] = {arena.take<float>(lanes), arena.take<float>(lanes)};
-  std::fill_n(xy[0], lanes, float(x));
-  std::fill_n(xy[1], lanes, float(y));
-  const float* points[2] = {xy[0], xy[1]};
-  const float size[2] = {float(snapshot_->frame.width), float(snapshot_->frame.height)};
-  RtsBatch batch;
-  RayCounters counters;
-  batch.scene = snapshot_.get();
-  batch.arena = &arena;
-  batch.counters = &counters;
-  batch.rays = lanes; // without a tracer, random points are (0.5, 0.5): the middle of the lens
-  {
-    const RunningShader running(*camera.shaderClass);
-    camera.shaderClass->generate(&snapshot_->host, &batch, camera.params, 1, points, size, &local);
-  }
-  const Affine& toRender = snapshot_->camera.fromLocal;
-  origin = toRender.point(load(local.origin, 0));
-  const Vec3d towards = toRender.direction(Vec3d(load(local.direction, 0)));
-  direction = Vec3f(towards / length(towards));
-  return true;
 }
 
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options) {

@@ -1,4 +1,4 @@
-// precise_queries.cpp: answers the ray queries in double precision of LocalBackend, on its threads.
+// precise_queries.cpp: answers ray queries in double precision, on threads of its own.
 // Called on the application's thread.
 #include <tbb/task_arena.h>
 
@@ -7,7 +7,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "backend/local/local.h"
+#include "backend/local/local_queries.h"
 #include "parallel_for.h"
 
 namespace openrt {
@@ -32,10 +32,10 @@ RThitd nothing() {
 
 } // namespace
 
-const PreciseScene& LocalBackend::precise() {
+const PreciseScene& LocalQueries::precise() {
   prepare();
   if (!precise_ || preciseIsFormer_) {
-    const PreciseScene::Input input{scene_, flat_, builder_.survey, *accel_};
+    const PreciseScene::Input input{at_->scene, at_->flat, at_->survey, at_->accel};
     precise_ = std::make_unique<const PreciseScene>(*device_, input, precise_.get());
     if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
       precise_ = nullptr;
@@ -48,7 +48,7 @@ const PreciseScene& LocalBackend::precise() {
 
 // Calls use(i, ray) for every ray, and refuse(i) for those that cannot be traced.
 template <class Use, class Refuse> void
-LocalBackend::forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse) {
+LocalQueries::forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse) {
   tbb::task_arena arena{int(threads_)};
   arena.execute([&] {
     parallelFor(tbb::blocked_range<size_t>(0, rays.size(), block), [&](const auto& range) {
@@ -62,13 +62,13 @@ LocalBackend::forEachPrecise(std::span<const RTrayd> rays, const Use& use, const
           refused++;
         }
       }
-      if (refused) accel_->rejectedRays += refused;
+      if (refused) at_->accel.rejectedRays += refused;
     });
   });
 }
 
-RThitd LocalBackend::hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const {
-  const Record& r = accel_->records[found.record];
+RThitd LocalQueries::hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const {
+  const Record& r = at_->accel.records[found.record];
   RThitd hit{};
   hit.t = found.at.t;
   hit.u = found.at.u;
@@ -86,7 +86,7 @@ RThitd LocalBackend::hitOf(const PreciseScene::Hit& found, const PreciseRay& ray
   return hit;
 }
 
-void LocalBackend::castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) {
+void LocalQueries::castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) {
   const PreciseScene& scene = precise();
   forEachPrecise(
       rays,
@@ -97,21 +97,21 @@ void LocalBackend::castPrecise(std::span<const RTrayd> rays, std::span<RThitd> h
       [&](size_t i) { hits[i] = nothing(); });
 }
 
-void LocalBackend::occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) {
+void LocalQueries::occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) {
   const PreciseScene& scene = precise();
   forEachPrecise(
       rays, [&](size_t i, const PreciseRay& ray) { occluded[i] = scene.occluded(ray); },
       [&](size_t i) { occluded[i] = 0; });
 }
 
-void LocalBackend::countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) {
+void LocalQueries::countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) {
   const PreciseScene& scene = precise();
   forEachPrecise(
       rays, [&](size_t i, const PreciseRay& ray) { counts[i] = uint32_t(scene.count(ray)); },
       [&](size_t i) { counts[i] = 0; });
 }
 
-void LocalBackend::listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
+void LocalQueries::listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
                                std::span<RThitd> hits) {
   const PreciseScene& scene = precise();
   const auto fillRest = [&](size_t ray, size_t written) {
@@ -129,7 +129,7 @@ void LocalBackend::listPrecise(std::span<const RTrayd> rays, std::span<const siz
       [&](size_t ray) { fillRest(ray, 0); });
 }
 
-void LocalBackend::closestPrecise(std::span<const double> points, double radius,
+void LocalQueries::closestPrecise(std::span<const double> points, double radius,
                                   std::span<RThitd> closest) {
   requireNoAnalytic();
   const PreciseScene& scene = precise();
@@ -147,7 +147,7 @@ void LocalBackend::closestPrecise(std::span<const double> points, double radius,
         if (!isFinite(point) || largest(abs(point)) > farthest ||
             !scene.closest(point, radius, found))
           continue;
-        const Record& r = accel_->records[found.record];
+        const Record& r = at_->accel.records[found.record];
         hit.t = found.at.distance;
         hit.u = found.at.u;
         hit.v = found.at.v;

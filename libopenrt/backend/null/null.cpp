@@ -2,7 +2,6 @@
 // are zeros. It is used to measure the cost of the API alone. Application thread; cancel and
 // progress from any.
 #include <algorithm>
-#include <limits>
 #include <unordered_map>
 
 #include "backend/backend.h"
@@ -19,7 +18,6 @@ class NullBackend final : public Backend {
       if (const auto* object = entry->any.AsObject()) triangles_[object->id] = triangles(*object);
       if (const auto* deleted = entry->any.AsDeleteObject()) triangles_.erase(deleted->id);
       if (const auto* frame = entry->any.AsFrameSettings()) channels_ = frame->channels;
-      if (const auto* camera = entry->any.AsCamera()) camera_ = camera->shader != 0;
     }
     elements_.clear();
   }
@@ -40,21 +38,6 @@ class NullBackend final : public Backend {
     stats.threads = 0;
   }
 
-  void castRays(std::span<const RTray>, std::span<RThit> hits) override {
-    RThit nothing{};
-    nothing.t = std::numeric_limits<float>::infinity();
-    std::fill(hits.begin(), hits.end(), nothing);
-  }
-  void occludedRays(std::span<const RTray>, std::span<uint8_t> occluded) override {
-    std::fill(occluded.begin(), occluded.end(), uint8_t(0));
-  }
-
-  bool pick(double, double, RThit& hit) override {
-    hit = {};
-    hit.t = std::numeric_limits<float>::infinity();
-    return camera_ && channels_ != 0;
-  }
-
  private:
   uint64_t triangles(const edit::ObjectT& object) const {
     uint64_t count = 0;
@@ -70,7 +53,6 @@ class NullBackend final : public Backend {
   std::unordered_map<ArrayId, uint64_t> elements_;
   std::unordered_map<uint32_t, uint64_t> triangles_;
   uint32_t channels_ = 0;
-  bool camera_ = false;
 };
 
 } // namespace

@@ -15,10 +15,9 @@
 #include <xxhash.h>
 #include <zstd.h>
 
-#include "backend/backend.h"
+#include "backend/forwarding.h"
 #include "backend/record/edits_bytes.h"
 #include "backend/record/format.h"
-#include "backend/surface_queries.h"
 
 namespace openrt {
 namespace {
@@ -132,13 +131,15 @@ class RecordingWriter {
   std::vector<char> packed_;
 };
 
-// Records commits. A rendering backend behind it gets the same calls as without recording.
-class RecordBackend final : public Backend, public ForwardedQueries {
+// Records commits. The backend behind it gets the same calls as without recording.
+class RecordBackend final : public ForwardingBackend {
  public:
-  RecordBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
-      : writer_(std::make_unique<RecordingWriter>(options.file)), renderer_(std::move(renderer)) {}
+  // renders: the backend behind it makes pictures, so that it goes on where a write fails.
+  RecordBackend(const BackendOptions& options, std::unique_ptr<Backend> to, bool renders)
+      : ForwardingBackend(std::move(to)), writer_(std::make_unique<RecordingWriter>(options.file)),
+        renders_(renders) {}
 
-  // A failed write ends the recording; rendering continues with the next call.
+  // A failed write ends the recording.
   void apply(std::shared_ptr<const Commit> commit) override {
     if (writer_) {
       try {
@@ -147,93 +148,33 @@ class RecordBackend final : public Backend, public ForwardedQueries {
         writer_.reset();
         throw;
       }
-    } else if (!renderer_) {
+    } else if (!renders_) {
       throw std::system_error(std::make_error_code(std::errc::io_error),
                               "the recording has ended with an error");
     }
-    for (const auto& entry : commit->edits.edits) {
-      if (const auto* frame = entry ? entry->any.AsFrameSettings() : nullptr)
-        channels_ = frame->channels;
-      if (const auto* camera = entry ? entry->any.AsCamera() : nullptr)
-        camera_ = camera->shader != 0;
-    }
-    if (renderer_) renderer_->apply(std::move(commit));
+    ForwardingBackend::apply(std::move(commit));
   }
 
   void finish() override {
     const std::unique_ptr<RecordingWriter> writer = std::move(writer_);
     if (writer) writer->finish();
-    if (renderer_) renderer_->finish();
-  }
-
-  bool pipelines() const override { return renderer_ && renderer_->pipelines(); }
-  std::vector<RTworker> workers() const override {
-    return renderer_ ? renderer_->workers() : std::vector<RTworker>();
-  }
-  bool keepSums(const SumsRequest& request) override {
-    return renderer_ ? renderer_->keepSums(request) : Backend::keepSums(request);
-  }
-  std::shared_ptr<FrameSums> sums() const override {
-    return renderer_ ? renderer_->sums() : nullptr;
-  }
-  void start() override {
-    if (renderer_) renderer_->start();
-  }
-  void wait() override {
-    if (renderer_) renderer_->wait();
-  }
-  void cancel() override {
-    if (renderer_) renderer_->cancel();
-  }
-  float progress() const override { return renderer_ ? renderer_->progress() : 1; }
-  bool snapshot(RTenum channel, std::span<float> out) const override {
-    return renderer_ && renderer_->snapshot(channel, out);
-  }
-
-  bool read(RTenum channel, std::span<float> out) const override {
-    if (renderer_) return renderer_->read(channel, out);
-    if (!(channels_ & channel)) return false;
-    std::fill(out.begin(), out.end(), 0.0f);
-    return true;
-  }
-  void stats(RTstats& stats) const override {
-    if (renderer_) renderer_->stats(stats);
-  }
-  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
-    if (renderer_) return renderer_->castRays(rays, hits);
-    RThit nothing{};
-    nothing.t = std::numeric_limits<float>::infinity();
-    std::fill(hits.begin(), hits.end(), nothing);
-  }
-  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
-    if (renderer_) return renderer_->occludedRays(rays, occluded);
-    std::fill(occluded.begin(), occluded.end(), uint8_t(0));
-  }
-  bool pick(double x, double y, RThit& hit) override {
-    if (renderer_) return renderer_->pick(x, y, hit);
-    hit = {};
-    hit.t = std::numeric_limits<float>::infinity();
-    return camera_ && channels_ != 0;
+    ForwardingBackend::finish();
   }
 
  private:
   std::unique_ptr<RecordingWriter> writer_;
-  SurfaceQueries* target() const override { return dynamic_cast<SurfaceQueries*>(renderer_.get()); }
-
-  std::unique_ptr<Backend> renderer_;
-  uint32_t channels_ = 0;
-  bool camera_ = false;
+  bool renders_;
 };
 
 } // namespace
 
 std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options) {
-  return std::make_unique<RecordBackend>(options, nullptr);
+  return std::make_unique<RecordBackend>(options, makeNullBackend(options), false);
 }
 
 std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options,
                                         std::unique_ptr<Backend> renderer) {
-  return std::make_unique<RecordBackend>(options, std::move(renderer));
+  return std::make_unique<RecordBackend>(options, std::move(renderer), true);
 }
 
 } // namespace openrt

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "picture_size.h"
 #include "scene/analytic.h"
 #include "shading/parameters.h"
 
@@ -100,10 +101,7 @@ void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParamete
 }
 
 void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::TextureT* current) {
-  constexpr uint32_t maxSide = 65536;
-  demand(t.components >= 1 && t.components <= 4 && t.width >= 1 && t.height >= 1 &&
-             t.width <= maxSide && t.height <= maxSide &&
-             uint64_t(t.width) * t.height <= uint64_t(1) << 28,
+  demand(t.components >= 1 && t.components <= 4 && isPictureSize(t.width, t.height),
          "a texture has an impossible size");
   demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
   demand(t.border.empty() || t.border.size() == 4, "a border colour needs four numbers");

@@ -6,6 +6,7 @@
 
 #include "backend/record/validate_arrays.h"
 #include "openrt/openrt.h"
+#include "picture_size.h"
 #include "scene/channels.h"
 #include "scene/quality.h"
 #include "shading/parameters.h"
@@ -163,14 +164,11 @@ void CommitValidator::check(const edit::LightT& light) {
 }
 
 void CommitValidator::check(const edit::FrameSettingsT& frame) {
-  constexpr uint32_t maxSide = 65536;
-  demand(frame.width >= 1 && frame.height >= 1 && frame.width <= maxSide &&
-             frame.height <= maxSide && uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
-         "a frame has an impossible size");
+  demand(isPictureSize(frame.width, frame.height), "a frame has an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0,
          "a frame has unknown channels");
-  demand(frame.scissorX < maxSide && frame.scissorY < maxSide && frame.scissorWidth <= maxSide &&
-             frame.scissorHeight <= maxSide &&
+  demand(frame.scissorX < largestSide && frame.scissorY < largestSide &&
+             frame.scissorWidth <= largestSide && frame.scissorHeight <= largestSide &&
              (frame.scissorWidth == 0) == (frame.scissorHeight == 0),
          "a frame has an impossible scissor");
   if (const char* setting = invalidQuality(frame))

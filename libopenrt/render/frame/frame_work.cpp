@@ -5,7 +5,6 @@
 #include "render/frame/frame_work.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <deque>
 #include <map>
@@ -22,15 +21,12 @@
 #include "render/frame/result_codec.h"
 #include "render/wave/light_stride.h"
 #include "scene/quality.h"
+#include "steady_clock.h"
 
 namespace openrt {
 namespace {
 
 using Stage = FrameSchedule::Stage;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
   // The middle of a pixel has no edge that could cut its corner (ErrorMap::doubtConstants).
@@ -71,7 +67,7 @@ struct FrameWork::Impl {
         count(facts.camera ? grid.count() : 0), required(requiredSums(frame)),
         film(frame.width, frame.height, frame.channels, errorsOf(frame)),
         tiles(std::make_unique<TileState[]>(count)),
-        schedule(frame, facts, grid, threadCount, now()) {
+        schedule(frame, facts, grid, threadCount, steadySeconds()) {
     if (frame.targetError > 0 && count > 0)
       pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
@@ -483,7 +479,7 @@ FrameWork::Next FrameWork::next(Job& job, uint32_t largest) {
     lock.lock();
   }
   KeptBlock block;
-  while (!m.over && !m.cancelled && m.schedule.next(job, largest, now())) {
+  while (!m.over && !m.cancelled && m.schedule.next(job, largest, steadySeconds())) {
     if (!m.findKnown(job, block)) return Next::job;
     lock.unlock();
     JobResult result;
@@ -543,7 +539,7 @@ bool FrameWork::take(const Job& job, JobResult&& result) {
     m.addSamples(*out, result);
   {
     std::lock_guard lock(m.mutex);
-    m.schedule.done(*out, now());
+    m.schedule.done(*out, steadySeconds());
     m.busy--;
   }
   m.advance();
@@ -578,7 +574,7 @@ double FrameWork::undone() const {
 
 float FrameWork::progress() const {
   std::lock_guard lock(impl_->mutex);
-  return impl_->over ? 1.0f : impl_->schedule.progress(now());
+  return impl_->over ? 1.0f : impl_->schedule.progress(steadySeconds());
 }
 
 bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {

@@ -3,7 +3,6 @@
 #include "render/frame/job_runner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -13,15 +12,10 @@
 #include "render/path/light_tracer.h"
 #include "render/path/photon_pass.h"
 #include "render/path/tile.h"
+#include "steady_clock.h"
 
 namespace openrt {
-namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-} // namespace
+namespace {} // namespace
 
 FrameFacts factsOf(const RenderScene& scene) {
   return {.camera = scene.camera.shader.shaderClass != nullptr,
@@ -115,7 +109,7 @@ JobRunner::~JobRunner() = default;
 bool JobRunner::run(const Job& job, const std::atomic<bool>& stop, JobResult& result) {
   impl_->check(job);
   const FlushDenormals flush;
-  const double began = now();
+  const double began = steadySeconds();
   result.ledger = {};
   const bool light = job.kind == Job::Kind::light;
   const bool done = light ? impl_->light(job, stop, result) : impl_->samples(job, stop, result);
@@ -124,7 +118,7 @@ bool JobRunner::run(const Job& job, const std::atomic<bool>& stop, JobResult& re
   else
     result.light.clear();
   result.counters = std::exchange(light ? impl_->lamps->counters() : impl_->tiles.counters(), {});
-  result.seconds = now() - began;
+  result.seconds = steadySeconds() - began;
   return done;
 }
 

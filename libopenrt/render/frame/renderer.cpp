@@ -4,20 +4,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <exception>
 #include <stdexcept>
 
 #include "render/frame/job_runner.h"
 #include "shortage.h"
 #include "start_threads.h"
+#include "steady_clock.h"
 
 namespace openrt {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Returns the maximum number of samples of a job: small enough that a picture with few tiles keeps
 // all threads busy until its end.
@@ -32,7 +28,7 @@ uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t 
 
 Frame::Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads, const KeepSums& kept)
     : scene_(std::move(scene)), work_(scene_->frame, factsOf(*scene_), threads, kept),
-      started_(now()) {
+      started_(steadySeconds()) {
   work_.onChange([this] {
     {
       std::lock_guard lock(mutex_);
@@ -92,7 +88,7 @@ void Frame::work(uint32_t largest) {
       changed_.wait(lock, [&] { return changes_ != seen; });
     }
     std::lock_guard lock(mutex_);
-    seconds_ = std::max(seconds_, now() - started_);
+    seconds_ = std::max(seconds_, steadySeconds() - started_);
   } catch (...) {
     {
       std::lock_guard lock(mutex_);

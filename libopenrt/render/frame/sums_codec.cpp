@@ -16,6 +16,7 @@
 
 #include <xxhash.h>
 
+#include "picture_size.h"
 #include "render/film/error.h"
 #include "render/frame/result_codec.h"
 #include "scene/channels.h"
@@ -113,18 +114,15 @@ edit::FrameSettingsT readFrame(Reader& r) {
   if (!verifier.VerifyBuffer<edit::FrameSettings>(nullptr)) damaged("its settings are unreadable");
   edit::FrameSettingsT frame;
   flatbuffers::GetRoot<edit::FrameSettings>(aligned.data())->UnPackTo(&frame);
-  constexpr uint32_t mostSide = 65536;
-  constexpr uint64_t mostPixels = uint64_t(1) << 28;
-  const bool fits =
-      frame.width >= 1 && frame.height >= 1 && frame.width <= mostSide &&
-      frame.height <= mostSide && uint64_t(frame.width) * frame.height <= mostPixels &&
-      frame.channels != 0 && (frame.channels & ~allChannels) == 0 && frame.samples >= 1 &&
-      frame.samples <= mostSamples && isTransport(frame.transport) &&
-      (frame.tile == 0 || (frame.tile >= 4 && frame.tile <= 128)) && frame.lightStride >= 1 &&
-      frame.lightStride <= 4 && frame.timeLimit == 0 && frame.targetError >= 0 &&
-      frame.targetError <= 1 && frame.depthAlong <= 1 && frame.scissorX < mostSide &&
-      frame.scissorY < mostSide && frame.scissorWidth <= mostSide &&
-      frame.scissorHeight <= mostSide && (frame.scissorWidth == 0) == (frame.scissorHeight == 0);
+  const bool fits = isPictureSize(frame.width, frame.height) && frame.channels != 0 &&
+                    (frame.channels & ~allChannels) == 0 && frame.samples >= 1 &&
+                    frame.samples <= mostSamples && isTransport(frame.transport) &&
+                    (frame.tile == 0 || (frame.tile >= 4 && frame.tile <= 128)) &&
+                    frame.lightStride >= 1 && frame.lightStride <= 4 && frame.timeLimit == 0 &&
+                    frame.targetError >= 0 && frame.targetError <= 1 && frame.depthAlong <= 1 &&
+                    frame.scissorX < largestSide && frame.scissorY < largestSide &&
+                    frame.scissorWidth <= largestSide && frame.scissorHeight <= largestSide &&
+                    (frame.scissorWidth == 0) == (frame.scissorHeight == 0);
   if (!fits) damaged("its settings are not those of a picture");
   return frame;
 }

@@ -2,11 +2,10 @@
 // same however it is drawn. If Tk is in use, it uses the wall clock, because Tk's widgets expect
 // that. The engine's tick serves the timers. [the browser's thread]
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstring>
 
 #include "interpreter.h"
+#include "steady_clock.h"
 
 namespace tclscript {
 namespace {
@@ -14,10 +13,6 @@ namespace {
 constexpr size_t maxTimers = 10'000;
 constexpr int maxAtOnce = 1000;
 constexpr Tcl_WideInt longestSleep = 200; // milliseconds; Tk's own procedures sleep
-
-double wallClock() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string idOf(const Timer& timer) { return "after#" + std::to_string(timer.id); }
 
@@ -33,7 +28,7 @@ int add(Interpreter& interpreter, double seconds, int count, Tcl_Obj* const* wor
   }
   const bool wall = interpreter.trusted() && interpreter.hasTk();
   const double now =
-      wall ? wallClock() : interpreter.host()->now(interpreter.host(), interpreter.self());
+      wall ? steadySeconds() : interpreter.host()->now(interpreter.host(), interpreter.self());
   interpreter.timers.push_back(
       {now + seconds, wall, ++interpreter.lastTimer, scriptOf(count, words)});
   Tcl_SetObjResult(tcl, Tcl_NewStringObj(idOf(interpreter.timers.back()).c_str(), -1));
@@ -111,7 +106,7 @@ void addTimers(Interpreter& interpreter) {
 // Runs the due timers, earliest first. Timers that they add wait for the next tick.
 void runTimers(Interpreter& interpreter, double time) {
   const uint64_t last = interpreter.lastTimer;
-  const double wall = wallClock();
+  const double wall = steadySeconds();
   Tcl_Interp* tcl = interpreter.tcl();
   for (int i = 0; i < maxAtOnce && !Tcl_LimitExceeded(tcl); ++i) {
     auto& timers = interpreter.timers;

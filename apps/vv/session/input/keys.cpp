@@ -23,6 +23,7 @@ constexpr KeyInfo keys[] = {
     {Action::headlight, "H", "headlight on or off"},
     {Action::brighter, "+ =", "brighter by half a stop"},
     {Action::darker, "-", "darker by half a stop"},
+    {Action::falseColours, "L", "luminance in false colours, or the picture's own colours"},
     {Action::pause, "P", "pause or resume time"},
     {Action::save, "S", "save the picture as PNG"},
     {Action::saveExr, "Shift+S", "save the picture as OpenEXR"},

@@ -27,6 +27,7 @@ enum class Action : uint8_t {
   headlight,
   brighter,
   darker,
+  falseColours,
   pause,
   save,
   saveExr,

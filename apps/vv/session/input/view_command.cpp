@@ -60,7 +60,10 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
     line += fmt::format(" --fov {}", smaller * 180 / std::numbers::pi);
   }
   if (view.headlight) line += *view.headlight ? " --headlight on" : " --headlight off";
-  if (view.transform)
+  if (view.falseColour)
+    line += *view.falseColour > 0 ? fmt::format(" --false-colour {}", *view.falseColour)
+                                  : " --false-colour auto";
+  else if (view.transform)
     line += fmt::format(" --exposure={} --view {}", view.transform->exposure,
                         picture::curveName(view.transform->curve));
   if (view.epoch) line += fmt::format(" --epoch {}", *view.epoch);

@@ -18,6 +18,7 @@ struct ShownView {
   std::optional<double> epoch; // loading time in seconds since 1970; none: the default
   std::optional<bool> headlight;
   std::optional<picture::ViewTransform> transform; // none: that of a world without options
+  std::optional<double> falseColour;               // end of the scale, 0: auto; none: own colours
 };
 
 // Returns a line for a shell. `arguments` are those of this run; the ones about quality, changes of

@@ -18,22 +18,17 @@
 #include "backend/cluster/master/hosts.h"
 #include "backend/cluster/master/master.h"
 #include "backend/cluster/net/greeting.h"
-#include "backend/surface_queries.h"
+#include "backend/queries.h"
 #include "render/frame/threads.h"
 #include "scene/sums_error.h"
 #include "shortage.h"
 #include "start_threads.h"
+#include "steady_clock.h"
 
 namespace openrt {
 namespace {
 
 using namespace cluster;
-
-SurfaceQueries& surfaces(Backend& local) { return dynamic_cast<SurfaceQueries&>(local); }
-
-double clockNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 Split splitOf(const std::string& word) {
   if (word == "tiles") return Split::tiles;
@@ -91,7 +86,7 @@ class ThreadPool {
 // Returns the number of threads that merge remote results while one serves the network.
 uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
 
-class ClusterBackend final : public Backend, public SurfaceQueries, private WorkerSink {
+class ClusterBackend final : public Backend, private Queries, private WorkerSink {
  public:
   ClusterBackend(const BackendOptions& options, const ClusterOptions& cluster)
       : log_(options.log), logUser_(options.logUser) {
@@ -142,9 +137,9 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   bool pipelines() const override { return true; }
 
   void apply(std::shared_ptr<const Commit> commit) override {
-    const double begin = clockNow();
+    const double begin = steadySeconds();
     unsent_.push_back(std::move(commit));
-    commitSeconds_ = clockNow() - begin;
+    commitSeconds_ = steadySeconds() - begin;
   }
 
   bool keepSums(const SumsRequest& request) override {
@@ -165,7 +160,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     if (unsent_.empty()) unsent_.push_back(std::make_shared<Commit>());
     FrameInFlight flight;
     flight.epoch = epoch_ + unsent_.size();
-    flight.begun = clockNow();
+    flight.begun = steadySeconds();
     {
       const std::lock_guard lock(mutex_);
       framesInFlight_.push_back(flight);
@@ -265,45 +260,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     return workers_;
   }
 
-  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
-    ask([&](Backend& backend) { backend.castRays(rays, hits); });
-  }
-  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
-    ask([&](Backend& backend) { backend.occludedRays(rays, occluded); });
-  }
-  bool pick(double x, double y, RThit& hit) override {
-    bool seen = false;
-    ask([&](Backend& backend) { seen = backend.pick(x, y, hit); });
-    return seen;
-  }
-  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override {
-    ask([&](Backend& backend) { surfaces(backend).countHits(rays, counts); });
-  }
-  void listHits(std::span<const RTray> rays, std::span<const size_t> first,
-                std::span<RThit> hits) override {
-    ask([&](Backend& backend) { surfaces(backend).listHits(rays, first, hits); });
-  }
-  void closestPoints(std::span<const float> points, float radius,
-                     std::span<RTclosest> closest) override {
-    ask([&](Backend& backend) { surfaces(backend).closestPoints(points, radius, closest); });
-  }
-  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
-    ask([&](Backend& backend) { surfaces(backend).castPrecise(rays, hits); });
-  }
-  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
-    ask([&](Backend& backend) { surfaces(backend).occludePrecise(rays, occluded); });
-  }
-  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
-    ask([&](Backend& backend) { surfaces(backend).countPrecise(rays, counts); });
-  }
-  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
-                   std::span<RThitd> hits) override {
-    ask([&](Backend& backend) { surfaces(backend).listPrecise(rays, first, hits); });
-  }
-  void closestPrecise(std::span<const double> points, double radius,
-                      std::span<RThitd> closest) override {
-    ask([&](Backend& backend) { surfaces(backend).closestPrecise(points, radius, closest); });
-  }
+  Queries* queries() override { return this; }
 
  private:
   struct FrameInFlight { // a frame that was started
@@ -325,15 +282,57 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     }
   }
 
-  // Queries the last committed scene. The local worker has it once all earlier frames are finished.
-  void ask(const std::function<void(Backend&)>& question) {
+  // Queries: the local worker answers them.
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
+    ask([&](Queries& local) { local.castRays(rays, hits); });
+  }
+  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
+    ask([&](Queries& local) { local.occludedRays(rays, occluded); });
+  }
+  bool pick(double x, double y, RThit& hit) override {
+    bool seen = false;
+    ask([&](Queries& local) { seen = local.pick(x, y, hit); });
+    return seen;
+  }
+  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override {
+    ask([&](Queries& local) { local.countHits(rays, counts); });
+  }
+  void listHits(std::span<const RTray> rays, std::span<const size_t> first,
+                std::span<RThit> hits) override {
+    ask([&](Queries& local) { local.listHits(rays, first, hits); });
+  }
+  void closestPoints(std::span<const float> points, float radius,
+                     std::span<RTclosest> closest) override {
+    ask([&](Queries& local) { local.closestPoints(points, radius, closest); });
+  }
+  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
+    ask([&](Queries& local) { local.castPrecise(rays, hits); });
+  }
+  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
+    ask([&](Queries& local) { local.occludePrecise(rays, occluded); });
+  }
+  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
+    ask([&](Queries& local) { local.countPrecise(rays, counts); });
+  }
+  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
+                   std::span<RThitd> hits) override {
+    ask([&](Queries& local) { local.listPrecise(rays, first, hits); });
+  }
+  void closestPrecise(std::span<const double> points, double radius,
+                      std::span<RThitd> closest) override {
+    ask([&](Queries& local) { local.closestPrecise(points, radius, closest); });
+  }
+
+  // Asks about the last committed scene. The local worker has it once all earlier frames are
+  // finished.
+  void ask(const std::function<void(Queries&)>& question) {
     postCommits(false);
     for (;;) {
       if (call([this](double) { return master_->sendSceneToLocal(); })) break;
       std::unique_lock lock(mutex_);
       changed_.wait_for(lock, std::chrono::milliseconds(20)); // perhaps a frame has ended
     }
-    core_->ask(question);
+    core_->ask([&](Backend& backend) { question(*backend.queries()); });
   }
 
   // [any] Runs a function on the network thread.
@@ -384,11 +383,11 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     try {
       while (!stop_) {
         runCommands();
-        const double next = master_->advance(clockNow());
+        const double next = master_->advance(steadySeconds());
         publish();
-        receiveMessages(std::clamp(next - clockNow(), 0.0, 0.1));
-        master_->busy(clockNow() - waited_);
-        waited_ = clockNow();
+        receiveMessages(std::clamp(next - steadySeconds(), 0.0, 0.1));
+        master_->busy(steadySeconds() - waited_);
+        waited_ = steadySeconds();
       }
     } catch (const std::exception& e) {
       const std::lock_guard lock(mutex_);
@@ -417,7 +416,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       const std::lock_guard lock(commandMutex_);
       commands.swap(commands_);
     }
-    for (auto& command : commands) command(clockNow());
+    for (auto& command : commands) command(steadySeconds());
     mergers_.add(results_);
   }
 
@@ -428,9 +427,9 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     constexpr size_t together = 16;
     for (int i = 0; i < most; i++) {
       if (results_.size() >= together) mergers_.add(results_);
-      const double asked = clockNow();
+      const double asked = steadySeconds();
       Event event = wire_->receive(i == 0 ? seconds : 0);
-      const double now = clockNow();
+      const double now = steadySeconds();
       if (i == 0) waited_ += now - asked;
       switch (event.kind) {
       case Event::Kind::nothing:
@@ -457,11 +456,11 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
         if (flight.state.over) continue;
         flight.state = master_->frame(flight.epoch);
         if (!flight.state.over) continue;
-        flight.ended = clockNow();
+        flight.ended = steadySeconds();
         ended = true;
         if (flight.state.work) works.push_back(flight.state.work);
       }
-      if (const double now = clockNow(); ended || now > totalsAt_ + often) {
+      if (const double now = steadySeconds(); ended || now > totalsAt_ + often) {
         totals_ = master_->totals();
         workers_ = master_->workers();
         totalsAt_ = now;
@@ -500,7 +499,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   // Network thread.
   bool stop_ = false;
   // Start of the current busy period, moved forward by the time spent waiting.
-  double waited_ = clockNow();
+  double waited_ = steadySeconds();
   std::vector<ThreadPool::Task> results_; // for the merging threads
   std::unique_ptr<Wire> wire_;
   std::unique_ptr<WorkerCore> core_;

@@ -2,7 +2,6 @@
 // and the authenticator that decides which callers are let in. Used by the Wire, on its thread.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -12,12 +11,9 @@
 #include <zmq.hpp>
 
 #include "backend/cluster/net/wire.h"
+#include "steady_clock.h"
 
 namespace openrt::cluster {
-
-inline double steadyNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 zmq::context_t makeContext();
 // Makes a socket. serverKey: key of the side to call; empty for a listening socket.

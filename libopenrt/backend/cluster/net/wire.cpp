@@ -47,7 +47,7 @@ Wire::Impl::Impl(const WireOptions& options)
 }
 
 Wire::Impl::~Impl() {
-  const double now = steadyNow();
+  const double now = steadySeconds();
   for (auto& [id, peer] : peers)
     if (!peer.hasLeft) sayBye(peer, "the other side has ended", now);
   listenMonitor.reset();
@@ -70,7 +70,7 @@ void Wire::Impl::pushEvent(Event::Kind kind, Peer peer, std::string text) {
 void Wire::Impl::refused(const std::string& text) {
   constexpr double again = 10;
   constexpr size_t crowd = 100;
-  const double now = steadyNow();
+  const double now = steadySeconds();
   std::erase_if(refusals, [&](const auto& entry) { return now - entry.second > again; });
   if (refusals.size() < crowd && refusals.emplace(text, now).second)
     pushEvent(Event::Kind::refused, 0, text);
@@ -106,7 +106,7 @@ void Wire::Impl::poll(double seconds) {
   if (zmq_poll(items.data(), int(items.size()), long(std::ceil(std::max(0.0, seconds) * 1000))) <=
       0)
     return; // also after a signal
-  const double now = steadyNow();
+  const double now = steadySeconds();
   if (items[0].revents && wakeUp.clear()) pushEvent(Event::Kind::woken, 0, {});
   if (authenticator && items[atAuthenticator].revents)
     while (authenticator->answer([this](const std::string& text) { refused(text); })) {}
@@ -117,9 +117,9 @@ void Wire::Impl::poll(double seconds) {
 }
 
 Event Wire::Impl::receive(double seconds) {
-  const double until = steadyNow() + std::max(0.0, seconds);
+  const double until = steadySeconds() + std::max(0.0, seconds);
   for (bool polled = false;; polled = true) {
-    const double now = steadyNow();
+    const double now = steadySeconds();
     runTimers(now);
     if (!events.empty()) {
       Event event = std::move(events.front());
@@ -128,7 +128,7 @@ Event Wire::Impl::receive(double seconds) {
     }
     if (polled && now >= until) return {};
     poll(closing.empty() ? std::min(until, timersRunAt + heartbeat / 4) - now : 0);
-    if (!closing.empty()) readCallers(steadyNow());
+    if (!closing.empty()) readCallers(steadySeconds());
   }
 }
 
@@ -149,14 +149,14 @@ Event Wire::receive(double seconds) { return impl_->receive(seconds); }
 bool Wire::send(Peer peer, Frames&& frames) {
   Impl::PeerState* state = impl_->find(peer);
   return state && !state->hasLeft && !frames.empty() &&
-         impl_->sendTo(*state, std::move(frames), steadyNow());
+         impl_->sendTo(*state, std::move(frames), steadySeconds());
 }
 
 void Wire::close(Peer peer, const std::string& why) {
   constexpr double again = 5;
   Impl::PeerState* state = impl_->find(peer);
   if (!state || state->hasLeft) return;
-  impl_->sayBye(*state, why, steadyNow());
+  impl_->sayBye(*state, why, steadySeconds());
   if (state->call) {
     Impl::Call& call = *state->call;
     impl_->forget(peer);
@@ -168,7 +168,7 @@ void Wire::close(Peer peer, const std::string& why) {
 
 void Wire::bad(Peer peer, const std::string& why) {
   if (Impl::PeerState* state = impl_->find(peer); state && !state->hasLeft)
-    impl_->countBad(*state, why, steadyNow());
+    impl_->countBad(*state, why, steadySeconds());
 }
 
 void Wire::pace(double heartbeat, double silence) {

@@ -98,7 +98,7 @@ void Wire::Impl::hangUp(Call& call, double delay, bool sayBye) {
   call.lookup.reset();
   call.peer = 0;
   call.fd = -1;
-  call.next = steadyNow() + delay;
+  call.next = steadySeconds() + delay;
 }
 
 void Wire::Impl::failCall(Call& call, const std::string& why, double) {

@@ -161,7 +161,7 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
   }
 
   void take(Event&& event) {
-    const double now = steadyNow();
+    const double now = steadySeconds();
     const Peer peer = event.peer;
     switch (event.kind) {
     case Event::Kind::joined:
@@ -197,7 +197,7 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
         continue;
       }
       take(wire.receive(all ? idle : hurry));
-      if (const double now = steadyNow(); now - advanced > 1) {
+      if (const double now = steadySeconds(); now - advanced > 1) {
         advanced = now;
         post([=](Worker& w) { w.advance(now); });
       }

@@ -2,11 +2,11 @@
 #include "parse/mesh/gltf/materials.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "parse/mesh/gltf/base64.h"
+#include "srgb.h"
 
 namespace xvrml::gltf {
 namespace {
@@ -50,10 +50,8 @@ float inUnit(double value) { return float(std::clamp(value, 0.0, 1.0)); }
 
 } // namespace
 
-Color encoded(const Color& linear) { // IEC 61966-2-1
-  const auto part = [](float v) {
-    return v <= 0.0031308f ? 12.92f * v : float(1.055 * std::pow(double(v), 1 / 2.4) - 0.055);
-  };
+Color encoded(const Color& linear) {
+  const auto part = [](float v) { return float(encodeSrgb(double(v))); };
   return {part(linear.r), part(linear.g), part(linear.b)};
 }
 

@@ -1,8 +1,8 @@
 // version1.cpp: converts documents of glTF 1.0 (Khronos, 2016), whose objects refer to each other
 // by name. Whatever does not fit is left out here, or reported by the reader of version 2.
 #include "parse/mesh/gltf/version1.h"
+#include "srgb.h"
 
-#include <cmath>
 #include <unordered_map>
 
 namespace xvrml::gltf {
@@ -144,10 +144,7 @@ class Converter {
   // Colours of version 1 are shown as they are, those of version 2 are linear.
   static Json decoded(Json color) {
     for (size_t i = 0; i < 3 && i < color.size(); ++i)
-      if (color[i].is_number()) {
-        const double v = color[i].get<double>();
-        color[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-      }
+      if (color[i].is_number()) color[i] = decodeSrgb(color[i].get<double>());
     return color;
   }
 

@@ -1,5 +1,5 @@
-// queries.cpp: Answers ray, hit and closest-point queries of LocalBackend, in blocks distributed
-// over its threads. Called on the application's thread.
+// local_queries.cpp: Answers ray, hit and closest-point queries in single precision, in blocks
+// distributed over threads. Called on the application's thread.
 //
 // All hits of a ray are found exactly (accel/exact_scene.h). Nearest hits and occlusion are found
 // by Embree, and again exactly where its single precision may have decided wrongly: see
@@ -13,8 +13,10 @@
 #include <limits>
 
 #include "backend/local/accel/doubts.h"
-#include "backend/local/local.h"
+#include "backend/local/local_queries.h"
 #include "parallel_for.h"
+#include "render/wave/batch.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -75,9 +77,21 @@ template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& 
 
 } // namespace
 
-void LocalBackend::loadRays(std::span<const RTray> rays, const RayOrder::Block& block,
+LocalQueries::LocalQueries(std::shared_ptr<EmbreeDevice> device, uint32_t threads,
+                           std::function<PreparedGeometry()> prepare)
+    : device_(std::move(device)), threads_(threads), prepare_(std::move(prepare)) {}
+
+LocalQueries::~LocalQueries() = default;
+
+void LocalQueries::clear() {
+  exact_ = nullptr;
+  precise_ = nullptr;
+  bodies_ = nullptr;
+}
+
+void LocalQueries::loadRays(std::span<const RTray> rays, const RayOrder::Block& block,
                             Rays& to) const {
-  const Vec3d origin = vectorOf(snapshot_->origin);
+  const Vec3d origin = vectorOf(at_->snapshot.origin);
   for (uint32_t i = 0; i < to.count; i++) {
     const RTray& ray = rays[block.first + block.offset[i]];
     store(Vec3f(Vec3d(vectorOf(ray.origin)) - origin), to.org, i);
@@ -89,7 +103,7 @@ void LocalBackend::loadRays(std::span<const RTray> rays, const RayOrder::Block& 
   }
 }
 
-void LocalBackend::forBatches(
+void LocalQueries::forBatches(
     std::span<const RTray> rays, float sceneSize,
     const std::function<void(const RayOrder::Block& block, Arena& arena, Rays& batch)>& use) {
   // Memory that is given back after each block would cost a tenth of the time of coherent rays.
@@ -110,10 +124,10 @@ void LocalBackend::forBatches(
   });
 }
 
-const ExactScene& LocalBackend::exact() {
+const ExactScene& LocalQueries::exact() {
   prepare();
   if (!exact_ || exactIsFormer_) {
-    exact_ = std::make_unique<const ExactScene>(*device_, *accel_, exact_.get());
+    exact_ = std::make_unique<const ExactScene>(*device_, at_->accel, exact_.get());
     if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
       exact_ = nullptr;
       throw std::bad_alloc();
@@ -123,28 +137,28 @@ const ExactScene& LocalBackend::exact() {
   return *exact_;
 }
 
-const ClosedBodies& LocalBackend::closedBodies() {
+const ClosedBodies& LocalQueries::closedBodies() {
   prepare();
   if (!bodies_ || bodiesAreFormer_) {
-    bodies_ = std::make_unique<const ClosedBodies>(*accel_, bodies_.get());
+    bodies_ = std::make_unique<const ClosedBodies>(at_->accel, bodies_.get());
     bodiesAreFormer_ = false;
   }
   return *bodies_;
 }
 
-bool LocalBackend::loadExact(const RTray& ray, ExactRay& to) const {
-  const Vec3d origin = Vec3d(vectorOf(ray.origin)) - vectorOf(snapshot_->origin),
+bool LocalQueries::loadExact(const RTray& ray, ExactRay& to) const {
+  const Vec3d origin = Vec3d(vectorOf(ray.origin)) - vectorOf(at_->snapshot.origin),
               direction(vectorOf(ray.direction));
   const double size = dot(abs(direction), {1, 1, 1});
   // Comparisons with NaN are false.
-  if (!(largest(abs(origin)) <= accel_->reach() && isFinite(vectorOf(ray.origin)) && size > 0 &&
+  if (!(largest(abs(origin)) <= at_->accel.reach() && isFinite(vectorOf(ray.origin)) && size > 0 &&
         size <= 1e18 && ray.tnear >= 0 && ray.tnear <= ray.tfar && ray.tnear <= mostFinite))
     return false;
   to = exactRay(origin, direction, ray.tnear, ray.tfar, 0x1p-30);
   return true;
 }
 
-void LocalBackend::forEachExact(std::span<const RTray> rays, const uint8_t* some,
+void LocalQueries::forEachExact(std::span<const RTray> rays, const uint8_t* some,
                                 const std::function<void(size_t, const ExactRay&)>& use,
                                 const std::function<void(size_t)>& refuse) {
   parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
@@ -159,20 +173,20 @@ void LocalBackend::forEachExact(std::span<const RTray> rays, const uint8_t* some
         refused++;
       }
     }
-    if (refused) accel_->rejectedRays += refused;
+    if (refused) at_->accel.rejectedRays += refused;
   });
 }
 
-bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i,
+bool LocalQueries::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i,
                               const RayHits& found) const {
   if (found.record[i] == noHit) return doubts.miss(rays, i);
-  return doubts.hit(accel_->records[found.record[i]], rays, i, found);
+  return doubts.hit(at_->accel.records[found.record[i]], rays, i, found);
 }
 
 template <class Take>
-std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, const Take& take) {
+std::vector<uint8_t> LocalQueries::findNearest(std::span<const RTray> rays, const Take& take) {
   const ClosedBodies& bodies = closedBodies();
-  const Doubts doubts(*accel_, accel_->scale());
+  const Doubts doubts(at_->accel, at_->accel.scale());
   std::vector<uint8_t> again(rays.size());
   std::atomic<bool> any{false};
   forBatches(rays, doubts.size, [&](const RayOrder::Block& block, Arena& arena, Rays& batch) {
@@ -180,7 +194,7 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
     found.allocate(arena, batch.count);
     const Coherence coherence =
         areCoherent(batch, doubts.size) ? Coherence::coherent : Coherence::incoherent;
-    accel_->intersectInSinglePrecision(batch, maskAll, coherence, found);
+    at_->accel.intersectInSinglePrecision(batch, maskAll, coherence, found);
     bool some = false;
     auto* suspects = arena.take<uint8_t>(batch.count);
     doubts.suspect(batch, found, suspects);
@@ -188,7 +202,7 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
       const size_t ray = block.first + block.offset[i];
       take(ray, found, i);
       // A ray that hits nothing is a suspect: its t is infinite.
-      if (!suspects[i] && !Doubts::hidesFront(accel_->records[found.record[i]])) continue;
+      if (!suspects[i] && !Doubts::hidesFront(at_->accel.records[found.record[i]])) continue;
       if (isDoubtful(doubts, batch, i, found) ||
           (found.record[i] != noHit && bodies.denies(batch, i, found))) {
         again[ray] = 1;
@@ -201,7 +215,7 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
   return again;
 }
 
-void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+void LocalQueries::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
   const std::vector<uint8_t> again =
       findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
         hits[ray] = hitOf(found, i);
@@ -216,12 +230,12 @@ void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
   });
 }
 
-RThit LocalBackend::hitOf(const ExactScene::Hit& found, const ExactRay& ray,
+RThit LocalQueries::hitOf(const ExactScene::Hit& found, const ExactRay& ray,
                           const RTray& asked) const {
   RThit hit{};
   hit.t = std::numeric_limits<float>::infinity();
   if (found.record == noHit) return hit;
-  const Record& r = accel_->records[found.record];
+  const Record& r = at_->accel.records[found.record];
   hit.t = std::clamp(float(found.at.t * ray.unit), asked.tnear, std::min(asked.tfar, mostFinite));
   hit.u = float(found.at.u);
   hit.v = float(found.at.v);
@@ -233,11 +247,11 @@ RThit LocalBackend::hitOf(const ExactScene::Hit& found, const ExactRay& ray,
   return hit;
 }
 
-RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
+RThit LocalQueries::hitOf(const RayHits& found, uint32_t i) const {
   RThit hit{};
   hit.t = std::numeric_limits<float>::infinity();
   if (found.record[i] == noHit) return hit;
-  const Record& r = accel_->records[found.record[i]];
+  const Record& r = at_->accel.records[found.record[i]];
   hit.t = found.t[i];
   hit.u = found.u[i];
   hit.v = found.v[i];
@@ -249,14 +263,14 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   return hit;
 }
 
-void LocalBackend::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
+void LocalQueries::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
   const ExactScene& scene = exact();
   forEachExact(
       rays, nullptr, [&](size_t i, const ExactRay& ray) { counts[i] = uint32_t(scene.count(ray)); },
       [&](size_t i) { counts[i] = 0; });
 }
 
-void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first,
+void LocalQueries::listHits(std::span<const RTray> rays, std::span<const size_t> first,
                             std::span<RThit> hits) {
   const ExactScene& scene = exact();
   RThit none{};
@@ -277,27 +291,27 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
       [&](size_t i) { write(i, {}, {}); });
 }
 
-void LocalBackend::requireNoAnalytic() {
+void LocalQueries::requireNoAnalytic() {
   prepare();
-  for (const Record& r : accel_->records)
+  for (const Record& r : at_->accel.records)
     if (r.surface)
       throw std::runtime_error("the scene has a quadric or an asphere, whose closest points cannot "
                                "be found: make it of triangles, or leave it out");
 }
 
-void LocalBackend::closestPoints(std::span<const float> points, float radius,
+void LocalQueries::closestPoints(std::span<const float> points, float radius,
                                  std::span<RTclosest> closest) {
   requireNoAnalytic();
-  const Vec3d origin = vectorOf(snapshot_->origin);
-  const std::vector<uint32_t> round = accel_->spheres();
+  const Vec3d origin = vectorOf(at_->snapshot.origin);
+  const std::vector<uint32_t> round = at_->accel.spheres();
   parallelBlocks(threads_, closest.size(), [&](size_t first, size_t n) {
     for (size_t i = first; i < first + n; i++) {
       RTclosest& out = closest[i] = {};
       out.distance = std::numeric_limits<float>::infinity();
       const Vec3d place = Vec3d(vectorOf(&points[3 * i])) - origin;
       Accel::Nearest found;
-      if (!accel_->nearest(place, radius, round, found)) continue;
-      const Record& r = accel_->records[found.record];
+      if (!at_->accel.nearest(place, radius, round, found)) continue;
+      const Record& r = at_->accel.records[found.record];
       out.distance = float(found.distance);
       out.u = float(found.u);
       out.v = float(found.v);
@@ -311,9 +325,42 @@ void LocalBackend::closestPoints(std::span<const float> points, float radius,
   });
 }
 
+// The ray is in render space, which has the world's unit of length.
+bool LocalQueries::cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const {
+  const ShaderSlot& camera = at_->snapshot.camera.shader;
+  if (!camera.shaderClass || at_->snapshot.frame.width == 0) return false;
+  Arena arena;
+  RtsRays local;
+  for (int k = 0; k < 3; k++) {
+    local.origin[k] = arena.takeZero<float>(lanes);
+    local.direction[k] = arena.takeZero<float>(lanes);
+  }
+  float* xy[2] = {arena.take<float>(lanes), arena.take<float>(lanes)};
+  std::fill_n(xy[0], lanes, float(x));
+  std::fill_n(xy[1], lanes, float(y));
+  const float* points[2] = {xy[0], xy[1]};
+  const float size[2] = {float(at_->snapshot.frame.width), float(at_->snapshot.frame.height)};
+  RtsBatch batch;
+  RayCounters counters;
+  batch.scene = &at_->snapshot;
+  batch.arena = &arena;
+  batch.counters = &counters;
+  batch.rays = lanes; // without a tracer, random points are (0.5, 0.5): the middle of the lens
+  {
+    const RunningShader running(*camera.shaderClass);
+    camera.shaderClass->generate(&at_->snapshot.host, &batch, camera.params, 1, points, size,
+                                 &local);
+  }
+  const Affine& toRender = at_->snapshot.camera.fromLocal;
+  origin = toRender.point(load(local.origin, 0));
+  const Vec3d towards = toRender.direction(Vec3d(load(local.direction, 0)));
+  direction = Vec3f(towards / length(towards));
+  return true;
+}
+
 // Traces the camera's ray in render space, so that the result matches the picture even where world
 // coordinates are too large for float.
-bool LocalBackend::pick(double x, double y, RThit& hit) {
+bool LocalQueries::pick(double x, double y, RThit& hit) {
   prepare();
   Arena arena;
   Rays ray;
@@ -326,15 +373,15 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   ray.tfar[0] = std::numeric_limits<float>::infinity();
   RayHits found;
   found.allocate(arena, 1);
-  accel_->intersect(ray, maskAll, Coherence::incoherent, found);
-  if (found.record[0] != noHit && isCulledHit(*snapshot_, ray, found, 0))
-    accel_->intersectFronts(ray, maskAll, found);
+  at_->accel.intersect(ray, maskAll, Coherence::incoherent, found);
+  if (found.record[0] != noHit && isCulledHit(at_->snapshot, ray, found, 0))
+    at_->accel.intersectFronts(ray, maskAll, found);
   hit = hitOf(found, 0);
   return true;
 }
 
 // An occlusion query of Embree is a third faster, but does not say where it hit.
-void LocalBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {
+void LocalQueries::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {
   const std::vector<uint8_t> again =
       findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
         occluded[ray] = found.record[i] != noHit;
