@@ -40,7 +40,7 @@ class PictureDenoiser {
   // not counts as 0. The same picture gives the same result on the same machine with the same
   // library. Throws RenderError, std::bad_alloc, and std::runtime_error if there is no rgba.
   Picture denoised(const Picture& noisy);
-  const std::string& name() const; // of the library: "Open Image Denoise 2.5.1"
+  const std::string& name() const; // the library: "Open Image Denoise 2.5.1"
 
  private:
   struct Impl;

@@ -127,7 +127,7 @@ std::vector<float> smoothed(const std::vector<float>& values, int width, int hei
 // The sizes of a picture of some height in false colours, in pixels.
 struct Sizes {
   explicit Sizes(int height) : dot(std::max(1, height / 300)) {}
-  int dot; // of letters and isolines
+  int dot; // size of dots of letters and isolines
   int line() const { return letterHeight * dot; }
   int bar() const { return 12 * dot; }
   int gap() const { return 3 * dot; }

@@ -56,7 +56,7 @@ struct FrameRequest {
   View view;
   WorldChanges worldChanges;
   Clock::time_point started;
-  double denoising = 0; // of the LiveFrame
+  double denoising = 0; // seconds that the denoiser may take
 };
 
 // A frame that has begun, and the facts that are known only at its start.
@@ -65,10 +65,10 @@ struct FrameInFlight {
   RenderSettings settings;
   Clock::time_point started; // when start() was called
   xvrml::MapStats map;
-  std::vector<std::string> names; // of a still frame
+  std::vector<std::string> names; // the names of a still frame
   live::FrameCamera camera;
   live::WorldStep step;
-  double denoising = 0; // of the LiveFrame
+  double denoising = 0; // seconds that the denoiser may take
 };
 
 // A frame that has finished or was cancelled.

@@ -25,9 +25,10 @@ struct LiveFrame {
   View view;
   int width = 0, height = 0;
   int samples = 1;
-  // Of a preview: pixels each way of the blocks in which one pixel gets light (RT_LIGHT_STRIDE).
+  // Holds for a preview the pixels each way of the blocks in which one pixel gets light
+  // (RT_LIGHT_STRIDE).
   int lightStride = 1;
-  // Of a preview: seconds that Denoiser::automatic may take (live/denoise_choice.h).
+  // Holds for a preview the seconds that Denoiser::automatic may take (live/denoise_choice.h).
   double denoising = 0;
   // still: refined from 1 sample per pixel on, with the bytes of Renderer::render.
   // preview: of something that moves; the picture is rebuilt from this frame and earlier previews
@@ -51,8 +52,8 @@ struct LivePicture {
   // picture. A still picture with few samples is mixed with the preview before it.
   std::vector<uint8_t> rgb;
   uint64_t number = 0;                                    // what start() returned for the frame
-  LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // of the frame
-  int lightStride = 1;                                    // of the frame
+  LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // as in the frame
+  int lightStride = 1;                                    // as in the frame
   double covered = 0;    // fraction of the pixels that have samples, 0 to 1
   double samples = 0;    // samples taken so far, mean over the pixels
   double seconds = 0;    // seconds since the frame was started
@@ -65,7 +66,7 @@ struct LivePicture {
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;
   double scaleEnd = 0;    // the luminance at the end of the scale of false colours; 0: own colours
-  std::string denoisedBy; // of a preview: the library that has filtered it; "": none has
+  std::string denoisedBy; // the library that has filtered a preview; "": none has
   double rebuilding = 0;  // part of `seconds` after tracing: the time of the Reconstruction
   xvrml::MapStats map{};
   RTstats stats{};

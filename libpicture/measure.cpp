@@ -35,7 +35,7 @@ Vec turned(const double m[16], Vec v) {
   return load(m) * v.x + load(m + 4) * v.y + load(m + 8) * v.z;
 }
 
-constexpr int mostPoints = 1 << 20; // of one sensor
+constexpr int mostPoints = 1 << 20; // the most points of one sensor
 // metres between neighbouring points; the camera that reads nearer ones would have no axes
 constexpr double leastStep = 1e-13;
 

@@ -38,11 +38,11 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info);
 struct Measurement {
   PlacedSensor sensor;
   std::vector<float> value;     // lux or cd/m2
-  std::vector<float> halfWidth; // of the 95 % interval; infinite if nothing is known
+  std::vector<float> halfWidth; // half of the 95 % interval; infinite if nothing is known
   std::vector<uint8_t> trusted; // 1 where the interval can be trusted (docs/error-bars.md)
   std::vector<uint32_t> samples;
   bool interrupted = false; // points that were not finished have 0 samples
-  RTstats stats;            // of the sensor's frame
+  RTstats stats;            // statistics of the sensor's frame
 };
 
 } // namespace picture

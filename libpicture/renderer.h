@@ -27,7 +27,7 @@ class Cluster;
 class Sums;
 struct Measurement;
 
-// What smooths the light of previews (live/reconstruction.h).
+// Says what smooths the light of previews (live/reconstruction.h).
 enum class Denoiser : uint8_t {
   own,      // the filter that is always there
   oidn,     // beside it Open Image Denoise 2, a library that may be installed
@@ -112,7 +112,7 @@ struct RenderResult {
   bool missing = false;
   bool interrupted = false; // the picture holds what was finished when it was interrupted
   double mapSeconds = 0, renderSeconds = 0;
-  double denoiseSeconds = 0;      // of whoever has denoised the picture; 0: nobody
+  double denoiseSeconds = 0;      // the time of whoever has denoised the picture; 0: nobody
   std::vector<RTworker> workers;  // workers of the cluster at the end of the picture
   xvrml::CameraSettings camera{}; // camera of the picture; its shader is null
   bool hasCameraShader = false;   // a camera shader generated the rays

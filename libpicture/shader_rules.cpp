@@ -26,7 +26,7 @@ constexpr float colourTolerance = 0.03f, shininessTolerance = 0.0051f;
 constexpr size_t rulesFileBytes = 1 << 20; // a longer file is refused
 constexpr std::string_view blanks = " \t\r", byteOrderMark = "\xef\xbb\xbf";
 
-// What a rule selects.
+// Says what a rule selects.
 struct Selector {
   enum class Kind : uint8_t { rest, name, material, appearance, shape, colour } kind;
   std::string pattern;

@@ -72,7 +72,7 @@ StudioLight makeStudioLight(const std::array<float, 3>& backdrop, bool linear) {
     base[c] = linear ? decodeSrgb(double(backdrop[c])) : double(backdrop[c]);
   const double mean = (base[0] + base[1] + base[2]) / 3;
   const double room = 0.25 + 0.15 * mean;
-  std::array<double, 3> irradiance{}; // of the ground, by the upper half
+  std::array<double, 3> irradiance{}; // what the ground gets from the upper half
   for (int row = 0; row < mapHeight; ++row) {
     const double theta = std::numbers::pi * ((row + 0.5) / mapHeight - 0.5); // above the horizon
     const double weight = std::sin(theta) * std::cos(theta) * (std::numbers::pi / mapHeight) *

@@ -32,13 +32,13 @@ class Sums {
   std::shared_ptr<RTsumsObject> sums_;
 };
 
-// What the sums of a picture do not tell.
+// Holds what the sums of a picture do not tell.
 struct SumsFacts {
   uint32_t channels = RT_RGBA; // those of the files; the sums may have more
   bool linear = true;
   bool depthAlongRay = false; // Picture::depthAlongRay
   Background background;
-  std::vector<std::string> names; // of channel id
+  std::vector<std::string> names; // the names of channel id
   bool operator==(const SumsFacts&) const = default;
 };
 
@@ -56,8 +56,8 @@ struct SumsView {
 struct SumsFile {
   SumsFacts facts;
   SumsView view;
-  Sums done;    // of all finished seeds before the current one; may be none
-  Sums current; // of the seed that is being made, or was the last; may be none
+  Sums done;    // the sums of all finished seeds before the current one; may be none
+  Sums current; // the sums of the seed that is being made, or was the last; may be none
 };
 
 // Returns the facts of a picture.

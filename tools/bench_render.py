@@ -45,7 +45,7 @@ HALVES = (1001, 1002)  # seeds of the reference; pictures have small ones
 
 
 class Bench:
-    """What all measurements share."""
+    """Holds what all measurements share."""
 
     def __init__(self, options):
         self.options = options

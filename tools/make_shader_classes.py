@@ -16,9 +16,9 @@ import textwrap
 
 HEAD = """# Shader classes
 
-What `rtNewShaderClass`, `ORTShader` and `vv --shader` find, with all parameters. Written by
-`tools/make_shader_classes.py` from what the plug-ins say of themselves; `vv --list-shaders` prints
-the same. How they work is in `docs/shaders.md`.
+These are the classes that `rtNewShaderClass`, `ORTShader` and `vv --shader` find, with all
+parameters. `tools/make_shader_classes.py` writes this page from what the plug-ins say of
+themselves; `vv --list-shaders` prints the same. How they work is in `docs/shaders.md`.
 """
 TITLES = {
     "surface": "Surfaces",

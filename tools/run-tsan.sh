@@ -3,10 +3,10 @@
 # in C++, with ctest, then those in Python whose programs share a world among threads: the page, the
 # control channel, the window, and clusters. TESTS="test_control ..." names other ones.
 #
-# What the sanitizer reports about programs that the Python tests start goes to FOLDER/races, because
-# a test need not notice how its program ends. One report ends the run with exit code 1. Programs are
-# about ten times slower than usual here, so a Python test may fail by a limit of time that it sets
-# itself: such tests are named, and do not decide.
+# Anything that the sanitizer reports about programs that the Python tests start goes to
+# FOLDER/races, because a test need not notice how its program ends. One report ends the run with
+# exit code 1. Programs are about ten times slower than usual here, so a Python test may fail by a
+# limit of time that it sets itself: such tests are named, and do not decide.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$(realpath "$1") jobs=$2

@@ -195,7 +195,7 @@ PictureObject unpickled(const py::tuple& state) {
   const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
   const int version =
       state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
-  constexpr size_t sizes[] = {0, 8, 9, 15}; // of each version
+  constexpr size_t sizes[] = {0, 8, 9, 15}; // by version
   if (version < 1 || version > pickleVersion || state.size() != sizes[version]) refuse();
   PictureObject object;
   picture::Picture& made = object.picture;

@@ -182,7 +182,7 @@ std::vector<picture::Measurement> measure(const WorldPtr& self, const RenderArgu
   return sensors;
 }
 
-// What Python gets for a Measurement: pickled objects have the statistics, not the struct of C.
+// Python gets this for a Measurement: pickled objects have the statistics, not the struct of C.
 struct MeasurementObject {
   picture::Measurement readings;
   py::dict stats;
@@ -256,7 +256,7 @@ MeasurementObject unpickled(const py::tuple& state) {
     using T = typename std::remove_reference_t<decltype(to)>::value_type;
     const auto grid =
         py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(state[member]);
-    constexpr py::ssize_t most = 1 << 24; // of rows and of columns
+    constexpr py::ssize_t most = 1 << 24; // the largest number of rows and of columns
     if (!grid || grid.ndim() != 2 || grid.shape(0) < 1 || grid.shape(1) < 1 ||
         grid.shape(0) > most || grid.shape(1) > most)
       refuse();

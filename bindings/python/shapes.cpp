@@ -82,7 +82,7 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
     for (size_t i = 0; i < 16; ++i) camera[i] = rows.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
   }
   std::vector<PlacedShape> shapes;
-  std::map<const Node*, Arrays> made; // of geometries that ClipPlanes leave whole
+  std::map<const Node*, Arrays> made; // geometries that ClipPlanes leave whole
   std::vector<Arrays> arraysOf;       // by shape
   World& world = self->graph();
   {

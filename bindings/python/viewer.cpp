@@ -152,7 +152,7 @@ bool Viewer::start(bool moving, bool raw) {
   if (!live()) makeRenderer();
   picture::LiveRenderer& renderer = *world_->locks->live;
   if (renderer.state() != State::idle) return false;
-  for (picture::LivePicture old; renderer.look(old);) {} // of a view that was closed
+  for (picture::LivePicture old; renderer.look(old);) {} // from a view that was closed
   using Purpose = picture::LiveFrame::Purpose;
   picture::LiveFrame frame;
   frame.view = view();

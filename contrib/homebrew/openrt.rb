@@ -3,7 +3,7 @@
 class Openrt < Formula
   desc "Ray-traced pictures of VRML, X3D and mesh files"
   homepage "https://openrt.invalid/"
-  url "https://openrt.invalid/openrt-0.1.0.tar.gz"
+  url "https://openrt.invalid/openrt-0.2.0.tar.gz"
   sha256 "0000000000000000000000000000000000000000000000000000000000000000"
   license "BSD-3-Clause"
 

@@ -127,7 +127,7 @@ class Context {
   // Commits that the backend has not accepted yet.
   std::vector<std::shared_ptr<const Commit>> unsent_;
   bool keepsSums_ = false;
-  SceneDigest digest_; // of all commits, if sums are kept
+  SceneDigest digest_; // covers all commits, if sums are kept
   std::shared_ptr<const FrameSums> continueFrom_;
   bool cancelled_ = false; // cancel() was called since the start of the current frame was requested
   bool everCommitted_ = false, open_ = true;

@@ -21,7 +21,7 @@ struct Motion {
   Matrix4d now, before; // from the geometry's frame to the world
   ArrayPtr points;
   ArrayPtr pointsBefore;              // null: the points are the same
-  float radius = 1, radiusBefore = 1; // of a sphere
+  float radius = 1, radiusBefore = 1; // radii of a sphere
 };
 
 struct Motions {

@@ -112,10 +112,10 @@ class AnalyticSurface {
   edit::Primitive kind_;
   std::array<double, 16> numbers_{};
   size_t count_ = 0;
-  std::array<double, 10> form_{}; // of a quadric, and of an asphere without a polynomial
+  std::array<double, 10> form_{}; // coefficients of a quadric, or an asphere without a polynomial
   Vec3d low_, high_;
   double size_ = 0; // largest edge of the bounds
-  int axis_ = -1;   // of revolution; -1: none that is known
+  int axis_ = -1;   // the axis of revolution; -1: none that is known
 };
 
 } // namespace openrt

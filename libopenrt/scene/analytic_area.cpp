@@ -24,7 +24,7 @@ int AnalyticSurface::axisOfRevolution() const {
   return -1;
 }
 
-// Of a quadric of revolution: f_i r^2 + f_k t^2 + f_6k t + f_9 = 0 at t along the axis.
+// This holds for a quadric of revolution: f_i r^2 + f_k t^2 + f_6k t + f_9 = 0 at t along the axis.
 double AnalyticSurface::squaredRadius(double t, double& slope) const {
   const auto k = size_t(axis_), i = (k + 1) % 3;
   slope = -(2 * form_[k] * t + form_[6 + k]) / form_[i];

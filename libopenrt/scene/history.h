@@ -1,8 +1,8 @@
 // history.h: what has changed in a scene since the last frame of each view (RT_VIEW), for
 // RT_MOTION. Scene::apply() tells it what it changes. It costs what has changed, and nothing while
-// no frame has the channel. The local backend owns one beside its scene. What a view has follows
-// from the commits since its last frame alone, so every backend that has applied the commit of a
-// frame and all since that of the view's frame before it finds the same motion.
+// no frame has the channel. The local backend owns one beside its scene. The motion that a view has
+// follows from the commits since its last frame alone, so every backend that has applied the commit
+// of a frame and all since that of the view's frame before it finds the same motion.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ struct Matrix4d {
 
   bool operator==(const Matrix4d&) const = default;
   Vec3d column(int i) const { return {m[4 * i], m[4 * i + 1], m[4 * i + 2]}; }
-  Vec3d row(int i) const { return {m[i], m[4 + i], m[8 + i]}; } // of the linear part
+  Vec3d row(int i) const { return {m[i], m[4 + i], m[8 + i]}; } // a row of the linear part
   Vec3d translation() const { return column(3); }
   // Return the images of a direction and of a point.
   Vec3d direction(const Vec3d& v) const {

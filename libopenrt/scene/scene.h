@@ -34,7 +34,7 @@ struct Geometry {
   float width = 1; // pixels; radius of a sphere
   ArrayPtr points, indices, normals, texCoords, colors;
   std::vector<GeometryParameter> parameters;
-  std::shared_ptr<const AnalyticSurface> surface; // of a quadric or an asphere
+  std::shared_ptr<const AnalyticSurface> surface; // null: no quadric or asphere
 
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };

@@ -82,7 +82,7 @@ std::string encodeExr(const Picture& picture) {
   try {
     Imf::Header header = makeHeader(picture);
     Imf::FrameBuffer frame;
-    std::vector<float> layers; // of Cryptomatte
+    std::vector<float> layers; // the layers of Cryptomatte
     for (const Channel& channel : channelTable()) {
       auto plane = picture.planes.find(channel.bit);
       if (plane == picture.planes.end()) continue;

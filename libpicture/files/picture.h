@@ -43,7 +43,7 @@ struct PictureFacts {
   // larger one: 0.
   int wholeWidth = 0, wholeHeight = 0, left = 0, top = 0;
   std::vector<std::string> names; // names for the numbers of Shapes; names[0] is ""
-  // What files of the picture say about it, a line of ASCII; "": nothing. Formats without
+  // Holds what files of the picture say about it, a line of ASCII; "": nothing. Formats without
   // Format::keepsNote do not say it.
   std::string note;
   // The library that has denoised rgba (libpicture/denoiser.h); "": none has.

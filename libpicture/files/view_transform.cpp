@@ -112,7 +112,7 @@ double fittingExposure(const Picture& picture) {
   std::vector<float> all = logLuminances(picture);
   if (all.empty()) return 0;
   const double most = atShare(all, 1 - outside);
-  // What is darker by a factor of 65536 is as good as black.
+  // A value that is darker by a factor of 65536 is as good as black.
   std::erase_if(all, [&](float v) { return double(v) < most - range; });
   double sum = 0;
   for (const float v : all) sum += double(v);

@@ -34,8 +34,8 @@ struct ViewTransform {
 // Returns the linear value of an sRGB-encoded one.
 float linearOf(float v);
 
-// Converts linear Rec. 709 radiance to linear Rec. 709 values of a screen, from 0 to 1. What is not
-// a number counts as dark. Both arrays may be the same.
+// Converts linear Rec. 709 radiance to linear Rec. 709 values of a screen, from 0 to 1. A value
+// that is not a number counts as dark. Both arrays may be the same.
 void toScreen(const ViewTransform& view, const float radiance[3], float screen[3]);
 
 // Returns the exposure that fits the luminances of a picture, in stops, a multiple of 1/64: E.

@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 constexpr float mostFrames = 16;     // older light is not worth what has changed since
 constexpr float recentFrames = 5;    // frames in Accumulated::recent
 constexpr float recentSpread = 2;    // standard deviations around it that are allowed
-constexpr float noiseMemory = 0.96f; // of Accumulated::noise from frame to frame
+constexpr float noiseMemory = 0.96f; // how much of Accumulated::noise stays from frame to frame
 // The same where more of the samples around than that fraction are like what was shown.
 constexpr float calmMemory = 0.5f, mostSteady = 0.85f;
 constexpr float forgottenNoise = 0.02f;

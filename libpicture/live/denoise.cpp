@@ -11,7 +11,7 @@ namespace {
 constexpr float noiseFall = 4;
 // Each filter errs in a way of its own, so their mean is nearer to the truth than either
 // (docs/decisions/0053).
-constexpr float share = 0.5f; // of the library in the result
+constexpr float share = 0.5f; // the library's part in the result
 
 size_t firstOf(const OidnImages& images, int y) { return size_t(y) * size_t(images.width) * 3; }
 

@@ -7,9 +7,9 @@ namespace picture::live {
 
 namespace {
 
-constexpr double share = 0.3;       // of a frame's time that the library may take in motion
+constexpr double share = 0.3;       // part of a frame's time that the library may take in motion
 constexpr double room = 0.7;        // fraction of the allowed time at which it gets its turn
-constexpr double weightOfNew = 0.3; // of a measurement in the mean
+constexpr double weightOfNew = 0.3; // a measurement's weight in the mean
 constexpr int longestPause = 1 << 20;
 
 } // namespace

@@ -19,7 +19,7 @@ struct ShownFrame {
   uint32_t viewer = 0;
   int samples = 1;                   // samples per pixel that the frame was started with
   int lightStride = 1;               // RT_LIGHT_STRIDE
-  std::optional<double> falseColour; // of the LiveFrame
+  std::optional<double> falseColour; // the end of the scale of the LiveFrame
 };
 
 // Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the

@@ -1,4 +1,4 @@
-// estimate.cpp: What one frame alone tells about its noise. Smooth shading, textures that the
+// estimate.cpp: Finds what one frame alone tells about its noise. Smooth shading, textures that the
 // albedo explains and the edges of sharp shadows are not noise: such pixels have neighbours like
 // themselves. A sampled pixel rarely has.
 #include "libpicture/live/stages.h"
@@ -14,9 +14,9 @@ namespace picture::live {
 namespace HWY_NAMESPACE {
 
 // A part of the picture is noisy if more than this fraction of its pixels is unlike its neighbours;
-// entirely if that many more are. Of samples that are either light or dark, 14 % are.
+// entirely if that many more are. Among samples that are either light or dark, 14 % are.
 constexpr float fewUnlike = 0.1f, moreUnlike = 0.2f;
-constexpr float fewestPixels = 16; // of a shape
+constexpr float fewestPixels = 16; // fewest pixels of a shape
 // Samples are limited to so many standard deviations of the samples around them.
 constexpr float limitSpread = 32;
 

@@ -270,7 +270,7 @@ struct OidnFilter::Impl {
   const OidnGuides guides;
   Buffer buffer = nullptr;
   std::vector<Filter> filters; // in the order in which they run
-  int width = 0, height = 0;   // of the images that the filters are made for
+  int width = 0, height = 0;   // size of the images that the filters are made for
 };
 
 OidnFilter::OidnFilter(std::shared_ptr<const OidnLibrary> library, int threads, OidnQuality quality,

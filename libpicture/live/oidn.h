@@ -14,7 +14,7 @@ namespace picture::live {
 
 struct OidnFunctions;
 
-// What somebody without the library should do, for messages.
+// Says what somebody without the library should do, for messages.
 inline constexpr const char* howToGetOidn =
     "pip install pyoidn (or xvrml[denoise]) brings it; OPENRT_OIDN_LIBRARY=FILE names a "
     "libOpenImageDenoise.so.2 that is elsewhere";
@@ -60,7 +60,7 @@ class OidnLibrary {
 // `balanced` and `high` (docs/decisions/0053).
 enum class OidnQuality : uint8_t { fast, balanced, high };
 
-// What the filter knows about the pixels besides their colours (OidnImages::albedo, normal).
+// Says what the filter knows about the pixels besides their colours (OidnImages::albedo, normal).
 enum class OidnGuides : uint8_t {
   clean,       // both, without noise
   noisyAlbedo, // both; the albedo has noise, and is denoised first
@@ -71,7 +71,7 @@ enum class OidnGuides : uint8_t {
 struct OidnImages {
   int width = 0, height = 0;
   std::vector<float> colour; // from 0 on, in any unit; replaced by the result
-  // What the pixels show: reflectances from 0 to 1, and normals of length 0 to 1.
+  // Hold what the pixels show: reflectances from 0 to 1, and normals of length 0 to 1.
   std::vector<float> albedo, normal;
 
   void resize(int w, int h);
@@ -92,7 +92,7 @@ class OidnFilter {
   // Replaces images.colour. The same images give the same result on the same machine with the same
   // library. Waits until it is done. Throws OidnError; the images are as they were then.
   void denoise(OidnImages& images);
-  const std::string& name() const; // of the library
+  const std::string& name() const; // the library's name
 
  private:
   struct Impl;

@@ -28,7 +28,7 @@ namespace {
 
 constexpr const char* variable = "OPENRT_OIDN_LIBRARY";
 constexpr const char* names[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so"};
-constexpr const char* inPackage = "/oidn/lib/libOpenImageDenoise.so.2"; // of pyoidn
+constexpr const char* inPackage = "/oidn/lib/libOpenImageDenoise.so.2"; // where pyoidn has it
 constexpr char finished = '\n';          // ends what the child of a trial says
 constexpr int trialMilliseconds = 60000; // a busy machine may need seconds
 

@@ -40,7 +40,7 @@ class OidnLender {
   std::string takeProblem();
 
  private:
-  // What a trial brings.
+  // Holds what a trial brings.
   struct Trial {
     std::unique_ptr<OidnFilter> filter; // null: there is no library, or it cannot be used
     double secondsPerPixel = 0;

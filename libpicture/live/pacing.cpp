@@ -11,7 +11,7 @@ constexpr int smallest = -12;                     // scale 2^(-12/4): an eighth 
 constexpr int mostDoublings = 4;                  // the best step has 2^4 samples
 constexpr int quarter = -8, half = -4, whole = 0; // steps: size in each direction
 
-// What Pacing::Light decides.
+// Holds what Pacing::Light decides.
 struct Rule {
   // Pixels each way of the blocks in which one pixel gets light in motion; there is a step of the
   // full size for each smaller number.
@@ -82,7 +82,8 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
     const double weight = growing_ ? 1 : now > 1.5 * value ? 0.8 : now > value ? 0.4 : 0.2;
     value = value > 0 ? value + weight * (now - value) : now;
   };
-  // What is built once is not built again, so only what two frames in a row have needed counts.
+  // A structure that is built once is not built again, so only what two frames in a row have needed
+  // counts.
   follow(overhead_, std::min(overhead, lastOverhead_));
   lastOverhead_ = overhead;
   measured_ = true;

@@ -60,13 +60,13 @@ class Pacing {
   // enough apart that small variations of the time do not change the step.
   FrameSize at(int step, int width, int height) const;
   int best() const;                             // the best step
-  double costOf(const FrameSize& frame) const;  // of a pixel, in costs of one with light
+  double costOf(const FrameSize& frame) const;  // the cost of a pixel, in costs of one with light
   double seconds(const FrameSize& frame) const; // as predicted(); the cost of a pixel is known
 
   double budget_; // seconds per frame
   // seconds per sample of a pixel, to rebuild a pixel, and per frame; all smoothed
   double pixel_ = 0, rebuilt_ = 0, overhead_ = 0;
-  double lastOverhead_ = 0; // of the last frame
+  double lastOverhead_ = 0; // overhead of the last frame
   Light light_ = Light::sampled;
   int step_ = 0;
   bool growing_ = true;    // the frames of the first motion have not found their size yet

@@ -45,7 +45,7 @@ constexpr float isGone = 2;       // in Guides::moves
 constexpr float outsideName = -1; // the pixel does not exist
 constexpr float emptyName = -2;   // the pixel has no sample
 
-// What is known about the surface that a pixel's first sample shows.
+// Holds what is known about the surface that a pixel's first sample shows.
 struct Guides {
   void resize(const Layout& layout) {
     name.assign(layout.size(), outsideName);
@@ -63,10 +63,10 @@ struct Guides {
   // 1: the surface has moved in the world since the frame before, or is new. isGone: it has
   // vanished in the frame after.
   Plane moves;
-  Plane3 normal; // of length 1
+  Plane3 normal; // has the length 1
 };
 
-// What is accumulated over time for each pixel, or for each cell.
+// Holds what is accumulated over time for each pixel, or for each cell.
 struct Accumulated {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&light, &recent}) planes->assign(layout.size(), 0);
@@ -75,7 +75,7 @@ struct Accumulated {
 
   Plane3 light;       // illumination: radiance / albedo; luma and colour differences
   Plane3 recent;      // the same over the last few frames only
-  Plane mean, square; // of the illumination's luma and of its square
+  Plane mean, square; // means of the illumination's luma and of its square
   Plane frames;       // number of frames in `light`; 0: nothing is known
   Plane noise;        // 0 to 1: whether illumination was found to be noisy around here
 };

@@ -4,9 +4,9 @@
 // motion, names) that follow mirror images. Its radiance is divided by the albedo, accumulated over
 // the earlier frames by reprojection, filtered across the pixels under the guidance of the measured
 // variance, and multiplied by the albedo again (C. Schied et al., "Spatiotemporal Variance-Guided
-// Filtering", HPG 2017). docs/decisions/0050 says what differs from the paper.
+// Filtering", HPG 2017). docs/decisions/0050-live-previews.md says what differs from the paper.
 //
-// What comes out is a preview: it is biased, and no error bar, no file and no still picture may be
+// The result is a preview: it is biased, and no error bar, no file and no still picture may be
 // made from it. LiveRenderer owns one Reconstruction for each viewer. [one thread at a time; a call
 // uses several threads]
 #pragma once
@@ -34,7 +34,7 @@ class OidnFilter;
 struct FrameCamera {
   xvrml::CameraSettings settings;
   double aspect = 1; // width / height of the frame
-  // What is seen where nothing is hit has its place on the screen, wherever the camera looks.
+  // The background, where nothing is hit, has its place on the screen, wherever the camera looks.
   bool fixedBackground = false;
 };
 

@@ -1,7 +1,7 @@
 // show.cpp: Turns illumination into colours again and accumulates the colours over time. Samples
 // lie at random places in their pixels, so the mean over the frames smooths edges and textures, as
-// more samples in one frame would. What was accumulated is bounded by the colours around the pixel
-// now, so that it cannot show what is gone.
+// more samples in one frame would. The accumulated colour is bounded by the colours around the
+// pixel now, so that it cannot show what is gone.
 #include "libpicture/live/stages.h"
 
 #undef HWY_TARGET_INCLUDE

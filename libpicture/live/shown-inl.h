@@ -91,7 +91,7 @@ inline void shownAt(const Layout& layout, const float* shown, float x, float y, 
   out[3] = row(top + (partY >= 0.5f))[4 * columns[partX >= 0.5f ? 2 : 1] + 3];
 }
 
-// What was shown of some pixels.
+// Holds what was shown of some pixels.
 struct Recalled {
   Past past;
   Mask known; // the surface was to be seen

@@ -47,7 +47,7 @@ struct Columns {
 
   int first;
   Table table;
-  Lanes part; // of the pixel's centre from the centre of its cell, in cells
+  Lanes part; // how far the pixel's centre is from the centre of its cell, in cells
 };
 
 // Weights of three cells for a place `part` from the middle one: the quadratic B-spline.
@@ -61,11 +61,12 @@ inline Lanes meanOf(const Lanes3& colour) {
   return (colour.x + colour.y + colour.z) * all(1.0f / 3);
 }
 
-// What the cells around a pixel tell.
+// Holds what the cells around a pixel tell.
 struct Around {
   Lanes3 light, least, most;
   Lanes weights, noise, slope, changed;
-  // Of the cells with the pixel's name, however they lie: their largest noise; -1: there are none.
+  // Holds the largest noise of the cells with the pixel's name, however they lie; -1: there are
+  // none.
   Lanes nameNoise;
 
   // Written out, because GCC compiles a constructor of its own making for the oldest instruction
@@ -190,7 +191,7 @@ inline Lanes3 bounded(const Lanes3& v, const Lanes3& least, const Lanes3& most) 
           clamped(v.z, least.z, most.z)};
 }
 
-// What was shown of pixels, and the pixels of the frame before that showed their surfaces.
+// Holds what was shown of pixels, and the pixels of the frame before that showed their surfaces.
 struct RecalledSurfaces : Recalled {
   Taps taps;
 };
@@ -258,7 +259,7 @@ inline Lanes3 ownLight(const ColourPass& pass, const Around& around,
   const Mask follows = both(both(hn::AndNot(calm, alone), recalled.known), recalled.taps.found);
   if (!hn::AllFalse(Tag(), follows))
     shown = select(follows, lightOfSurfaces(pass, recalled.taps), shown);
-  // What was shown may belong to another albedo: the sample lies anywhere in the pixel.
+  // A colour that was shown may belong to another albedo: the sample lies anywhere in the pixel.
   const Mask isBound = hn::Not(around.least.x > around.most.x);
   const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
   const Lanes3 old = select(keeps, shown, bound);

@@ -38,7 +38,7 @@ constexpr float alikeFraction = 0.02f, alikeAmount = 3e-4f;
 // A bright sample without any like it around counts as that many unlike ones.
 constexpr float lonelyWeight = 5;
 
-// What is read of a frame and not kept, by pixel or by cell.
+// Holds what is read of a frame and not kept, by pixel or by cell.
 struct Reading {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&albedo, &light, &reflection}) planes->assign(layout.size(), 0);
@@ -53,7 +53,7 @@ struct Reading {
   Plane3 reflection; // radiance that coats reflect
 };
 
-// What is computed of the illumination and not kept, by cell.
+// Holds what is computed of the illumination and not kept, by cell.
 struct Work {
   void resize(const Layout& layout) {
     filtered.assign(layout.size(), 0);
@@ -68,14 +68,15 @@ struct Work {
   // Square of what a cell's luma differs from its neighbours', scaled to the variance of noise
   // without correlation; 1 where that is more than edges and smooth shading explain.
   Plane deviation, unlike;
-  Plane variance; // of the illumination's luma as it goes into the filter
+  Plane variance; // variance of the illumination's luma as it goes into the filter
   Plane limit;    // luma beyond that is taken for a rare bright sample
   Plane noise;    // whether this frame's samples are noisy around here, 0 to 1
   // By how much the luma differs from the accumulated one, the accumulated one, and the variance of
   // the difference; each summed up around the cell.
   Plane change, level, doubt, otherChange, otherLevel, otherDoubt;
-  // What the samples of the last frames tell about the cell's one, where cells have several pixels:
-  // 0: it is like them, or as much as it counts in `unlike`. `calm`: fraction of 0 around the cell.
+  // Holds what the samples of the last frames tell about the cell's one, where cells have several
+  // pixels: 0: it is like them, or as much as it counts in `unlike`. `calm`: fraction of 0 around
+  // the cell.
   static constexpr float notJudged = -1;
   Plane verdict, calm;
   Plane3 filtered;
@@ -96,7 +97,8 @@ struct Fresh {
   Plane3 light;  // illumination
   Plane noise;   // 0 to 1: of the illumination
   Plane sample;  // luma of the last sample, or Shown::noSample
-  // What moves here: where it was, not a number if it was not to be seen; and what was shown there.
+  // These planes hold where the thing that moves here was, not a number if it was not to be seen;
+  // and what was shown there.
   Plane pastX, pastY, oldFrames;
   Plane3 oldColour;
 };
@@ -157,7 +159,7 @@ struct FilterPass {
 };
 void filterRow(const FilterPass& pass, int y, const Moment& now);
 
-// What the stages of the picture read.
+// Holds what the stages of the picture read.
 struct ColourPass {
   const FramePlanes& frame;
   const Moment &pixels, &before; // surfaces by pixel

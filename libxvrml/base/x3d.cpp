@@ -205,8 +205,8 @@ constexpr Field fields[] = {{"Anchor", "autoRefresh"},
                             {"TriangleStripSet", "attrib"},
                             {"TriangleStripSet", "fogCoord"}};
 
-// What X3D calls a field or event of ours otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3, :2023
-// 34.4.1).
+// Lists fields and events of ours that X3D calls otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3,
+// :2023 34.4.1).
 constexpr int neverWritten = 99;
 struct Renamed {
   std::string_view type, x3d, own;

@@ -83,7 +83,7 @@ template <class T> class ChaserFilter {
  private:
   using Delta = typename Motion<T>::Delta;
   struct Step {
-    double time; // of its event, in seconds
+    double time; // the time of its event, in seconds
     std::vector<Delta> deltas;
   };
   // Memory for one node is bounded: beyond this, each two steps become one.

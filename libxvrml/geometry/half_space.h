@@ -14,7 +14,7 @@ namespace xvrml {
 
 // The points p with normal.dot(p) + offset >= 0.
 struct HalfSpace {
-  Vector normal{0, 1, 0}; // of any length but 0
+  Vector normal{0, 1, 0}; // has any length but 0
   double offset = 0;
 
   double distance(const Vector& p) const { return normal.dot(p) + offset; } // in lengths of normal

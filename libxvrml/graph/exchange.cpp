@@ -1,5 +1,6 @@
-// exchange.cpp: finds imported nodes and the events of routes to them. What worlds share is kept in
-// a registry outside of World, because World is a public class and budgets are kept so, too.
+// exchange.cpp: finds imported nodes and the events of routes to them. Things that worlds share are
+// kept in a registry outside of World, because World is a public class and budgets are kept so,
+// too.
 #include "graph/exchange.h"
 
 #include <mutex>

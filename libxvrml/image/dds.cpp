@@ -36,7 +36,7 @@ struct Format {
   Coding coding = Coding::masks;
   uint32_t bits = 0;     // bits of a pixel; 0 for blocks
   uint32_t mask[4] = {}; // red, green, blue, alpha
-  int components = 3;    // of the result, or of the file's floats
+  int components = 3;    // components of the result, or of the file's floats
   bool isFloat() const { return coding == Coding::halves || coding == Coding::floats; }
   bool isBlocks() const { return coding >= Coding::bc1; }
 };

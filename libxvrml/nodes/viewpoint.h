@@ -17,10 +17,10 @@ struct ViewpointFields {
   const std::string& description;
   const float* fieldOfView;      // angle of a view in perspective
   const MFFloat* extent;         // left, bottom, right, top of a view in parallel projection
-  const Vec3f* centerOfRotation; // of X3D
-  const bool* retainUserOffsets; // of X3D
-  const bool* viewAll;           // of X3D
-  Node* navigationInfo;          // of X3D, as written; null: none
+  const Vec3f* centerOfRotation; // a field of X3D
+  const bool* retainUserOffsets; // a field of X3D
+  const bool* viewAll;           // a field of X3D
+  Node* navigationInfo;          // a field of X3D, as written; null: none
   Node* shader;                  // camera shader as written; null: the built-in camera
 };
 

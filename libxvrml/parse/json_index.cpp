@@ -19,7 +19,7 @@ struct Position {
   const char* at;
   const char* const end;
   bool string = false, escaped = false, exponent = false;
-  int digits = 0; // of the number, up to `at`
+  int digits = 0; // digits of the number, up to `at`
 
   static bool isDigit(char c) { return c >= '0' && c <= '9'; }
   char character() const { return exponent && isDigit(*at) ? '0' : *at; }

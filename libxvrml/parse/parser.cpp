@@ -124,7 +124,7 @@ void Parser::unknownNode(const Token& type) {
 }
 
 // nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty
-// Reads up to and including the closing brace. What cannot be read is left out up to the next
+// Reads up to and including the closing brace. Text that cannot be read is left out up to the next
 // field. If the text ends early, the open nodes keep what was read.
 void Parser::nodeBody(const Token& type) {
   while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {

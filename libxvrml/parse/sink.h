@@ -84,7 +84,7 @@ class ParseSink {
   // The statements of X3D (ISO/IEC 19775-1 7.2.5). A unit of a category is `factor` of the
   // standard's. IMPORT inlineName.exported AS local. EXPORT node AS exported; the node may be
   // defined further down.
-  virtual void version(int major, int minor) = 0; // of X3D, where the reader finds it
+  virtual void version(int major, int minor) = 0; // version of X3D, where the reader finds it
   virtual void profile(const Name& name) = 0;
   virtual void component(const Name& name, int32_t level) = 0;
   virtual void meta(const Name& keyword, std::string name, std::string content) = 0;

@@ -25,7 +25,7 @@ class X3dElements {
   void finish();
 
  private:
-  // What an element is. Those that cannot have children are of kind `leaf`.
+  // Says what an element is. Those that cannot have children are of kind `leaf`.
   enum class Kind : uint8_t {
     file,
     x3d,

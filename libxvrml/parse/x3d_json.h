@@ -8,8 +8,8 @@
 
 namespace xvrml {
 
-// Reads the locator's text. Members of an object may have any order. What is not well-formed ends
-// the file: what stands before is kept. budget: for the index of the file.
+// Reads the locator's text. Members of an object may have any order. Text that is not well-formed
+// ends the file: what stands before is kept. budget: for the index of the file.
 void readX3dJson(Locator& locator, const BudgetPtr& budget, X3dElements& elements);
 
 } // namespace xvrml

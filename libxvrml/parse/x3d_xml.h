@@ -6,8 +6,8 @@
 
 namespace xvrml {
 
-// Reads a file. What is not well-formed ends it: what stands before is kept. The locator is that of
-// text.text().
+// Reads a file. Text that is not well-formed ends it: what stands before is kept. The locator is
+// that of text.text().
 void readX3dXml(const XmlText& text, Locator& locator, X3dElements& elements);
 
 } // namespace xvrml

@@ -60,7 +60,7 @@ struct Script {
   NodeRef heldUntilStop; // the node in the world while all Scripts end
   const XsNode self;
   const XsEngine* engine = nullptr; // null: no runnable program
-  uint32_t abiMinor = XS_ABI_MINOR; // of the engine
+  uint32_t abiMinor = XS_ABI_MINOR; // minor version of the engine's ABI
   XsInterpreter interpreter = 0;
   SourcePosition start; // position of the program text
   std::string scheme, origin, text;

@@ -11,7 +11,7 @@ namespace xvrml {
 
 struct ScriptLibrary {
   std::vector<XsEngine> engines;
-  uint32_t minor = XS_ABI_MINOR; // of the ABI that it was built against
+  uint32_t minor = XS_ABI_MINOR; // the minor version of the ABI that it was built against
 };
 
 // Loads the engines of a library. The library is never unloaded, because language interpreters do

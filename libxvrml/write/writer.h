@@ -92,8 +92,8 @@ class Writer {
   std::span<const IsConnection* const> connectionsOf(const Node& node) const;
 
   const std::string target_;
-  Names* names_ = nullptr;                   // of the scope that is being written
-  const Connections* connections_ = nullptr; // of the prototype that is being written, or null
+  Names* names_ = nullptr;                   // names in the scope that is being written
+  const Connections* connections_ = nullptr; // IS of the prototype that is written; null: none
   size_t depth_ = 0;                         // number of nodes around the one that is being written
 };
 

@@ -16,7 +16,7 @@ using photometry::rising;
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}
-  int line() const { return line_; } // of the last line read, from 1
+  int line() const { return line_; } // the number of the last line read, from 1
   bool next(std::string_view& out) {
     if (rest_.empty()) return false;
     out = photometry::takeLine(rest_);

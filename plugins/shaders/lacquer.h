@@ -12,7 +12,7 @@
 // only its front is hit, so this hit stands for both and passes T^2; its back, which only some
 // shadow rays hit, passes everything. Each hit of a sheet with two sides passes T.
 //
-// Of the rest, the layer sends c back: all that a thick layer would. Kubelka and Munk's R is less
+// The layer sends c of the rest back: all that a thick layer would. Kubelka and Munk's R is less
 // for light colours, because light that is scattered downwards is lost to it; over a surface of the
 // reflectance g it comes back in parts, T^2 g / (1 - R g), and more of it the lighter both are.
 // Paths pass the back of a one-sided sheet freely and do not find these. For dark colours

@@ -30,7 +30,7 @@ void drawBlind() {
 // An exact lens that throws the image of a small slide on a wall.
 void drawProjector() {
   constexpr double curvature = -1.1, conic = -.6,
-                   radius = .4; // of both sides, which meet at the rim
+                   radius = .4; // radius of both sides, which meet at the rim
   const double rim = curvature * radius * radius /
                      (1 + std::sqrt(1 - (1 + conic) * std::pow(curvature * radius, 2)));
   const RTid lens = rtBeginObject(0);

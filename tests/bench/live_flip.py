@@ -9,9 +9,9 @@ live_flip.py --bench PROGRAM --out FOLDER [--worlds a,b,FILE.wrl] [--seconds N] 
 
 `make bench-live` runs it. PROGRAM is bench_live, which shows each world on a slow and on a fast turn,
 once with the samples as they are and once rebuilt, and keeps what the window would show. Some
-instants are then rendered with many samples, in the size of the comparison (--compare). What is
-shown is scaled to the window (--size) and then to that size, and compared by FLIP (the package
-flip-evaluator).
+instants are then rendered with many samples, in the size of the comparison (--compare). The
+picture that is shown is scaled to the window (--size) and then to that size, and compared by FLIP
+(the package flip-evaluator).
 
 By default the pictures are those for which the clock leaves time, so the machine must have no other
 work. --steps N shows N pictures of one size (--frame) at fixed instants instead; then FLIP can be
@@ -143,7 +143,7 @@ def write_strip(path, rows):
 
 
 class Run:
-    """What bench_live has shown on one turn."""
+    """Holds what bench_live has shown on one turn."""
 
     def __init__(self, folder, pairs):
         facts = json.loads((folder / "frames.json").read_text())

@@ -10,10 +10,10 @@
 
 struct ShowOptions {
   std::string world, folder;     // folder: for the pictures; it exists
-  int width = 800, height = 600; // of the window
+  int width = 800, height = 600; // the size of the window
   int threads = 0;
   double fps = 30, seconds = 4;
-  double speed = 0.15; // of the turn, in radians per second
+  double speed = 0.15; // the speed of the turn, in radians per second
   picture::Denoiser denoiser = picture::Denoiser::own;
   bool raw = false; // the samples as they are, instead of rebuilt pictures
   // Not 0: this many pictures at the instants 0, 1, 2 ... instead of those that the clock leaves

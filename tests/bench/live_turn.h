@@ -1,4 +1,4 @@
-// live_turn.h: A scripted turn around what a world shows, in instants of 1/fps. What is to be seen
+// live_turn.h: A scripted turn around what a world shows, in instants of 1/fps. The picture
 // at an instant depends on its number alone, so pictures of different runs can be compared. Used by
 // bench_live. [one thread, the browser's]
 #pragma once

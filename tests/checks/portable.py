@@ -27,7 +27,7 @@ CALLS = re.compile(
     r"|\b(ucred|tcp_info|link_map|cpu_set_t|__rlimit_resource)\b|\bst_[amc]tim(?:espec)?\b")
 # Files of the kernel. Those of control groups are missing elsewhere, and then no limit is known.
 FILES = re.compile(r'"(/proc/(?!self/cgroup)|/dev/(?!null\b|stdin\b|stdout\b|tty\b)|/sys/(?!fs/cgroup))')
-# What stays elsewhere, and why.
+# These stay elsewhere, for these reasons.
 EXCEPT = {
     "libxvrml/tools/script_host/cage.cpp": "the filter of system calls, built where libseccomp is",
     "libopenrt/backend/cluster/net/greeting.cpp": "asks glibc for its version, if it is glibc",

@@ -150,7 +150,7 @@ TEST_F(Cie171, Case57DiffuseReflectionWithAnObstruction) {
   sun.set("color", {e / pi, e / pi, e / pi});
   use(sun);
   // Seen from (2, 0, 2) over the plate's upper edge at z = 1, the floor begins at x = -2; below the
-  // plate's foot it ends at x = 0. What lies between is hidden.
+  // plate's foot it ends at x = 0. Everything between is hidden.
   for (const double x : {1., 1.5}) {
     const Vec at{x, 0, 2};
     const double hiddenFrom = -x; // the line from (x, 2) by (0, 1) meets the floor at -x

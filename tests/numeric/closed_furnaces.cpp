@@ -152,8 +152,9 @@ TEST_P(ClosedFurnaces, NoLightComesIn) {
   EXPECT_GT(s.secondaryRays + s.shadowRays, 1'000'000u);
 }
 
-// The light of a furnace is e / (1 - a), whatever mirrors and glass do with it. What glass keeps
-// within by total reflection is in balance, too, but takes more reflections than are followed.
+// The light of a furnace is e / (1 - a), whatever mirrors and glass do with it. Light that glass
+// keeps within by total reflection is in balance, too, but takes more reflections than are
+// followed.
 TEST_P(ClosedFurnaces, NoLightIsLost) {
   if (!GetParam().round) return; // a cube of glass keeps light within by total reflection
   const double emission = .5, albedo = .5;

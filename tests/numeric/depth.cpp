@@ -13,7 +13,7 @@ namespace {
 using namespace drawing;
 
 constexpr int width = 24, height = 16;
-constexpr double away = 8, angle = 50; // of the wall in front of the camera; degrees, vertical
+constexpr double away = 8, angle = 50; // how far the wall is; degrees, vertical
 
 class Depth : public testing::Test {
  protected:

@@ -148,7 +148,7 @@ class Bodies {
     }
     rtEndObject();
   }
-  // What moves is rounded to float otherwise than what rests, so all of it is dynamic from the
+  // Things that move are rounded to float otherwise than those at rest, so all are dynamic from the
   // start.
   static void place(uint64_t number, Body& body) {
     if (!body.object) rtGenObjects(1, &body.object);
@@ -162,7 +162,7 @@ class Bodies {
   }
 };
 
-// What all queries say, without ids of instances.
+// Holds what all queries say, without ids of instances.
 struct Answers {
   std::vector<uint32_t> counts, countsd;
   std::vector<RThit> first;

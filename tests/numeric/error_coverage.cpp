@@ -45,7 +45,7 @@ TEST_F(ErrorBars, HoldUnderALamp) {
   const audit::Coverage c = measure("lamp", 40, 8192, 8);
   expectTrue(c);
   EXPECT_GT(c.trustedShare(), .9);
-  EXPECT_NEAR(c.meanError, c.promised, .1 * c.promised); // of the whole picture
+  EXPECT_NEAR(c.meanError, c.promised, .1 * c.promised); // errors of the whole picture
 }
 
 TEST_F(ErrorBars, HoldUnderASmallLamp) { // one replicate in a few meets the lamp by itself:
@@ -224,7 +224,7 @@ TEST_F(ErrorBars, ATargetIsReachedWithoutBias) {
     EXPECT_LT(stats().errorHalfWidth, .1);
     EXPECT_GT(stats().errorHalfWidth, .02) << "far more samples than needed";
     const std::vector<float> rgba = read(RT_RGBA, 4 * 256);
-    double off = 0; // of the picture's mean
+    double off = 0; // the error of the picture's mean
     for (size_t i = 0; i < 256; i++) off += (double(rgba[4 * i]) - truth[4 * i]) / 256;
     sum += off;
     square += off * off;

@@ -59,8 +59,8 @@ TEST_F(GuidedLight, AMirrorSendsOnTheLightOfASmallLamp) {
   expectQ("mirrored", Scene::mean(picture(8, 64, 1)), expected, .004);
 }
 
-// What a mirror shows of a caustic is the caustic times the reflectance of the mirror. Parallel
-// projections, one of them mirrored, see the same part of the floor.
+// The caustic that a mirror shows has the light of the caustic times the mirror's reflectance.
+// Parallel projections, one of them mirrored, see the same part of the floor.
 TEST_F(GuidedLight, ACausticSeenInAMirrorHasTheLightOfTheCaustic) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
   rtQuality(RT_MAX_DEPTH, 8);

@@ -11,7 +11,7 @@ namespace {
 constexpr uint32_t ofFirstSample = RT_DEPTH | RT_POSITION | RT_NAME | RT_MOTION;
 constexpr uint32_t features = RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION;
 
-// What the pixel in the middle says about its surface.
+// Holds what the pixel in the middle says about its surface.
 struct Surface {
   float depth, name;
   Vec normal, albedo, position, motion;

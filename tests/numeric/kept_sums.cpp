@@ -32,7 +32,7 @@ struct Told { // how a frame is made
   int seed = 0, threads = 1, progressive = 0;
   RTenum transport = RT_TRANSPORT_PATH;
   double error = 0;
-  double brightness = 1; // of the lamp: another world if it differs
+  double brightness = 1; // brightness of the lamp: another world if it differs
 };
 
 void defineScene(const Told& told) {

@@ -22,7 +22,7 @@ typedef struct {
   int threads;
   bool affinity, committed;
   const char* error;
-  int code; /* of the error; 0: 3, an invalid operation */
+  int code; /* the code of the error; 0: 3, an invalid operation */
 } Device;
 
 typedef struct {

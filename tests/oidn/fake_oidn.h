@@ -1,4 +1,4 @@
-/* fake_oidn.h: What the fake library counts, in its variable fakeOidnCounts. */
+/* fake_oidn.h: The fake library counts these things, in its variable fakeOidnCounts. */
 #pragma once
 
 typedef struct {

@@ -178,7 +178,7 @@ def test_rays_in_the_planes_of_faces_keep_the_parity():
 @pytest.mark.parametrize("moves", [False, True])
 def test_hits_of_small_bodies_far_away_are_hits(moves):
     """Single precision errs by more than a hundredth of a triangle that is 10,000 times farther away
-    than it is large. What it takes for a hit there is decided again."""
+    than it is large. A ray that it takes for a hit there is decided again."""
     random = np.random.default_rng(8)
     triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
     hit = 0
@@ -201,8 +201,8 @@ def test_hits_of_small_bodies_far_away_are_hits(moves):
 @pytest.mark.parametrize("ratio", [1e-1, 1e-3, 1e-6])
 def test_bodies_seen_from_outside(ratio):
     """Rays from outside at vertices, edges and outlines of a body, which is small for its distance.
-    What docs/ray-queries.md promises: counts are even, double precision and the first hit of a list
-    agree, and single precision seldom misses."""
+    Checks what docs/ray-queries.md promises: counts are even, double precision and the first hit of
+    a list agree, and single precision seldom misses."""
     random = np.random.default_rng(int(-np.log10(ratio)))
     points, triangles = check_rays.icosphere(2)
     points = (points * (1 + .2 * random.random((len(points), 1)))).astype(np.float32)

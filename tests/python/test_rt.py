@@ -55,7 +55,7 @@ def test_textures_have_their_first_row_at_the_top():
 
 def test_textures_are_mirrored_or_end_at_a_border():
     pixels = np.array([[[255, 0, 0], [0, 0, 255]]], np.uint8)
-    # What is seen beyond the left edge of the picture, whose first pixel is red.
+    # The colours are those beyond the left edge of the picture, whose first pixel is red.
     for wrap, expected in (("repeat", (0, 0, 1)), ("clamp", (1, 0, 0)), ("mirror", (1, 0, 0)),
                            ("border", (0, 1, 0))):
         with rt.Context(threads=1) as context:

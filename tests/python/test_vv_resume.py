@@ -366,7 +366,7 @@ def test_files_that_are_not_complete(room):
     made(room, *SEEDS, "--sums", "-o", "0.exr", "--resume", "a.sums")
     made(room, *SEEDS, "-o", "plain.exr")
     whole, plain, kept = (contents(room, name) for name in ("0.exr", "plain.exr", "a.sums"))
-    end = len(plain)  # of the pixels in both
+    end = len(plain)  # the end of the pixels in both
     assert whole.startswith(plain)
 
     def said(name, damaged):

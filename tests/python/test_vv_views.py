@@ -259,7 +259,7 @@ DEF Flat OrthoViewpoint { position 1 2 10 fieldOfView [ -4, -3, 4, 3 ] }
 Shape { appearance Appearance { material Material { emissiveColor .5 .5 .5 } }
   geometry Box { size 90 90 .5 } }
 """
-AWAY = 9.75  # of the wall's front from the camera
+AWAY = 9.75  # how far the wall's front is from the camera
 
 
 @pytest.fixture

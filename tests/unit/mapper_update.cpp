@@ -178,7 +178,7 @@ TEST_F(MapUpdate, AMaterialThatIsSharedBecomesSeparate) {
   load("NavigationInfo { headlight FALSE }\n" + repeat(at(1000, "Material { }"), 400) +
        at(-25, "DEF A Material { emissiveColor 1 1 1 }") +
        at(25, "DEF B Material { emissiveColor 1 1 1 }"));
-  const auto greens = [&] { // of the two boxes
+  const auto greens = [&] { // green of the two boxes
     mapper_->update(engine_->takeChanges());
     mapper_->map(mapper_->viewpointCamera(0));
     rtFrameBuffer(3, 1, RT_RGBA);

@@ -341,7 +341,7 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   rtSwapBuffers();
   EXPECT_EQ(backendCalls(), "asasasw");
   EXPECT_EQ(finished(), 4u);
-  rtReadPixels(RT_RGBA, pixels, 32); // of the previous size
+  rtReadPixels(RT_RGBA, pixels, 32); // pixels of the previous size
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_FAILS(RT_INVALID_VALUE, rtReadPixels(RT_RGBA, pixels, 32));
   rtRender(); // cancels the frames that are left

@@ -1,5 +1,5 @@
 // openrt_motion.cpp: RT_MOTION follows from the commits: any number of threads, a recording and a
-// backend that skips frames find the same bytes. What is not asked for is not kept.
+// backend that skips frames find the same bytes. Motion that is not asked for is not kept.
 #include <filesystem>
 #include <memory>
 

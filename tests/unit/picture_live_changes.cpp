@@ -1,5 +1,5 @@
 // picture_live_changes.cpp: where nothing moves and no light is sampled, previews average up to 256
-// frames. What changes there nevertheless is shown at once: textures, skies, sharp shadows, and
+// frames. Changes there are nevertheless shown at once: textures, skies, sharp shadows, and
 // what something that passed by has left.
 #include <gtest/gtest.h>
 

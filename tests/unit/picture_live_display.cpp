@@ -98,7 +98,8 @@ TEST(LiveDisplay, aStillPictureFadesInAndEndsAsItIs) {
   EXPECT_EQ(finished.rgb, displayBytes(uniform(100)));
 }
 
-// A preview is biased, a still picture is noisy. What is shown gets better with every sample.
+// A preview is biased, a still picture is noisy. The picture that is shown gets better with every
+// sample.
 TEST(LiveDisplay, whatIsShownGetsBetterSteadily) {
   constexpr int width = 64, height = 64;
   constexpr double truth = 128, bias = 20, noise = 60;
@@ -114,7 +115,7 @@ TEST(LiveDisplay, whatIsShownGetsBetterSteadily) {
   for (int samples = 1; samples <= 256; samples *= 2) {
     std::vector<float> values;
     for (int i = 0; i < width * height; ++i) {
-      double sum = 0; // of twelve uniform numbers: nearly normal, with variance 1
+      double sum = 0; // the sum of twelve uniform numbers: nearly normal, with variance 1
       for (int k = 0; k < 12; ++k)
         sum += double(state = state * 1664525 + 1013904223) / 4294967296.0;
       values.push_back(float((truth + (sum - 6) * noise / std::sqrt(samples)) / 255));

@@ -25,7 +25,7 @@ inline Vec turned(Vec v, double angle) { // about the y axis
   return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
 }
 
-// What a ray meets. Without a hit the light is that of the environment.
+// Holds what a ray meets. Without a hit the light is that of the environment.
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   Vec normal, motion;
@@ -48,7 +48,7 @@ inline double random(uint32_t pixel, uint32_t frame, uint32_t dimension) {
 struct Shot {
   int width = 96, height = 72;
   picture::live::FrameCamera camera;
-  uint32_t number = 0;  // of the frame: places of samples and noise follow from it
+  uint32_t number = 0;  // the number of the frame: places of samples and noise follow from it
   bool centred = false; // samples lie in the middles of the pixels
   bool noisy = false;   // a sample has light only by chance, one in four, and then four times more
 };
@@ -126,7 +126,7 @@ inline picture::Picture render(const World& world, const Shot& shot) {
   return frame;
 }
 
-// What the frame would show with very many samples: red, green, blue of each pixel.
+// Returns what the frame would show with very many samples: red, green, blue of each pixel.
 inline std::vector<float> converged(const World& world, const Shot& shot, int grid = 6) {
   std::vector<float> rgb(size_t(shot.width) * size_t(shot.height) * 3);
   for (int y = 0; y < shot.height; y++)

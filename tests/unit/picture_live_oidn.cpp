@@ -32,7 +32,7 @@ Library failing() { return OidnLibrary::load(fileOf("_failing")); }
 Library broken() { throw OidnError("the library is broken"); }
 Library absent() { return nullptr; }
 
-// What the fake library has counted so far. Its counts stay between tests of one process.
+// Returns what the fake library has counted so far. Its counts stay between tests of one process.
 FakeOidnCounts countsOf(const std::string& name = "") {
   void* const handle = dlopen(fileOf(name).c_str(), RTLD_NOW | RTLD_NOLOAD);
   EXPECT_NE(handle, nullptr);

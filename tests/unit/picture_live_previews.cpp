@@ -141,7 +141,7 @@ TEST(LivePreview, accumulatesWhatStandsStill) {
   LiveRenderer live(*browser, settingsOf());
   const std::vector<uint8_t> truth =
       displayBytes(headless(*other, settingsOf(), frameOf(Purpose::still, 64, 48, 512)));
-  const auto errorOf = [&](const LivePicture& picture) { // of the box
+  const auto errorOf = [&](const LivePicture& picture) { // error of the box
     return differenceIn(picture, truth, 30, 18, 34, 30);
   };
   const double first = errorOf(finish(live, previewOf()));
@@ -196,8 +196,8 @@ TEST(LivePreview, viewersAccumulateForThemselves) {
   EXPECT_EQ(see(true), see(false));
 }
 
-// Two viewers of a moving world take turns at different instants, or each at every instant. What
-// one sees does not depend on the other: it has what it would have accumulated alone.
+// Two viewers of a moving world take turns at different instants, or each at every instant. The
+// picture of one does not depend on the other: it has what it would have accumulated alone.
 TEST(LivePreview, viewersOfAMovingWorldAccumulateForThemselves) {
   const auto see = [](bool two, double later) {
     const auto browser = browserOf();
@@ -344,7 +344,7 @@ TEST(LivePreview, fewViewersAreRemembered) {
   const size_t before = previews.viewers();
   previews.forget(2 * live::mostRecentViewers - 1);
   EXPECT_EQ(previews.viewers(), before - 1);
-  // What cannot be rebuilt is forgotten, too.
+  // A picture that cannot be rebuilt is forgotten, too.
   frame.planes.erase(RT_MOTION);
   EXPECT_THROW(previews.rebuild(2 * live::mostRecentViewers - 2, frame, camera, 1, {}),
                std::invalid_argument);

@@ -148,7 +148,7 @@ TEST(FittingExposure, aUniformPictureBecomesMiddleGrey) {
 
 // E. Reinhard, JGT 7(1), 2002: the key is .18 * 4^((2 m - l - u) / (u - l)) of the logarithms.
 TEST(FittingExposure, brightPicturesStayBright) {
-  const auto scene = [](int bright) { // of 100 pixels; the others have a sixteenth of their light
+  const auto scene = [](int bright) { // 100 pixels; the others have a sixteenth of their light
     std::vector<Colour> colours(100, grey(1.0 / 16));
     std::fill_n(colours.begin(), bright, grey(1));
     return fittingExposure(pictureOf(colours));

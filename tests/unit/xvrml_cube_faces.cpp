@@ -155,7 +155,7 @@ TEST(CubeFaces, ExtendedHeadersAreRead) {
        {std::pair{71u, 8}, {72u, 8}, {74u, 16}, {75u, 16}, {77u, 16}, {78u, 16}}) { // BC1 to BC3
     Bytes b = extended(3, format);
     for (int f = 0; f < 6; f++) {
-      for (int i = 8; i < bytes; i++) b.push_back(0xff); // of alpha
+      for (int i = 8; i < bytes; i++) b.push_back(0xff); // the alpha
       word(b, 0xf800 | 0x001f << 16);
       word(b, 0);
     }

@@ -1,5 +1,5 @@
 // xvrml_nodes_test.cpp: the 54 nodes of ISO/IEC 14772-1:1997 clause 6 and those of OpenRT, against
-// lists typed from the standard. What X3D adds is in xvrml_x3d_nodes.cpp.
+// lists typed from the standard. Nodes that X3D adds are in xvrml_x3d_nodes.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>

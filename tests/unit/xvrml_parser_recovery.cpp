@@ -1,4 +1,4 @@
-// xvrml_parser_recovery.cpp: Tests that an error in a world costs no more than it must. What is
+// xvrml_parser_recovery.cpp: Tests that an error in a world costs no more than it must. All that is
 // left of single values and lists is tested in xvrml_values_kept.cpp.
 #include <algorithm>
 

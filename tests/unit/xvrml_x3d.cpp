@@ -122,8 +122,8 @@ TEST(X3d, NothingOfItIsReadInVrml97) {
     EXPECT_GT(load(std::string("#VRML V2.0 utf8\n") + text)->diagnostics.errors(), 0u) << text;
 }
 
-// What X3D adds to VRML97 and this library has works in VRML97, too. Other browsers would not know
-// it, so each name is reported once in a file.
+// Nodes and fields that X3D adds and this library has work in VRML97, too. Other browsers would not
+// know it, so each name is reported once in a file.
 TEST(X3d, NodesAndFieldsOfItWorkInVrml97WithAWarning) {
   const char* const text =
       "StaticGroup { children Shape { geometry DEF S Sphere { solid FALSE } } }\n"

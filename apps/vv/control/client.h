@@ -1,5 +1,5 @@
-// client.h: What the browser's thread knows about a client: its commands that wait, the numbers of
-// nodes that it has, and its subscriptions. [the browser's thread]
+// client.h: Holds what the browser's thread knows about a client: its commands that wait, the
+// numbers of nodes that it has, and its subscriptions. [the browser's thread]
 #pragma once
 
 #include <deque>
@@ -28,7 +28,7 @@ struct Client {
   NodeNumbers numbers;
   struct Subscription {
     xvrml::NodeRef node;
-    uint64_t number = 0; // of Browser::listen
+    uint64_t number = 0; // the number that Browser::listen gave
   };
   std::map<std::string, Subscription> subscriptions; // by node and field as the client names them
 };

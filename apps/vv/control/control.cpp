@@ -43,10 +43,10 @@ struct Control::Impl {
   uint64_t arrived = 0;               // letters so far
 
   Session* session = nullptr;
-  uint64_t generation = 0; // of the session's browser
+  uint64_t generation = 0; // the browser's generation in the session
   // The client whose picture is rendered or encoded; 0: none. Others wait for their turn.
   ClientId renderer = 0;
-  uint32_t channels = 0; // of its picture
+  uint32_t channels = 0; // the channels of its picture
   // A world is being read. Commands that load others wait, so that only one is read at a time.
   bool loading = false;
   std::optional<Encoding> encoding;
@@ -70,7 +70,7 @@ struct Control::Impl {
     }
   }
 
-  // Forgets clients that have left, with what they hold of the world. What they sent is done
+  // Forgets clients that have left, with what they hold of the world. All that they sent is done
   // first.
   void bury() {
     for (auto at = clients.begin(); at != clients.end();) {

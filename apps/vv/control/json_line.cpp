@@ -59,7 +59,7 @@ class Watch : public nlohmann::json_sax<Json> {
 
   const Limits& limits_;
   size_t values_ = 0;
-  std::vector<std::set<std::string>> names_; // of the arrays, which have none, and objects around
+  std::vector<std::set<std::string>> names_; // names in objects around, and none in arrays
 };
 
 } // namespace

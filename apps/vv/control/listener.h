@@ -1,4 +1,4 @@
-// listener.h: What listens at the address of --control and moves lines between sockets and the
+// listener.h: Listens at the address of --control and moves lines between sockets and the
 // mailbox, on a thread of its own until it is destroyed.
 #pragma once
 

@@ -25,7 +25,7 @@ struct Letter {
   enum class Kind : uint8_t { command, left } kind = Kind::command;
   ClientId client = 0;
   Line line;        // command
-  size_t bytes = 0; // of the line; processed() gives them back
+  size_t bytes = 0; // the size of the line; processed() gives them back
 };
 
 class Mailbox {
@@ -66,7 +66,7 @@ class Mailbox {
     std::function<void()> wake;
     std::string output;
     size_t unsent = 0;       // bytes that were taken and not sent
-    size_t waitingBytes = 0; // of lines that are not done yet
+    size_t waitingBytes = 0; // the size of lines that are not done yet
     bool isKnown = false;    // it has sent a JSON object
     bool isCut = false;
   };

@@ -10,7 +10,7 @@ namespace vv::control {
 struct Place {
   std::string host; // without brackets; "" for a unix socket
   uint16_t port = 0;
-  std::string path; // of a unix socket
+  std::string path; // the path of a unix socket
 
   // Throws UsageError.
   static Place parse(std::string_view text);

@@ -1,4 +1,4 @@
-// help.h: What `vv --help` prints. [main thread]
+// help.h: Makes what `vv --help` prints. [main thread]
 #pragma once
 
 #include <string>

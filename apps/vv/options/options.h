@@ -27,7 +27,7 @@ struct Output {
   const picture::Format* format = nullptr; // never null in a file of one picture
   // Not none: the file holds all pictures of a sequence, and `format` is null.
   picture::FilmKind film = picture::FilmKind::none;
-  bool raw = false; // of --raw: pictures as they were before --denoise
+  bool raw = false; // --raw: writes pictures as they were before --denoise, too
   const char* option() const { return raw ? "--raw" : "-o"; }
 };
 
@@ -88,13 +88,13 @@ struct Options {
   std::string viewpoint;           // viewpoint as given: a name, a number or "all"
   bool check = false, strict = false;
   bool json = false;
-  std::string helpTopic; // of --help; empty: none
+  std::string helpTopic; // the topic of --help; empty: none
   std::vector<Job> jobs; // requested jobs, in any order
   bool watch = false;
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript (readScript)
   std::string write, stats;
-  xvrml::Encoding writeEncoding = xvrml::Encoding::vrml97; // of --write
+  xvrml::Encoding writeEncoding = xvrml::Encoding::vrml97; // the encoding of --write
   std::string compare;                                     // reference picture; empty: none
   int audit = 0; // number of pictures to check the error bars with; 0: none
   ServeOptions serve;
@@ -114,7 +114,7 @@ struct Options {
   SeedRange seeds;                // the first one is also in render.quality
   std::vector<std::string> merge; // files whose sums are added (vv merge); empty: none
   bool denoise = false;           // files and films of -o hold denoised pictures
-  std::string poseFile;           // of --pose; empty: none
+  std::string poseFile;           // the file of --pose; empty: none
   bool posed = false;             // view.lookAt is that of --pose
   bool fitExposure = false;       // render.view.exposure is chosen by the first picture
   std::string measure; // file for the readings of the sensors, .csv or .json; empty: none

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t fileBytes = 1 << 20; // a longer file is refused
-constexpr int mostPixels = 4096;      // of each side of a picture
+constexpr int mostPixels = 4096;      // the longest side of a picture
 constexpr int mostSamples = 4096;
 constexpr int mostTurns = 360;     // pictures of a turntable
 constexpr size_t mostPresets = 16; // that build on each other

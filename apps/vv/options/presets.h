@@ -14,7 +14,7 @@ struct Setting {
   const OptionInfo* option;
   std::string value;
   std::string where;    // file, line and column; empty: the command line
-  std::string folder;   // of the file; empty: the command line, or a built-in preset
+  std::string folder;   // holds the file; empty: the command line, or a built-in preset
   bool builtIn = false; // rules that select nothing are no problem
 };
 

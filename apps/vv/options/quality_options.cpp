@@ -17,7 +17,7 @@ namespace vv {
 
 namespace {
 
-// What vv says about a setting instead of what follows from the library's table.
+// Holds what vv says about a setting instead of what follows from the library's table.
 struct Wording {
   RTenum quality;
   const char* name = nullptr;     // null: the setting's name

@@ -760,8 +760,8 @@ class Pictures {
   size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
-  std::unique_ptr<Checkpoint> checkpoint_; // of a picture whose sums are kept; else null
-  std::vector<std::string> names_;         // of channel id, before the picture is finished
+  std::unique_ptr<Checkpoint> checkpoint_; // null: the picture's sums are not kept
+  std::vector<std::string> names_;         // names of channel id, before the picture is finished
   bool saveFailed_ = false;                // a write of the file of --resume has failed
   bool biasSaid_ = false, brightnessSaid_ = false;
   bool anyWorker_ = false; // a worker has been connected
@@ -772,8 +772,8 @@ class Pictures {
   std::map<std::string, OpenFilm> films_;              // indexed by path
   std::unique_ptr<picture::PictureDenoiser> denoiser_; // null before the first use
   SequenceStats frames_;
-  std::optional<double> exposure_; // of --exposure auto; none: no picture has been made
-  double endOfScale_ = 0;          // of false colours, in cd/m2; 0: no picture has been made
+  std::optional<double> exposure_; // what --exposure auto gave; none: no picture has been made
+  double endOfScale_ = 0;          // brightest false colour in cd/m2; 0: no picture has been made
 };
 
 } // namespace

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view hexDigits = "0123456789abcdef";
 
-// Returns the host without its port: "[::1]:80" gives "[::1]". What is no port stays.
+// Returns the host without its port: "[::1]:80" gives "[::1]". Text that is no port stays.
 std::string_view withoutPort(std::string_view host) {
   const size_t digits = std::min(host.find_last_not_of("0123456789") + 1, host.size());
   const bool hasPort = digits > 0 && host[digits - 1] == ':' && !host.ends_with(":");

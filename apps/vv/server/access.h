@@ -28,7 +28,7 @@ bool isSameOrigin(std::string_view origin, std::string_view host);
 // The parts of a request that matter here. An absent header is empty.
 struct Credentials {
   std::string_view host, origin, cookie; // headers; cookie: the value of our cookie
-  std::string_view token;                // of the query
+  std::string_view token;                // the token of the query
 };
 // A page, or a WebSocket, which must say which page has opened it.
 enum class Asked : uint8_t { page, socket };

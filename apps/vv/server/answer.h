@@ -1,5 +1,5 @@
-// answer.h: What an HTTP request gets: a file of the page, a saved picture, or a refusal. Knows
-// nothing about connections. [the host's thread, except Downloads::offer]
+// answer.h: Makes what an HTTP request gets: a file of the page, a saved picture, or a refusal.
+// Knows nothing about connections. [the host's thread, except Downloads::offer]
 #pragma once
 
 #include <deque>

@@ -65,7 +65,7 @@ class FlatObject final : public nlohmann::json_sax<Json> {
   std::string name_;
 };
 
-// Takes the members of a message one by one. What is left at the end is one too many.
+// Takes the members of a message one by one. A member that is left at the end is one too many.
 class Members {
  public:
   explicit Members(Json object) : object_(std::move(object)) {}

@@ -22,7 +22,7 @@ struct Page {
   };
   Role role = Role::follower;
   uint32_t view = 0;  // number of the view that the page shows
-  PictureSize size;   // of its pictures
+  PictureSize size;   // the size of its pictures
   bool sized = false; // the page has told its size; before, it gets no pictures
   PictureFlow flow;
   double answered = 0; // time of its last acknowledgement, or of the first picture

@@ -32,7 +32,7 @@ namespace {
 // Seconds. Nothing wakes the loop for a signal: an idle loop looks for one now and then.
 constexpr double idleWait = 0.25, quietWait = 0.1, activeWait = 0.004, drawingWait = 0.001;
 constexpr double restAfter = 3;                      // seconds without a look
-constexpr int movingQuality = 80, stillQuality = 95; // of JPEG
+constexpr int movingQuality = 80, stillQuality = 95; // qualities of JPEG
 // Seconds from the first SIGINT until the process ends, even if a thread hangs.
 constexpr unsigned interruptSeconds = 5;
 

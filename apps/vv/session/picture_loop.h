@@ -27,7 +27,7 @@ class PictureLoop {
     settling,  // the last frame is a preview of what has just stopped, larger than those before
     refining   // the last frame is a still one: it fills the window and gets all samples
   };
-  // What is shown while something moves.
+  // Says what is shown while something moves.
   enum class Motion : uint8_t {
     rebuilt, // previews
     samples  // the samples as they are
@@ -51,8 +51,8 @@ class PictureLoop {
   Motion motion() const { return motion_; }
 
   Urgency urgency(const Pilot& pilot, const Fit& fit) const;
-  // Starts the next frame or cancels the one in flight, if that is due. Of several loops, the one
-  // with the greatest urgency is called. now: time of any clock.
+  // Starts the next frame or cancels the one in flight, if that is due. Where there are several
+  // loops, the one with the greatest urgency is called. now: time of any clock.
   void advance(const Pilot& pilot, Fit& fit, double now, Need need);
   // Places the viewer for a fit after its frame has read the world. Returns false if no fit waits
   // for that.
@@ -95,7 +95,7 @@ class PictureLoop {
   bool hasStill() const { return isRefining() && still_ != Progress::none; }
   // Tells whether the still frame was cancelled for another viewer's.
   bool isInterrupted() const;
-  uint64_t number() const { return number_; } // of the last frame
+  uint64_t number() const { return number_; } // the number of the last frame
   // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
@@ -108,14 +108,14 @@ class PictureLoop {
   using RendererState = picture::LiveRenderer::State;
   enum class Shown : uint8_t { nothing, something };
   enum class Decision : uint8_t { wait, cancel, move, settle, refine };
-  // What is there of the still frame that was started last.
+  // Says how much there is of the still frame that was started last.
   enum class Progress : uint8_t { none, covered, finished };
 
   Decision decide(bool outdated, const Fit& fit, double now, Need need) const;
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   picture::FrameSize sizeOf(Phase phase);
-  int previewSide(int side) const; // of a preview as large as may be
+  int previewSide(int side) const; // the side of a preview as large as may be
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   picture::View stillViewOf(const Pilot& pilot, double aspect) const;
   void advanceStill(const Pilot& pilot, Fit& fit);
@@ -142,8 +142,8 @@ class PictureLoop {
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
-  double exposure_ = 0;               // of the pilot
-  std::optional<double> falseColour_; // of the pilot
+  double exposure_ = 0;               // the exposure of the pilot
+  std::optional<double> falseColour_; // the scale of the pilot
   picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
   double lastStart_ = 0, motionBegan_ = 0, settlingEnds_ = 0, gap_ = 0;

@@ -115,7 +115,7 @@ class Pilot {
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
   double exposure_ = 0;
-  std::optional<double> scaleEnd_; // of false colours, 0: chosen by pictures; none: not allowed
+  std::optional<double> scaleEnd_; // end of the scale, 0: chosen by pictures; none: not allowed
   bool showsFalseColours_ = false;
   std::set<std::string> held_; // keys that are held down
   WorldKeys worldKeys_;        // keys that the world's sensors get

@@ -166,7 +166,7 @@ Session::Passage Session::passageOf(const InputEvent& event) const {
   return ends || !isSaving() ? Passage::waits : Passage::isDropped;
 }
 
-// Adds an event to those that wait. Of moves that follow each other only the last one counts.
+// Adds an event to those that wait. Where moves follow each other, only the last one counts.
 void Session::postpone(InputEvent event, std::deque<InputEvent>& later) {
   const bool moves = event.kind == InputEvent::Kind::move && !later.empty() &&
                      later.back().kind == InputEvent::Kind::move;

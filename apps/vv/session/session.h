@@ -201,8 +201,8 @@ class Session {
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;
-  StepOrder order_;              // of the user's events
-  double mostPreviewPixels_ = 0; // of each viewer; 0: there is no bound
+  StepOrder order_;              // the order of the user's events
+  double mostPreviewPixels_ = 0; // bound of each viewer's previews; 0: there is none
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted

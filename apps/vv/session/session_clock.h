@@ -23,7 +23,7 @@ class SessionClock {
 
   SessionClock(Mode mode, double fps) : mode_(mode), fps_(fps) {}
 
-  // What a reading does to a real clock.
+  // Says what a reading does to a real clock.
   enum class Reading : uint8_t { advances, isHeld };
 
   // Takes a reading, in seconds. Only a real clock advances, and only if it is not held.

@@ -1,5 +1,5 @@
-// session_reports.cpp: What a session says about itself: the command of a view, messages for its
-// user, and the facts of the overlay.
+// session_reports.cpp: Makes what a session says about itself: the command of a view, messages for
+// its user, and the facts of the overlay.
 #include <utility>
 
 #include "process/messages.h"

@@ -51,9 +51,9 @@ class StillTaker {
   picture::LiveRenderer& renderer_;
   State state_ = State::none;
   Still still_;
-  uint64_t number_ = 0;        // of its frame
+  uint64_t number_ = 0;        // the number of its frame
   bool isWhole_ = false;       // its frame has ended with all samples
-  uint32_t usualChannels_ = 0; // of the frames that are shown
+  uint32_t usualChannels_ = 0; // channels of the frames that are shown
   StillAnswer answer_;
 };
 

@@ -1,5 +1,5 @@
-// viewer.h: What a Pilot moves: the world's own viewer, or a guest who looks at the world beside it
-// (xvrml/guest.h). [the browser's thread]
+// viewer.h: Declares what a Pilot moves: the world's own viewer, or a guest who looks at the world
+// beside it (xvrml/guest.h). [the browser's thread]
 #pragma once
 
 #include <cstdint>

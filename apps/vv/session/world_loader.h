@@ -28,7 +28,7 @@ struct LoadAnswer {
 // Tells what became of the world of an answer.
 struct LoadOutcome {
   std::string wrong;   // why it is not used; empty if it is
-  int code = exitDone; // of the process that cannot go on without it
+  int code = exitDone; // exit code of the process, which needs the world
 };
 // Gives the world of an answer to `begin`, whose errors mean that it cannot be used.
 LoadOutcome useWorld(LoadAnswer answer,

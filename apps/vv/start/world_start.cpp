@@ -55,7 +55,7 @@ xvrml::LoadOptions loadOptionsForShowing(const Options& options) {
 
 bool isOfCommandLine(const Options& options, const xvrml::World& world) {
   if (options.input.empty() || world.path == options.input) return true;
-  std::error_code unknown; // of a file that is gone, or of standard input
+  std::error_code unknown; // a file that is gone, or standard input
   return std::filesystem::equivalent(world.path, options.input, unknown);
 }
 

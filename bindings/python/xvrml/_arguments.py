@@ -212,7 +212,7 @@ def _inspectable(doc):
                               annotation=annotation.strip() or inspect.Parameter.empty))
     try:
         return inspect.Signature(parameters, return_annotation=found[2] or inspect.Signature.empty)
-    except ValueError:  # of an order that Python's functions do not have
+    except ValueError:  # the order is one that Python's functions do not have
         return None
 
 

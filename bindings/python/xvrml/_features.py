@@ -1,4 +1,4 @@
-"""What depends on libraries and packages that need not be installed."""
+"""Tells what depends on libraries and packages that need not be installed."""
 import importlib.util
 from typing import Dict, NamedTuple
 

@@ -213,8 +213,8 @@ class LiveView:
 
     @property
     def facts(self):
-        """What the newest picture is: size, samples (mean over the pixels), moving (one of a
-        sequence, perhaps smaller than the view), preview (rebuilt from few samples), finished,
+        """Returns what the newest picture is: size, samples (mean over the pixels), moving (one of
+        a sequence, perhaps smaller than the view), preview (rebuilt from few samples), finished,
         seconds, frame_rate (0: nothing moves)."""
         moving = self._phase == "moving"
         return {**self._facts, "frame_rate": 1 / self._gap if moving and self._gap > 0 else 0.0}

@@ -38,7 +38,7 @@ def _category(categories, name):
 
 def _numbers(picture, names):
     """Returns the numbers that stand for these names in the channel cryptomatte."""
-    if not picture.names:  # of a Context, whose names are numbers
+    if not picture.names:  # a picture of a Context, whose names are numbers
         return {_arguments.whole("matte: a name of a Context", name, 1, 0xffffffff) for name in names}
     numbers = set()
     for name in names:

@@ -42,8 +42,8 @@ class ControlError(Exception):
 
 
 class Created(NamedTuple):
-    """What Control.create made: the numbers of the outermost nodes, those of all nodes that the
-    text gives a DEF name, and what was wrong with the text."""
+    """Holds what Control.create made: the numbers of the outermost nodes, those of all nodes that
+    the text gives a DEF name, and what was wrong with the text."""
     nodes: List[int]
     names: Dict[str, int]
     problems: List[str]
@@ -182,7 +182,7 @@ class Control:
         self._process: Optional[subprocess.Popen[bytes]] = None
         self._folder: Optional[tempfile.TemporaryDirectory[str]] = None
         try:
-            #: What vv says of itself: program, version, protocol, world.
+            #: Holds what vv says of itself: program, version, protocol, world.
             self.hello: Dict[str, Any] = self.call("hello")
         except BaseException as error:
             self._line.close()
@@ -411,8 +411,8 @@ class Control:
                file: Union[str, os.PathLike[str], None] = None,
                timeout: Optional[float] = None) -> bytes:
         """Renders a picture of the world as it is now, with the bytes of `vv -o`. Returns the bytes
-        of the picture file (PNG, or `format`), or, if vv has written `file`, none. What is not
-        given is as on vv's command line."""
+        of the picture file (PNG, or `format`), or, if vv has written `file`, none. An argument that
+        is not given is as on vv's command line."""
         given = {
             "size": size,
             "samples": samples,

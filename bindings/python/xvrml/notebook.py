@@ -40,7 +40,7 @@ class View(jupyter_rfb.RemoteFrameBuffer):
         self.observe(lambda change: self._show(change["new"]), names=visible)
         self._wake()
 
-    # What jupyter_rfb calls
+    # Methods that jupyter_rfb calls
 
     def get_frame(self):
         """Returns the newest picture, without waiting."""

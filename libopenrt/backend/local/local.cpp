@@ -57,7 +57,8 @@ Vec3d LocalBackend::eye() const {
 }
 
 void LocalBackend::prepareGeometry() {
-  // What moved in the last snapshot may rest in this one, and in another view other things moved.
+  // A thing that moved in the last snapshot may rest in this one, and in another view other things
+  // moved.
   const bool motionsDiffer =
       snapshot_ && snapshotFrame_ != history_.number() && (snapshot_->motions || history_.any());
   if (snapshot_ && accel_ && !changes_.any() && !motionsDiffer) return;

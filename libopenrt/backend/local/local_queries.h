@@ -33,11 +33,11 @@ struct PreparedGeometry {
 
 class LocalQueries final : public Queries {
  public:
-  // prepare: brings the geometry up to date. What it returns stays until the next call.
+  // prepare: brings the geometry up to date. Its result stays until the next call.
   LocalQueries(std::shared_ptr<EmbreeDevice> device, uint32_t threads,
                std::function<PreparedGeometry()> prepare);
   ~LocalQueries() override;
-  // The geometry is about to change. What was made of it is kept for its meshes.
+  // The geometry is about to change. The structures made of it are kept for its meshes.
   void outdate() { exactIsFormer_ = preciseIsFormer_ = bodiesAreFormer_ = true; }
   // The geometry is gone.
   void clear();
@@ -95,7 +95,7 @@ class LocalQueries final : public Queries {
   std::shared_ptr<EmbreeDevice> device_;
   uint32_t threads_;
   std::function<PreparedGeometry()> prepare_;
-  std::optional<PreparedGeometry> at_; // of the query in progress
+  std::optional<PreparedGeometry> at_; // geometry of the query in progress
   // Null until a query needs them.
   std::unique_ptr<const ExactScene> exact_;
   std::unique_ptr<const PreciseScene> precise_;

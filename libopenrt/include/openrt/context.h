@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #define OPENRT_VERSION_MAJOR 0
-#define OPENRT_VERSION_MINOR 1
+#define OPENRT_VERSION_MINOR 2
 #define OPENRT_VERSION_PATCH 0
 
 #if defined(_WIN32)

@@ -48,7 +48,7 @@ enum {
   RT_REFLECTION = 2048,
   /* 16: eight pairs of a name (rtLoadName), which is not 0, and the share of the pixel's samples
    * that hit it first, 0 .. 1; the largest share first, equal shares by name. Pairs that are not
-   * used are 0 0. rtUniteNames makes several names one. Of a pixel with more than 1,024 names,
+   * used are 0 0. rtUniteNames makes several names one. In a pixel with more than 1,024 names,
    * those with the smallest numbers are counted. */
   RT_COVERAGE = 4096
 };
@@ -113,11 +113,11 @@ enum {
   /* One of RT_MEASURE_* below, default RT_MEASURE_NOTHING: each pixel is the reading of a
    * photometric sensor instead of a part of a picture. */
   RT_MEASURE = 18,
-  /* What RT_DEPTH measures: one of RT_DEPTH_ALONG_*, default RT_DEPTH_ALONG_AXIS. */
+  /* Says what RT_DEPTH measures: one of RT_DEPTH_ALONG_*, default RT_DEPTH_ALONG_AXIS. */
   RT_DEPTH_ALONG = 19
 };
 
-/* What RT_DEPTH is (RT_DEPTH_ALONG), in units of the world. */
+/* Values of RT_DEPTH_ALONG: what RT_DEPTH is, in units of the world. */
 enum {
   /* The distance along the view axis: from the plane through the camera that is parallel to its x
    * and y axes. Also where the camera's matrix shears the picture. */
@@ -127,12 +127,12 @@ enum {
    * they are parallel to the axis. */
   RT_DEPTH_ALONG_RAY = 1
 };
-/* What the pixels of a frame are (RT_MEASURE). Every sample of a sensor uses the camera's ray
- * through the middle of its pixel, so that an orthographic camera is a grid of points. Red, green
- * and blue of RT_RGBA are all the reading, and those of RT_ERROR its half-width. Units: a radiance
- * of 1 in all three colours is a luminance of 1 cd/m2, and the unit of length is the metre. A
- * colour counts as 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709, luminance of linear
- * sRGB).
+/* Values of RT_MEASURE: what the pixels of a frame are. Every sample of a sensor uses the camera's
+ * ray through the middle of its pixel, so that an orthographic camera is a grid of points. Red,
+ * green and blue of RT_RGBA are all the reading, and those of RT_ERROR its half-width. Units: a
+ * radiance of 1 in all three colours is a luminance of 1 cd/m2, and the unit of length is the
+ * metre. A colour counts as 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709, luminance of
+ * linear sRGB).
  *
  * The variance of a reading is that of its own replicates; it is not pooled with neighbouring
  * pixels. Channels of first hits are 0 for RT_MEASURE_ILLUMINANCE.
@@ -229,13 +229,13 @@ RT_API void rtFrameBuffer(int width, int height, uint32_t channels);
 RT_API void rtUniteNames(const uint32_t* names, size_t count);
 /* Limits the frames that follow to a rectangle of their pixels, rows from the top. Its pixels are
  * those of the whole frame in every channel, and take their share of the time (paths from lamps are
- * traced for the whole frame). What the channels hold outside of it is undefined. The rectangle is
- * cut off at the border of the frame; one that lies outside gives a frame without samples.
- * width and height 0 (the default): the whole frame. x and y: 0 .. 65535; width and height:
- * 0 .. 65536, both 0 or both above 0.
- * Two results follow from more than the rectangle: a target error (RT_TARGET_ERROR) shares the
- * samples out over what is made, and at the border of the frame RT_ERROR and RT_TRUST of constant
- * pixels depend on the range of its colours. [context-thread] */
+ * traced for the whole frame). The contents of the channels outside of it are undefined. The
+ * rectangle is cut off at the border of the frame; one that lies outside gives a frame without
+ * samples. width and height 0 (the default): the whole frame. x and y: 0 .. 65535; width and
+ * height: 0 .. 65536, both 0 or both above 0. Two results follow from more than the rectangle: a
+ * target error (RT_TARGET_ERROR) shares the samples out over what is made, and at the border of
+ * the frame RT_ERROR and RT_TRUST of constant pixels depend on the range of its colours.
+ * [context-thread] */
 RT_API void rtScissor(int x, int y, int width, int height);
 /* Set a quality setting of the frames that follow. [context-thread] */
 RT_API void rtQuality(RTenum name, int value);

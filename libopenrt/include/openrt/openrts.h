@@ -320,8 +320,8 @@ typedef struct RtsClass {
   uint32_t (*traits)(const RtsHost* host, const void* params);
   /* surface: writes radiance and transmission of every hit to out. [render] */
   void (*shade)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out);
-  /* surface: writes only the transmission (0..1), for shadow rays. Of hits, only position,
-   * direction, uv, color, flags and params are valid. NULL: opaque. [render] */
+  /* surface: writes only the transmission (0..1), for shadow rays. Only these parts of hits are
+   * valid: position, direction, uv, color, flags and params. NULL: opaque. [render] */
   void (*transmit)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
                    float* const transmission[3]);
   /* light: writes the illumination of n points in the light's local space to out. [render] */

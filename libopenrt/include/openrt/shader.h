@@ -157,7 +157,8 @@ RT_API void rtTexImage2D(int components, int width, int height, RTenum type, con
 RT_API void rtTexParameteri(RTenum name, int value);
 /* Sets a property of the bound texture that is a colour. [context-thread]
  *  - RT_TEXTURE_BORDER_COLOR: linear rgba of 0 to 1, which RT_CLAMP_TO_BORDER shows; default
- *    0 0 0 0. Of the border of a grey texture red counts; without alpha the border is opaque. */
+ *    0 0 0 0. The red of the border of a grey texture counts; without alpha the border is
+ *    opaque. */
 RT_API void rtTexParameterfv(RTenum name, const float rgba[4]);
 
 #ifdef __cplusplus

@@ -18,7 +18,7 @@ struct HitCount {
 
 class HitCounts {
  public:
-  // Of a pixel with more names, those with the smallest numbers are counted. A count that is kept
+  // In a pixel with more names, those with the smallest numbers are counted. A count that is kept
   // is complete, because a name is not among so many of all samples if it is not among those of
   // some.
   static constexpr uint32_t mostNames = 1024;

@@ -72,7 +72,7 @@ struct Ledger { // all values are summed over the colours
   // Throughput of the paths ended by the depth limit and by the energy cut.
   double cutByDepth = 0, cutByEnergy = 0;
   double clipped = 0; // radiance removed by the clamp
-  // Light of emissive shapes and of the sky. What is left to light tracing is not in them.
+  // Light of emissive shapes and of the sky. Light that is left to light tracing is not in them.
   UnsampledLight unsampled, unsampledSky;
   uint64_t samples = 0; // samples per pixel of the tile
 

@@ -26,7 +26,7 @@ struct RequiredSums {
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
-// Sums of one pixel, samples added in order. What most frames need comes first: a frame touches
+// Sums of one pixel, samples added in order. Sums that most frames need come first: a frame touches
 // only as much of each pixel as its channels need.
 struct PixelSums {
   double rgba[4] = {};

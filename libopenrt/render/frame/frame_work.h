@@ -32,7 +32,7 @@ struct FrameSums;
 // Holds what the samples of a frame depend on besides its settings.
 struct SumsIdentity {
   uint64_t world = 0, view = 0;     // digests (scene/scene_digest.h)
-  std::string version, isa, kernel; // of the library; of its ray kernels
+  std::string version, isa, kernel; // the library's version; the ray kernels' name
   bool operator==(const SumsIdentity&) const = default;
 };
 

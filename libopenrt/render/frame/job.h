@@ -32,7 +32,7 @@ struct Job {
 struct JobResult {
   // Sums of a tile, row by row. Fields that the frame does not need are undefined (RequiredSums).
   std::vector<PixelSums> sums;
-  HitCounts hits;           // of the tile's pixels, if they are needed
+  HitCounts hits;           // how often the tile's pixels hit each name, if that is needed
   std::vector<float> light; // rgb of the whole picture, row by row
   Ledger ledger;
   RayCounters counters;

@@ -30,7 +30,7 @@ static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'O', 'R', 'T', 'S', 'U', 'M', 'S', '1'};
 constexpr uint8_t hasCamera = 1, hasLamps = 2, isComplete = 4, isCondensed = 8;
 constexpr uint32_t mostSamples = 65536;
-constexpr uint32_t mostBlocks = 2 * mostSamples / fewestOfLeaves; // of a tile, with its pilots
+constexpr uint32_t mostBlocks = 2 * mostSamples / fewestOfLeaves; // blocks of a tile and its pilots
 // Seeds of merged sums: their samples are counted in 32 bits.
 constexpr uint64_t mostSamplesOfAll = 0xffffffffu;
 

@@ -29,7 +29,7 @@ Receivers loadReceivers(const LightPoints& points, uint32_t i) {
           select(twoSided, zero, normal), twoSided};
 }
 
-struct Importances { // of the children of a node for some points
+struct Importances { // importances of a node's children for some points
   Lanes each[LightNode::width], sum;
   uint32_t count;
 };

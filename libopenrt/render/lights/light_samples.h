@@ -73,7 +73,7 @@ struct SampledLights {
 struct FoundShapes {
   uint32_t count;
   float *position[3], *normal[3]; // LightSampleContext
-  float* direction[3];            // of the ray; unit
+  float* direction[3];            // the direction of the ray; unit
   uint32_t* shape;
 
   void allocate(Arena& arena, uint32_t capacity);

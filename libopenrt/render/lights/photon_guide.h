@@ -49,12 +49,12 @@ class PhotonGuide {
   // all cells, cell by cell:
   std::vector<float> focus_[3];
   std::vector<float> side_;   // 1: light comes from the focus; -1: it goes to a focus further on
-  std::vector<float> spread_; // of the lobe
-  std::vector<float> probability_; // of the lobe within its cell
+  std::vector<float> spread_; // the spread of the lobe
+  std::vector<float> probability_; // selection probability of the lobe within its cell
   struct Cell {
-    uint32_t begin, end; // of its lobes
+    uint32_t begin, end; // the range of its lobes
     Vec3f low, high;     // where the photons are taken as valid
-    float share = 1;     // of the hits that send a guided ray
+    float share = 1;     // the share of the hits that send a guided ray
   };
   struct Node { // inner node of a kd-tree; a child below 0 is the cell with the number ~child
     int32_t child[2];

@@ -14,7 +14,7 @@ namespace openrt {
 // of the pixels, then of the samples.
 struct FilmSamples {
   std::span<const uint32_t> pixels; // y * width + x
-  uint32_t width;                   // of the picture
+  uint32_t width;                   // the width of the picture
   uint32_t first, perPixel;
   Replicates replicates;
   bool centred; // all positions are in the middles of the pixels

@@ -38,12 +38,12 @@ class GuideTrial {
 
  private:
   struct Block {
-    double mean, variance; // of the samples, summed over colours; variance: also over the samples
-    size_t end;            // of its gains
+    double mean, variance; // samples summed over colours; variance: also over the samples
+    size_t end;            // where its gains end
   };
   struct Gain {
     uint32_t cell;
-    double square, unguidedWeight; // of the light
+    double square, unguidedWeight; // sums over the light
     // Returns the variance that guided rays at a share of the hits take away.
     double at(double share) const {
       return square * share / (unguidedWeight * (unguidedWeight + share * (1 - unguidedWeight)));

@@ -69,7 +69,7 @@ Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
 }
 
 struct Response {
-  Vec3f light;    // of the hit to the guided ray: BSDF times MIS weight over pdf
+  Vec3f light;    // from the hit to the guided ray: BSDF times MIS weight over pdf
   Vec3f unguided; // the part of `light` that BSDF sampling contributes as often
 };
 
@@ -186,7 +186,8 @@ void GuidedRays::follow(const PathSamples& samples, uint32_t level, PixelSamples
 
 void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& bucket,
                        const PathStates& states) {
-  // What `shade` lets through is not told here: BSDF sampling finds light behind such surfaces.
+  // The light that `shade` lets through is not told here: BSDF sampling finds light behind such
+  // surfaces.
   if (!bucket.shaderClass->surface) return;
   RtsBatch batch = makeBatch(context_, points, states);
   batch.lightSet = bucket.lightSet;

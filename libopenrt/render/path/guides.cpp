@@ -179,7 +179,7 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
     if (lobe.kind == RTS_LOBE_GLOSSY && samples.count > first)
       samples.list[first].weight *= reflectanceOf(lobe, hits, i);
   }
-  Vec3f sum[2]; // of transmission and reflection
+  Vec3f sum[2]; // the sums of transmission and reflection
   const BsdfSample* heaviest[2] = {};
   for (uint32_t s = 0; s < samples.count; s++) {
     const BsdfSample& sample = samples.list[s];

@@ -59,7 +59,8 @@ class Guides {
     Vec3f direction, tint{1, 1, 1};
     bool reflected = false, straight = false;
   };
-  // What a guide ray does at a hit: it passes a boundary that has no effect, or follows an image.
+  // Says what a guide ray does at a hit: it passes a boundary that has no effect, or follows an
+  // image.
   enum class Step : uint8_t { pass, image };
   void visit(const StageContext& context, Wave& wave, PixelSamples& found);
   void describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
@@ -79,7 +80,7 @@ class Guides {
   // No renderer: shaders get the middle of every sequence of random points, and trace nothing.
   const StageContext context_{scene_, arena_, counters_};
   const bool follows_;
-  const float* origin_[3] = {};    // of the camera rays, by path
+  const float* origin_[3] = {};    // origins of the camera rays, by path
   const float* direction_[3] = {}; // unit
   uint32_t paths_ = 0;
   uint32_t surface_ = 0; // number of surfaces that the rays of the wave have met before

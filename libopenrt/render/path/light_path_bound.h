@@ -12,7 +12,7 @@ namespace openrt {
 
 // The rays of a tile's camera, as a parallelogram that moves along them.
 struct TileFootprint {
-  Vec3f origin[2], direction[2]; // of two sides: differences between the rays at its corners
+  Vec3f origin[2], direction[2]; // differences between the rays at its corners, along two sides
   // Returns its area after a distance.
   float area(float distance) const;
 };

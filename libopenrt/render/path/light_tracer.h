@@ -71,7 +71,7 @@ class LightTracer {
   std::vector<float> picture_;
   // The sensors' plane; none in pictures, which connect paths to the camera instead.
   const std::optional<SensorPlane> sensors_;
-  struct Crossing { // of a ray of the wave with a cell of the sensors, if nothing is before it
+  struct Crossing { // where a ray of the wave meets a cell of the sensors, if nothing is before it
     uint32_t lane, pixel;
     double distance;
     Vec3f flux; // without the attenuation of lamps
@@ -83,7 +83,7 @@ class LightTracer {
   bool probedInside_ = false;
   uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
-  PathSamples samples_{};                  // of the paths in flight
+  PathSamples samples_{};                  // samples of the paths in flight
   RayQueue queue_, next_;                  // rays of the current wave, and of the next one
 };
 

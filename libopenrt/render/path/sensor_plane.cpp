@@ -24,7 +24,7 @@ std::optional<SensorPlane> SensorPlane::of(const RenderScene& scene) {
   Arena arena;
   RayCounters counters;
   Rays rays;
-  constexpr uint32_t corners = 4; // of the film: upper left, upper right, lower left, lower right
+  constexpr uint32_t corners = 4; // the film's: upper left, upper right, lower left, lower right
   rays.allocate(arena, corners);
   rays.count = corners;
   const auto width = float(scene.frame.width), height = float(scene.frame.height);

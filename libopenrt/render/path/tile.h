@@ -75,7 +75,7 @@ class TileRenderer {
   // measure.cpp: the first wave of RT_MEASURE_ILLUMINANCE.
   void measureIlluminance(const Wave& wave, PixelSamples& found);
   void noteFoundLight(uint32_t n, const PixelSamples& found);
-  // medium/tile_media.cpp: scenes with media that scatter.
+  // tile_media.cpp: scenes with media that scatter.
   bool scattersInMedia() const { return !scene_.mediumLights.empty(); }
   void startInMedia(const Wave& wave);
   void describeBehindMedia(const Wave& wave, PixelSamples& found);
@@ -130,7 +130,7 @@ class TileRenderer {
   Guides guides_{scene_, arena_, counters_};
   UnsampledLights unsampled_{scene_, ledger_};
   Tile tile_;
-  TileFootprint footprint_{}; // of the tile; if light paths tell what it may lack
+  TileFootprint footprint_{}; // footprint of the tile; if light paths tell what it may lack
   // pixels_: y * width + x, in blocks of 4x4; places_: index in the tile, row by row. The first
   // `lit_` of them get light, the others do not (RT_LIGHT_STRIDE).
   std::vector<uint32_t> pixels_, places_;
@@ -140,9 +140,9 @@ class TileRenderer {
   Replicates replicates_;
   uint32_t leaf_ = 0; // first sample of the current leaf
   bool centred_ = false;
-  PathSamples samples_{};    // of the paths in flight; inside trace() those of the nested paths
+  PathSamples samples_{};    // samples of the paths in flight; inside trace() of the nested paths
   uint32_t nesting_ = 0;     // nesting depth of trace()
-  float* lampLight_[3] = {}; // of RT_MEASURE_ILLUMINANCE: what lamps without extent give, by path
+  float* lampLight_[3] = {}; // RT_MEASURE_ILLUMINANCE: what lamps without extent give, by path
   RayQueue queue_, next_;    // rays of the current wave, and of the next one
   GuidedRays guided_{context_};
   uint32_t level_ = 0; // depth of the current wave

@@ -17,9 +17,9 @@ enum PointAttributes : uint32_t {
 
 // Arrays are indexed by [corner][component][hit] and [row][column][hit].
 struct alignas(64) PointBlock {
-  uint32_t attributes;       // of any hit (PointAttributes)
+  uint32_t attributes;       // what any hit has (PointAttributes)
   uint32_t own[lanes];       // by hit (PointAttributes)
-  float direction[3][lanes]; // of the ray
+  float direction[3][lanes]; // the direction of the ray
   float ng[3][lanes];        // the kernel's geometric normal; after interpolation in render space
   uint32_t flipped[lanes];   // ~0: the geometric normal points to the back, else 0
   uint32_t flags[lanes];     // RTS_HIT_*

@@ -22,7 +22,7 @@ class TileGrid {
  public:
   explicit TileGrid(const edit::FrameSettingsT& frame);
   uint32_t count() const { return columns_ * rows_; }
-  uint64_t pixels() const { return pixels_; } // of all tiles
+  uint64_t pixels() const { return pixels_; } // the pixels of all tiles
   uint32_t edge() const { return edge_; }
   uint32_t columns() const { return columns_; }
   Tile at(uint32_t number) const;

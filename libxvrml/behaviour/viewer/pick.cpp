@@ -19,7 +19,7 @@ namespace {
 // The number of nodes that one ray may visit. Scenes built by events have no limit of their own.
 constexpr size_t maximumSteps = 4'000'000;
 
-// Appends the children that any viewer may see (all levels of an LOD), and proxies. What is
+// Appends the children that any viewer may see (all levels of an LOD), and proxies. A node that is
 // invisible has empty bounds, which no ray hits.
 void partsOf(Node& node, std::vector<Node*>& parts) {
   if (node.type().index == nodes::Shape::typeIndex || !isVisible(node)) return;
@@ -48,7 +48,7 @@ void appendHitCandidates(Node& node, const PickRules& rules, const Matrix& toWor
   }
 }
 
-// What a ray may still hit: the part of it that ClipPlanes leave (ISO/IEC 19775-1 11.4.1).
+// Holds what a ray may still hit: the part of it that ClipPlanes leave (ISO/IEC 19775-1 11.4.1).
 struct Interval {
   double nearest, farthest;
   size_t planes = 0; // that have shortened it

@@ -28,7 +28,7 @@ void PickBox::extend(const PickBox& b, const Matrix& m) {
                               corner & 4 ? b.high.z : b.low.z}));
 }
 
-// What is left of a box has its corners at those of the box and where its edges meet the plane.
+// The rest of a box has its corners at those of the box and where its edges meet the plane.
 void PickBox::cut(const HalfSpace& halfSpace) {
   if (empty()) return;
   PickBox left;

@@ -20,8 +20,8 @@ struct PlacedShape {
   NodeRef shape;
   NodeRef geometry;  // the geometry node that is rendered
   double matrix[16]; // local to world, column-major
-  // What ClipPlanes leave of it: points of the shape's coordinates with a x + b y + c z + d >= 0
-  // for each of these. Empty: all.
+  // Holds what ClipPlanes leave of it: points of the shape's coordinates with a x + b y + c z + d
+  // >= 0 for each of these. Empty: all.
   std::vector<std::array<double, 4>> kept = {};
 };
 // Returns the Shapes with a geometry that are drawn for a viewer, in the order of the file. view:

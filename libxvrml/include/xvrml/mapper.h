@@ -88,7 +88,7 @@ struct ExplainedObject {
   // Path of names from the root, "Town/House". A node without a name appears as its type and line.
   std::string name;
   std::string reason; // "static geometry of 5312 shapes", "ROUTE from Clock.fraction_changed" ...
-  uint64_t triangles = 0; // of one instance, without those of the objects that it instantiates
+  uint64_t triangles = 0; // triangles of one instance, without those of nested objects
   uint64_t shapes = 0;
   uint64_t bytes = 0;     // estimated: arrays and acceleration structure
   uint64_t instances = 0; // instances of this object in the definitions of all objects

@@ -9,7 +9,8 @@
 
 namespace xvrml {
 
-// What FieldRow::words can say, joined by |. The bits never change: plug-ins have them compiled in.
+// These are the words of FieldRow::words, joined by |. The bits never change: plug-ins have them
+// compiled in.
 inline constexpr uint8_t fieldHoldsUrls = 1; // `urls`; plug-ins before minor 1 never say it
 inline constexpr uint8_t fieldOfX3d = 2;     // `x3d`; plug-ins before minor 2 never say it
 

@@ -165,7 +165,7 @@ class World {
   uint64_t nodeCount = 0; // nodes made, expansions included
   // Scripts and prototype instances whose fields may hold a node that they are part of.
   std::vector<NodeRef> cyclic;
-  FileHead head; // of the world's own file
+  FileHead head; // the head of the world's own file
 };
 
 // Returns the version of the standard that the node's file follows; VRML97 for a node that is in no

@@ -208,8 +208,8 @@ typedef struct XsEngine {
   /* The Script urls that the engine serves: lists that end with NULL, in lower case. A list may be
    * NULL. */
   const char* const* schemes;   /* URL schemes without the colon: "javascript", "vrmlscript" */
-  const char* const* mimeTypes; /* of data: URLs: "application/javascript" */
-  const char* const* suffixes;  /* of files: ".js" */
+  const char* const* mimeTypes; /* types of data: URLs: "application/javascript" */
+  const char* const* suffixes;  /* ends of file names: ".js" */
   /* Makes an interpreter, compiles the program and runs its outermost statements, if the language
    * has such. No event is delivered yet. info and the memory it points to are valid until
    * `destroy`. On XS_FAILED (the reason is logged), the host tries the Script's next URL. */

@@ -11,7 +11,7 @@ namespace xvrml::mapper {
 
 // The parts of an ORTAppearance beside its shader; null where it has none.
 struct MaterialParts {
-  Node* material = nullptr; // of any type
+  Node* material = nullptr; // may have any type
   Node* texture = nullptr;  // stands for the material's own picture if it has none
   const nodes::TextureTransform* transform = nullptr;
 };

@@ -36,7 +36,7 @@ enum class MeshKind : uint8_t { faces, lines, points };
 
 struct BareShape : MeshGeometry {
   MeshKind kind = MeshKind::faces;
-  std::string_view name; // of the object in the file
+  std::string_view name; // the name of the object in the file
   std::string texture;   // URL of a picture; empty: none
 };
 

@@ -71,7 +71,7 @@ bool isOff(std::string_view bytes);
 bool findMeshEncoding(std::string_view bytes, Encoding& encoding);
 bool findMeshSuffix(std::string_view path, Encoding& encoding);
 
-// Reads a mesh. What is wrong with the file is reported through the locator; what could be read is
+// Reads a mesh. Faults of the file are reported through the locator; what could be read is
 // kept.
 void readMesh(Encoding encoding, const MeshFile& file);
 

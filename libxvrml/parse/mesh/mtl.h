@@ -16,7 +16,7 @@ struct ObjTexture {
   bool clamp = false;
 };
 
-// What a newmtl block says. Defaults are Material's where the format has none.
+// Holds what a newmtl block says. Defaults are Material's where the format has none.
 struct ObjMaterial {
   Color diffuse{0.8f, 0.8f, 0.8f}, specular, emissive;
   bool hasDiffuse = false;
@@ -34,8 +34,8 @@ struct ObjMaterial {
 
 using ObjMaterials = std::unordered_map<std::string, ObjMaterial>;
 
-// Reads the materials of a library that an OBJ file names. What cannot be read is reported at `at`,
-// the place of the name.
+// Reads the materials of a library that an OBJ file names. Anything that cannot be read is reported
+// at `at`, the place of the name.
 void readMtl(const MeshFile& file, std::string_view name, const char* at, ObjMaterials& materials);
 
 // Writes the open field `appearance`. name: of the material; empty: none was chosen.

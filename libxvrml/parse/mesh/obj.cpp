@@ -432,7 +432,7 @@ class ObjReader {
   std::string_view object_, group_, material_, smoothing_; // what holds for the next elements
   std::vector<Part> parts_;
   std::unordered_map<std::string, size_t> partOf_;
-  Part* part_ = nullptr; // of the last element, if nothing has changed since
+  Part* part_ = nullptr; // the part of the last element, if nothing has changed since
   int partShape_ = 0;
   ObjMaterials materials_;
   std::vector<Corner> corners_;

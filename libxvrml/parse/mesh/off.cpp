@@ -13,7 +13,7 @@
 namespace xvrml {
 namespace {
 
-// What stands before "OFF", and says what the lines of vertices hold.
+// Holds what stands before "OFF", and says what the lines of vertices hold.
 struct OffHead {
   bool texCoords = false, colors = false, normals = false;
   std::string_view refused; // a prefix that is not read: "4" or "n"

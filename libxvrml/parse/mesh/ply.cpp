@@ -277,7 +277,7 @@ class PlyReader {
   MFInt32 edges_;
   bool hasVertices_ = false, hasNormals_ = false, hasColors_ = false, hasTexCoords_ = false;
   double values_[size_t(PlyUse::count)] = {};
-  std::vector<double> list_, corners_; // of the face that is being read
+  std::vector<double> list_, corners_; // numbers of the face that is being read
   const char* row_ = nullptr;          // where it begins in a text
   FaultCount bad_;
 };

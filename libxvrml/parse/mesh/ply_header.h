@@ -38,7 +38,7 @@ enum class PlyUse : uint8_t {
 struct PlyProperty {
   PlyUse use = PlyUse::other;
   bool isList = false;
-  PlyType countType = PlyType::uint8; // of a list
+  PlyType countType = PlyType::uint8; // type of a list's length
   PlyType type = PlyType::float32;
   double scale = 1; // integers that stand for 0 to 1
 };

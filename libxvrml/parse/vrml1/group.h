@@ -24,8 +24,8 @@ class Group {
   MFNode finish();
 
  private:
-  // What follows a light is nested in a Group with it. More lights than this in one group stand in
-  // the innermost of these Groups.
+  // Everything that follows a light is nested in a Group with it. More lights than this in one
+  // group stand in the innermost of these Groups.
   static constexpr size_t maximumLevels = 64;
 
   // Children of the group, or of the Group that begins with a light.

@@ -69,8 +69,8 @@ Looks::List& Looks::list(State& state) {
         },
         value);
   }
-  // What a Color node cannot say. A list of ambient colours mostly holds a constant share of each
-  // colour, rounded as files do it; one ambient colour for all is no difference, either.
+  // Holds what a Color node cannot say. A list of ambient colours mostly holds a constant share of
+  // each colour, rounded as files do it; one ambient colour for all is no difference, either.
   using Rest = std::tuple<long, float, float, float, float, float, float, float, float>;
   std::map<Rest, uint32_t> seen;
   const bool precomputed = isPrecomputed(material);

@@ -42,7 +42,7 @@ class State {
   }
 
   const Values& values() const { return values_; }
-  // What a Separator keeps at its beginning and restores at its end.
+  // Holds what a Separator keeps at its beginning and restores at its end.
   struct Saved {
     Values values;
     uint32_t written;

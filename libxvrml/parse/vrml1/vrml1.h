@@ -8,7 +8,7 @@
 
 namespace xvrml {
 
-// Fills the file's scope and the list of its Inlines. What is wrong is reported; limits are those
+// Fills the file's scope and the list of its Inlines. Faults are reported; limits are those
 // of the world. `depthLimit`: greatest nesting of nodes that the thread's stack allows.
 void readVrml1(Locator& locator, LoadState& state, ParsedFile& file, uint64_t depthLimit);
 

@@ -37,7 +37,7 @@ enum class Op : uint16_t {
 const char* functionName(Op op); // returns for example "event"
 
 enum Flags : uint16_t {
-  stopped = 1, // of done: the program has used up its steps or time
+  stopped = 1, // in done: the program has used up its steps or time
   // In create: continue with initialize if create succeeds, and send a `done` for each.
   thenInitialize = 2,
 };

@@ -1,5 +1,5 @@
-// browser.cpp: Defines the Browser object (C.6.3), print, and the constants TRUE and FALSE. What
-// X3D adds to it (ISO/IEC 19777-1) is in scene.cpp.
+// browser.cpp: Defines the Browser object (C.6.3), print, and the constants TRUE and FALSE. The
+// additions of X3D (ISO/IEC 19777-1) are in scene.cpp.
 #include <cstring>
 
 #include "slots.h"

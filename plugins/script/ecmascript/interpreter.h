@@ -79,7 +79,7 @@ struct Interpreter {
   std::vector<XsString> strings;
   std::vector<XsNode> handles;
   std::deque<std::string> texts;           // strings converted during this call
-  std::deque<std::vector<uint8_t>> pixels; // of each image
+  std::deque<std::vector<uint8_t>> pixels; // the pixels of each image
   std::vector<XsImage> images;
   std::string program; // the program as compiled
   int32_t integer = 0;

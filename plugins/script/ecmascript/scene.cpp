@@ -1,6 +1,6 @@
-// scene.cpp: What X3D's Browser object has besides functions (ISO/IEC 19777-1 6): name, version,
-// currentSpeed, currentFrameRate, description, and currentScene with its nodes and routes. The
-// scene is the world, or the Inline that the Script stands in.
+// scene.cpp: Makes what X3D's Browser object has besides functions (ISO/IEC 19777-1 6): name,
+// version, currentSpeed, currentFrameRate, description, and currentScene with its nodes and routes.
+// The scene is the world, or the Inline that the Script stands in.
 #include <cstddef>
 
 #include "slots.h"

@@ -43,7 +43,7 @@ class Slot {
   std::vector<std::string> texts_;
   std::vector<const char*> pointers_;
   std::vector<XsString> strings_;
-  std::vector<std::vector<uint8_t>> pixels_; // of each image
+  std::vector<std::vector<uint8_t>> pixels_; // the pixels of each image
   std::vector<XsImage> images_;
 };
 

@@ -53,7 +53,7 @@ struct Converted {
   std::vector<XsNode> nodes;
   std::vector<std::string> texts;
   std::vector<XsString> strings;
-  std::vector<uint8_t> bytes; // of all images, one behind the other
+  std::vector<uint8_t> bytes; // the pixels of all images, one behind the other
   std::vector<XsImage> images;
 };
 

@@ -14,7 +14,8 @@
 namespace vv {
 
 // Returns the character that a key types by itself: that of a letter, or of another key without
-// Shift; "" with Alt or Ctrl, and for keys that type none. What else the user types comes as text.
+// Shift; "" with Alt or Ctrl, and for keys that type none. Everything else that the user types
+// comes as text.
 std::string typedBy(const InputEvent& event);
 
 class WorldKeys {

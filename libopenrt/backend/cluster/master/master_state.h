@@ -34,8 +34,8 @@ struct Remote {
   std::map<Epoch, std::vector<OfferPtr>> offered;
   std::map<Epoch, uint32_t> out;     // outstanding jobs by frame
   std::unordered_set<Lease> merging; // leases whose results are being merged
-  // What the master counts or is told of the worker. describe() adds the name and the numbers of
-  // the scheduler.
+  // Holds what the master counts or is told of the worker. describe() adds the name and the numbers
+  // of the scheduler.
   RTworker facts{};
   std::string name() const {
     return host.empty() ? address : address.empty() ? host : host + " (" + address + ")";

@@ -49,7 +49,7 @@ struct WorkerCore::Impl {
   }
   ~Impl() { end(); }
 
-  void end(); // of the threads
+  void end(); // ends the threads
 
   void push(Command&& command);
   void work(uint32_t thread);

@@ -142,9 +142,9 @@ class Accel final : public Intersector {
   PartScene top_;
   Level staticLevel_, topLevel_;
   std::vector<PlacedCluster> placed_; // by cluster
-  Vec3d origin_;                      // of render space, in the world
+  Vec3d origin_;                      // the origin of render space, in the world
   Vec3f low_, high_;                  // bounds in render space, with a margin
-  double reach_ = 0;                  // of the scene, in the units of the kernels
+  double reach_ = 0;                  // the size of the scene, in the units of the kernels
   float scale_ = 1; // render space x scale = the space of both Embree scenes; a power of two
 };
 

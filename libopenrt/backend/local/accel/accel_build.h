@@ -21,7 +21,7 @@ struct BuildInput {
   const ShaderTable& shaders;
   Vec3d origin; // origin of render space, in the world
   double scale = 1;
-  double reach = 0; // of the scene (Survey), in the units of the kernels
+  double reach = 0; // the size of the scene (Survey), in the units of the kernels
   PixelFootprint footprint;
 };
 
@@ -30,7 +30,7 @@ class AccelBuilder {
   explicit AccelBuilder(std::shared_ptr<EmbreeDevice> device)
       : device_(std::move(device)), spheres_(*device_) {}
 
-  Survey survey; // of the scene at the last build or update
+  Survey survey; // the scene at the last build or update
 
   std::shared_ptr<Accel> build(const BuildInput& input);
   // Changes an Accel in place.
@@ -42,7 +42,7 @@ class AccelBuilder {
   // Returns whether an Accel has the origin, scale and reach of an input.
   static bool hasFrame(const Accel& accel, const BuildInput& input);
 
-  struct Counts { // of the visible parts of an Accel
+  struct Counts { // counts the visible parts of an Accel
     uint64_t triangles = 0, uniqueTriangles = 0, degenerate = 0, rejectedInstances = 0;
   };
   Counts count(const Accel& accel, const Flattened& flat) const;

@@ -32,7 +32,7 @@ ExactRay withoutPlaces(const ExactRay& ray) {
 
 // The triangles of a geometry, in a frame of their own: vertex minus `center`, times `unit`.
 struct ExactScene::Mesh {
-  Vec3d center, half; // of the bounds, in the frame of the vertices
+  Vec3d center, half; // the bounds, in the frame of the vertices
   double unit = 1;
   std::unique_ptr<CandidateScene> boxes; // null if the triangles are few
 

@@ -79,7 +79,7 @@ class Survey {
   std::unordered_map<uint32_t, uint64_t> uses_;
   std::unordered_map<uint32_t, uint32_t> partOf_;
   std::vector<PartInfo> parts_;
-  std::vector<Box> boxes_; // of clusters, in the world
+  std::vector<Box> boxes_; // boxes around clusters, in the world
   int detail_ = 0;         // log2 of the median size of static geometry
 };
 

@@ -23,7 +23,7 @@ auto keyOf(const PreciseScene::Hit& h) { return std::tuple(h.at.t, h.record, h.p
 struct PreciseScene::Mesh {
   ArrayPtr points, indices;
   uint32_t count = 0;
-  Vec3d center, half; // of the bounds
+  Vec3d center, half; // the bounds
   double unit = 1;
   bool empty = true;
   std::unique_ptr<CandidateScene> boxes; // null if the triangles are few
@@ -59,10 +59,10 @@ struct PreciseScene::Surface {
   uint32_t record;
   std::shared_ptr<const Mesh> mesh;                // null for spheres and analytic surfaces
   std::shared_ptr<const AnalyticSurface> analytic; // null for the others
-  double radius;                                   // of a sphere
+  double radius;                                   // the radius of a sphere
   bool clockwise;
   Matrix4d world, inverse; // from the frame of the vertices to the world, and back
-  SearchFrame frame;       // of the mesh's boxes
+  SearchFrame frame;       // the frame of the mesh's boxes
   Span box;                // in the world
 
   PlacedTriangle triangle(uint32_t t) const {

@@ -44,7 +44,7 @@ class PreciseScene {
   struct Closest {
     uint32_t record = noHit, primitive = 0;
     PreciseClosest at;
-    PrecisePlace place; // of the surface that is given, if another one may be as near
+    PrecisePlace place; // on the surface that is given, if another one may be as near
     Vec3d normal;
   };
   // Finds the place of a triangle or sphere that is closest to a point, up to a distance. Returns
@@ -88,7 +88,7 @@ class PreciseScene {
   std::map<Key, std::shared_ptr<const Mesh>> meshes_; // each once, however often it is placed
   std::vector<Surface> surfaces_;
   std::vector<uint32_t> surfaceOf_;     // by record
-  SearchFrame frame_;                   // of top_
+  SearchFrame frame_;                   // the frame of top_
   std::unique_ptr<CandidateScene> top_; // the boxes of the surfaces; null if they are few
 };
 

@@ -12,7 +12,8 @@ using Long = Vec3<long double>;
 
 // A few units of the last place: more than the sums below round by.
 constexpr long double rounding = 8 * std::numeric_limits<long double>::epsilon();
-// What the boxes allow for (padding in candidates.cpp), less what the conversion to float takes.
+// This is what the boxes allow for (padding in candidates.cpp), less what the conversion to float
+// takes.
 constexpr long double mostError = 0x1p-21L;
 // With an error below this, rays that pass the ball of radius 2 pass the cube within it.
 constexpr long double mostForBall = 0.125L;

@@ -24,7 +24,7 @@ class SearchFrame {
     Search search = Search::none;
     FrameRay ray;      // begins at `start`; its direction has unit length
     double start = 0;  // in the world's t
-    double length = 1; // of `ray` for each unit of the world's t
+    double length = 1; // the length of `ray` for each unit of the world's t
     // Converts t of the world, beyond which nothing is of interest, to t of `ray`, and not too low.
     double fromWorld(double t) const {
       return (t - start + 0x1p-50 * (std::fabs(t) + std::fabs(start))) * length;

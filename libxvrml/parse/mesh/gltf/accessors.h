@@ -58,7 +58,7 @@ class Accessors {
   bool applySparse(const Item& item, const Elements& elements, std::vector<float>& numbers);
 
   const MeshFile& file_;
-  Scratch scratch_; // of the buffers
+  Scratch scratch_; // memory for the buffers
   std::vector<Item> bufferItems_, views_, accessors_;
   std::vector<Buffer> buffers_;
   uint64_t present_; // bytes of the file and its buffers

@@ -74,7 +74,7 @@ void checkVersion(const MeshFile& file, Json& document) {
   if (convertVersion1(document)) root.warn("animations and skins of glTF 1.0 are left out");
 }
 
-// What a file cannot be read without.
+// Reports extensions that a file requires and that are not supported.
 void checkExtensions(const Item& root) {
   constexpr std::string_view known[] = {"KHR_lights_punctual",
                                         "KHR_texture_transform",

@@ -107,7 +107,7 @@ class Document : public nlohmann::json_sax<Json> {
   Scratch& scratch_;
   Json root_;
   std::vector<Json*> open_; // the objects and lists around the next value
-  std::string key_;         // of the next value in an object
+  std::string key_;         // the key of the next value in an object
 };
 
 } // namespace

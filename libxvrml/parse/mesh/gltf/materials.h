@@ -44,7 +44,7 @@ class Materials {
 
  private:
   struct Picture {
-    std::string_view field; // of the material node
+    std::string_view field; // a field of the material node
     Item texture;           // the textureInfo; may be none
   };
   std::vector<TexCoordUse> texCoordsOf(const Item& material) const;

@@ -65,7 +65,7 @@ class Primitives {
   NodeStream& nodes_;
   Accessors& accessors_;
   Materials& materials_;
-  Scratch scratch_; // of the primitive that is being written
+  Scratch scratch_; // memory for the primitive that is being written
   std::vector<Item> meshes_;
   std::vector<std::string_view> written_;          // DEF names of meshes
   std::map<std::string, std::string_view> shared_; // DEF names of nodes that hold arrays

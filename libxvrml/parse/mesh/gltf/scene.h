@@ -53,8 +53,8 @@ class Scene {
   std::vector<bool> isJoint_, hasMorphAnimation_, inThisScene_;
   std::vector<size_t> skinned_; // nodes of this scene whose mesh has a skin
   std::map<size_t, std::vector<Primitives::Morph>> morphs_;
-  std::map<size_t, std::vector<Imath::M44d>> joints_; // of skins
-  std::unordered_map<size_t, Imath::M44d> worlds_;    // of joints and the nodes above
+  std::map<size_t, std::vector<Imath::M44d>> joints_; // matrices of joints, by skin
+  std::unordered_map<size_t, Imath::M44d> worlds_;    // matrices of joints and the nodes above
 };
 
 // The lights of KHR_lights_punctual and the cameras, into the open list of nodes. They look along

@@ -66,9 +66,9 @@ struct Nodes {
   }
 };
 
-// Light decreases with the square of the distance. `range` ends it; without one it never ends. What
-// is too strong even for several nodes gets a smaller attenuation: it is the same light from some
-// distance on.
+// Light decreases with the square of the distance. `range` ends it; without one it never ends. A
+// light that is too strong even for several nodes gets a smaller attenuation: it is the same light
+// from some distance on.
 void setPlaced(NodeStream& out, const Item& light, const Nodes& nodes) {
   const double falloff = nodes.missing > 0 ? nodes.each / (nodes.each + nodes.missing) : 1;
   out.set("attenuation", Vec3f{0, 0, float(falloff)});
