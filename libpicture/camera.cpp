@@ -160,7 +160,7 @@ void sideView(Side side, xvrml::Axis axis, double view[16]) {
 xvrml::CameraSettings around(const xvrml::OpenRTMapper& mapper, const View& view,
                              const double axes[16], double fovy, double aspect) {
   return view.turns ? xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect)
-                    : xvrml::cameraAround(mapper.bounds(), axes, fovy, aspect);
+                    : mapper.cameraAround(axes, fovy, aspect);
 }
 
 // Shows a model from three quarters, or a figure in the x-y plane from the front.
