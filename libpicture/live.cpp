@@ -520,6 +520,13 @@ xvrml::CameraSettings LiveRenderer::cameraOf(const View& view, double aspect) co
                                : xvrml::CameraSettings{};
 }
 
+xvrml::CameraSettings LiveRenderer::cameraAround(const xvrml::CameraSettings& camera,
+                                                 double aspect) const {
+  return impl_->stage.mapper()
+             ? impl_->stage.mapper()->cameraAround(camera.matrix, camera.fovy, aspect)
+             : camera;
+}
+
 xvrml::Axis LiveRenderer::upOf(const View& view) const {
   return impl_->stage.mapper() ? picture::upOf(*impl_->stage.mapper(), view) : xvrml::Axis::y;
 }

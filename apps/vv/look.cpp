@@ -35,4 +35,9 @@ void chooseLook(const Options& options, const xvrml::World& world,
   if (options.viewGiven) settings.view = view;
 }
 
+void chooseView(const Options& options, const xvrml::World& world, picture::View& view) {
+  if (options.viewpoint.empty() && options.from.empty() && picture::mayLeaveCameraOut(world, view))
+    view.authored = picture::View::Authored::unlessCut;
+}
+
 } // namespace vv

@@ -86,6 +86,7 @@ void Session::begin(int width, int height, const std::optional<Place>& place,
                     const std::string& fragment) {
   resize(width, height);
   const bool named = isOfCommandLine(options_, browser_->world()) && !place && fragment.empty();
+  if (!place && fragment.empty()) chooseView(options_, browser_->world(), options_.view);
   if (pilot_.begin(options_.view, named ? options_.viewpoint : std::string()) && !place)
     fit_.want(Fit::Direction::initial);
   fit_.setRepeat(fit_.isPending() && inlines_.isLoading() ? Fit::Repeat::whenLoaded
