@@ -520,6 +520,10 @@ xvrml::CameraSettings LiveRenderer::cameraOf(const View& view, double aspect) co
                                : xvrml::CameraSettings{};
 }
 
+bool LiveRenderer::leavesViewpointOut(const View& view, double aspect) const {
+  return impl_->stage.mapper() && picture::leavesViewpointOut(*impl_->stage.mapper(), view, aspect);
+}
+
 xvrml::CameraSettings LiveRenderer::cameraAround(const xvrml::CameraSettings& camera,
                                                  double aspect) const {
   return impl_->stage.mapper()

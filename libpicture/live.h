@@ -112,6 +112,8 @@ class LiveRenderer {
   xvrml::Bounds bounds() const; // Valid after the first mapping. [not while mapping]
   // See camera.h; needs the first mapping. [not while mapping]
   xvrml::CameraSettings cameraOf(const View& view, double aspect) const;
+  // See camera.h; needs the first mapping. [not while mapping]
+  bool leavesViewpointOut(const View& view, double aspect) const;
   // Returns the camera that looks as another one does and shows all that is drawn; needs the first
   // mapping. [not while mapping]
   xvrml::CameraSettings cameraAround(const xvrml::CameraSettings& camera, double aspect) const;

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "libpicture/bare_model.h"
+#include "report/describe.h"
+#include "report/messages.h"
 #include "world_start.h"
 
 namespace vv {
@@ -38,6 +42,17 @@ void chooseLook(const Options& options, const xvrml::World& world,
 void chooseView(const Options& options, const xvrml::World& world, picture::View& view) {
   if (options.viewpoint.empty() && options.from.empty() && picture::mayLeaveCameraOut(world, view))
     view.authored = picture::View::Authored::unlessCut;
+}
+
+void settleView(bool leavesOut, const std::vector<xvrml::ViewpointInfo>& viewpoints, bool quiet,
+                picture::View& view) {
+  using Authored = picture::View::Authored;
+  view.authored = leavesOut ? Authored::leftOut : Authored::shown;
+  if (!leavesOut || quiet || viewpoints.empty()) return;
+  const std::string& name = viewpoints.front().description;
+  say(fmt::format("vv: the file's camera{} does not show all of the model, this view does; "
+                  "--viewpoint 0 looks through that camera",
+                  name.empty() ? "" : fmt::format(" \"{}\"", oneLine(name))));
 }
 
 } // namespace vv

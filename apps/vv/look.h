@@ -2,6 +2,8 @@
 // pictures, in the window and on pages (docs/decisions/0040-models.md). [main thread]
 #pragma once
 
+#include <vector>
+
 #include "options/options.h"
 #include "xvrml/world.h"
 
@@ -15,5 +17,10 @@ void chooseLook(const Options& options, const xvrml::World& world,
 // Lets the view leave out the camera of a model's file if it cuts off the model. A view that the
 // options name stays as it is.
 void chooseView(const Options& options, const xvrml::World& world, picture::View& view);
+
+// Takes or leaves the camera of the file for good, and says, unless it must be quiet, that it is
+// left out. viewpoints: those of the world.
+void settleView(bool leavesOut, const std::vector<xvrml::ViewpointInfo>& viewpoints, bool quiet,
+                picture::View& view);
 
 } // namespace vv

@@ -20,6 +20,7 @@
 #include "libpicture/files/formats.h"
 #include "libpicture/measure.h"
 #include "libpicture/transport.h"
+#include "look.h"
 #include "nearest.h"
 #include "options/names.h"
 #include "outputs.h"
@@ -274,20 +275,8 @@ class Pictures {
     });
     mapping.clear();
     renderer_->setProgressCallback([this](float fraction) { return watch(fraction); });
-    settleView();
-  }
-
-  // Decides, once for all pictures of the run, whether the camera of a model's file is left out.
-  void settleView() {
-    using Authored = picture::View::Authored;
-    if (view_.authored != Authored::unlessCut) return;
-    const bool leftOut = renderer_->placeOf(view_).leftOut;
-    view_.authored = leftOut ? Authored::leftOut : Authored::shown;
-    if (!leftOut || options_.quiet) return;
-    const std::string& name = renderer_->viewpoints().front().description;
-    say(fmt::format("vv: the file's camera{} does not show all of the model, this view does; "
-                    "--viewpoint 0 looks through that camera",
-                    name.empty() ? "" : fmt::format(" \"{}\"", oneLine(name))));
+    if (view_.authored == picture::View::Authored::unlessCut)
+      settleView(renderer_->placeOf(view_).leftOut, renderer_->viewpoints(), options_.quiet, view_);
   }
 
   bool watch(float fraction) {

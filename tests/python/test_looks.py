@@ -310,7 +310,7 @@ def test_the_window_leaves_the_camera_out_as_well(vv):
     vv.write("keys.txt", "0.5 save window.png\n0.6 quit\n")
     with display():
         done = vv("model.gltf", "--input", "keys.txt", *SPP)
-    assert done.returncode == 0, done.talk
+    assert done.returncode == 0 and done.talk.count(NOTE) == 1, done.talk
     assert (vv.folder / "window.png").read_bytes() == shown(vv, "model.gltf")
 
 
