@@ -55,6 +55,25 @@ Look lookOf(const xvrml::World& world, bool shadersGiven) {
   return metal || shadersGiven ? Look::studio : Look::backdrop;
 }
 
+bool mayLeaveCameraOut(const xvrml::World& world, const View& view) {
+  if (view.viewpoint || view.lookAt || view.fit || view.side || view.viewer || view.pinhole ||
+      view.intrinsics || view.shader)
+    return false;
+  if (world.head.version.encoding != xvrml::Encoding::gltf || lookOf(world, true) == Look::own)
+    return false;
+  size_t cameras = 0;
+  const auto count = [&](const xvrml::Node& node) {
+    cameras += node.type().name.ends_with("Viewpoint") ? 1 : 0;
+  };
+  const auto enter = [](const xvrml::Scope&) {};
+  walkInto(world.scope, count, enter);
+  if (cameras != 1) return false;
+  cameras = 0; // below a node that an animation moves
+  for (const xvrml::Route& route : world.scope.routes)
+    walkInto(NodeList{route.to.get()}, count, enter);
+  return cameras == 0;
+}
+
 bool leavesLookOpen(const RenderSettings& settings) {
   return settings.background.kind == Background::Kind::world && settings.environment.empty() &&
          !settings.studio.on;

@@ -19,6 +19,11 @@ enum class Look : unsigned char {
 // (shader_rules.h). They are ORTAppearances, which say nothing about the look then.
 Look lookOf(const xvrml::World& world, bool shadersGiven);
 
+// Returns whether the first Viewpoint may be left out of a view that names no camera: that of a
+// glTF file with a model alone. Modellers write the camera of their window into such files. A file
+// with several cameras, or one that moves, shows what its author wanted to be seen.
+bool mayLeaveCameraOut(const xvrml::World& world, const View& view);
+
 // Returns whether the settings leave the look to the world: no background, environment or studio.
 bool leavesLookOpen(const RenderSettings& settings);
 

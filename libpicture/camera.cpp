@@ -160,7 +160,7 @@ void sideView(Side side, xvrml::Axis axis, double view[16]) {
 xvrml::CameraSettings around(const xvrml::OpenRTMapper& mapper, const View& view,
                              const double axes[16], double fovy, double aspect) {
   return view.turns ? xvrml::cameraAround(mapper.boundingSphere(), axes, fovy, aspect)
-                    : xvrml::cameraAround(mapper.bounds(), axes, fovy, aspect);
+                    : mapper.cameraAround(axes, fovy, aspect);
 }
 
 // Shows a model from three quarters, or a figure in the x-y plane from the front.
@@ -214,6 +214,18 @@ xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view) {
   return mapper.boundViewpoint() >= 0 ? xvrml::Axis::y : mapper.guessUp().axis;
 }
 
+bool leavesViewpointOut(const xvrml::OpenRTMapper& mapper, const View& view, double aspect) {
+  if (view.authored != View::Authored::unlessCut) return view.authored == View::Authored::leftOut;
+  if (mapper.boundViewpoint() < 0) return false;
+  const xvrml::CameraSettings camera = mapper.viewpointCamera(size_t(mapper.boundViewpoint()));
+  const xvrml::Bounds bounds = mapper.bounds();
+  bool inside = !bounds.empty;
+  for (int i = 0; i < 3; ++i)
+    inside = inside && camera.matrix[12 + i] > bounds.minimum[i] &&
+             camera.matrix[12 + i] < bounds.maximum[i];
+  return !inside && !mapper.seesAll(camera, aspect);
+}
+
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view,
                                    double aspect) {
   constexpr double radians = std::numbers::pi / 180;
@@ -234,6 +246,9 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
     lookAtMatrix(view, camera.matrix);
     camera.fovy = fovy;
     if (view.fit) camera = around(mapper, view, camera.matrix, fovy, aspect);
+  } else if (leavesViewpointOut(mapper, view, aspect)) {
+    const auto first = mapper.viewpointCamera(size_t(std::max(0, mapper.boundViewpoint())));
+    camera = modelCamera(mapper, view, view.fov ? fovy : first.fovy, aspect);
   } else if (view.viewer && !view.viewpoint && !view.fit) {
     camera = *view.viewer;
     if (view.fov) camera.fovy = fovy;

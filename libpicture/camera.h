@@ -52,6 +52,14 @@ struct View {
     double matrix[16], sheared[16], fovy;
   };
   std::optional<Pinhole> pinhole;
+  // How the first Viewpoint of the file is used if no other member chooses a view. A camera that a
+  // modeller saved by the way may cut off the model (mayLeaveCameraOut in bare_model.h).
+  enum class Authored : unsigned char {
+    shown,
+    unlessCut, // left out if it stands outside of the model and does not see all of it
+    leftOut    // the model is shown as if the file had no Viewpoint, at that one's angle of view
+  };
+  Authored authored = Authored::shown;
   // Replaces the angle of view, and the projection, of the camera that the other members choose.
   std::optional<Intrinsics> intrinsics;
   std::optional<size_t> viewpoint; // index into OpenRTMapper::viewpoints()
@@ -98,6 +106,9 @@ double verticalAngle(double smaller, double aspect);
 // Returns the up axis for a view: the view's own if it has one, otherwise y if a Viewpoint is
 // bound, otherwise what the world suggests.
 xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view);
+
+// Returns whether the view leaves out the first Viewpoint of the file.
+bool leavesViewpointOut(const xvrml::OpenRTMapper& mapper, const View& view, double aspect);
 
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view,
                                    double aspect);

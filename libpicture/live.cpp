@@ -521,6 +521,17 @@ xvrml::CameraSettings LiveRenderer::cameraOf(const View& view, double aspect) co
                                : xvrml::CameraSettings{};
 }
 
+bool LiveRenderer::leavesViewpointOut(const View& view, double aspect) const {
+  return impl_->stage.mapper() && picture::leavesViewpointOut(*impl_->stage.mapper(), view, aspect);
+}
+
+xvrml::CameraSettings LiveRenderer::cameraAround(const xvrml::CameraSettings& camera,
+                                                 double aspect) const {
+  return impl_->stage.mapper()
+             ? impl_->stage.mapper()->cameraAround(camera.matrix, camera.fovy, aspect)
+             : camera;
+}
+
 xvrml::Axis LiveRenderer::upOf(const View& view) const {
   return impl_->stage.mapper() ? picture::upOf(*impl_->stage.mapper(), view) : xvrml::Axis::y;
 }

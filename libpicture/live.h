@@ -119,6 +119,11 @@ class LiveRenderer {
   // See camera.h; needs the first mapping. [not while mapping]
   xvrml::CameraSettings cameraOf(const View& view, double aspect) const;
   // See camera.h; needs the first mapping. [not while mapping]
+  bool leavesViewpointOut(const View& view, double aspect) const;
+  // Returns the camera that looks as another one does and shows all that is drawn; needs the first
+  // mapping. [not while mapping]
+  xvrml::CameraSettings cameraAround(const xvrml::CameraSettings& camera, double aspect) const;
+  // See camera.h; needs the first mapping. [not while mapping]
   xvrml::Axis upOf(const View& view) const;
   // Returns, once, why the last frame failed (RenderError's text); "" if it did not.
   std::string takeFailure();

@@ -347,6 +347,16 @@ xvrml::Bounds Renderer::bounds() {
   return bounds;
 }
 
+xvrml::CameraSettings Renderer::cameraAround(const xvrml::CameraSettings& camera, double aspect) {
+  xvrml::CameraSettings around;
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
+  impl_->run([&] {
+    impl_->apply(worldChanges);
+    around = impl_->stage.mapper()->cameraAround(camera.matrix, camera.fovy, aspect);
+  });
+  return around;
+}
+
 Renderer::Place Renderer::placeOf(const View& view) {
   checkViewpoint(view);
   Place place;
@@ -356,6 +366,7 @@ Renderer::Place Renderer::placeOf(const View& view) {
     place.camera = impl_->stage.cameraOf(view);
     const xvrml::OpenRTMapper& mapper = *impl_->stage.mapper();
     place.up = upOf(mapper, view);
+    place.leftOut = impl_->stage.leavesViewpointOut(view);
     if (!view.up && mapper.boundViewpoint() < 0) place.reason = mapper.guessUp().reason;
   });
   return place;

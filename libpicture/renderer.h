@@ -149,11 +149,14 @@ class Renderer {
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();
+  // Returns the camera that looks as another one does and shows all that is drawn.
+  xvrml::CameraSettings cameraAround(const xvrml::CameraSettings& camera, double aspect);
   // The camera and the up axis of a view; no picture is made.
   struct Place {
     xvrml::CameraSettings camera;
     xvrml::Axis up = xvrml::Axis::y;
-    std::string reason; // why this axis is up; "" if a Viewpoint or the view says so
+    std::string reason;   // why this axis is up; "" if a Viewpoint or the view says so
+    bool leftOut = false; // the first Viewpoint is left out (View::authored)
   };
   Place placeOf(const View& view);
   // Maps the world for a view without rendering. Problems are added to the world's diagnostics.

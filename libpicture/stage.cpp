@@ -223,6 +223,10 @@ xvrml::CameraSettings Stage::cameraOf(const View& view) const {
   return chooseCamera(*mapper_, seen, aspectOf(settings));
 }
 
+bool Stage::leavesViewpointOut(const View& view) const {
+  return picture::leavesViewpointOut(*mapper_, view, aspectOf(settings));
+}
+
 void Stage::prepare(const View& view) {
   using Headlight = xvrml::MapOptions::Headlight;
   const bool studio = settings.studio.on;

@@ -56,6 +56,8 @@ class Stage {
   void apply(const WorldChanges& worldChanges);
   // Returns the camera of a view. The default is the viewer of a running world.
   xvrml::CameraSettings cameraOf(const View& view) const;
+  // Returns whether the view leaves out the first Viewpoint (camera.h).
+  bool leavesViewpointOut(const View& view) const;
   // Maps the world for a view.
   void prepare(const View& view);
   // Maps the world for its sensors, as it is for a view. Then measure() makes the readings of one.

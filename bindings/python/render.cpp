@@ -71,6 +71,8 @@ struct Making {
 
 void Making::draw(std::shared_ptr<picture::Renderer>& renderer) {
   const Drawing drawing(*world);
+  if (given.viewpoint.is_none() && picture::mayLeaveCameraOut(world->graph(), request.view))
+    request.view.authored = picture::View::Authored::unlessCut;
   interruptible([&](picture::ProgressCallback watch) {
     if (request.isLookOpen) {
       picture::choose(picture::lookOf(world->graph(), world->shadersGiven), request.settings);

@@ -179,7 +179,7 @@ bool Viewer::frameAll() {
   const auto lock = world_->lock();
   if (!live() || !steer()) return false;
   const CameraSettings now = *ownCamera();
-  const CameraSettings around = cameraAround(live()->bounds(), now.matrix, now.fovy, aspect());
+  const CameraSettings around = live()->cameraAround(now, aspect());
   world_->change([&] { browser().placeViewer(around.matrix); });
   return true;
 }

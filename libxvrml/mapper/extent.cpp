@@ -32,6 +32,14 @@ class Measure {
   // Returns the bounds of the world. Call measureShared() before.
   Bounds all() { return below({Graph::root, 0, Matrix()}); }
 
+  // Returns the points that lie farthest out. Call measureShared() before.
+  std::vector<Vector> outermost() {
+    Outermost outermost;
+    outermost_ = &outermost;
+    below({Graph::root, 0, Matrix()});
+    return outermost.points();
+  }
+
   // Returns the largest distance from a point. Call measureShared() before.
   double reach(const Vector& center) {
     center_ = &center;
@@ -92,19 +100,26 @@ class Measure {
     if (step.cut != none)
       for (const HalfSpace& halfSpace : places_.all[size_t(step.cut)].kept)
         kept.push_back(inside(halfSpace, step.toCut));
-    if (center_)
+    if (outermost_)
+      graph_.meshes.add(*outermost_, shape.mesh, step.matrix, kept);
+    else if (center_)
       reach_ = std::max(reach_, graph_.meshes.reach(shape.mesh, step.matrix, *center_, kept));
     else
       graph_.meshes.grow(bounds, shape.mesh, step.matrix, kept);
   }
 
   void growBy(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
-    if (!center_) return growByBox(bounds, box, matrix);
+    if (!center_ && !outermost_) return growByBox(bounds, box, matrix);
     for (int corner = 0; corner < 8 && !box.empty; ++corner) {
       auto side = [&](int axis) {
         return corner & (1 << axis) ? box.maximum[axis] : box.minimum[axis];
       };
-      const double far = (transformPoint(matrix, {side(0), side(1), side(2)}) - *center_).length();
+      const Vector point = transformPoint(matrix, {side(0), side(1), side(2)});
+      if (outermost_) {
+        outermost_->add(point);
+        continue;
+      }
+      const double far = (point - *center_).length();
       if (std::isfinite(far)) reach_ = std::max(reach_, far);
     }
   }
@@ -112,6 +127,8 @@ class Measure {
   Graph& graph_;
   const Places& places_;
   std::vector<Bounds> boxes_;
+  // If set, points are collected there instead.
+  Outermost* outermost_ = nullptr;
   // If set, distances from this point are measured instead of the bounds.
   const Vector* center_ = nullptr;
   double reach_ = 0;
@@ -135,6 +152,12 @@ BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds
   sphere.radius = measure.reach(Vector(sphere.center[0], sphere.center[1], sphere.center[2]));
   sphere.empty = false;
   return sphere;
+}
+
+std::vector<Vector> outermostPoints(Graph& graph, const Places& places) {
+  Measure measure(graph, places);
+  measure.measureShared();
+  return measure.outermost();
 }
 
 } // namespace xvrml::mapper

@@ -2,6 +2,8 @@
 // request.
 #pragma once
 
+#include <vector>
+
 #include "mapper/graph/places.h"
 #include "xvrml/mapper.h"
 
@@ -12,5 +14,9 @@ namespace xvrml::mapper {
 Bounds boundsOf(Graph& graph, const Places& places);
 // Returns the bounding sphere around the centre of `bounds`.
 BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds);
+
+// Returns the points of the world that lie farthest out (outermost.h). An object that is drawn
+// several times is represented by the corners of its box.
+std::vector<Vector> outermostPoints(Graph& graph, const Places& places);
 
 } // namespace xvrml::mapper

@@ -86,7 +86,7 @@ const Bounds& OpenRTMapper::Impl::bounds() {
   if (boundsStale) {
     places.updateForFrame(graph, camera);
     bounds_ = boundsOf(graph, places);
-    sphereStale = true;
+    sphereStale = outermostStale = true;
   }
   boundsStale = false;
   return bounds_;
@@ -97,6 +97,13 @@ const BoundingSphere& OpenRTMapper::Impl::sphere() {
   if (sphereStale) sphere_ = sphereOf(graph, places, box);
   sphereStale = false;
   return sphere_;
+}
+
+const std::vector<Vector>& OpenRTMapper::Impl::outermost() {
+  bounds();
+  if (outermostStale) outermost_ = outermostPoints(graph, places);
+  outermostStale = false;
+  return outermost_;
 }
 
 bool OpenRTMapper::Impl::lightsModel() {
@@ -133,14 +140,22 @@ CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const auto fields = viewpointFields(impl_->graph.items[place.item].node.get());
   if (!fields || !fields->viewAll || !*fields->viewAll || impl_->bounds().empty) return camera;
   CameraSettings all =
-      cameraAround(impl_->bounds(), camera.matrix, camera.fovy, impl_->options.aspect);
+      xvrml::cameraAround(impl_->bounds(), camera.matrix, camera.fovy, impl_->options.aspect);
   all.shader = camera.shader;
   return all;
 }
 
 CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   const CameraSettings first = viewpointCamera(size_t(std::max(0, boundViewpoint())));
-  return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
+  return cameraAround(first.matrix, fovy, impl_->options.aspect);
+}
+
+CameraSettings OpenRTMapper::cameraAround(const double view[16], double fovy, double aspect) const {
+  return mapper::cameraAround(impl_->outermost(), view, fovy, aspect);
+}
+
+bool OpenRTMapper::seesAll(const CameraSettings& camera, double aspect) const {
+  return mapper::seesAll(impl_->outermost(), camera, aspect);
 }
 
 void OpenRTMapper::setExactShapes(bool exact) { impl_->graph.meshes.setExactShapes(exact); }

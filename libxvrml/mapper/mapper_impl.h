@@ -47,8 +47,9 @@ struct OpenRTMapper::Impl {
   const std::vector<int32_t>& viewpointPlaces();
   const Bounds& bounds();
   const BoundingSphere& sphere();
+  const std::vector<Vector>& outermost();
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
-  bool sphereStale = true, lightStale = true;
+  bool sphereStale = true, outermostStale = true, lightStale = true;
   bool farCameraTold = false;
   bool clearTold = false; // whether it was looked for worlds that are wholly transparent
   bool modelLight = false, background = true; // set by setModelLight() and setBackground()
@@ -71,6 +72,7 @@ struct OpenRTMapper::Impl {
   std::vector<int32_t> viewpointPlaces_;
   Bounds bounds_;
   BoundingSphere sphere_;
+  std::vector<Vector> outermost_;
   bool hasUnspecifiedLighting_ = false;
   size_t surfacesKept_ = 64;
 };

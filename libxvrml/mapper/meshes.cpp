@@ -341,6 +341,12 @@ double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from,
   return far;
 }
 
+void Meshes::add(Outermost& outermost, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept) {
+  const auto sphere = [&](const Mesh& whole) { outermost.addSphere(matrix, whole.radius); };
+  const auto point = [&](const Vector& corner) { outermost.add(transformPoint(matrix, corner)); };
+  eachCorner(mesh, kept, Overloaded{sphere, point});
+}
+
 uint64_t primitivesOf(const Mesh& mesh) {
   if (!mesh.exact.empty()) return mesh.exact.size();
   switch (mesh.kind) {

@@ -10,6 +10,7 @@
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
 #include "geometry/texture_generator.h"
+#include "mapper/outermost.h"
 #include "mapper/ration.h"
 #include "xvrml/mapper.h"
 #include "xvrml/node_map.h"
@@ -66,6 +67,8 @@ class Meshes {
   // Returns the largest distance of the transformed mesh from a point. For a sphere scaled
   // non-uniformly, or sheared, this is an upper bound.
   double reach(int32_t mesh, const Matrix& matrix, const Vector& from, const HalfSpaces& kept);
+  // Adds the points of the transformed mesh.
+  void add(Outermost& outermost, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept);
   // Frees the arrays; get() builds them again.
   void release();
 

@@ -2,7 +2,6 @@
 #include "mapper/views.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -119,49 +118,49 @@ CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
 
 namespace {
 
-// The smallest camera along the axes of a view that sees all corners: its place right of the
+// The smallest camera along the axes of a view that sees all points: its place right of the
 // centre, above it and before it, and half of the size of what a parallel view shows.
 struct Fit {
   double right = 0, above = 0, front = 0, distance = 0, halfWidth = 0, halfHeight = 0;
 };
 
-// Finds how far the corners reach to both sides of the lines of sight with this slope, from the
+// Finds how far the points reach to both sides of the lines of sight with this slope, from the
 // middle of the picture: their place in it, and half of their width there.
 struct Reach {
   double middle, half;
 };
-Reach reachOf(const std::array<Vector, 8>& corners, int axis, double slope) {
+Reach reachOf(std::span<const Vector> points, int axis, double slope) {
   double above = std::numeric_limits<double>::lowest(), below = above;
-  for (const Vector& p : corners) {
+  for (const Vector& p : points) {
     above = std::max(above, p[axis] + slope * p.z);
     below = std::max(below, -p[axis] + slope * p.z);
   }
   return {(above - below) / 2, (above + below) / 2};
 }
 
-// Returns the place at which the corners are in the middle of the picture, seen from a distance: at
+// Returns the place at which the points are in the middle of the picture, seen from a distance: at
 // some slope, the lines of sight touch them on both sides.
-double middleFrom(const std::array<Vector, 8>& corners, int axis, double most, double distance) {
+double middleFrom(std::span<const Vector> points, int axis, double most, double distance) {
   double low = 0, high = most;
   for (int i = 0; i < 50; ++i) {
     const double slope = (low + high) / 2;
-    (reachOf(corners, axis, slope).half > slope * distance ? low : high) = slope;
+    (reachOf(points, axis, slope).half > slope * distance ? low : high) = slope;
   }
-  return reachOf(corners, axis, high).middle;
+  return reachOf(points, axis, high).middle;
 }
 
-// tanX, tanY: tangents of half the angles; 0: a parallel view.
-Fit fitBox(const Bounds& b, const Matrix& view, const Vector& center, double tanX, double tanY) {
-  std::array<Vector, 8> corners; // along the axes of the view
+// Returns the coordinates of a point, relative to another, along the axes of a view.
+Vector along(const Matrix& view, const Vector& point) {
+  Vector p;
+  for (int i = 0; i < 3; ++i) p[i] = point.dot(Vector(view.x[i][0], view.x[i][1], view.x[i][2]));
+  return p;
+}
+
+// points: along the axes of the view. tanX, tanY: tangents of half the angles; 0: a parallel view.
+Fit fitPoints(std::span<const Vector> points, double tanX, double tanY) {
   Fit fit{0, 0, std::numeric_limits<double>::lowest(), 0, 0, 0};
-  for (size_t corner = 0; corner < 8; ++corner) {
-    auto side = [&](size_t i) { return corner & (1u << i) ? b.maximum[i] : b.minimum[i]; };
-    const Vector p = Vector(side(0), side(1), side(2)) - center;
-    for (int i = 0; i < 3; ++i)
-      corners[corner][i] = p.dot(Vector(view.x[i][0], view.x[i][1], view.x[i][2]));
-    fit.front = std::max(fit.front, corners[corner].z);
-  }
-  const Reach across = reachOf(corners, 0, tanX), upwards = reachOf(corners, 1, tanY);
+  for (const Vector& p : points) fit.front = std::max(fit.front, p.z);
+  const Reach across = reachOf(points, 0, tanX), upwards = reachOf(points, 1, tanY);
   fit.halfWidth = across.half;
   fit.halfHeight = upwards.half;
   fit.distance = fit.front;
@@ -171,8 +170,8 @@ Fit fitBox(const Bounds& b, const Matrix& view, const Vector& center, double tan
     return fit;
   }
   fit.distance = std::max({fit.front, across.half / tanX, upwards.half / tanY});
-  fit.right = middleFrom(corners, 0, tanX, fit.distance);
-  fit.above = middleFrom(corners, 1, tanY, fit.distance);
+  fit.right = middleFrom(points, 0, tanX, fit.distance);
+  fit.above = middleFrom(points, 1, tanY, fit.distance);
   return fit;
 }
 
@@ -183,25 +182,28 @@ bool hasHeadlight(const Bound& bound) {
   return !info || info->headlight;
 }
 
-} // namespace xvrml::mapper
-
-namespace xvrml {
-
-CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy,
+CameraSettings cameraAround(std::span<const Vector> points, const double view[16], double fovy,
                             double aspect) {
-  CameraSettings camera = mapper::cameraOf(nullptr, Matrix(), aspect);
+  CameraSettings camera = cameraOf(nullptr, Matrix(), aspect);
   camera.fovy = fovy >= 0 && fovy < 3.14 ? fovy : camera.fovy;
   const double margin = 1.1, ratio = aspect > 0 ? aspect : 1;
   const Matrix axes = rotationOnly(fromArray(view));
-  if (bounds.empty) {
+  if (points.empty()) {
     if (camera.fovy == 0) camera.height = 10;
     return camera;
   }
-  const Vector low(bounds.minimum[0], bounds.minimum[1], bounds.minimum[2]),
-      high(bounds.maximum[0], bounds.maximum[1], bounds.maximum[2]);
+  Vector low = points.front(), high = low;
+  for (const Vector& p : points)
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
   const Vector center = (low + high) / 2;
+  std::vector<Vector> seen;
+  seen.reserve(points.size());
+  for (const Vector& p : points) seen.push_back(along(axes, p - center));
   const double tanY = std::tan(camera.fovy / 2) / margin, size = (high - low).length();
-  const mapper::Fit fit = mapper::fitBox(bounds, axes, center, tanY * ratio, tanY);
+  const Fit fit = fitPoints(seen, tanY * ratio, tanY);
   double distance = fit.distance;
   if (camera.fovy == 0) {
     camera.height = 2 * margin * std::max(fit.halfHeight, fit.halfWidth / ratio);
@@ -212,6 +214,36 @@ CameraSettings cameraAround(const Bounds& bounds, const double view[16], double 
   const Vector eye = center + transformDirection(axes, Vector(fit.right, fit.above, distance));
   toArray(compose(translation(eye), axes), camera.matrix);
   return camera;
+}
+
+bool seesAll(std::span<const Vector> points, const CameraSettings& camera, double aspect) {
+  constexpr double rounding = 1.01;
+  const Matrix matrix = fromArray(camera.matrix);
+  const Vector eye = transformPoint(matrix, Vector(0));
+  const bool parallel = camera.fovy == 0;
+  const double y = rounding * (parallel ? camera.height / 2 : std::tan(camera.fovy / 2)),
+               x = y * (aspect > 0 ? aspect : 1);
+  return std::all_of(points.begin(), points.end(), [&](const Vector& point) {
+    const Vector p = along(matrix, point - eye);
+    const double scale = parallel ? 1 : -p.z;
+    return p.z < 0 && std::abs(p.x) <= x * scale && std::abs(p.y) <= y * scale;
+  });
+}
+
+} // namespace xvrml::mapper
+
+namespace xvrml {
+
+CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy,
+                            double aspect) {
+  std::vector<Vector> corners;
+  for (size_t corner = 0; corner < 8 && !bounds.empty; ++corner) {
+    auto side = [&](size_t i) {
+      return corner & (1u << i) ? bounds.maximum[i] : bounds.minimum[i];
+    };
+    corners.emplace_back(side(0), side(1), side(2));
+  }
+  return mapper::cameraAround(corners, view, fovy, aspect);
 }
 
 } // namespace xvrml

@@ -2,6 +2,7 @@
 // thread]
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "mapper/graph/places.h"
@@ -36,6 +37,11 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
 // Returns the camera of a Viewpoint; for null that of the standard's default Viewpoint. parent:
 // world matrix of the node's parent.
 CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspect);
+// Returns a camera that looks along the view's -z and has all of these points in the picture.
+CameraSettings cameraAround(std::span<const Vector> points, const double view[16], double fovy,
+                            double aspect);
+// Returns whether a camera sees all of these points.
+bool seesAll(std::span<const Vector> points, const CameraSettings& camera, double aspect);
 // Returns false only if a bound NavigationInfo turns the headlight off (clause 6.29: the default is
 // on).
 bool hasHeadlight(const Bound& bound);

@@ -231,3 +231,92 @@ def test_signatures_have_names_and_defaults():
     parameters = inspect.signature(xvrml.World.render).parameters
     assert parameters["size"].default == (800, 600) and parameters["spp"].default is None
     assert parameters["crop"].kind is inspect.Parameter.KEYWORD_ONLY
+
+
+def model_with_cameras(*places, yfov=0.6, light=False, moves=False):
+    """Returns a glTF file with a tetrahedron from -2 to 2 and cameras on the z axis, or 9 beside it. moves:
+    an animation moves the first camera."""
+    points = np.array([[-2, -2, -2], [2, -2, 2], [-2, 2, 2], [2, 2, -2]], np.float32)
+    index = np.array([0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2], np.uint16)
+    times = np.array([0, 1, 0, 0, 4, 0, 0, 5], np.float32)
+    data = base64.b64encode(points.tobytes() + index.tobytes() + times.tobytes()).decode()
+    model = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(len(places) + 1 + light))}],
+        "nodes": [{"mesh": 0}, *({"camera": 0, "translation": [0, 0, z], "name": f"View{z}"} for z in places)],
+        "cameras": [{"type": "perspective", "name": "Eye", "perspective": {"yfov": yfov, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "buffers": [{"byteLength": 104, "uri": "data:application/octet-stream;base64," + data}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24},
+                        {"buffer": 0, "byteOffset": 72, "byteLength": 32}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+                       "min": [-2, -2, -2], "max": [2, 2, 2]},
+                      {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"},
+                      {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+                      {"bufferView": 2, "byteOffset": 8, "componentType": 5126, "count": 2, "type": "VEC3"}]
+    }  # yapf: disable
+    if light:
+        model["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}]}}
+        model["nodes"].append({"extensions": {"KHR_lights_punctual": {"light": 0}}})
+    if moves:
+        model["animations"] = [{"samplers": [{"input": 2, "output": 3}],
+                                "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}]}]  # yapf: disable
+    return json.dumps(model)
+
+
+NOTE = 'vv: the file\'s camera "Eye" does not show all of the model, this view does; --viewpoint 0 looks through that camera'
+
+
+@pytest.mark.parametrize("cameras, leftOut", [
+    ({"places": [4]}, True), ({"places": [4], "yfov": 0.05}, True), ({"places": [-9]}, True), ({"places": [30]}, False),
+    ({"places": [1]}, False), ({"places": [4, 5]}, False), ({"places": [4], "light": True}, False),
+    ({"places": [4], "moves": True}, False)
+])  # yapf: disable
+def test_a_camera_of_a_gltf_file_that_cuts_the_model_is_left_out(vv, cameras, leftOut):
+    """One that sees all of the model or stands in it is taken, and so are one of several, one that moves and one
+    of a file with lights."""
+    vv.write("model.gltf", model_with_cameras(*cameras.pop("places"), **cameras))
+    done = vv("model.gltf", "-o", "a.png", *SPP)
+    assert (NOTE in done.talk) == leftOut and done.returncode == 0
+    assert "camera" not in vv("model.gltf", "-o", "a.png", *SPP, "-q").talk
+    alone = shown(vv, "model.gltf")
+    assert (alone != shown(vv, "model.gltf", "--viewpoint", "0")) == leftOut
+    assert saved(vv, load(vv, "model.gltf")) == alone
+    assert saved(vv, load(vv, "model.gltf"), viewpoint=0) == shown(vv, "model.gltf", "--viewpoint", "Eye")
+    if leftOut:
+        picture = load(vv, "model.gltf").render(size=(60, 60), spp=1, studio=False)
+        assert min(margins(picture.array[..., 3] > 0)) > 0
+
+
+@pytest.mark.parametrize("options", [("--viewpoint", "Eye"), ("--from", "top"), ("--fit", ), ("--camera", "0,0,3:0,0,0"),
+                                     ("--viewpoint", "all"), ("--camera-shader", "Panorama")])
+def test_a_view_that_is_named_is_taken(vv, options):
+    vv.write("model.gltf", model_with_cameras(4))
+    done = vv("model.gltf", "-o", "a.png", *SPP, *options)
+    assert done.returncode == 0 and "camera" not in done.talk, done.talk
+
+
+def test_a_camera_is_left_out_in_all_pictures_of_a_run(vv):
+    vv.write("model.gltf", model_with_cameras(4))
+    assert vv("model.gltf", "--turntable", "3", "-o", "turn.ppm", "--size", "60x60", "--spp", "1").talk.count(NOTE) == 1
+    for n in range(3):
+        rows = read_ppm((vv.folder / f"turn-{n:04}.ppm").read_bytes())[2]
+        assert min(margins(np.array(rows).any(2))) > 0
+
+
+def test_the_window_leaves_the_camera_out_as_well(vv):
+    vv.write("model.gltf", model_with_cameras(4))
+    vv.write("keys.txt", "0.5 save window.png\n0.6 quit\n")
+    with display():
+        done = vv("model.gltf", "--input", "keys.txt", *SPP)
+    assert done.returncode == 0 and done.talk.count(NOTE) == 1, done.talk
+    assert (vv.folder / "window.png").read_bytes() == shown(vv, "model.gltf")
+
+
+@pytest.mark.parametrize("shape", ["Sphere { }", "Cylinder { radius 2 height 2 }", "Cone { }"])
+def test_a_round_model_fills_nine_tenths_as_well(shape):
+    world = xvrml.loads(HEADER + "Shape { geometry " + shape + " }")
+    left, right, top, bottom = margins(world.render(size=(120, 90), spp=1).array[..., 3] > 0)
+    assert abs(left - right) <= 3 and abs(top - bottom) <= 3
+    assert 0 < min(left, right, top, bottom) and min((left + right) / 120, (top + bottom) / 90) <= 0.12

@@ -66,7 +66,10 @@ class Headless {
     browser_ = startWorld(std::move(read), options_, problems_);
     const double startSeconds = secondsSinceStart() - before;
     const xvrml::World& world = browser_->world();
-    if (options_.makesPictures()) chooseLook(options_, world, options_.render);
+    if (options_.makesPictures()) {
+      chooseLook(options_, world, options_.render);
+      chooseView(options_, world, options_.view);
+    }
     protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) {
       if (!options_.check)

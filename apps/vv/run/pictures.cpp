@@ -34,6 +34,7 @@
 #include "run/outputs.h"
 #include "run/timeline.h"
 #include "session/replay.h"
+#include "start/look.h"
 #include "start/world_clock.h"
 
 namespace vv {
@@ -54,13 +55,13 @@ struct Job {
 };
 
 // Returns the views of one moment. The turntable goes round from the first side of --from.
-std::vector<Job> chooseJobs(const Options& options,
+std::vector<Job> chooseJobs(const Options& options, const picture::View& view,
                             const std::vector<xvrml::ViewpointInfo>& viewpoints,
                             bool first = true) {
   if (options.from.size() > 1) {
     std::vector<Job> jobs;
     for (const picture::Side side : options.from) {
-      jobs.push_back({options.view, {picture::sideName(side), {}}});
+      jobs.push_back({view, {picture::sideName(side), {}}});
       jobs.back().view.side = side;
       jobs.back().view.turns = options.turntable > 0 && jobs.size() == 1;
       if (options.turntable > 0 && !first) break;
@@ -68,7 +69,7 @@ std::vector<Job> chooseJobs(const Options& options,
     return jobs;
   }
   if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty()))
-    return {{options.view, {}}};
+    return {{view, {}}};
   std::vector<Job> jobs;
   if (options.allViewpoints()) {
     std::set<std::string> taken;
@@ -78,7 +79,7 @@ std::vector<Job> chooseJobs(const Options& options,
       if (name.empty() || name.size() > 100 || taken.count(name))
         name = std::to_string(i) + (name.empty() || name.size() > 100 ? "" : "-" + name);
       taken.insert(name);
-      jobs.push_back({options.view, {name, {}}});
+      jobs.push_back({view, {name, {}}});
       jobs.back().view.viewpoint = i;
     }
     return jobs;
@@ -102,7 +103,7 @@ std::vector<Job> chooseJobs(const Options& options,
                     near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
                     viewpoints.empty() ? "it has no viewpoints" : "its viewpoints are " + known)};
   }
-  jobs.push_back({options.view, {}});
+  jobs.push_back({view, {}});
   jobs.back().view.viewpoint = size_t(index);
   return jobs;
 }
@@ -126,8 +127,8 @@ class Pictures {
  public:
   Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
            Problems& problems, double startSeconds)
-      : options_(options), commandLine_(commandLine), browser_(browser), problems_(problems),
-        startSeconds_(startSeconds) {}
+      : options_(options), view_(options.view), commandLine_(commandLine), browser_(browser),
+        problems_(problems), startSeconds_(startSeconds) {}
 
   // Ends the renderer without freeing the shapes.
   void leave() {
@@ -166,7 +167,7 @@ class Pictures {
         return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
                                  : finishOldest();
       std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()}
-                                     : chooseJobs(options_, renderer.viewpoints(), i == 0);
+                                     : chooseJobs(options_, view_, renderer.viewpoints(), i == 0);
       views_ = jobs.size();
       for (Job& job : jobs) {
         job.turns = !options_.turnsFirstSide() || &job == &jobs.front();
@@ -220,19 +221,20 @@ class Pictures {
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
     if (options_.render.linear && !options_.denoise)
       pilot_->allowFalseColours(options_.falseColour);
-    if (pilot_->begin(options_.view, options_.viewpoint)) present();
+    if (pilot_->begin(view_, options_.viewpoint)) present();
     pilot_->animateTransitions();
     replay_ = std::make_unique<Replay>(*pilot_, *options_.script,
                                        [this](const InputEvent&, Action action) {
-                                         if (action == Action::frameAll)
-                                           pilot_->frameAll(renderer_->bounds());
+                                         if (action == Action::frameAll) frameAll();
                                          if (action == Action::beginAgain) present();
                                        });
   }
 
+  void frameAll() { pilot_->frameAll(renderer_->cameraAround(pilot_->camera(), pilot_->aspect())); }
+
   void present() {
-    const std::optional<picture::View> view = pilot_->initialView(options_.view);
-    if (!view) return pilot_->frameAll(renderer_->bounds());
+    const std::optional<picture::View> view = pilot_->initialView(view_);
+    if (!view) return frameAll();
     const picture::Renderer::Place place = renderer_->placeOf(*view);
     pilot_->present(place.camera, place.up);
   }
@@ -276,6 +278,8 @@ class Pictures {
     });
     mapping.clear();
     renderer_->setProgressCallback([this](float fraction) { return watch(fraction); });
+    if (view_.authored == picture::View::Authored::unlessCut)
+      settleView(renderer_->placeOf(view_).leftOut, renderer_->viewpoints(), options_.quiet, view_);
   }
 
   bool watch(float fraction) {
@@ -479,7 +483,7 @@ class Pictures {
   // Writes the readings of the sensors.
   int measure() {
     progress_ = std::make_unique<Progress>("sensors", options_.quiet);
-    const std::vector<Job> jobs = chooseJobs(options_, renderer_->viewpoints());
+    const std::vector<Job> jobs = chooseJobs(options_, view_, renderer_->viewpoints());
     std::vector<picture::Measurement> sensors;
     try {
       sensors = renderer_->measure(jobs[0].view);
@@ -744,6 +748,7 @@ class Pictures {
   }
 
   const Options& options_;
+  picture::View view_; // the options' own, once it is settled whether a camera is left out
   const std::string& commandLine_;
   xvrml::Browser& browser_;
   Problems& problems_;

@@ -251,7 +251,7 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
   if (const auto view = initial ? pilot.initialView(options_.view) : std::nullopt)
     pilot.present(renderer_.cameraOf(*view, pilot.aspect()), renderer_.upOf(*view));
   else
-    pilot.frameAll(renderer_.bounds());
+    pilot.frameAll(renderer_.cameraAround(pilot.camera(), pilot.aspect()));
   fit.end();
   return true;
 }

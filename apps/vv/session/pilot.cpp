@@ -168,9 +168,8 @@ void Pilot::move(double seconds) {
     viewer_->move({}, seconds);
 }
 
-void Pilot::frameAll(const xvrml::Bounds& bounds) {
-  const xvrml::CameraSettings now = camera();
-  viewer_->place(xvrml::cameraAround(bounds, now.matrix, now.fovy, aspect_).matrix);
+void Pilot::frameAll(const xvrml::CameraSettings& around) {
+  viewer_->place(around.matrix);
   gravityActs_ = false;
 }
 
@@ -188,8 +187,10 @@ void Pilot::allowFalseColours(std::optional<double> given) {
 }
 
 std::optional<picture::View> Pilot::initialView(const picture::View& view) const {
-  if (viewer_->viewpoint() && !view.up && !view.lookAt && !view.side) return {};
+  const bool decides = view.authored != picture::View::Authored::shown;
+  if (viewer_->viewpoint() && !view.up && !view.lookAt && !view.side && !decides) return {};
   picture::View wanted = view;
+  if (decides) return wanted;
   wanted.fit = true;
   if (!wanted.fov && viewer_->viewpoint()) { // keep the Viewpoint's field of view
     const double vertical = camera().fovy;
@@ -210,7 +211,8 @@ bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
     viewer_->setUp(up);
   }
   if (picture::lookAtMatrix(view, matrix)) viewer_->place(matrix);
-  return view.fit || view.side || (!view.lookAt && !viewer_->viewpoint());
+  return view.fit || view.side || view.authored != picture::View::Authored::shown ||
+         (!view.lookAt && !viewer_->viewpoint());
 }
 
 void Pilot::animateTransitions() {

@@ -47,8 +47,8 @@ class Pilot {
 
   void setAspect(double aspect); // width / height of the picture
   double aspect() const { return aspect_; }
-  // Shows the whole world in the current direction. bounds: the current extent of the world.
-  void frameAll(const xvrml::Bounds& bounds);
+  // Goes to a camera that shows the whole world in the current direction.
+  void frameAll(const xvrml::CameraSettings& around);
   // Sets the camera of the first picture. Returns true if the whole world is to be shown: a fitted
   // camera was requested, or there is no Viewpoint. Throws Failure if the viewpoint does not exist.
   bool begin(const picture::View& view, const std::string& viewpoint);

@@ -88,6 +88,7 @@ void Session::begin(int width, int height, const std::optional<Place>& place,
                     const std::string& fragment) {
   resize(width, height);
   const bool named = isOfCommandLine(options_, browser_->world()) && !place && fragment.empty();
+  if (!place && fragment.empty()) chooseView(options_, browser_->world(), options_.view);
   if (pilot_.begin(options_.view, named ? options_.viewpoint : std::string()) && !place)
     fit_.want(Fit::Direction::initial);
   fit_.setRepeat(fit_.isPending() && inlines_.isLoading() ? Fit::Repeat::whenLoaded
@@ -119,13 +120,24 @@ Session::Place Session::place() const {
   return place;
 }
 
+// Decides once whether the camera of a model's file is left out; the viewer has been placed so.
+void Session::settleCamera() {
+  if (options_.view.authored != picture::View::Authored::unlessCut) return;
+  const picture::LiveRenderer& live = shared_.live;
+  settleView(live.leavesViewpointOut(options_.view, pilot_.aspect()), live.viewpoints(),
+             options_.quiet, options_.view);
+}
+
 // --- Time ---
 
 void Session::advance(double seconds) {
   clock_.read(seconds,
               isSaving() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
   if (!resting()) return;
-  if (pictures_.placeViewer(pilot_, fit_) && replay_) replay_->resume();
+  if (pictures_.placeViewer(pilot_, fit_)) {
+    settleCamera();
+    if (replay_) replay_->resume();
+  }
   guests_.placeViewers();
   if (captures_.isWaiting()) return captures_.advance();
   step();

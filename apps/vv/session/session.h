@@ -175,6 +175,7 @@ class Session {
   void loadSome();
   void chooseLookOnce();
   void want(Action fit);
+  void settleCamera();
   void saveIfFinished();
   void giveUp(const std::string& why);
   // Tells whether scripts wait: for a fit, or for a picture that is to be saved.

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "libpicture/bare_model.h"
+#include "process/messages.h"
+#include "report/describe.h"
 #include "start/world_start.h"
 
 namespace vv {
@@ -33,6 +37,22 @@ void chooseLook(const Options& options, const xvrml::World& world,
   const picture::ViewTransform view = settings.view;
   picture::choose(look, settings);
   if (options.viewGiven) settings.view = view;
+}
+
+void chooseView(const Options& options, const xvrml::World& world, picture::View& view) {
+  if (options.viewpoint.empty() && options.from.empty() && picture::mayLeaveCameraOut(world, view))
+    view.authored = picture::View::Authored::unlessCut;
+}
+
+void settleView(bool leavesOut, const std::vector<xvrml::ViewpointInfo>& viewpoints, bool quiet,
+                picture::View& view) {
+  using Authored = picture::View::Authored;
+  view.authored = leavesOut ? Authored::leftOut : Authored::shown;
+  if (!leavesOut || quiet || viewpoints.empty()) return;
+  const std::string& name = viewpoints.front().description;
+  say(fmt::format("vv: the file's camera{} does not show all of the model, this view does; "
+                  "--viewpoint 0 looks through that camera",
+                  name.empty() ? "" : fmt::format(" \"{}\"", oneLine(name))));
 }
 
 } // namespace vv

@@ -114,6 +114,11 @@ class OpenRTMapper {
   CameraSettings viewpointCamera(size_t index) const;
   // Returns a camera along -z of the first viewpoint (or of the world) that shows the whole world.
   CameraSettings fitCamera(double fovy) const;
+  // Returns a camera that looks along the view's -z and has all that is drawn in the picture. It is
+  // nearer than one around the bounds where the world does not fill its box.
+  CameraSettings cameraAround(const double view[16], double fovy, double aspect) const;
+  // Returns whether a camera sees all that is drawn, but for a few hundredths of the picture.
+  bool seesAll(const CameraSettings& camera, double aspect) const;
   Bounds bounds() const;
   BoundingSphere boundingSphere() const;
   // Guesses the axis that points up, by the rules of docs/decisions/0040-models.md.

@@ -1,0 +1,71 @@
+#include "mapper/outermost.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace xvrml::mapper {
+
+// The directions are those of a spiral that covers a half sphere evenly. None of them is along an
+// axis, so that of the corners of a box each is found.
+Outermost::Outermost() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (size_t i = 0; i < count; ++i) {
+    z_[i] = (double(i) + 0.5) / double(count);
+    const double radius = std::sqrt(1 - z_[i] * z_[i]);
+    x_[i] = radius * std::cos(golden * double(i));
+    y_[i] = radius * std::sin(golden * double(i));
+  }
+  least_.fill(infinity);
+  most_.fill(-infinity);
+}
+
+// Most points lie within what is known, so the loop that finds this has no branches.
+void Outermost::add(const Vector& point) {
+  if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return;
+  std::array<double, count> along;
+  int outside = 0;
+  for (size_t i = 0; i < count; ++i) {
+    along[i] = x_[i] * point.x + y_[i] * point.y + z_[i] * point.z;
+    outside |= int(along[i] < least_[i]) | int(along[i] > most_[i]);
+  }
+  if (!outside) return;
+  for (size_t i = 0; i < count; ++i) {
+    if (along[i] < least_[i]) {
+      least_[i] = along[i];
+      first_[i] = point;
+    }
+    if (along[i] > most_[i]) {
+      most_[i] = along[i];
+      last_[i] = point;
+    }
+  }
+}
+
+// An ellipsoid M(sphere) lies farthest along d where M takes the point of the sphere along M^T d.
+void Outermost::addSphere(const Matrix& matrix, double radius) {
+  const Vector center = transformPoint(matrix, Vector(0));
+  for (size_t i = 0; i < count; ++i) {
+    Vector inner;
+    for (int k = 0; k < 3; ++k)
+      inner[k] =
+          Vector(matrix.x[k][0], matrix.x[k][1], matrix.x[k][2]).dot(Vector(x_[i], y_[i], z_[i]));
+    const double length = inner.length();
+    if (!(length > 0)) continue;
+    const Vector out = transformDirection(matrix, inner * (radius / length));
+    add(center + out);
+    add(center - out);
+  }
+}
+
+std::vector<Vector> Outermost::points() const {
+  std::vector<Vector> all;
+  if (most_[0] < least_[0]) return all;
+  all.reserve(2 * count);
+  all.insert(all.end(), first_.begin(), first_.end());
+  all.insert(all.end(), last_.begin(), last_.end());
+  return all;
+}
+
+} // namespace xvrml::mapper

@@ -1,0 +1,31 @@
+// outermost.h: Finds the points of a world that lie farthest out, in many directions. They stand
+// for its hull where a camera is fitted: a round model is smaller than its bounding box. Owned by
+// the mapper. [the mapper's thread]
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "geometry/matrix.h"
+
+namespace xvrml::mapper {
+
+class Outermost {
+ public:
+  Outermost();
+  // Takes a point into account; one that is not finite is left out.
+  void add(const Vector& point);
+  // Takes a sphere about 0 into account, transformed by `matrix`.
+  void addSphere(const Matrix& matrix, double radius);
+  // Returns the points that lie farthest out; empty if nothing was added. Parts outside of
+  // their hull reach at most a few hundredths of its size beyond it.
+  std::vector<Vector> points() const;
+
+ private:
+  static constexpr size_t count = 64;   // directions; their opposites are looked at as well
+  std::array<double, count> x_, y_, z_; // the directions
+  std::array<double, count> least_, most_;
+  std::array<Vector, count> first_, last_; // the points there
+};
+
+} // namespace xvrml::mapper
