@@ -12,7 +12,7 @@
 #include "arrays.h"
 #include "numbers.h"
 #include "objects.h"
-#include "openrt/queries.h"
+#include "openrt/query.h"
 #include "parallel_for.h"
 #include "rt_objects.h"
 

@@ -1,11 +1,10 @@
-// queries.h: the queries of openrt/query.h and openrt/queries.h, implemented by backends that have
-// surfaces (Backend::queries). Called on the application's thread, after the first commit.
+// queries.h: the queries of openrt/query.h, implemented by backends that have surfaces
+// (Backend::queries). Called on the application's thread, after the first commit.
 #pragma once
 
 #include <span>
 
 #include "openrt/openrt.h"
-#include "openrt/queries.h"
 
 namespace openrt {
 

@@ -12,7 +12,7 @@
 
 #include "cluster/support.h"
 #include "drawing.h"
-#include "openrt/queries.h"
+#include "openrt/query.h"
 
 namespace {
 

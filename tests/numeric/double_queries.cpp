@@ -8,7 +8,7 @@
 #include <random>
 
 #include "numeric/support.h"
-#include "openrt/queries.h"
+#include "openrt/query.h"
 
 namespace numeric {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "openrt/queries.h"
+#include "openrt/query.h"
 
 namespace openrt {
 

@@ -1,4 +1,0 @@
-// openrt.h: the former name of xvrml/mapper.h, kept for programs that include it.
-#pragma once
-
-#include "xvrml/mapper.h"
