@@ -86,7 +86,7 @@ void CurrentContext::commit() const {
   if (!context_->dirty) return;
   {
     const ReleaseGil release;
-    rtFrameBuffer(1, 1, RT_RGBA);
+    rtFrameBuffer(1, 1, RT_DEPTH); // without light, so that no lamps are prepared for it
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
     rtQualityf(RT_TARGET_ERROR, 0);
     rtQualityf(RT_TIME_LIMIT, 0);

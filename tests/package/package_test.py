@@ -146,7 +146,7 @@ with tempfile.TemporaryDirectory() as scratch:
     shutil.copytree(source / "examples/nodes", example)
     (example / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.25)\nproject(example LANGUAGES C CXX)\n"
-        "find_package(xvrml 0.1 REQUIRED)\nxvrml_add_nodes(springs springs.node springs.cpp)\n")
+        "find_package(xvrml 0.2 REQUIRED)\nxvrml_add_nodes(springs springs.node springs.cpp)\n")
     run(cmake, "-S", example, "-B", example / "build", "-G", "Ninja",
         f"-DCMAKE_PREFIX_PATH={prefix}")
     run(cmake, "--build", example / "build")

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <vector>
 
+#include "render/lights/emitters.h"
 #include "render/wave/batch.h"
 #include "render/wave/path_states.h"
 
@@ -22,6 +24,7 @@ struct PlaneHits {
   explicit PlaneHits(uint32_t n)
       : size_(padded(n)), order_(size_), zeros_(size_), pointers_(size_) {
     fillHost(scene.host);
+    scene.emitters = std::make_shared<Emitters>(); // none emits
     std::iota(order_.begin(), order_.end(), 0u);
     const float s = std::sqrt(0.5f);
     RtsHits& h = points.hits;

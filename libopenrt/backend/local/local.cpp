@@ -83,7 +83,7 @@ void LocalBackend::prepareGeometry() {
 
 void LocalBackend::prepareLight() {
   prepareGeometry();
-  if (lit_ == snapshot_) return;
+  if (ready_ == snapshot_) return;
   RenderScene& next = *snapshot_;
   const RenderScene* const before = lit_.get();
   next.emitters = std::make_shared<Emitters>();
@@ -96,6 +96,17 @@ void LocalBackend::prepareLight() {
   next.absorbingShadows =
       !next.mediumLights.empty() || (next.transparentShadows && hasAbsorption(next));
   next.samplesPass = samplesPass(next);
+  if (!showsNoLight(next.frame)) {
+    sampleLight(next, before);
+    lit_ = snapshot_;
+    recordsUnmoved_ = true;
+  }
+  ready_ = snapshot_;
+  guided_ = false;
+}
+
+// Makes the tables by which the paths of a frame sample light. before: lit_.
+void LocalBackend::sampleLight(RenderScene& next, const RenderScene* before) {
   next.emitters->build(next, before, recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next.emitters->shapes() != (before ? before->emitters->shapes() : nullptr)) {
@@ -110,15 +121,11 @@ void LocalBackend::prepareLight() {
   }
   next.lightSamplers = makeLightSamplers(next, before);
   // Sensors that light paths do not reach do not have such a transport (transport.cpp).
-  if (tracesLamps(choice.transport) && !showsNoLight(next.frame) &&
-      next.camera.shader.shaderClass &&
+  if (tracesLamps(next.frame.transport) && next.camera.shader.shaderClass &&
       (next.camera.shader.shaderClass->project || next.frame.measure)) {
     auto sources = std::make_shared<const LightSources>(next, recordsUnmoved_ ? before : nullptr);
     if (!sources->empty()) next.lightSources = std::move(sources);
   }
-  lit_ = snapshot_;
-  recordsUnmoved_ = true;
-  guided_ = false;
 }
 
 // Brings the acceleration structure up to date with the committed scene, and makes the camera and
@@ -412,7 +419,7 @@ void LocalBackend::stats(RTstats& s) const {
     finished_->work().describeError(s);
     finished_->work().describeLedger(s);
   }
-  if (lit_) s.transport = lit_->frame.transport;
+  if (ready_) s.transport = ready_->frame.transport;
   s.unreachedLights = unreachedLights_;
   s.transportLeavesOut = transportLeavesOut_;
   std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());

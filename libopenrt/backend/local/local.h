@@ -39,8 +39,10 @@ class LocalBackend final : public Backend {
   // Makes a new snapshot of the committed scene if anything changed since the last. It has what ray
   // queries need: geometry, shaders, camera.
   void prepareGeometry();
-  // Adds what a frame needs: the transport, and the tables by which it samples light.
+  // Adds what a frame needs: the transport, and the tables by which it samples light. A frame whose
+  // channels show no light has no tables.
   void prepareLight();
+  void sampleLight(RenderScene& next, const RenderScene* before);
   // Adds the photons that guide the paths of a frame. cancel() ends that early.
   void prepareFrame();
   void updateAccel(RenderScene& next);
@@ -60,9 +62,10 @@ class LocalBackend final : public Backend {
   uint64_t snapshotFrame_ = 0; // number of the history at the last prepareGeometry()
   SceneChanges changes_;       // since then
   std::shared_ptr<RenderScene> snapshot_;
-  std::shared_ptr<RenderScene> lit_; // the last snapshot that prepareLight() has completed
-  bool guided_ = false;              // it has the photons that it needs
-  std::atomic<bool> stop_ = false;   // cancel() was called since prepareFrame()
+  // The last snapshots that prepareLight() has completed, and that have tables for light.
+  std::shared_ptr<RenderScene> ready_, lit_;
+  bool guided_ = false;            // it has the photons that it needs
+  std::atomic<bool> stop_ = false; // cancel() was called since prepareFrame()
   std::shared_ptr<Accel> accel_;
   LocalQueries queries_;
   Flattened flat_;
