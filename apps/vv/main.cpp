@@ -1,8 +1,4 @@
 // main.cpp: Starts the program vv: reads the options and runs the job.
-#include <cstdio>
-#include <exception>
-#include <new>
-
 #include "control/unattended.h"
 #include "enough_stack.h"
 #include "feature_list.h"
@@ -12,6 +8,7 @@
 #include "process/signals.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
+#include "report/exit_code.h"
 #include "run/checkpoint.h"
 #include "run/headless.h"
 #include "run/inputs.h"
@@ -67,22 +64,7 @@ int run(int argc, char** argv) {
 int runAndReport(int argc, char** argv) {
   try {
     return run(argc, argv);
-  } catch (const vv::UsageError& error) {
-    vv::sayError(error.what());
-    return vv::exitUsage;
-  } catch (const vv::Failure& failure) {
-    vv::sayError(failure.text);
-    return failure.code;
-  } catch (const picture::RenderError& error) {
-    vv::sayError(error.what());
-    return vv::exitCodeOf(error);
-  } catch (const std::bad_alloc&) {
-    vv::sayError("out of memory");
-    return vv::exitTryAgain;
-  } catch (const std::exception& error) {
-    vv::sayError(error.what());
-    return vv::exitCodeOf(error);
-  }
+  } catch (...) { return vv::sayException(nullptr); }
 }
 
 } // namespace

@@ -14,7 +14,7 @@
 
 #include "control/connection.h"
 #include "control/listener.h"
-#include "control/place.h"
+#include "control/address.h"
 #include "options/values.h"
 
 using namespace vv::control;
@@ -80,7 +80,7 @@ class ControlSockets : public testing::Test {
     EXPECT_EQ(::listen(fd, 64), 0);
     EXPECT_EQ(::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size), 0);
     port = ntohs(address.sin_port);
-    listener = listenPlain(fd, Place::parse("127.0.0.1:0"), port, mailbox);
+    listener = listenPlain(fd, Address::parse("127.0.0.1:0"), port, mailbox);
   }
 
   // Waits for the next letter.
@@ -299,14 +299,14 @@ TEST_F(ControlSockets, NobodyWaitsLongForAPlace) {
 }
 
 TEST(ControlPlace, AddressesAreRead) {
-  EXPECT_EQ(Place::parse(":7").text(7), "127.0.0.1:7");
-  EXPECT_EQ(Place::parse("[::1]:0").text(9), "[::1]:9");
-  EXPECT_EQ(Place::parse("localhost:65535").port, 65535);
-  EXPECT_EQ(Place::parse("unix:a/b").path, "a/b");
+  EXPECT_EQ(Address::parse(":7").text(7), "127.0.0.1:7");
+  EXPECT_EQ(Address::parse("[::1]:0").text(9), "[::1]:9");
+  EXPECT_EQ(Address::parse("localhost:65535").port, 65535);
+  EXPECT_EQ(Address::parse("unix:a/b").path, "a/b");
   for (const char* wrong :
        {"", "7", "localhost", "a:65536", "a:-1", "a:", "::1:5", "unix:", "a b:5"})
-    EXPECT_THROW(Place::parse(wrong), vv::UsageError) << wrong;
-  EXPECT_THROW(Place::parse("unix:" + std::string(200, 'x')), vv::UsageError);
+    EXPECT_THROW(Address::parse(wrong), vv::UsageError) << wrong;
+  EXPECT_THROW(Address::parse("unix:" + std::string(200, 'x')), vv::UsageError);
 }
 
 } // namespace

@@ -55,7 +55,7 @@ struct Control::Impl {
 
   Impl(const Options& options, Host host)
       : options(options), host(std::move(host)),
-        listener(listenAt(Place::parse(options.control), keysOf(options), mailbox)) {}
+        listener(listenAt(Address::parse(options.control), keysOf(options), mailbox)) {}
 
   // --- Letters ---
 

@@ -42,8 +42,8 @@ zmq::context_t makeContext() {
 
 class CurveListener final : public Listener {
  public:
-  CurveListener(const Place& place, const KeyRing& keys, Mailbox& mailbox)
-      : place_(place), keys_(keys), mailbox_(mailbox), context_(makeContext()),
+  CurveListener(const Address& address, const KeyRing& keys, Mailbox& mailbox)
+      : address_(address), keys_(keys), mailbox_(mailbox), context_(makeContext()),
         door_(context_, zmq::socket_type::rep), socket_(context_, zmq::socket_type::router) {
     setUp();
     thread_ = std::thread([this] { run(); });
@@ -59,7 +59,7 @@ class CurveListener final : public Listener {
     }
   }
 
-  std::string address() const override { return place_.text(port_); }
+  std::string address() const override { return address_.text(port_); }
 
  private:
   struct Client {
@@ -77,7 +77,7 @@ class CurveListener final : public Listener {
     socket_.set(opt::linger, 200);
     socket_.set(opt::router_mandatory, true);
     socket_.set(opt::maxmsgsize, int64_t(limits.lineBytes));
-    socket_.set(opt::ipv6, place_.host.find(':') != place_.host.npos);
+    socket_.set(opt::ipv6, address_.host.find(':') != address_.host.npos);
     socket_.set(opt::handshake_ivl, 5 * second);
     socket_.set(opt::heartbeat_ivl, 2 * second);
     socket_.set(opt::heartbeat_timeout, 10 * second);
@@ -86,10 +86,10 @@ class CurveListener final : public Listener {
     socket_.set(opt::curve_secretkey, keys_.secretKey);
     socket_.set(opt::zap_domain, zapDomain);
     try {
-      socket_.bind("tcp://" + place_.text(place_.port));
+      socket_.bind("tcp://" + address_.text(address_.port));
     } catch (const zmq::error_t& error) {
       throw Failure{exitRender,
-                    fmt::format("--control {}: {}", place_.text(place_.port), error.what())};
+                    fmt::format("--control {}: {}", address_.text(address_.port), error.what())};
     }
     const std::string bound = socket_.get(opt::last_endpoint);
     port_ = uint16_t(std::stoul(bound.substr(bound.rfind(':') + 1)));
@@ -257,7 +257,7 @@ class CurveListener final : public Listener {
     return true;
   }
 
-  const Place place_;
+  const Address address_;
   const KeyRing keys_;
   Mailbox& mailbox_;
   zmq::context_t context_;
@@ -271,9 +271,9 @@ class CurveListener final : public Listener {
 
 } // namespace
 
-std::unique_ptr<Listener> listenWithKeys(const Place& place, const KeyRing& keys,
+std::unique_ptr<Listener> listenWithKeys(const Address& address, const KeyRing& keys,
                                          Mailbox& mailbox) {
-  return std::make_unique<CurveListener>(place, keys, mailbox);
+  return std::make_unique<CurveListener>(address, keys, mailbox);
 }
 
 } // namespace vv::control

@@ -22,8 +22,8 @@ namespace {
 
 constexpr int backlog = 64;
 
-[[noreturn]] void fail(const Place& place, const std::string& why) {
-  throw Failure{exitRender, fmt::format("--control {}: {}", place.text(place.port), why)};
+[[noreturn]] void fail(const Address& address, const std::string& why) {
+  throw Failure{exitRender, fmt::format("--control {}: {}", address.text(address.port), why)};
 }
 
 // A socket that is closed unless release() is called.
@@ -61,73 +61,74 @@ uint16_t portOf(int fd) {
 }
 
 // Removes a socket file that nobody listens at any more.
-void removeAbandoned(const Place& place, const sockaddr_un& address) {
+void removeAbandoned(const Address& address, const sockaddr_un& endpoint) {
   struct stat info {};
-  if (::lstat(place.path.c_str(), &info) != 0) return;
-  if (!S_ISSOCK(info.st_mode)) fail(place, "there is a file of this name");
+  if (::lstat(address.path.c_str(), &info) != 0) return;
+  if (!S_ISSOCK(info.st_mode)) fail(address, "there is a file of this name");
   const Socket probe(AF_UNIX);
-  if (::connect(probe.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+  if (::connect(probe.fd(), reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) == 0 ||
       errno != ECONNREFUSED)
-    fail(place, "another program listens there");
-  ::unlink(place.path.c_str());
+    fail(address, "another program listens there");
+  ::unlink(address.path.c_str());
 }
 
-std::unique_ptr<Listener> listenAtPath(const Place& place, Mailbox& mailbox) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::memcpy(address.sun_path, place.path.data(), place.path.size()); // parse() checks the length
-  removeAbandoned(place, address);
+std::unique_ptr<Listener> listenAtPath(const Address& address, Mailbox& mailbox) {
+  sockaddr_un endpoint{};
+  endpoint.sun_family = AF_UNIX;
+  std::memcpy(endpoint.sun_path, address.path.data(),
+              address.path.size()); // parse() checks the length
+  removeAbandoned(address, endpoint);
   Socket socket(AF_UNIX);
   if (socket.fd() < 0 ||
-      ::bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::chmod(place.path.c_str(), S_IRUSR | S_IWUSR) != 0 || ::listen(socket.fd(), backlog) != 0)
-    fail(place, std::strerror(errno));
-  return listenPlain(socket.release(), place, 0, mailbox);
+      ::bind(socket.fd(), reinterpret_cast<const sockaddr*>(&endpoint), sizeof endpoint) != 0 ||
+      ::chmod(address.path.c_str(), S_IRUSR | S_IWUSR) != 0 || ::listen(socket.fd(), backlog) != 0)
+    fail(address, std::strerror(errno));
+  return listenPlain(socket.release(), address, 0, mailbox);
 }
 
 struct FreeAddresses {
   void operator()(addrinfo* found) const { ::freeaddrinfo(found); }
 };
 
-std::unique_ptr<addrinfo, FreeAddresses> lookUp(const Place& place) {
+std::unique_ptr<addrinfo, FreeAddresses> lookUp(const Address& address) {
   addrinfo hints{}, *found = nullptr;
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_PASSIVE;
   if (const int error =
-          ::getaddrinfo(place.host.c_str(), std::to_string(place.port).c_str(), &hints, &found))
-    fail(place, ::gai_strerror(error));
+          ::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found))
+    fail(address, ::gai_strerror(error));
   return std::unique_ptr<addrinfo, FreeAddresses>(found);
 }
 
-Place numeric(Place place, const addrinfo& found) {
+Address numeric(Address address, const addrinfo& found) {
   char digits[NI_MAXHOST];
   if (const int error = ::getnameinfo(found.ai_addr, found.ai_addrlen, digits, sizeof digits,
                                       nullptr, 0, NI_NUMERICHOST))
-    fail(place, ::gai_strerror(error));
-  place.host = digits;
-  return place;
+    fail(address, ::gai_strerror(error));
+  address.host = digits;
+  return address;
 }
 
 } // namespace
 
-std::unique_ptr<Listener> listenAt(const Place& place, const KeyRing& keys, Mailbox& mailbox) {
-  if (place.isPath()) return listenAtPath(place, mailbox);
-  const auto found = lookUp(place);
+std::unique_ptr<Listener> listenAt(const Address& address, const KeyRing& keys, Mailbox& mailbox) {
+  if (address.isPath()) return listenAtPath(address, mailbox);
+  const auto found = lookUp(address);
   if (!isLoopback(found->ai_addr)) {
     if (keys.empty())
-      fail(place, "other machines can reach this address, so a key is needed: --key FILE "
-                  "(openrt-worker --new-key FILE makes one), or an address of this machine and a "
-                  "tunnel of ssh (docs/control.md)");
-    return listenWithKeys(numeric(place, *found), keys, mailbox); // ZeroMQ binds no names
+      fail(address, "other machines can reach this address, so a key is needed: --key FILE "
+                    "(openrt-worker --new-key FILE makes one), or an address of this machine and a "
+                    "tunnel of ssh (docs/control.md)");
+    return listenWithKeys(numeric(address, *found), keys, mailbox); // ZeroMQ binds no names
   }
   Socket socket(found->ai_family);
   const int on = 1;
   if (socket.fd() < 0 || ::setsockopt(socket.fd(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on) != 0 ||
       ::bind(socket.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
       ::listen(socket.fd(), backlog) != 0)
-    fail(place, std::strerror(errno));
+    fail(address, std::strerror(errno));
   const uint16_t port = portOf(socket.fd());
-  return listenPlain(socket.release(), place, port, mailbox);
+  return listenPlain(socket.release(), address, port, mailbox);
 }
 
 } // namespace vv::control

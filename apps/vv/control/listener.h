@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
+#include "control/address.h"
 #include "control/keys.h"
 #include "control/mailbox.h"
-#include "control/place.h"
 
 namespace vv::control {
 
@@ -21,13 +21,15 @@ class Listener {
 // Listens with plain sockets at an address of this machine, or with keys at any other one. Throws
 // Failure if the address cannot be used, also if others can reach it and there are no keys. The
 // mailbox must outlive it.
-std::unique_ptr<Listener> listenAt(const Place& place, const KeyRing& keys, Mailbox& mailbox);
+std::unique_ptr<Listener> listenAt(const Address& address, const KeyRing& keys, Mailbox& mailbox);
 
 // The two kinds of listeners; listenAt() chooses.
 //
 // Lines over a stream: socket_listener.cpp. fd: a listening socket, which is taken over.
-std::unique_ptr<Listener> listenPlain(int fd, const Place& place, uint16_t port, Mailbox& mailbox);
+std::unique_ptr<Listener> listenPlain(int fd, const Address& address, uint16_t port,
+                                      Mailbox& mailbox);
 // Encrypted, each line a message of ZeroMQ: curve_listener.cpp.
-std::unique_ptr<Listener> listenWithKeys(const Place& place, const KeyRing& keys, Mailbox& mailbox);
+std::unique_ptr<Listener> listenWithKeys(const Address& address, const KeyRing& keys,
+                                         Mailbox& mailbox);
 
 } // namespace vv::control

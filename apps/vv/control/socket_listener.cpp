@@ -35,8 +35,8 @@ bool isOurs(int fd) {
 
 class SocketListener final : public Listener {
  public:
-  SocketListener(int fd, const Place& place, uint16_t port, Mailbox& mailbox)
-      : fd_(fd), place_(place), port_(port), mailbox_(mailbox), thread_([this] { run(); }) {}
+  SocketListener(int fd, const Address& address, uint16_t port, Mailbox& mailbox)
+      : fd_(fd), address_(address), port_(port), mailbox_(mailbox), thread_([this] { run(); }) {}
 
   ~SocketListener() override {
     ending_ = true;
@@ -45,10 +45,10 @@ class SocketListener final : public Listener {
     for (const auto& connection : connections_) connection->work(); // the last answers
     connections_.clear();
     ::close(fd_);
-    if (place_.isPath()) ::unlink(place_.path.c_str());
+    if (address_.isPath()) ::unlink(address_.path.c_str());
   }
 
-  std::string address() const override { return place_.text(port_); }
+  std::string address() const override { return address_.text(port_); }
 
  private:
   void run() {
@@ -111,7 +111,7 @@ class SocketListener final : public Listener {
     }
     std::string why;
     ClientId client = 0;
-    const bool ours = !place_.isPath() || isOurs(fd);
+    const bool ours = !address_.isPath() || isOurs(fd);
     if (!ours)
       why = "this socket belongs to another user";
     else
@@ -124,12 +124,12 @@ class SocketListener final : public Listener {
     }
     waitingSince_ = 0;
     const int on = 1; // answers must not wait for further ones
-    if (!place_.isPath()) ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    if (!address_.isPath()) ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     connections_.push_back(std::make_unique<Connection>(fd, client, mailbox_));
   }
 
   const int fd_;
-  const Place place_;
+  const Address address_;
   const uint16_t port_;
   Mailbox& mailbox_;
   std::shared_ptr<os::WakeUp> wake_ = std::make_shared<os::WakeUp>();
@@ -141,8 +141,9 @@ class SocketListener final : public Listener {
 
 } // namespace
 
-std::unique_ptr<Listener> listenPlain(int fd, const Place& place, uint16_t port, Mailbox& mailbox) {
-  return std::make_unique<SocketListener>(fd, place, port, mailbox);
+std::unique_ptr<Listener> listenPlain(int fd, const Address& address, uint16_t port,
+                                      Mailbox& mailbox) {
+  return std::make_unique<SocketListener>(fd, address, port, mailbox);
 }
 
 } // namespace vv::control

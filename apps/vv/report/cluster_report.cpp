@@ -78,17 +78,6 @@ void joinCluster(Options& options) {
   }
 }
 
-int exitCodeOf(const picture::RenderError& error) {
-  return error.code == RT_CLUSTER_ERROR   ? exitNoWorkers
-         : error.code == RT_SUMS_ERROR    ? exitUsage
-         : error.code == RT_OUT_OF_MEMORY ? exitTryAgain
-                                          : exitRender;
-}
-
-int exitCodeOf(const std::exception& error) {
-  return isShortage(error) ? exitTryAgain : exitRender;
-}
-
 std::string workersText(const std::vector<RTworker>& workers) {
   std::set<std::string_view> names; // a worker that has reconnected is listed twice
   size_t alive = 0;

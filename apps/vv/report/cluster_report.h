@@ -12,10 +12,6 @@ namespace vv {
 // Starts to connect to the workers that the options name. Errors in the options are reported before
 // a world is read, and workers join meanwhile. Throws Failure.
 void joinCluster(Options& options);
-// Returns the exit code for a picture that could not be rendered.
-int exitCodeOf(const picture::RenderError& error);
-// Returns that of another error: exitTryAgain where threads, memory or file descriptors are short.
-int exitCodeOf(const std::exception& error);
 
 // Returns "3 workers", "2 of 3 workers" or "no worker yet"; empty without a cluster.
 std::string workersText(const picture::Cluster* cluster);

@@ -1,16 +1,14 @@
 #include "run/headless.h"
 
-#include <new>
-
 #include <fmt/format.h>
 
 #include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "process/messages.h"
 #include "process/signals.h"
-#include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/engine_list.h"
+#include "report/exit_code.h"
 #include "report/node_list.h"
 #include "report/problems.h"
 #include "report/progress.h"
@@ -169,26 +167,7 @@ class Headless {
 int runOnce(Headless& job) {
   try {
     return job.run();
-  } catch (const Failure& failure) {
-    sayError(failure.text);
-    return failure.code;
-  } catch (const xvrml::LoadError& error) {
-    say(error.diagnostic.text());
-    return exitInput;
-  } catch (const picture::InputError& error) {
-    const Failure failure = failureOf(error, job.options());
-    sayError(failure.text);
-    return failure.code;
-  } catch (const picture::RenderError& error) {
-    sayError(error.what());
-    return exitCodeOf(error);
-  } catch (const std::bad_alloc&) {
-    sayError("out of memory");
-    return exitTryAgain;
-  } catch (const std::exception& error) {
-    sayError(error.what());
-    return exitCodeOf(error);
-  }
+  } catch (...) { return sayException(&job.options()); }
 }
 
 // Repeats the job whenever a file has changed. Errors are printed, and watching continues.

@@ -28,13 +28,6 @@ void checkInputs(const Options& options) {
   checkReference(options);
 }
 
-Failure failureOf(const picture::InputError& error, const Options& options) {
-  const char* option = error.path == options.render.environment       ? "--environment: "
-                       : error.path == options.render.background.file ? "--background: "
-                                                                      : "";
-  return {exitInput, std::string(option) + error.what()};
-}
-
 void warnOfFolders(const Options& options) {
   if (options.quiet) return;
   const std::pair<const char*, const std::string&> paths[] = {

@@ -2,7 +2,6 @@
 // beside the world. [main thread]
 #pragma once
 
-#include "libpicture/files/picture.h"
 #include "options/options.h"
 
 namespace vv {
@@ -10,9 +9,6 @@ namespace vv {
 // Throws Failure with exitInput if a picture of --environment, --background or --compare cannot be
 // read, or if that of --compare has another size than the picture to make.
 void checkInputs(const Options& options);
-
-// Returns the failure for a file that turned out to be unusable; its text names the option.
-Failure failureOf(const picture::InputError& error, const Options& options);
 
 // Prints a warning for each folder of --shader-path, --script-path and --node-path that is missing.
 void warnOfFolders(const Options& options);

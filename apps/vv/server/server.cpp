@@ -21,8 +21,8 @@
 #include "server/reports.h"
 #include "server/saves.h"
 #include "server/served_world.h"
+#include "server/task_thread.h"
 #include "server/texts.h"
-#include "server/worker.h"
 #include "xvrml/node_plugin.h"
 
 namespace vv::server {
@@ -432,7 +432,7 @@ class Server {
 
   std::unique_ptr<Host> host_;
   std::unique_ptr<Saves> saves_;
-  Worker encoder_; // the last member: its tasks use the others
+  TaskThread encoder_; // the last member: its tasks use the others
 };
 
 } // namespace
@@ -443,13 +443,8 @@ namespace vv {
 
 int runServer(const Options& options, const std::vector<std::string>& arguments) {
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
-  try {
-    server::Server server(options, arguments);
-    return server.run();
-  } catch (const xvrml::LoadError& error) {
-    say(error.diagnostic.text());
-    return exitInput;
-  }
+  server::Server server(options, arguments);
+  return server.run();
 }
 
 } // namespace vv

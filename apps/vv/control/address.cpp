@@ -1,4 +1,4 @@
-#include "control/place.h"
+#include "control/address.h"
 
 #include <charconv>
 
@@ -17,17 +17,17 @@ namespace {
 
 } // namespace
 
-Place Place::parse(std::string_view text) {
+Address Address::parse(std::string_view text) {
   constexpr std::string_view scheme = "unix:";
   constexpr size_t longestPath = 107; // sockaddr_un
-  Place place;
+  Address address;
   if (text.starts_with(scheme)) {
-    place.path = text.substr(scheme.size());
-    if (place.path.empty()) refuse(text, "the path is missing");
-    if (place.path.size() > longestPath)
+    address.path = text.substr(scheme.size());
+    if (address.path.empty()) refuse(text, "the path is missing");
+    if (address.path.size() > longestPath)
       refuse(text, fmt::format("the path has more than {} bytes", longestPath));
-    if (place.path.find('\0') != place.path.npos) refuse(text, "the path contains a zero byte");
-    return place;
+    if (address.path.find('\0') != address.path.npos) refuse(text, "the path contains a zero byte");
+    return address;
   }
   const size_t colon = text.rfind(':');
   if (colon == text.npos) refuse(text, "the port is missing; 0 is any free one");
@@ -40,14 +40,14 @@ Place Place::parse(std::string_view text) {
     if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
       refuse(text, "it contains blanks or invisible characters");
   const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), place.port);
+      std::from_chars(digits.data(), digits.data() + digits.size(), address.port);
   if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
     refuse(text, "a port is a number from 0 to 65535");
-  place.host = host.empty() ? "127.0.0.1" : host;
-  return place;
+  address.host = host.empty() ? "127.0.0.1" : host;
+  return address;
 }
 
-std::string Place::text(uint16_t withPort) const {
+std::string Address::text(uint16_t withPort) const {
   if (isPath()) return "unix:" + path;
   return fmt::format("{}:{}", host.find(':') == host.npos ? host : "[" + host + "]", withPort);
 }

@@ -1,4 +1,4 @@
-// place.h: The address of --control: HOST:PORT, :PORT (this machine), or unix:PATH.
+// address.h: The address of --control: HOST:PORT, :PORT (this machine), or unix:PATH.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,15 @@
 
 namespace vv::control {
 
-struct Place {
+struct Address {
   std::string host; // without brackets; "" for a unix socket
   uint16_t port = 0;
   std::string path; // the path of a unix socket
 
   // Throws UsageError.
-  static Place parse(std::string_view text);
+  static Address parse(std::string_view text);
   bool isPath() const { return !path.empty(); }
-  // Returns the place as parse() reads it, with another port.
+  // Returns the address as parse() reads it, with another port.
   std::string text(uint16_t withPort) const;
 };
 

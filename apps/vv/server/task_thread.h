@@ -1,5 +1,5 @@
-// worker.h: Does tasks one after the other on a thread of its own, so that the loop of the server
-// does not wait for the encoding of pictures. [functions: any thread]
+// task_thread.h: Does tasks one after the other on a thread of its own, so that the loop of the
+// server does not wait for the encoding of pictures. [functions: any thread]
 #pragma once
 
 #include <condition_variable>
@@ -10,11 +10,11 @@
 
 namespace vv::server {
 
-class Worker {
+class TaskThread {
  public:
-  Worker() : thread_([this] { run(); }) {}
+  TaskThread() : thread_([this] { run(); }) {}
   // Ends after the present task; others that wait are dropped.
-  ~Worker() {
+  ~TaskThread() {
     {
       const std::lock_guard lock(mutex_);
       ending_ = true;
@@ -22,8 +22,8 @@ class Worker {
     changed_.notify_all();
     thread_.join();
   }
-  Worker(const Worker&) = delete;
-  Worker& operator=(const Worker&) = delete;
+  TaskThread(const TaskThread&) = delete;
+  TaskThread& operator=(const TaskThread&) = delete;
 
   // task: must not throw.
   void post(std::function<void()> task) {
