@@ -128,4 +128,8 @@ bool wantsError(const edit::FrameSettingsT& frame) {
   return (frame.channels & (RT_ERROR | RT_TRUST)) || frame.targetError > 0 || frame.timeLimit > 0;
 }
 
+bool showsNoLight(const edit::FrameSettingsT& frame) {
+  return !(frame.channels & (RT_RGBA | RT_VARIANCE)) && !wantsError(frame);
+}
+
 } // namespace openrt

@@ -36,6 +36,9 @@ const QualitySetting* findQuality(RTenum quality);
 const char* invalidQuality(const edit::FrameSettingsT& frame);
 // Returns whether the frame's settings request error estimates.
 bool wantsError(const edit::FrameSettingsT& frame);
+// Returns whether a frame shows no light: its channels and settings need neither radiance nor
+// errors.
+bool showsNoLight(const edit::FrameSettingsT& frame);
 
 inline constexpr uint32_t largestTile = 128; // largest tile edge in pixels
 

@@ -21,10 +21,10 @@
 #include "render/lights/shadows.h"
 #include "render/medium/containing_media.h"
 #include "render/medium/medium_lights.h"
-#include "render/path/guides.h"
 #include "render/path/photon_pass.h"
 #include "render/path/transport.h"
 #include "render/wave/nearest_hits.h"
+#include "scene/quality.h"
 #include "scene/transports.h"
 #include "steady_clock.h"
 

@@ -77,7 +77,7 @@ HWY_AFTER_NAMESPACE();
 #include <cmath>
 
 #include "render/lights/shadows.h"
-#include "render/path/guides.h"
+#include "render/path/first_hits.h"
 
 namespace openrt {
 HWY_EXPORT(lightOfHits);
@@ -123,7 +123,7 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
     if (!ray.flags.deflected()) found.alpha[ray.path] += covered / 3;
     if (found.first[ray.path]) {
       found.first[ray.path] = 0;
-      if (!found.guides || !found.guides->takeShading(batch, i, transmission))
+      if (!found.firstHits || !found.firstHits->takeShading(batch, i, transmission))
         found.storeFirst(*batch.scene, *batch.points, i, ray.path, shaded.albedo);
     }
     if (through <= 1e-6f)
@@ -153,7 +153,7 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLigh
     if (!states.flagsOf(lane).deflected()) found.alpha[path] += alpha[i];
     if (found.first[path] && boundaries.visibleAt(i)) {
       found.first[path] = 0;
-      if (!found.guides || !found.guides->takeSurface(batch, boundaries, i))
+      if (!found.firstHits || !found.firstHits->takeSurface(batch, boundaries, i))
         found.storeFirst(*batch.scene, *batch.points, i, path, surface.albedo);
     }
   }

@@ -7,7 +7,6 @@
 
 #include "render/film/error.h"
 #include "render/lights/light_sources.h"
-#include "render/path/guides.h"
 #include "render/path/light_tracer.h"
 #include "render/path/tile.h"
 #include "render/wave/sampler.h"

@@ -124,22 +124,22 @@ void TileRenderer::renderPaths(bool light, Wave& wave, PixelSamples& found) {
     follow(wave, found);
     return noteFoundLight(n, found);
   }
-  guides_.begin(wave.rays);
+  firstHits_.begin(wave.rays);
   if (showsNoLight_) {
-    guides_.describe(context_, wave, found);
+    firstHits_.describe(context_, wave, found);
   } else if (!light) {
     describe(wave, found);
   } else {
-    if (scene_.frame.followImages) found.guides = &guides_;
+    if (scene_.frame.followImages) found.firstHits = &firstHits_;
     if (scattersInMedia()) describeBehindMedia(wave, found);
     follow(wave, found);
   }
-  guides_.finish(found);
+  firstHits_.finish(found);
 }
 
 // Finds what pixels without light see, and the light of the environment where they see it.
 void TileRenderer::describe(Wave& wave, PixelSamples& found) {
-  guides_.describe(context_, wave, found);
+  firstHits_.describe(context_, wave, found);
   addEnvironment(context_, wave, unsampled_, found);
   found.complete = arena_.takeZero<uint8_t>(wave.rays.count);
   for (const uint32_t lane : wave.missed) found.complete[wave.states.path[lane]] = 1;

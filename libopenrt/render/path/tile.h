@@ -12,8 +12,8 @@
 #include "render/film/ledger.h"
 #include "render/film/sums.h"
 #include "render/lights/unsampled_lights.h"
+#include "render/path/first_hits.h"
 #include "render/path/guided_rays.h"
-#include "render/path/guides.h"
 #include "render/path/light_path_bound.h"
 #include "render/path/spawn_rays.h"
 #include "render/surface/sent_light.h"
@@ -22,6 +22,7 @@
 #include "render/wave/random_numbers.h"
 #include "render/wave/tiles.h"
 #include "render/wave/wave.h"
+#include "scene/quality.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -127,7 +128,7 @@ class TileRenderer {
   // 1 where there is no light to save, or a plug-in follows it
   const uint32_t lightStride_{
       showsNoLight_ || scene_.transport.shaderClass ? 1 : lightStrideOf(scene_.frame)};
-  Guides guides_{scene_, arena_, counters_};
+  FirstHits firstHits_{scene_, arena_, counters_};
   UnsampledLights unsampled_{scene_, ledger_};
   Tile tile_;
   TileFootprint footprint_{}; // footprint of the tile; if light paths tell what it may lack

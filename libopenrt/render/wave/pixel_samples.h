@@ -9,7 +9,7 @@
 
 namespace openrt {
 
-class Guides;
+class FirstHits;
 
 struct PixelSamples { // all arrays are indexed by path
   float *radiance[3], *alpha;
@@ -21,7 +21,7 @@ struct PixelSamples { // all arrays are indexed by path
   // Pixels without light: 1 where the path has all of its light, because it leaves the scene at
   // once. Null: all paths have theirs.
   uint8_t* complete = nullptr;
-  Guides* guides = nullptr; // RT_FOLLOW_IMAGES; null: first surfaces are recorded as they are
+  FirstHits* firstHits = nullptr; // RT_FOLLOW_IMAGES; null: first surfaces are recorded as they are
 
   // Allocates radiance and alpha, 0, of n paths. The first surfaces are not recorded.
   void allocate(Arena& arena, uint32_t n);

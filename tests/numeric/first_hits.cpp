@@ -1,4 +1,4 @@
-// guides.cpp: RT_FOLLOW_IMAGES against closed forms: what is seen in mirrors and through smooth
+// first_hits.cpp: RT_FOLLOW_IMAGES against closed forms: what is seen in mirrors and through smooth
 // glass, how it moves, and that the light of a picture does not depend on it. Frames without light.
 #include <cstring>
 
@@ -17,7 +17,7 @@ struct Surface {
   Vec normal, albedo, position, motion;
 };
 
-class Guides : public Scene {
+class FirstHits : public Scene {
  protected:
   void SetUp() override {
     Scene::SetUp();
@@ -77,7 +77,7 @@ class Guides : public Scene {
   }
 };
 
-TEST_F(Guides, DescribeTheImageInAMirror) {
+TEST_F(FirstHits, DescribeTheImageInAMirror) {
   placeAt(0, namedSquare(1, mirror()));
   placeAt(30, namedSquare(2, painted()), true); // above the camera, facing down
   Surface s = see();
@@ -94,7 +94,7 @@ TEST_F(Guides, DescribeTheImageInAMirror) {
   expectVector(s.albedo, {.5, .5, .5});
 }
 
-TEST_F(Guides, DescribeNoImageThatTheTransportDoesNotShow) {
+TEST_F(FirstHits, DescribeNoImageThatTheTransportDoesNotShow) {
   placeAt(0, namedSquare(1, mirror()));
   placeAt(30, namedSquare(2, painted()), true);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_DIRECT);
@@ -105,7 +105,7 @@ TEST_F(Guides, DescribeNoImageThatTheTransportDoesNotShow) {
   }
 }
 
-TEST_F(Guides, DescribeNothingInAMirrorOfTheSky) {
+TEST_F(FirstHits, DescribeNothingInAMirrorOfTheSky) {
   placeAt(0, namedSquare(1, mirror(.75)));
   const Surface s = see();
   EXPECT_TRUE(std::isinf(s.depth));
@@ -116,7 +116,7 @@ TEST_F(Guides, DescribeNothingInAMirrorOfTheSky) {
   expectVector(s.albedo, {.75, .75, .75});
 }
 
-TEST_F(Guides, LookThroughGlass) {
+TEST_F(FirstHits, LookThroughGlass) {
   const RTid face = namedSquare(1, Shader("Glass"));
   placeAt(2, face);
   placeAt(1, face, true);
@@ -130,7 +130,7 @@ TEST_F(Guides, LookThroughGlass) {
   expectVector(s.albedo, {.8 * clear, .4 * clear, .2 * clear});
 }
 
-TEST_F(Guides, LookThroughWhatIsTransparent) {
+TEST_F(FirstHits, LookThroughWhatIsTransparent) {
   const auto sheet = [](double transparency) {
     return Shader("VRML97").set("transparency", {transparency});
   };
@@ -150,7 +150,7 @@ TEST_F(Guides, LookThroughWhatIsTransparent) {
   }
 }
 
-TEST_F(Guides, StayAtSurfacesThatReflectLittle) {
+TEST_F(FirstHits, StayAtSurfacesThatReflectLittle) {
   placeAt(0, namedSquare(1, Shader("Plastic")));
   placeAt(30, namedSquare(2, painted()), true);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
@@ -159,7 +159,7 @@ TEST_F(Guides, StayAtSurfacesThatReflectLittle) {
   EXPECT_NEAR(s.depth, 20, 1e-4);
 }
 
-TEST_F(Guides, EndAfterEightSurfaces) {
+TEST_F(FirstHits, EndAfterEightSurfaces) {
   const RTid plane = namedSquare(1, mirror());
   placeAt(0, plane);
   placeAt(40, plane, true);
@@ -168,7 +168,7 @@ TEST_F(Guides, EndAfterEightSurfaces) {
   EXPECT_NEAR(s.albedo.x, std::pow(.5, 9), 1e-6) << "eight mirrors and the ninth's own";
 }
 
-TEST_F(Guides, ImagesMoveAsTheirShapes) {
+TEST_F(FirstHits, ImagesMoveAsTheirShapes) {
   placeAt(0, namedSquare(1, mirror()));
   const RTid target = placeAt(30, namedSquare(2, painted()), true);
   EXPECT_TRUE(std::isnan(see().motion.x)) << "nothing was there before";
@@ -178,7 +178,7 @@ TEST_F(Guides, ImagesMoveAsTheirShapes) {
   expectVector(see().motion, {0, 0, 0}, 0);
 }
 
-TEST_F(Guides, ImagesMoveWithTheirMirrors) {
+TEST_F(FirstHits, ImagesMoveWithTheirMirrors) {
   const RTid plane = placeAt(0, namedSquare(1, mirror()));
   placeAt(30, namedSquare(2, painted()), true);
   see();
@@ -200,7 +200,7 @@ TEST_F(Guides, ImagesMoveWithTheirMirrors) {
   EXPECT_GT(std::fabs(s.motion.x), 1);
 }
 
-TEST_F(Guides, ImagesInANewMirrorAreNew) {
+TEST_F(FirstHits, ImagesInANewMirrorAreNew) {
   placeAt(30, namedSquare(2, painted()), true);
   see();
   placeAt(0, namedSquare(1, mirror()));
@@ -208,7 +208,7 @@ TEST_F(Guides, ImagesInANewMirrorAreNew) {
   expectVector(see().motion, {0, 0, 0}, 0);
 }
 
-TEST_F(Guides, AMirrorBallThatTurnsLeavesItsImagesWhereTheyAre) {
+TEST_F(FirstHits, AMirrorBallThatTurnsLeavesItsImagesWhereTheyAre) {
   const RTid placed = place(drawing::ball(mirror(), 1));
   placeAt(30, namedSquare(2, painted(), 1000), true);
   see(0, 0);
@@ -216,7 +216,7 @@ TEST_F(Guides, AMirrorBallThatTurnsLeavesItsImagesWhereTheyAre) {
   expectVector(see(0, 0).motion, {0, 0, 0}, 1e-4);
 }
 
-TEST_F(Guides, MotionSeenThroughGlassIsThatOfTheShape) {
+TEST_F(FirstHits, MotionSeenThroughGlassIsThatOfTheShape) {
   const RTid face = namedSquare(1, Shader("Glass"));
   const RTid pane = rtBeginObject(0);
   placeAt(2, face);
@@ -230,7 +230,7 @@ TEST_F(Guides, MotionSeenThroughGlassIsThatOfTheShape) {
 }
 
 // Pictures of a scene with mirrors, glass and light of all kinds.
-class GuidedPictures : public testing::Test {
+class PicturesWithFirstHits : public testing::Test {
  protected:
   static constexpr int width = 30, height = 24;
 
@@ -289,19 +289,19 @@ class GuidedPictures : public testing::Test {
   }
 };
 
-TEST_F(GuidedPictures, HaveTheLightOfPicturesWithoutGuides) {
+TEST_F(PicturesWithFirstHits, HaveTheLightOfPicturesWithoutThem) {
   constexpr uint32_t light = RT_RGBA | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
   for (const int transport :
        {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
     const Look plain{.transport = transport, .samples = 32, .channels = light | features};
-    Look guided = plain;
-    guided.follow = 1;
-    expectSame(picture(guided, light), picture(plain, light));
-    EXPECT_NE(picture(guided, features), picture(plain, features));
+    Look followed = plain;
+    followed.follow = 1;
+    expectSame(picture(followed, light), picture(plain, light));
+    EXPECT_NE(picture(followed, features), picture(plain, features));
   }
 }
 
-TEST_F(GuidedPictures, HaveTheSameBytesOnAnyNumberOfThreads) {
+TEST_F(PicturesWithFirstHits, HaveTheSameBytesOnAnyNumberOfThreads) {
   const Look one{.samples = 40, .follow = 1, .frames = 3, .channels = RT_RGBA | features};
   const std::vector<float> expected = picture(one, one.channels);
   for (const int threads : {2, 5}) {
@@ -313,7 +313,7 @@ TEST_F(GuidedPictures, HaveTheSameBytesOnAnyNumberOfThreads) {
   }
 }
 
-TEST_F(GuidedPictures, OfOneSampleDescribeTheFirstSample) {
+TEST_F(PicturesWithFirstHits, OfOneSampleDescribeTheFirstSample) {
   const Look one{.samples = 1, .follow = 1, .channels = RT_RGBA | ofFirstSample, .jitter = true};
   Look many = one;
   many.samples = 8;
@@ -322,7 +322,7 @@ TEST_F(GuidedPictures, OfOneSampleDescribeTheFirstSample) {
 
 // Every pixel gets light in one of stride x stride frames of consecutive seeds, as much as
 // it has in a frame with light everywhere, and what it shows is described in all of them.
-TEST_F(GuidedPictures, WithSparseLightHaveLightInTurn) {
+TEST_F(PicturesWithFirstHits, WithSparseLightHaveLightInTurn) {
   constexpr int pixels = width * height;
   for (const int stride : {2, 3, 4}) {
     SCOPED_TRACE(stride);
@@ -352,7 +352,7 @@ TEST_F(GuidedPictures, WithSparseLightHaveLightInTurn) {
 }
 
 // Whoever shades surfaces, the light of pixels that get none costs nothing.
-TEST_F(GuidedPictures, WithSparseLightTraceFewShadowRays) {
+TEST_F(PicturesWithFirstHits, WithSparseLightTraceFewShadowRays) {
   for (const int transport :
        {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
     SCOPED_TRACE(transport);
@@ -371,7 +371,7 @@ TEST_F(GuidedPictures, WithSparseLightTraceFewShadowRays) {
 
 // Pixels without light ask the shaders of transparent surfaces in another way than pixels with
 // light, and must find the same.
-TEST_F(GuidedPictures, WithSparseLightAreDescribedAsWithAllLight) {
+TEST_F(PicturesWithFirstHits, WithSparseLightAreDescribedAsWithAllLight) {
   for (const int transport :
        {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT})
     for (const int follow : {0, 1})
@@ -393,7 +393,7 @@ TEST_F(GuidedPictures, WithSparseLightAreDescribedAsWithAllLight) {
 
 // Normals and albedos are means over the samples of a pixel. A pixel without light has one sample,
 // at a silhouette too, where other samples would see the environment.
-TEST_F(GuidedPictures, WithSparseLightHaveOneSampleInPixelsWithoutLight) {
+TEST_F(PicturesWithFirstHits, WithSparseLightHaveOneSampleInPixelsWithoutLight) {
   const Look one{.samples = 1, .channels = RT_RGBA | RT_SAMPLES | features, .jitter = true};
   Look sparse = one;
   sparse.stride = 3;
@@ -414,13 +414,13 @@ TEST_F(GuidedPictures, WithSparseLightHaveOneSampleInPixelsWithoutLight) {
   }
 }
 
-TEST_F(GuidedPictures, FramesWithoutLightHaveAllSamplesWithAnyStride) {
+TEST_F(PicturesWithFirstHits, FramesWithoutLightHaveAllSamplesWithAnyStride) {
   Look dense{.samples = 5, .channels = features, .jitter = true}, sparse = dense;
   sparse.stride = 3;
   expectSame(picture(sparse, features), picture(dense, features));
 }
 
-TEST_F(GuidedPictures, WithoutLightFollowNone) {
+TEST_F(PicturesWithFirstHits, WithoutLightFollowNone) {
   for (const int follow : {0, 1})
     for (const int transport :
          {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {

@@ -1,4 +1,4 @@
-#include "render/path/guides.h"
+#include "render/path/first_hits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ Matrix4d reflectionAt(const Vec3d& point, const Vec3d& normal) {
 bool smoothLobe(const RtsLobe& rough, uint32_t i, RtsLobe& smooth) {
   const bool glossy = rough.kind == RTS_LOBE_GLOSSY;
   if (!glossy && rough.kind != RTS_LOBE_ROUGH_DIELECTRIC) return false;
-  if (!(rough.parameter[glossy ? 0 : 1][i] <= Guides::nearlySmooth)) return false;
+  if (!(rough.parameter[glossy ? 0 : 1][i] <= FirstHits::nearlySmooth)) return false;
   smooth = rough;
   smooth.kind = glossy ? RTS_LOBE_REFLECTION : RTS_LOBE_DIELECTRIC;
   return true;
@@ -49,10 +49,6 @@ float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
 
 } // namespace
 
-bool showsNoLight(const edit::FrameSettingsT& frame) {
-  return !(frame.channels & (RT_RGBA | RT_VARIANCE)) && !wantsError(frame);
-}
-
 // Returns whether the hits of a class are described by lobes: as where the light of a frame is
 // computed (TileRenderer::shadeByLobes and shadeByShade), and in frames without light wherever that
 // is possible, because `shade` would ask for light.
@@ -61,10 +57,10 @@ static bool usesLobes(const RtsClass& shaderClass, const edit::FrameSettingsT& f
   return shaderClass.surface && (!shaderClass.shade || byLobes || showsNoLight(frame));
 }
 
-Guides::Guides(const RenderScene& scene, Arena& arena, RayCounters& counters)
+FirstHits::FirstHits(const RenderScene& scene, Arena& arena, RayCounters& counters)
     : scene_(scene), arena_(arena), counters_(counters), follows_(scene.frame.followImages) {}
 
-void Guides::begin(const Rays& camera) {
+void FirstHits::begin(const Rays& camera) {
   for (int k = 0; k < 3; k++) {
     origin_[k] = camera.org[k];
     direction_[k] = camera.dir[k];
@@ -75,12 +71,12 @@ void Guides::begin(const Rays& camera) {
   if (follows_ && images_.size() < paths_) images_.resize(paths_);
 }
 
-void Guides::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
+void FirstHits::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
   intersectWave(context, WaveSource::camera, wave);
   visit(context, wave, found);
 }
 
-void Guides::finish(PixelSamples& found) {
+void FirstHits::finish(PixelSamples& found) {
   for (surface_ = 1; !next_.empty(); surface_++) {
     std::swap(queue_, next_);
     next_.clear();
@@ -96,11 +92,11 @@ void Guides::finish(PixelSamples& found) {
 }
 
 // Returns whether what the path hits is described, whatever it is.
-bool Guides::isLast(PathFlags path) const {
+bool FirstHits::isLast(PathFlags path) const {
   return surface_ >= mostSurfaces + std::min(path.passages(), mostPassages);
 }
 
-void Guides::visit(const StageContext& context, Wave& wave, PixelSamples& found) {
+void FirstHits::visit(const StageContext& context, Wave& wave, PixelSamples& found) {
   ArenaScope scope(arena_);
   for (const uint32_t lane : wave.missed) // the sky in a mirror has the tint of the mirror
     if (found.albedo[0] && wave.states.flagsOf(lane).deflected())
@@ -110,8 +106,9 @@ void Guides::visit(const StageContext& context, Wave& wave, PixelSamples& found)
   });
 }
 
-void Guides::describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
-                            const PathStates& states, PixelSamples& found) {
+void FirstHits::describeBucket(const StageContext& context, const Points& points,
+                               const Bucket& bucket, const PathStates& states,
+                               PixelSamples& found) {
   const RtsClass& shaderClass = *bucket.shaderClass;
   const uint32_t n = points.hits.count;
   const auto isLastAt = [&](uint32_t i) { return isLast(states.flagsOf(points.order[i])); };
@@ -155,8 +152,8 @@ void Guides::describeBucket(const StageContext& context, const Points& points, c
 }
 
 // Finds the direction in which the image at a hit is seen. Returns false if none is.
-bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i,
-                      Lead& lead) const {
+bool FirstHits::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i,
+                         Lead& lead) const {
   const RtsHits& hits = batch.points->hits;
   const Vec3f g = load(hits.geometric, i);
   const bool follows = followsImages(scene_.frame.transport);
@@ -198,7 +195,7 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
   return isFinite(lead.direction) && isFinite(lead.tint);
 }
 
-bool Guides::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i) {
+bool FirstHits::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i) {
   Lead lead;
   if (!follows_ || !findLead(batch, boundaries, i, lead)) return false;
   const MediaStack& media = (*batch.states).media[batch.order[i]];
@@ -207,7 +204,7 @@ bool Guides::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, ui
   return true;
 }
 
-bool Guides::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission) {
+bool FirstHits::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission) {
   constexpr Vec3f one{1, 1, 1};
   const Vec3f tint = min(max(Vec3f(), transmission), one); // NaN: opaque
   if (!follows_ || !(mean(tint) >= leastTransmission)) return false;
@@ -217,9 +214,9 @@ bool Guides::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmi
   return true;
 }
 
-// Queues the guide ray that leaves hit i.
-void Guides::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
-                   Step step) {
+// Queues the first-hit ray that leaves hit i.
+void FirstHits::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
+                      Step step) {
   const RayState from = (*batch.states)[batch.order[i]];
   RayState to{.throughput = from.throughput * lead.tint,
               .travelled = batch.points->hits.distance[i],
@@ -238,7 +235,7 @@ void Guides::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const Me
 }
 
 // Adds the mirror at hit i, which sends the ray to `out`, to those that an image is seen in.
-void Guides::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const {
+void FirstHits::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const {
   const Points& points = *batch.points;
   Plane now{Vec3d(load(points.hits.position, i)),
             normalize(Vec3d(out) - Vec3d(load(points.hits.direction, i)))};
@@ -252,8 +249,8 @@ void Guides::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image&
 }
 
 // Records what is seen at hit i as the first surface of its path.
-void Guides::store(const RtsBatch& batch, uint32_t i, float* const albedo[3],
-                   PixelSamples& found) const {
+void FirstHits::store(const RtsBatch& batch, uint32_t i, float* const albedo[3],
+                      PixelSamples& found) const {
   const Points& points = *batch.points;
   const RayState ray = (*batch.states)[batch.order[i]];
   found.storeFirst(scene_, points, i, ray.path, albedo);
@@ -280,7 +277,7 @@ void Guides::store(const RtsBatch& batch, uint32_t i, float* const albedo[3],
 }
 
 // place and motion: of the point that is seen, in render space.
-Vec3d Guides::motionOfImage(const Vec3d& place, const Vec3d& motion, const Image& image) const {
+Vec3d FirstHits::motionOfImage(const Vec3d& place, const Vec3d& motion, const Image& image) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (image.mirrorNew) return {nan, nan, nan};
   if (!image.mirrorMoved) return image.now.direction(motion);

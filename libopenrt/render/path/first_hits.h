@@ -1,11 +1,12 @@
-// guides.h: what the channels of the first hit describe (RT_DEPTH, RT_NORMAL, RT_ALBEDO,
+// first_hits.h: what the channels of the first hit describe (RT_DEPTH, RT_NORMAL, RT_ALBEDO,
 // RT_POSITION, RT_NAME, RT_MOTION), apart from the light that is followed. [render]
 //
 // With RT_FOLLOW_IMAGES they describe what is seen in smooth mirrors and through smooth glass.
-// Where the specular lobes of a hit clearly carry more than its other lobes, a guide ray follows
-// the heavier one of reflection and transmission, without random numbers, up to `mostSurfaces`
-// times. The image that is seen lies on the ray of the camera, as far away as the light has
-// travelled. Its normal and its motion are those of the surface, taken back through the mirrors.
+// Where the specular lobes of a hit clearly carry more than its other lobes, a first-hit ray
+// follows the heavier one of reflection and transmission, without random numbers, up to
+// `mostSurfaces` times. The image that is seen lies on the ray of the camera, as far away as the
+// light has travelled. Its normal and its motion are those of the surface, taken back through the
+// mirrors.
 //
 // In frames without any channel of light, this is all that is done.
 #pragma once
@@ -19,13 +20,9 @@
 
 namespace openrt {
 
-// Returns whether a frame shows no light: its channels and settings need neither radiance nor
-// errors.
-bool showsNoLight(const edit::FrameSettingsT& frame);
-
-class Guides {
+class FirstHits {
  public:
-  Guides(const RenderScene& scene, Arena& arena, RayCounters& counters);
+  FirstHits(const RenderScene& scene, Arena& arena, RayCounters& counters);
 
   // Begins with the camera rays of a wave, by path. They must keep their place until finish().
   void begin(const Rays& camera);
@@ -59,7 +56,7 @@ class Guides {
     Vec3f direction, tint{1, 1, 1};
     bool reflected = false, straight = false;
   };
-  // Says what a guide ray does at a hit: it passes a boundary that has no effect, or follows an
+  // Says what a first-hit ray does at a hit: it passes a boundary that has no effect, or follows an
   // image.
   enum class Step : uint8_t { pass, image };
   void visit(const StageContext& context, Wave& wave, PixelSamples& found);
