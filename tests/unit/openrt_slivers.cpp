@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 #include "backend/local/sliver_lanes.h"
 #include "backend/local/sliver_pieces.h"
 

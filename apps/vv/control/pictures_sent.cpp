@@ -65,7 +65,7 @@ uint32_t channelsOf(const Render& render, uint32_t usual) {
   return channels;
 }
 
-struct Encoding::Job {
+struct Encoding::Task {
   picture::Picture picture;
   uint32_t channels = 0;
   Render render;
@@ -74,15 +74,15 @@ struct Encoding::Job {
 };
 
 Encoding::Encoding(picture::Picture picture, uint32_t channels, const Render& render)
-    : job_(std::make_shared<Job>()) {
-  job_->picture = std::move(picture);
-  job_->channels = channels;
-  job_->render = render;
+    : task_(std::make_shared<Task>()) {
+  task_->picture = std::move(picture);
+  task_->channels = channels;
+  task_->render = render;
   ++threads;
   try {
-    std::thread([job = job_]() mutable {
-      job->answer.set_value(encoded(job->picture, job->channels, job->render));
-      job = nullptr; // frees the picture before the process may end
+    std::thread([task = task_]() mutable {
+      task->answer.set_value(encoded(task->picture, task->channels, task->render));
+      task = nullptr; // frees the picture before the process may end
       --threads;
     }).detach();
   } catch (...) {
@@ -92,10 +92,11 @@ Encoding::Encoding(picture::Picture picture, uint32_t channels, const Render& re
 }
 
 bool Encoding::hasEnded(double seconds) const {
-  return job_->future.wait_for(std::chrono::duration<double>(seconds)) == std::future_status::ready;
+  return task_->future.wait_for(std::chrono::duration<double>(seconds)) ==
+         std::future_status::ready;
 }
 
-Encoded Encoding::take() { return job_->future.get(); }
+Encoded Encoding::take() { return task_->future.get(); }
 
 bool Encoding::working() { return threads > 0; }
 

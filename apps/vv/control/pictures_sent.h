@@ -39,8 +39,8 @@ class Encoding {
   static bool working();
 
  private:
-  struct Job;
-  std::shared_ptr<Job> job_;
+  struct Task;
+  std::shared_ptr<Task> task_;
 };
 
 // Returns bytes in base64 (RFC 4648, section 4).

@@ -47,7 +47,7 @@ double secondsSince(Clock::time_point start) {
 }
 
 // A picture to render: its camera, and the name that identifies it.
-struct Job {
+struct PictureRequest {
   picture::View view;
   PictureName name;
   bool turns = true;   // the picture is part of the run's films
@@ -55,22 +55,22 @@ struct Job {
 };
 
 // Returns the views of one moment. The turntable goes round from the first side of --from.
-std::vector<Job> chooseJobs(const Options& options, const picture::View& view,
-                            const std::vector<xvrml::ViewpointInfo>& viewpoints,
-                            bool first = true) {
+std::vector<PictureRequest> chooseRequests(const Options& options, const picture::View& view,
+                                           const std::vector<xvrml::ViewpointInfo>& viewpoints,
+                                           bool first = true) {
   if (options.from.size() > 1) {
-    std::vector<Job> jobs;
+    std::vector<PictureRequest> requests;
     for (const picture::Side side : options.from) {
-      jobs.push_back({view, {picture::sideName(side), {}}});
-      jobs.back().view.side = side;
-      jobs.back().view.turns = options.turntable > 0 && jobs.size() == 1;
+      requests.push_back({view, {picture::sideName(side), {}}});
+      requests.back().view.side = side;
+      requests.back().view.turns = options.turntable > 0 && requests.size() == 1;
       if (options.turntable > 0 && !first) break;
     }
-    return jobs;
+    return requests;
   }
   if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty()))
     return {{view, {}}};
-  std::vector<Job> jobs;
+  std::vector<PictureRequest> requests;
   if (options.allViewpoints()) {
     std::set<std::string> taken;
     for (size_t i = 0; i < viewpoints.size(); ++i) {
@@ -79,10 +79,10 @@ std::vector<Job> chooseJobs(const Options& options, const picture::View& view,
       if (name.empty() || name.size() > 100 || taken.count(name))
         name = std::to_string(i) + (name.empty() || name.size() > 100 ? "" : "-" + name);
       taken.insert(name);
-      jobs.push_back({view, {name, {}}});
-      jobs.back().view.viewpoint = i;
+      requests.push_back({view, {name, {}}});
+      requests.back().view.viewpoint = i;
     }
-    return jobs;
+    return requests;
   }
   const int index = picture::findViewpoint(viewpoints, options.viewpoint);
   if (index < 0) {
@@ -103,9 +103,9 @@ std::vector<Job> chooseJobs(const Options& options, const picture::View& view,
                     near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
                     viewpoints.empty() ? "it has no viewpoints" : "its viewpoints are " + known)};
   }
-  jobs.push_back({view, {}});
-  jobs.back().view.viewpoint = size_t(index);
-  return jobs;
+  requests.push_back({view, {}});
+  requests.back().view.viewpoint = size_t(index);
+  return requests;
 }
 
 // Writes a file of -o or --raw. Errors name the option.
@@ -166,15 +166,16 @@ class Pictures {
       if (!clock.advance(instantOf(moment)))
         return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
                                  : finishOldest();
-      std::vector<Job> jobs = pilot_ ? std::vector<Job>{scriptedJob()}
-                                     : chooseJobs(options_, view_, renderer.viewpoints(), i == 0);
-      views_ = jobs.size();
-      for (Job& job : jobs) {
-        job.turns = !options_.turnsFirstSide() || &job == &jobs.front();
-        job.isStill = i == 0 || !options_.turnsIntoFilm();
-        if (job.turns && !options_.turnsIntoFilm()) job.name.frame = moment.frame;
-        job.view.turn = moment.turn;
-        if (const int code = makeOne(job, moment); code != exitDone) return code;
+      std::vector<PictureRequest> requests =
+          pilot_ ? std::vector<PictureRequest>{scriptedRequest()}
+                 : chooseRequests(options_, view_, renderer.viewpoints(), i == 0);
+      views_ = requests.size();
+      for (PictureRequest& request : requests) {
+        request.turns = !options_.turnsFirstSide() || &request == &requests.front();
+        request.isStill = i == 0 || !options_.turnsIntoFilm();
+        if (request.turns && !options_.turnsIntoFilm()) request.name.frame = moment.frame;
+        request.view.turn = moment.turn;
+        if (const int code = makeOne(request, moment); code != exitDone) return code;
       }
     }
     while (!inFlight_.empty())
@@ -252,11 +253,11 @@ class Pictures {
       browser_.tick(time);
   }
 
-  Job scriptedJob() {
-    Job job;
-    job.view.shader = options_.view.shader;
-    job.view.intrinsics = options_.view.intrinsics;
-    job.view.viewer = pilot_->camera();
+  PictureRequest scriptedRequest() {
+    PictureRequest request;
+    request.view.shader = options_.view.shader;
+    request.view.intrinsics = options_.view.intrinsics;
+    request.view.viewer = pilot_->camera();
     renderer_->change([this](picture::RenderSettings& s) {
       const std::optional<bool> switched = pilot_->headlight();
       s.headlight = options_.render.headlight;
@@ -266,7 +267,7 @@ class Pictures {
         s.headlight =
             *switched ? xvrml::MapOptions::Headlight::on : xvrml::MapOptions::Headlight::off;
     });
-    return job;
+    return request;
   }
 
   // Makes the renderer, which maps the shapes of the world.
@@ -297,7 +298,7 @@ class Pictures {
     picture::Picture soFar;
     if (!inFlight_.empty() && saveWanted_ && renderer_->snapshot(soFar)) {
       saveWanted_ = false;
-      savePart(inFlight_.front().job, soFar);
+      savePart(inFlight_.front().request, soFar);
     }
     if (secondsInterrupted() >= stuckSeconds(options_.render)) giveUp(soFar);
     return interrupted() || (checkpoint_ && checkpoint_->timeIsUp());
@@ -332,7 +333,7 @@ class Pictures {
     const bool saved = !inFlight_.empty() && renderer_->snapshot(soFar);
     if (checkpoint_) saveSums();
     interruptHandled();
-    if (saved) savePart(inFlight_.front().job, soFar);
+    if (saved) savePart(inFlight_.front().request, soFar);
     try {
       finishSequence();
     } catch (const std::exception& error) { sayWarning(error.what()); }
@@ -354,12 +355,12 @@ class Pictures {
 
   // Starts a picture. Keeps as many frames in flight as there are machines to work on them, and
   // saves them in order.
-  int makeOne(const Job& job, const Moment& moment) {
-    if (options_.audit) return auditOne(job);
-    if (checkpoint_) return makeKept(job, moment);
-    if (!progress_) progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
-    renderer_->start(job.view);
-    inFlight_.push_back({job, moment});
+  int makeOne(const PictureRequest& request, const Moment& moment) {
+    if (options_.audit) return auditOne(request);
+    if (checkpoint_) return makeKept(request, moment);
+    if (!progress_) progress_ = std::make_unique<Progress>(request.name.text(), options_.quiet);
+    renderer_->start(request.view);
+    inFlight_.push_back({request, moment});
     const size_t most = options_.strict ? 1 : renderer_->maxFramesInFlight();
     while (inFlight_.size() >= most)
       if (const int code = finishOldest(); code != exitDone) return code;
@@ -367,17 +368,18 @@ class Pictures {
   }
 
   // Makes a picture whose sums are kept: seed by seed, from where the file of --resume ends.
-  int makeKept(const Job& job, const Moment& moment) {
+  int makeKept(const PictureRequest& request, const Moment& moment) {
     const SeedRange& seeds = options_.seeds;
     for (uint32_t seed = checkpoint_->firstSeed(); seed <= seeds.last; ++seed) {
-      const std::string what = seeds.count() > 1 ? fmt::format("seed {}", seed) : job.name.text();
+      const std::string what =
+          seeds.count() > 1 ? fmt::format("seed {}", seed) : request.name.text();
       progress_ = std::make_unique<Progress>(what, options_.quiet);
       renderer_->change([&](picture::RenderSettings& s) { s.quality.set(RT_SEED, double(seed)); });
       if (const picture::Sums sums = checkpoint_->begin(seed)) renderer_->continueFrom(sums);
-      inFlight_.push_back({job, moment});
+      inFlight_.push_back({request, moment});
       picture::RenderResult result;
       try {
-        renderer_->start(job.view);
+        renderer_->start(request.view);
         result = renderer_->finish();
       } catch (const picture::RenderError& error) {
         if (error.code != RT_SUMS_ERROR || !checkpoint_->writes()) throw;
@@ -399,7 +401,7 @@ class Pictures {
       const bool saved = saveEnded(sums, result.picture.names);
       if (result.interrupted) {
         // A picture that had not begun does not replace the one of an earlier run.
-        if (sums && seeds.count() == 1) finish(job, moment, result);
+        if (sums && seeds.count() == 1) finish(request, moment, result);
         if (saved) return endUnfinished();
         stopped("vv: the picture is not finished");
         return exitRender;
@@ -419,7 +421,7 @@ class Pictures {
               .compositeOver(rgba->second, result.picture.width, result.picture.height);
         useStatsOf(all, result.stats);
       }
-      finish(job, moment, result);
+      finish(request, moment, result);
       if (!saved) return exitRender;
     }
     return exitDone;
@@ -456,7 +458,7 @@ class Pictures {
 
   // Waits for the oldest frame and saves it.
   int finishOldest() {
-    if (progress_) progress_->rename(inFlight_.front().job.name.text());
+    if (progress_) progress_->rename(inFlight_.front().request.name.text());
     picture::RenderResult result = renderer_->finish();
     interruptHandled();
     const FrameInFlight flight = std::move(inFlight_.front());
@@ -473,7 +475,7 @@ class Pictures {
                            done_ > 1 ? "no further picture" : "nothing"));
       return result.missing ? exitMissing : exitProblems;
     }
-    finish(flight.job, flight.moment, result);
+    finish(flight.request, flight.moment, result);
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
   }
 
@@ -483,10 +485,11 @@ class Pictures {
   // Writes the readings of the sensors.
   int measure() {
     progress_ = std::make_unique<Progress>("sensors", options_.quiet);
-    const std::vector<Job> jobs = chooseJobs(options_, view_, renderer_->viewpoints());
+    const std::vector<PictureRequest> requests =
+        chooseRequests(options_, view_, renderer_->viewpoints());
     std::vector<picture::Measurement> sensors;
     try {
-      sensors = renderer_->measure(jobs[0].view);
+      sensors = renderer_->measure(requests[0].view);
     } catch (const picture::SensorError& wrong) {
       progress_.reset();
       throw Failure{exitProblems, wrong.what()};
@@ -509,19 +512,20 @@ class Pictures {
     return interrupted() ? stopped("vv: interrupted; the readings so far are saved") : exitDone;
   }
 
-  int auditOne(const Job& job) {
+  int auditOne(const PictureRequest& request) {
     Audit audit(options_, *renderer_);
     audit.setProgress([this](const std::string& what) {
       progress_.reset();
       if (!what.empty()) progress_ = std::make_unique<Progress>(what, options_.quiet);
     });
-    const bool finished = audit.run(job.view);
+    const bool finished = audit.run(request.view);
     progress_.reset();
     problems_.tell(browser_.world());
     if (!finished) return stopped("vv: interrupted before the audit was finished");
     writeOut(audit.text());
     for (const Output& output : options_.outputs)
-      writeOutput(output, pathFor(output.path, job.name), output.format->encode(audit.picture()));
+      writeOutput(output, pathFor(output.path, request.name),
+                  output.format->encode(audit.picture()));
     return audit.good() ? exitDone : exitProblems;
   }
 
@@ -552,12 +556,13 @@ class Pictures {
 
   // coloured: the picture in false colours, for files that are made for screens. complete: it is
   // finished. only: the options whose files are written; every other file is left as it is.
-  void writePictures(const Job& job, const picture::Picture& made,
+  void writePictures(const PictureRequest& request, const picture::Picture& made,
                      const std::optional<picture::Picture>& coloured, bool complete,
                      Which only = Which::all) {
     const picture::Picture wanted = picture::withChannels(made, options_.render.channels);
     for (const Output& output : options_.outputs) {
-      if (output.film != picture::FilmKind::none || !job.isStill || !isOf(output, only)) continue;
+      if (output.film != picture::FilmKind::none || !request.isStill || !isOf(output, only))
+        continue;
       const bool shows = coloured && output.format->appliesCurve;
       std::string bytes = output.format->encode(shows ? *coloured : wanted);
       if (options_.sums && complete && output.format->encode == picture::encodeExr)
@@ -566,17 +571,18 @@ class Pictures {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
         continue;
       }
-      const std::string path = pathFor(output.path, job.name);
+      const std::string path = pathFor(output.path, request.name);
       protectFilesOf(browser_.world(), path);
       writeOutput(output, path, bytes);
     }
   }
 
   // Adds a picture to the film of its view.
-  void addToFilms(const Job& job, const picture::Picture& made, Which only = Which::all) {
+  void addToFilms(const PictureRequest& request, const picture::Picture& made,
+                  Which only = Which::all) {
     for (const Output& output : options_.outputs) {
-      if (output.film == picture::FilmKind::none || !job.turns || !isOf(output, only)) continue;
-      const std::string path = pathFor(output.path, {job.name.viewpoint, {}});
+      if (output.film == picture::FilmKind::none || !request.turns || !isOf(output, only)) continue;
+      const std::string path = pathFor(output.path, {request.name.viewpoint, {}});
       auto& [of, film] = films_[path];
       of = &output;
       try {
@@ -591,11 +597,11 @@ class Pictures {
   }
 
   // Saves the picture so far. A failure to write this copy does not stop the picture.
-  void savePart(const Job& job, picture::Picture soFar) {
+  void savePart(const PictureRequest& request, picture::Picture soFar) {
     try {
       if (options_.fitExposure)
         soFar.view.exposure = exposure_ ? *exposure_ : picture::fittingExposure(soFar);
-      writePictures(job, soFar, inFalseColours(soFar, false), false);
+      writePictures(request, soFar, inFalseColours(soFar, false), false);
       if (!options_.quiet) say("vv: the picture so far is saved");
     } catch (const std::exception& error) { sayWarning(error.what()); }
   }
@@ -633,33 +639,35 @@ class Pictures {
 
   // Writes the files of --raw and denoises the picture for those of -o. A picture that was
   // interrupted stays as it is, in all files.
-  void denoise(const Job& job, picture::RenderResult& result) {
-    writePictures(job, result.picture, {}, !result.interrupted, Which::raw);
+  void denoise(const PictureRequest& request, picture::RenderResult& result) {
+    writePictures(request, result.picture, {}, !result.interrupted, Which::raw);
     if (result.interrupted) return;
-    addToFilms(job, result.picture, Which::raw);
+    addToFilms(request, result.picture, Which::raw);
     const auto start = Clock::now();
-    const StageProgress progress(job.name.text(), "denoising", options_.quiet);
+    const StageProgress progress(request.name.text(), "denoising", options_.quiet);
     if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
     result.picture = denoiser_->denoised(result.picture);
     result.denoiseSeconds = secondsSince(start);
   }
 
-  void finish(const Job& job, const Moment& moment, picture::RenderResult& result) {
+  void finish(const PictureRequest& request, const Moment& moment, picture::RenderResult& result) {
     const auto start = Clock::now();
     fitExposure(result.picture);
-    if (options_.denoise) denoise(job, result);
+    if (options_.denoise) denoise(request, result);
     sayBias(result.picture);
     if (!result.interrupted) sayBrightness(result.picture);
     const auto coloured = inFalseColours(result.picture, !result.interrupted);
-    writePictures(job, result.picture, coloured, !result.interrupted, Which::shown);
-    if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture, Which::shown);
+    writePictures(request, result.picture, coloured, !result.interrupted, Which::shown);
+    if (!result.interrupted)
+      addToFilms(request, coloured ? *coloured : result.picture, Which::shown);
     const double writeSeconds = secondsSince(start) - result.denoiseSeconds;
     if (!options_.compare.empty() && !result.interrupted)
       writeOut(compareText(result.picture, options_.compare));
     if (options_.verbose)
       say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}{}, written in {}",
-                      job.name.text(), job.name.text().empty() ? "" : ": ", result.stats.triangles,
-                      duration(result.mapSeconds), duration(result.renderSeconds),
+                      request.name.text(), request.name.text().empty() ? "" : ": ",
+                      result.stats.triangles, duration(result.mapSeconds),
+                      duration(result.renderSeconds),
                       options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
     if (options_.verbose && done_ == total()) reportLast(result);
@@ -671,19 +679,21 @@ class Pictures {
     // In a sequence, only the last picture prints a hint.
     const bool hints = !options_.isSequence() || (done_ == total() && !anythingShown_);
     if (nothing && hints && inFlight_.empty())
-      if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty())
+      if (const std::string hint = hintFor(options_, request.view, result, *renderer_);
+          !hint.empty())
         say("vv: " + hint);
     const RTstats& s = result.stats;
     if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 &&
         s.errorHalfWidth > 1.001 * options_.render.error)
-      sayWarning(fmt::format("{}{}--error promised {:.3g} %, reached {:.3g} %: {}", job.name.text(),
-                             job.name.text().empty() ? "" : ": ", 100 * options_.render.error,
-                             100 * s.errorHalfWidth, whyMissed(result)));
+      sayWarning(fmt::format("{}{}--error promised {:.3g} %, reached {:.3g} %: {}",
+                             request.name.text(), request.name.text().empty() ? "" : ": ",
+                             100 * options_.render.error, 100 * s.errorHalfWidth,
+                             whyMissed(result)));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
-      frames_.add(job.name, moment.time, result, writeSeconds);
+      frames_.add(request.name, moment.time, result, writeSeconds);
     else
-      writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
+      writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, request.name),
                 statsJson(options_, commandLine_, running(), result,
                           {startSeconds_, writeSeconds, secondsSinceStart()}));
   }
@@ -758,7 +768,7 @@ class Pictures {
   std::unique_ptr<Pilot> pilot_; // drives the world with --input; null: no --input
   std::unique_ptr<Replay> replay_;
   struct FrameInFlight {
-    Job job;
+    PictureRequest request;
     Moment moment;
   };
   std::deque<FrameInFlight> inFlight_;        // frames being rendered, oldest first

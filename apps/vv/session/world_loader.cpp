@@ -53,7 +53,7 @@ LoadOutcome useWorld(LoadAnswer answer,
   } catch (const std::exception& error) { return {error.what(), exitInput}; }
 }
 
-struct WorldLoader::Job {
+struct WorldLoader::Reading {
   LoadRequest request;
   LoadAnswer answer;
   std::atomic<bool> done{false};
@@ -62,7 +62,7 @@ struct WorldLoader::Job {
 WorldLoader::~WorldLoader() = default;
 
 void WorldLoader::begin(LoadRequest request) {
-  job_ = nullptr;
+  reading_ = nullptr;
   wanted_ = std::move(request);
   startIfPossible();
 }
@@ -70,22 +70,22 @@ void WorldLoader::begin(LoadRequest request) {
 // Reading cannot be cancelled, and Scripts may ask for worlds again and again.
 void WorldLoader::startIfPossible() {
   if (!wanted_ || threads >= mostThreads) return;
-  job_ = std::make_shared<Job>();
-  job_->request = *std::exchange(wanted_, {});
+  reading_ = std::make_shared<Reading>();
+  reading_->request = *std::exchange(wanted_, {});
   ++threads;
-  std::thread([job = job_]() mutable {
-    job->answer = load(job->request);
-    job->done = true;
-    job = nullptr; // destroys a world that nobody wants any more, before the process may end
+  std::thread([reading = reading_]() mutable {
+    reading->answer = load(reading->request);
+    reading->done = true;
+    reading = nullptr; // destroys a world that nobody wants any more, before the process may end
     --threads;
   }).detach();
 }
 
 bool WorldLoader::take(LoadAnswer& answer) {
   startIfPossible();
-  if (!job_ || !job_->done) return false;
-  answer = std::move(job_->answer);
-  job_ = nullptr;
+  if (!reading_ || !reading_->done) return false;
+  answer = std::move(reading_->answer);
+  reading_ = nullptr;
   return true;
 }
 

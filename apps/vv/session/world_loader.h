@@ -39,16 +39,16 @@ class WorldLoader {
  public:
   ~WorldLoader();
   void begin(LoadRequest request); // discards an earlier request
-  bool busy() const { return job_ || wanted_; }
+  bool busy() const { return reading_ || wanted_; }
   bool take(LoadAnswer& answer); // returns true once the answer is there
   static bool working();         // true while a thread still reads, wanted or not
 
  private:
-  struct Job;
+  struct Reading;
   void startIfPossible();
 
   std::optional<LoadRequest> wanted_; // waits until fewer threads read
-  std::shared_ptr<Job> job_;
+  std::shared_ptr<Reading> reading_;
 };
 
 } // namespace vv

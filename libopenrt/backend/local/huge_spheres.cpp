@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "backend/local/accel/embree_parts.h"
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 #include "backend/local/user_geometry.h"
 
 namespace openrt {

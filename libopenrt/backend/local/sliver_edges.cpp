@@ -121,7 +121,7 @@ std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint
     if (slivers.has(t, 0) || slivers.has(t, 1) || slivers.has(t, 2)) good.add(t);
   });
   std::vector<uint8_t> open;
-  each(TriangleShape::sliver, [&](size_t t) { // in exact.h the edges are ac, ba, cb
+  each(TriangleShape::sliver, [&](size_t t) { // in ray_triangle.h the edges are ac, ba, cb
     open.push_back(
         uint8_t((good.has(t, 2) ? 1 : 0) | (good.has(t, 0) ? 2 : 0) | (good.has(t, 1) ? 4 : 0)));
   });

@@ -15,9 +15,9 @@ enum class TriangleShape : uint8_t { good, sliver, degenerate };
 TriangleShape shapeOf(const float* a, const float* b, const float* c);
 
 // Turns good triangles that share an edge with a sliver into slivers. Returns three bits for each
-// sliver, in order: the edges that it still shares with a good triangle, numbered as in exact.h.
-// Vertices at the same position count as one. shapes: one per triangle, at least one is a sliver.
-// vertices: stride 3.
+// sliver, in order: the edges that it still shares with a good triangle, numbered as in
+// ray_triangle.h. Vertices at the same position count as one. shapes: one per triangle, at least
+// one is a sliver. vertices: stride 3.
 std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint32_t* indices,
                                   std::vector<TriangleShape>& shapes);
 

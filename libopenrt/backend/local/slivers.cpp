@@ -1,11 +1,11 @@
 // slivers.cpp: an Embree user geometry for slivers, triangles that single precision cannot
 // intersect (sliver_edges.h). Embree traverses the bounding boxes of their pieces
 // (sliver_pieces.h). Most rays of a box are rejected in single precision (sliver_lanes.h), the
-// others are intersected here in double precision (exact.h). Called by render threads.
+// others are intersected here in double precision (ray_triangle.h). Called by render threads.
 #include <bit>
 
 #include "backend/local/accel/embree_parts.h"
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 #include "backend/local/sliver_pieces.h"
 #include "backend/local/user_geometry.h"
 

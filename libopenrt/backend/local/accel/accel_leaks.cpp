@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "backend/local/accel/accel.h"
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 
 namespace openrt {
 namespace {

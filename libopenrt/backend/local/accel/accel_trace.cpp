@@ -6,7 +6,7 @@
 
 #include "backend/local/accel/accel.h"
 #include "backend/local/accel/packet_lanes.h"
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 
 namespace openrt {
 namespace {

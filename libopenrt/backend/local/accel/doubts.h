@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 #include "render/rays.h"
 #include "render/records.h"
 
@@ -64,7 +64,7 @@ struct Doubts {
                 slack = error + 0x1p-22f * largest(abs(load(rays.org, i)));
     return !((t - rays.tnear[i]) * size > slack && (rays.tfar[i] - t) * size > slack);
   }
-  // A hit at a grazing angle may lie elsewhere, or be none (exact.h).
+  // A hit at a grazing angle may lie elsewhere, or be none (ray_triangle.h).
   static bool isGrazing(const Record& r, const Vec3f& kernelNormal, const Vec3f& direction) {
     return grazes(r.instanced ? r.kernelNormal * kernelNormal : kernelNormal, direction);
   }

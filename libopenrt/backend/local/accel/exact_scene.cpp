@@ -7,7 +7,7 @@
 
 #include "backend/local/accel/bake.h"
 #include "backend/local/accel/survey.h"
-#include "backend/local/exact.h"
+#include "backend/local/ray_triangle.h"
 
 namespace openrt {
 namespace {

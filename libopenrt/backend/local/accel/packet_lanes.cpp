@@ -91,7 +91,7 @@ template <uint32_t size> struct Of {
       store(load(packet.u + i), hits.u + first + i);
       store(load(packet.v + i), hits.v + first + i);
       store(ng, hits.ng, first + i);
-      // The formula of grazes() in exact.h.
+      // The formula of grazes() in ray_triangle.h.
       const V along = dot(ng, dir);
       const M steep = along * along > value(0x1p-12f) * dot(ng, ng) * dot(dir, dir);
       met.hit |= bits(hit) << i;

@@ -29,7 +29,7 @@ uint32_t loadPacket(const Rays& rays, const float* ends, uint32_t first, uint32_
 
 struct PacketMet { // bits by ray of the packet
   uint32_t hit;    // valid rays that hit something
-  // Hits at a grazing angle, if the kernel's normal is in the frame of the ray (exact.h).
+  // Hits at a grazing angle, if the kernel's normal is in the frame of the ray (ray_triangle.h).
   uint32_t grazing;
 };
 // Copies t, u, v and the normal of all rays of a packet into `hits` from number `first` on. t is

@@ -1,6 +1,6 @@
-// exact.h: intersects a ray and a triangle in double precision, where single precision fails:
-// triangles far longer than high, rays at grazing angles, and coordinates far larger than the part
-// of the scene in view. Pure functions. [any thread]
+// ray_triangle.h: intersects a ray and a triangle in double precision, where single precision
+// fails: triangles far longer than high, rays at grazing angles, and coordinates far larger than
+// the part of the scene in view. Pure functions. [any thread]
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
-// exact.cpp: Intersects a ray and a triangle in double precision (exact.h). Numbers that double
-// precision cannot tell from 0 are recomputed in long double, which has 64 bits of mantissa on x86.
-// Such numbers, products of three differences of floats, occur for triangles a million times longer
-// than high that are hit at an angle of 1e-7.
-#include "backend/local/exact.h"
+// ray_triangle.cpp: Intersects a ray and a triangle in double precision (ray_triangle.h). Numbers
+// that double precision cannot tell from 0 are recomputed in long double, which has 64 bits of
+// mantissa on x86. Such numbers, products of three differences of floats, occur for triangles a
+// million times longer than high that are hit at an angle of 1e-7.
+#include "backend/local/ray_triangle.h"
 
 #include <algorithm>
 #include <cmath>
