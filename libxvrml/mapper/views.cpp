@@ -157,7 +157,8 @@ Vector along(const Matrix& view, const Vector& point) {
 }
 
 // points: along the axes of the view. tanX, tanY: tangents of half the angles; 0: a parallel view.
-Fit fitPoints(std::span<const Vector> points, double tanX, double tanY) {
+// clearance: least distance of the eye from what is nearest to it.
+Fit fitPoints(std::span<const Vector> points, double tanX, double tanY, double clearance) {
   Fit fit{0, 0, std::numeric_limits<double>::lowest(), 0, 0, 0};
   for (const Vector& p : points) fit.front = std::max(fit.front, p.z);
   const Reach across = reachOf(points, 0, tanX), upwards = reachOf(points, 1, tanY);
@@ -169,7 +170,7 @@ Fit fitPoints(std::span<const Vector> points, double tanX, double tanY) {
     fit.above = upwards.middle;
     return fit;
   }
-  fit.distance = std::max({fit.front, across.half / tanX, upwards.half / tanY});
+  fit.distance = std::max({fit.front + clearance, across.half / tanX, upwards.half / tanY});
   fit.right = middleFrom(points, 0, tanX, fit.distance);
   fit.above = middleFrom(points, 1, tanY, fit.distance);
   return fit;
@@ -203,7 +204,9 @@ CameraSettings cameraAround(std::span<const Vector> points, const double view[16
   seen.reserve(points.size());
   for (const Vector& p : points) seen.push_back(along(axes, p - center));
   const double tanY = std::tan(camera.fovy / 2) / margin, size = (high - low).length();
-  const Fit fit = fitPoints(seen, tanY * ratio, tanY);
+  // A spire that is seen from its tip fits at any distance from the tip.
+  constexpr double leastClearance = .05;
+  const Fit fit = fitPoints(seen, tanY * ratio, tanY, leastClearance * size);
   double distance = fit.distance;
   if (camera.fovy == 0) {
     camera.height = 2 * margin * std::max(fit.halfHeight, fit.halfWidth / ratio);

@@ -320,3 +320,44 @@ def test_a_round_model_fills_nine_tenths_as_well(shape):
     left, right, top, bottom = margins(world.render(size=(120, 90), spp=1).array[..., 3] > 0)
     assert abs(left - right) <= 3 and abs(top - bottom) <= 3
     assert 0 < min(left, right, top, bottom) and min((left + right) / 120, (top + bottom) / 90) <= 0.12
+
+
+@pytest.mark.parametrize("shape", ["Cone { bottomRadius .3 height 2 }", "Cone { bottomRadius .05 height 9 }",
+                                   "IndexedLineSet { coord Coordinate { point [ 0 1 0, .1 -1 0, -.1 -1 .1 ] } "
+                                   "coordIndex [ 0 1 2 -1 ] }"])  # yapf: disable
+def test_the_eye_stands_away_from_a_tip_that_points_at_it(shape):
+    world = xvrml.loads(HEADER + "Shape { geometry " + shape + " }")
+    lit = world.render(size=(120, 90), spp=4, from_="top", studio=False).array[..., 3] > 0
+    assert min(margins(lit)) > 0 and 0 < lit.mean() < .5
+
+
+def test_a_parallel_view_is_fitted_alike_with_and_without_a_script(vv):
+    vv.write("world.x3dv", "#X3D V3.3 utf8\nPROFILE Immersive\nOrthoViewpoint { fieldOfView [ -100 -100 100 100 ] }\n"
+             "Transform { translation 3 0 0 children Shape { geometry Sphere { radius 10 } } }\n")
+    vv.write("keys.txt", "0.1 end\n")
+    vv.write("frame.txt", "0.1 key F\n0.2 end\n")
+    vv.write("back.txt", "0.1 key F\n0.2 key Home\n3 end\n")
+
+    def framed(*options):
+        done = vv("world.x3dv", "-o", "a.ppm", *SPP, *options)
+        assert done.returncode == 0, done.talk
+        return margins(np.array(read_ppm((vv.folder / "a.ppm").read_bytes())[2]).any(2))
+
+    fitted = framed("--fit")
+    assert 0 < min(fitted) <= 4
+    for options in (("--fit", "--input", "keys.txt"), ("--from", "front"), ("--from", "front", "--input", "keys.txt"),
+                    ("--input", "frame.txt")):  # yapf: disable
+        assert max(abs(a - b) for a, b in zip(framed(*options), fitted)) <= 1, options
+    assert framed("--input", "back.txt") == framed()
+
+
+@pytest.mark.parametrize("name", ["metal.x3dv", "box.wrl"])
+def test_false_colours_of_a_model_are_those_of_its_look(vv, name):
+    vv.write("metal.x3dv", "#X3D V4.0 utf8\nPROFILE Full\nShape { appearance Appearance { material PhysicalMaterial "
+             "{ metallic 1 baseColor 1 .8 .3 } } geometry Sphere { } }\n")
+    vv.write("box.wrl", HEADER + "Shape { appearance Appearance { material Material { } } geometry Box { } }\n")
+    vv.write("on.txt", "0.1 key L\n0.2 end\n")
+    vv.write("keys.txt", "0.2 end\n")
+    given = ("--false-colour", "auto")
+    assert shown(vv, name, "--input", "on.txt") == shown(vv, name, *given, "--input", "keys.txt")
+    assert shown(vv, name, *given, "--input", "on.txt") == shown(vv, name, "--input", "keys.txt")

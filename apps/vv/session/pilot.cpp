@@ -70,6 +70,11 @@ void Pilot::setAspect(double aspect) {
 xvrml::CameraSettings Pilot::camera(double aspect) const {
   xvrml::CameraSettings camera = viewer_->camera(aspect);
   if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect);
+  if (fitted_ && fitted_->viewpoint == viewer_->viewpoint() &&
+      (camera.fovy == 0 || fitted_->fovy == 0)) {
+    camera.fovy = fitted_->fovy;
+    camera.height = fitted_->height;
+  }
   return camera;
 }
 
@@ -168,8 +173,13 @@ void Pilot::move(double seconds) {
     viewer_->move({}, seconds);
 }
 
+void Pilot::fitTo(const xvrml::CameraSettings& camera) {
+  viewer_->place(camera.matrix);
+  fitted_ = Fitted{viewer_->viewpoint(), camera.fovy, camera.height};
+}
+
 void Pilot::frameAll(const xvrml::CameraSettings& around) {
-  viewer_->place(around.matrix);
+  fitTo(around);
   gravityActs_ = false;
 }
 
@@ -177,7 +187,7 @@ void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
   double axis[3];
   xvrml::upVector(up, axis);
   viewer_->setUp(axis);
-  viewer_->place(camera.matrix);
+  fitTo(camera);
   gravityActs_ = false;
 }
 
@@ -249,6 +259,7 @@ bool Pilot::bindViewpoint(const std::string& name) {
   if (index < 0) return false;
   viewer_->goTo(*list[size_t(index)].node);
   gravityActs_ = false;
+  fitted_.reset();
   return true;
 }
 
@@ -327,7 +338,10 @@ Action Pilot::press(Action action) {
     for (const xvrml::ViewpointName& one : browser_.viewpoints())
       if (one.node.get() == now) message_ = one.description.empty() ? one.name : one.description;
   }
-  if (action <= Action::back) gravityActs_ = false;
+  if (action <= Action::back) {
+    gravityActs_ = false;
+    fitted_.reset();
+  }
   return Action::none;
 }
 

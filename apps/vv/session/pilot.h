@@ -95,6 +95,7 @@ class Pilot {
 
  private:
   Pointer::Eye eye() const { return {camera(), aspect_}; }
+  void fitTo(const xvrml::CameraSettings& camera); // places the viewer
   void drag(const Pointer::Way& way);
   void wheel(const InputEvent& event);
   Action press(Action action);
@@ -109,6 +110,13 @@ class Pilot {
   WorldTime time_;
   Pointer pointer_;
   std::optional<double> fov_;
+  // The projection of a view that shows all, and the Viewpoint that the viewer had then. It
+  // replaces that of the Viewpoint if one of them is parallel.
+  struct Fitted {
+    const xvrml::Node* viewpoint;
+    double fovy, height; // as in CameraSettings
+  };
+  std::optional<Fitted> fitted_;
   double aspect_ = 4.0 / 3;
   bool touched_ = false;
   bool animates_ = false;    // the viewer moves gradually between Viewpoints

@@ -26,7 +26,7 @@ bool isForScreens(const Output& output) {
 void chooseLook(const Options& options, const xvrml::World& world,
                 picture::RenderSettings& settings) {
   if (!picture::leavesLookOpen(options.render) || !options.compare.empty() || options.audit ||
-      options.falseColour || options.render.channels != RT_RGBA)
+      options.render.channels != RT_RGBA)
     return;
   if (!options.outputs.empty() &&
       std::none_of(options.outputs.begin(), options.outputs.end(), isForScreens))
@@ -49,7 +49,9 @@ void settleView(bool leavesOut, const std::vector<xvrml::ViewpointInfo>& viewpoi
   using Authored = picture::View::Authored;
   view.authored = leavesOut ? Authored::leftOut : Authored::shown;
   if (!leavesOut || quiet || viewpoints.empty()) return;
-  const std::string& name = viewpoints.front().description;
+  constexpr size_t longest = 60;
+  std::string name = viewpoints.front().description;
+  if (name.size() > longest) name = name.substr(0, longest) + "...";
   say(fmt::format("vv: the file's camera{} does not show all of the model, this view does; "
                   "--viewpoint 0 looks through that camera",
                   name.empty() ? "" : fmt::format(" \"{}\"", oneLine(name))));

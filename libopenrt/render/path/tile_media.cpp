@@ -26,7 +26,7 @@ void TileRenderer::describeBehindMedia(const Wave& wave, PixelSamples& found) {
     seen.rays = wave.rays;
     seen.states.allocate(arena_, n);
     for (uint32_t i = 0; i < n; i++) seen.states.set(i, wave.states[i]);
-    guides_.describe(context_, seen, found);
+    firstHits_.describe(context_, seen, found);
   }
   std::fill_n(found.first, n, uint8_t(0));
 }
