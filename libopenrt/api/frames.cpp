@@ -2,7 +2,6 @@
 // statistics and ray queries. Runs on the application's thread.
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 

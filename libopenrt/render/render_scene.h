@@ -61,7 +61,8 @@ struct RenderScene {
   ShaderSlot transport;          // shaderClass null: the engine's own transport
   Vec3f eye, viewAxis{0, 0, -1}; // render space; unit
   double origin[3] = {0, 0, 0};  // world position of render space's origin
-  // Path tracing: emissive surfaces and the environment. Never null in a prepared scene.
+  // Path tracing: emissive surfaces and the environment. Null: the scene is ready for ray queries,
+  // but not for a frame.
   std::shared_ptr<Emitters> emitters;
   // RT_MOTION (motion.h). Null: the frame lacks the channel, or nothing has moved.
   std::shared_ptr<const Motions> motions;

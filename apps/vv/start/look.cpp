@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/bare_model.h"
+#include "printable.h"
 #include "process/messages.h"
 #include "report/describe.h"
 #include "start/world_start.h"
@@ -19,6 +20,15 @@ bool isForScreens(const Output& output) {
   if (output.film != picture::FilmKind::none) return true;
   const std::string_view name = output.format->name;
   return name != "PPM" && name != "PFM";
+}
+
+// Returns a name, or the beginning of a long one, in whole characters of UTF-8.
+std::string beginningOf(std::string_view name) {
+  constexpr size_t longest = 60;
+  if (name.size() <= longest) return std::string(name);
+  size_t end = 0;
+  while (end < longest) end += std::max<size_t>(1, printable_text::utf8Length(name.substr(end)));
+  return std::string(name.substr(0, end)) + "...";
 }
 
 } // namespace
@@ -49,9 +59,7 @@ void settleView(bool leavesOut, const std::vector<xvrml::ViewpointInfo>& viewpoi
   using Authored = picture::View::Authored;
   view.authored = leavesOut ? Authored::leftOut : Authored::shown;
   if (!leavesOut || quiet || viewpoints.empty()) return;
-  constexpr size_t longest = 60;
-  std::string name = viewpoints.front().description;
-  if (name.size() > longest) name = name.substr(0, longest) + "...";
+  const std::string name = beginningOf(viewpoints.front().description);
   say(fmt::format("vv: the file's camera{} does not show all of the model, this view does; "
                   "--viewpoint 0 looks through that camera",
                   name.empty() ? "" : fmt::format(" \"{}\"", oneLine(name))));
