@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/background.h"
 #include "libpicture/files/atomic_file.h"
 #include "report/progress.h"
 
@@ -21,6 +22,25 @@ std::string seedsOf(uint32_t first, uint32_t last) {
 
 picture::SumsView viewOf(const Options& options) {
   return {options.render.view, options.fitExposure};
+}
+
+// Replaces the numbers that belong to the picture by those of its sums.
+void useStatsOf(const picture::Sums& all, RTstats& stats) {
+  const RTstats sums = picture::statsOf(all);
+  stats.cameraRays = sums.cameraRays;
+  stats.shadowRays = sums.shadowRays;
+  stats.secondaryRays = sums.secondaryRays;
+  stats.shaderFaults = sums.shaderFaults;
+  stats.errorMean = sums.errorMean;
+  stats.errorMeanInterval = sums.errorMeanInterval;
+  stats.errorHalfWidth = sums.errorHalfWidth;
+  stats.errorP99 = sums.errorP99;
+  stats.errorPixels = sums.errorPixels;
+  stats.errorTrusted = sums.errorTrusted;
+  stats.errorUnmet = sums.errorUnmet;
+  stats.cutByDepth = sums.cutByDepth;
+  stats.cutByEnergy = sums.cutByEnergy;
+  stats.clipped = sums.clipped;
 }
 
 } // namespace
@@ -102,6 +122,17 @@ void Checkpoint::nextSeed() {
 }
 
 picture::Sums Checkpoint::all() const { return picture::mergeSums(file_.done, file_.current); }
+
+void Checkpoint::useAll(picture::RenderResult& result) const {
+  const picture::Sums all = this->all();
+  result.picture.planes = picture::pictureOf(all, file_.facts).planes;
+  if (const auto rgba = result.picture.planes.find(RT_RGBA);
+      rgba != result.picture.planes.end() &&
+      options_.render.background.kind == picture::Background::Kind::file)
+    picture::BackgroundLayer(options_.render.background, options_.render.linear)
+        .compositeOver(rgba->second, result.picture.width, result.picture.height);
+  useStatsOf(all, result.stats);
+}
 
 picture::SumsFile Checkpoint::behindPixels() const { return {file_.facts, file_.view, all(), {}}; }
 

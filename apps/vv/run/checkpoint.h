@@ -28,16 +28,18 @@ class Checkpoint {
   void save(const picture::Sums& sums, const std::vector<std::string>& names);
   // Adds the finished sums of the seed in work; another seed follows.
   void nextSeed();
-  // Returns the sums of all seeds that are finished. Throws picture::RenderError.
-  picture::Sums all() const;
+  // Replaces the picture of the last seed, and its statistics, by those of all seeds. Throws
+  // picture::RenderError.
+  void useAll(picture::RenderResult& result) const;
   // Returns what goes behind the pixels of an EXR file.
   picture::SumsFile behindPixels() const;
-  const picture::SumsFacts& facts() const { return file_.facts; }
   // Tells whether the process must end because of --time-limit.
   bool timeIsUp() const;
   bool writes() const { return !options_.resume.empty(); }
 
  private:
+  picture::Sums all() const; // the sums of all seeds that are finished
+
   const Options& options_;
   picture::SumsFile file_;
   uint32_t seed_ = 0;                    // the seed in work

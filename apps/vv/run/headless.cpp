@@ -17,6 +17,7 @@
 #include "run/inputs.h"
 #include "run/leave_memory.h"
 #include "run/outputs.h"
+#include "run/picture_files.h"
 #include "run/pictures.h"
 #include "run/timeline.h"
 #include "start/look.h"

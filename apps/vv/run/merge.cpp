@@ -10,7 +10,7 @@
 #include "report/report.h"
 #include "run/checkpoint.h"
 #include "run/outputs.h"
-#include "run/pictures.h"
+#include "run/picture_files.h"
 
 namespace vv {
 

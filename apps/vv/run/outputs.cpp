@@ -1,5 +1,6 @@
 #include "run/outputs.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/files/formats.h"
 #include "options/names.h"
 #include "process/messages.h"
 #include "run/timeline.h"
@@ -125,6 +127,20 @@ void checkOutputs(const Options& options) {
   }
   for (const Named& input : inputsOf(options)) picture::protectFile(input.path, input.option);
   refuseKept(options);
+}
+
+void warnOfAlpha(const Options& options) {
+  if (options.quiet || options.render.background.kind != picture::Background::Kind::none ||
+      options.outputs.empty())
+    return;
+  const bool kept =
+      std::any_of(options.outputs.begin(), options.outputs.end(), [](const Output& output) {
+        return output.film == picture::FilmKind::none && output.format->keepsAlpha;
+      });
+  if (!kept)
+    sayWarning(fmt::format("--background none: only {} files can be transparent; the background is "
+                           "black in the other files",
+                           picture::formatsWith(&picture::Format::keepsAlpha)));
 }
 
 void protectFilesOf(const xvrml::World& world, const Options& options) {

@@ -11,6 +11,9 @@ namespace vv {
 // line. After this call, vv refuses to replace the input files.
 void checkOutputs(const Options& options);
 
+// Warns if no output file keeps the transparency that --background none asks for.
+void warnOfAlpha(const Options& options);
+
 // Protects the files that a world consists of, as far as they are known: Inlines, textures,
 // prototypes, scripts, sounds. Throws Failure.
 void protectFilesOf(const xvrml::World& world, const Options& options);

@@ -16,7 +16,4 @@ int makePictures(const Options& options, const std::string& commandLine, xvrml::
 // hang, but a large picture takes some time to end.
 int stuckSeconds(const picture::RenderSettings& render);
 
-// Writes to a file, or to standard output if the path is "-".
-void writeText(const std::string& path, const std::string& text);
-
 } // namespace vv
