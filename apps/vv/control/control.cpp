@@ -212,7 +212,7 @@ struct Control::Impl {
     still.height = render.height.value_or(options.render.height);
     still.samples = render.samples.value_or(options.render.samples);
     still.channels = channels;
-    session->requestStill(still);
+    session->pictures().requestStill(still);
   }
 
   void followPicture() {
@@ -225,7 +225,7 @@ struct Control::Impl {
       renderer = 0;
       return finish(client, encoded.result, "render", encoded.failure);
     }
-    std::optional<StillAnswer> still = session ? session->takeStill() : std::nullopt;
+    std::optional<StillAnswer> still = session ? session->pictures().takeStill() : std::nullopt;
     if (!still) return;
     if (!still->failure.empty()) {
       renderer = 0;
@@ -301,7 +301,7 @@ struct Control::Impl {
       if (Clock::now() > end) break;
     }
     bury();
-    return session && session->stillWaits();
+    return session && session->pictures().stillWaits();
   }
 };
 

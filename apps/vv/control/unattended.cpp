@@ -99,7 +99,7 @@ class Unattended {
         std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), nullptr);
     if (options_.strict && Problems::any(fresh->browser().world()))
       throw Failure{exitProblems, "the world is not used, because of --strict"};
-    fresh->setWatched(false);
+    fresh->pictures().setWatched(false);
     fresh->begin(options_.render.width, options_.render.height, {}, fragment);
     control_->detach();
     session_ = std::move(fresh); // ends the previous session

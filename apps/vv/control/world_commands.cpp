@@ -372,7 +372,7 @@ std::string WorldCommands::press(const PressKey& press) {
 }
 
 std::string WorldCommands::bind(const Bind& bind) {
-  if (!session_.jumpToViewpoint(bind.viewpoint))
+  if (!session_.pilot().jumpToViewpoint(bind.viewpoint))
     throw CommandError("node",
                        fmt::format("the world has no viewpoint {}", shownJson(bind.viewpoint)));
   return "null";
@@ -386,7 +386,7 @@ std::string WorldCommands::replace(const Replace& replace) {
 }
 
 std::string WorldCommands::time(const Time& time) {
-  if (time.paused) session_.setPaused(*time.paused);
+  if (time.paused) session_.pilot().setPaused(*time.paused);
   if (time.skip) {
     if (!session_.pilot().paused())
       throw CommandError("command", "time: skip: the world must be paused; add \"paused\": true");

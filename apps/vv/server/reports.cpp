@@ -33,8 +33,8 @@ void Reports::takeMessages(double now) {
   Session& session = world_.session();
   if (const std::string text = session.takeMessage(); !text.empty())
     notify(0, text, now + messageSeconds);
-  for (uint32_t view = 1; view < maxViews; ++view)
-    if (const std::string text = session.takeMessageOf(view); !text.empty())
+  for (const auto& [view, viewer] : session.viewers().all())
+    if (const std::string text = view == 0 ? "" : viewer->pilot.takeMessage(); !text.empty())
       notify(view, text, now + messageSeconds);
 }
 
@@ -43,19 +43,19 @@ std::string Reports::bottomOf(const Page& page, double now) {
   if (!world_.loading().empty()) return fmt::format("loading {} ...", world_.loading());
   if (page.saving == Page::Saving::picture)
     return fmt::format("Rendering the picture of this instant: {:.0f} samples; Escape gives up",
-                       session.capturedSamples());
+                       session.captures().samples());
   const auto notice = notices_.find(page.view);
   if (notice != notices_.end() && now < notice->second.ends) return notice->second.text;
   if (const xvrml::ScriptCounts counts = session.browser().scripts(); counts.waiting > 0)
     return fmt::format("starting Scripts: {} of {} ...", counts.scripts - counts.waiting,
                        counts.scripts);
-  const std::string hint = session.pilotOf(page.view).hint();
+  const std::string hint = session.viewers().findOrOwn(page.view).pilot.hint();
   return hint.empty() ? session.browser().description() : hint;
 }
 
 std::string Reports::stateOf(const Page& page, double now) {
   Session& session = world_.session();
-  const Pilot& pilot = session.pilotOf(page.view);
+  const Pilot& pilot = session.viewers().findOrOwn(page.view).pilot;
   PageState state;
   state.world = std::filesystem::path(session.browser().world().path).filename().string();
   state.role = page.role;

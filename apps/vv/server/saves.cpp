@@ -30,7 +30,7 @@ void Saves::giveUp(uint64_t number) {
   if (queue_.drop(number))
     end(number);
   else
-    world_.session().giveUpCapture(number);
+    world_.session().captures().giveUp(number);
 }
 
 void Saves::advance() {

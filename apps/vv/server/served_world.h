@@ -21,7 +21,7 @@ class ServedWorld {
  public:
   struct Callbacks {
     // Receives the keys' actions that are neither the pilot's nor the session's.
-    Guests::OnAction onAction;
+    SessionViewers::OnAction onAction;
     // Opens a page of the web that an Anchor or a Script leads to.
     std::function<void(const std::string& url)> openPage;
     // Receives a message for everybody.

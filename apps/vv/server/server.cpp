@@ -94,10 +94,10 @@ class Server {
   // Waits for an event, the next step, or a picture in flight.
   void wait() {
     const Session& session = world_.session();
-    const double most = !watched_                            ? idleWait
-                        : isQuiet_                           ? std::min(idleWait, next_ - now())
-                        : session.drawing() || session.due() ? drawingWait
-                                                             : activeWait;
+    const double most = !watched_  ? idleWait
+                        : isQuiet_ ? std::min(idleWait, next_ - now())
+                        : session.pictures().isDrawing() || session.pictures().isDue() ? drawingWait
+                                                                                       : activeWait;
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::duration<double>(std::max(most, 0.001)),
                       [this] { return woken_; });
@@ -108,8 +108,8 @@ class Server {
   // is waited for, since the next one can then begin at once.
   bool isTime(double time) {
     const Session& session = world_.session();
-    if (time < next_) return session.due() && time >= advanced_ + activeWait;
-    return !session.drawing() || time >= next_ + 1 / options_.fps;
+    if (time < next_) return session.pictures().isDue() && time >= advanced_ + activeWait;
+    return !session.pictures().isDrawing() || time >= next_ + 1 / options_.fps;
   }
 
   // Frees the pictures when nobody has looked for a while. The world stays in memory.
@@ -164,14 +164,14 @@ class Server {
     page->saving = Page::Saving::nothing; // nobody is to be told
     saves_->giveUp(number);
     if (page->role == Page::Role::leader)
-      world_.session().handleFor(0, leaving());
+      world_.session().handle(leaving());
     else if (page->role == Page::Role::own)
       endView(page->view);
     reports_.leave(number);
     pages_.leave(number);
     // Another page may lead now: its own view ends, and the pictures get its size.
     for (uint32_t view = 1; view < maxViews; ++view)
-      if (world_.session().isGuest(view) && pages_.ownerOf(view) == 0) endView(view);
+      if (world_.session().viewers().isGuest(view) && pages_.ownerOf(view) == 0) endView(view);
     fitViews();
   }
 
@@ -182,7 +182,7 @@ class Server {
   }
 
   void endView(uint32_t view) {
-    world_.session().removeGuest(view);
+    world_.session().viewers().remove(view);
     shots_.erase(view);
     reports_.endView(view);
   }
@@ -224,15 +224,15 @@ class Server {
   void fitViews() {
     Session& session = world_.session();
     const auto views = double(pages_.views());
-    session.setMostPreviewPixels(maxPreviewPixels / views);
+    session.viewers().setMostPreviewPixels(maxPreviewPixels / views);
     for (const auto& [number, page] : pages_.all()) {
       if (!page.sized || page.role == Page::Role::follower) continue;
       const PictureSize size =
           pictureSizeFor(page.size.width, page.size.height, maxViewPixels / views);
       if (page.role == Page::Role::leader)
         session.resize(size.width, size.height);
-      else
-        session.resizeGuest(page.view, size.width, size.height);
+      else if (SessionViewer* const guest = session.viewers().find(page.view))
+        guest->resize(size.width, size.height);
     }
   }
 
@@ -242,7 +242,7 @@ class Server {
     if (page.role == Page::Role::follower) return;
     if (event.kind == InputEvent::Kind::press || event.kind == InputEvent::Kind::release)
       clicked_ = number;
-    world_.session().handleFor(page.view, event);
+    world_.session().handle(event, page.view);
   }
 
   // Returns the event that goes to a viewpoint of the list. Names are not always unique: the text
@@ -294,8 +294,9 @@ class Server {
     case Action::saveExr: saves_->want(number, Message::Format::exr); break;
     case Action::command: sendCommand(number, *page); break;
     case Action::samples: {
-      const bool raw = session.motion(view) == Motion::rebuilt;
-      session.setMotion(raw ? Motion::samples : Motion::rebuilt, view);
+      PictureLoop& pictures = session.viewers().findOrOwn(view).pictures;
+      const bool raw = pictures.motion() == Motion::rebuilt;
+      pictures.setMotion(raw ? Motion::samples : Motion::rebuilt);
       notify(view, raw ? "raw samples while something moves" : "rebuilt pictures", 3);
       break;
     }

@@ -1,6 +1,6 @@
 // picture_loop.h: Decides when the next frame of a viewer of a running world is started, continued
 // or cancelled, how large it is, and whether it is a preview or a still picture. The loops of
-// several viewers share a renderer. Owned by a session or a guest. [the browser's thread]
+// several viewers share a renderer. Owned by a viewer of a session. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,7 @@
 
 namespace vv {
 
+// Wide because the session, the window, the page and programs ask for different facts of one state.
 class PictureLoop {
  public:
   // start() alone makes the transitions: to moving when something has changed; from moving to
@@ -43,6 +44,7 @@ class PictureLoop {
   PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer);
 
   void resize(int width, int height);
+  uint32_t viewer() const { return viewer_; }
   int width() const { return width_; }
   int height() const { return height_; }
   // Bounds the pixels of previews, whose accumulated frames take much more memory than pictures.
@@ -98,9 +100,9 @@ class PictureLoop {
   uint64_t number() const { return number_; } // the number of the last frame
   // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
-  // The frames per second while something moves; 0: nothing moves.
   // Returns for how long something has moved without a rest, in seconds.
   double movingFor() const { return isMoving() ? lastStart_ - motionBegan_ : 0; }
+  // Returns the frames per second while something moves; 0: nothing moves.
   double frameRate() const { return isMoving() && gap_ > 0 ? 1 / gap_ : 0; }
   const picture::LivePicture& facts() const { return facts_; } // state without the pixels
 

@@ -22,6 +22,7 @@ namespace vv {
 
 const char* navigationName(xvrml::Navigation type);
 
+// Wide because every way to move the viewer, by keys, pointer or programs, is a function here.
 class Pilot {
  public:
   // start: the world's time at session time 0. fov: in degrees; replaces the viewpoints' angle.

@@ -42,6 +42,16 @@ Options forWindow(const Options& options, const Session::Callbacks& calls, const
   return own;
 }
 
+// Adds an event to those that wait. Where moves follow each other, only the last one counts.
+void postpone(InputEvent event, std::deque<InputEvent>& later) {
+  const bool moves = event.kind == InputEvent::Kind::move && !later.empty() &&
+                     later.back().kind == InputEvent::Kind::move;
+  if (moves)
+    later.back() = std::move(event);
+  else
+    later.push_back(std::move(event));
+}
+
 } // namespace
 
 Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
@@ -49,19 +59,23 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
     : options_(forWindow(options, calls, script || !options.recordInput.empty())),
       problems_(problems), callbacks_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
-      pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov),
-      shared_(*browser_, options_.render), pictures_(shared_, options_, 0),
-      channels_(options.render.channels),
+      shared_(*browser_, options_.render),
+      viewers_(*browser_, options.time && !script ? *options.time : 0, options.view.fov, shared_,
+               options_),
+      channels_(options.render.channels), saver_(own_, options_, channels_, script != nullptr,
+                                                 [this] {
+                                                   if (replay_) replay_->resume();
+                                                 }),
       clock_(script || !options.recordInput.empty() ? SessionClock::Mode::stepped
                                                     : SessionClock::Mode::real,
              options.fps),
       inlines_(*browser_) {
   if (options_.render.linear && !options_.has(Job::serve))
-    pilot_.allowFalseColours(options_.falseColour);
+    own_.pilot.allowFalseColours(options_.falseColour);
   if (options.time && !script) WorldClock(*browser_, options.fps).advance(*options.time);
   if (script)
-    replay_ =
-        std::make_unique<Replay>(pilot_, *script, [this](const InputEvent& event, Action action) {
+    replay_ = std::make_unique<Replay>(
+        own_.pilot, *script, [this](const InputEvent& event, Action action) {
           if (action == Action::frameAll || action == Action::beginAgain)
             want(action);
           else if (action != Action::reload) // the script would begin again, and reload again
@@ -89,23 +103,20 @@ void Session::begin(int width, int height, const std::optional<Place>& place,
   resize(width, height);
   const bool named = isOfCommandLine(options_, browser_->world()) && !place && fragment.empty();
   if (!place && fragment.empty()) chooseView(options_, browser_->world(), options_.view);
-  if (pilot_.begin(options_.view, named ? options_.viewpoint : std::string()) && !place)
-    fit_.want(Fit::Direction::initial);
-  fit_.setRepeat(fit_.isPending() && inlines_.isLoading() ? Fit::Repeat::whenLoaded
-                                                          : Fit::Repeat::never);
+  if (own_.pilot.begin(options_.view, named ? options_.viewpoint : std::string()) && !place)
+    own_.fit.want(Fit::Direction::initial);
+  own_.fit.setRepeat(own_.fit.isPending() && inlines_.isLoading() ? Fit::Repeat::whenLoaded
+                                                                  : Fit::Repeat::never);
   if (place) {
-    pilot_.bindViewpoint(place->viewpoint);
-    pilot_.putAt(place->camera);
-  } else if (!fragment.empty() && !pilot_.bindViewpoint(fragment)) {
+    own_.pilot.bindViewpoint(place->viewpoint);
+    own_.pilot.putAt(place->camera);
+  } else if (!fragment.empty() && !own_.pilot.bindViewpoint(fragment)) {
     sayWarning(fmt::format("there is no viewpoint \"{}\"", fragment));
   }
-  pilot_.animateTransitions();
+  own_.pilot.animateTransitions();
 }
 
-void Session::resize(int width, int height) {
-  pictures_.resize(width, height);
-  pilot_.setAspect(double(pictures_.width()) / pictures_.height());
-}
+void Session::resize(int width, int height) { own_.resize(width, height); }
 
 Session::Place Session::place() const {
   Place place{"", browser_->camera(1)};
@@ -124,7 +135,7 @@ Session::Place Session::place() const {
 void Session::settleCamera() {
   if (options_.view.authored != picture::View::Authored::unlessCut) return;
   const picture::LiveRenderer& live = shared_.live;
-  settleView(live.leavesViewpointOut(options_.view, pilot_.aspect()), live.viewpoints(),
+  settleView(live.leavesViewpointOut(options_.view, own_.pilot.aspect()), live.viewpoints(),
              options_.quiet, options_.view);
 }
 
@@ -132,34 +143,35 @@ void Session::settleCamera() {
 
 void Session::advance(double seconds) {
   clock_.read(seconds,
-              isSaving() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
+              saver_.isWaiting() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
   if (!resting()) return;
-  if (pictures_.placeViewer(pilot_, fit_)) {
+  if (own_.pictures.placeViewer(own_.pilot, own_.fit)) {
     settleCamera();
     if (replay_) replay_->resume();
   }
-  guests_.placeViewers();
+  viewers_.placeGuests();
   if (captures_.isWaiting()) return captures_.advance();
   step();
   takeEvents();
   loadSome();
   problems_.tell(browser_->world());
   takeTurns();
-  saveIfFinished();
+  // Contents of Inlines that are still to come belong to a saved picture.
+  if (!inlines_.isLoading()) saver_.writeIfFinished();
   // Meanwhile nothing else uses the world (resting()).
-  if (pictures_.hasShown()) preparation_.begin(*browser_, pilot_.camera());
+  if (own_.pictures.hasShown()) preparation_.begin(*browser_, own_.pilot.camera());
 }
 
 void Session::step() {
-  if (isSaving()) return;
+  if (saver_.isWaiting()) return;
   if (!held()) clock_.pass();
-  if (held() && !pictures_.hasStarted()) return;
+  if (held() && !own_.pictures.hasStarted()) return;
   clock_.run({[this] { return held(); },
               [this](double time) {
                 if (replay_) return replay_->step(time);
                 order_.begin();
-                pilot_.step(time);
-                guests_.step(time);
+                own_.pilot.step(time);
+                viewers_.stepGuests(time);
                 return true;
               }});
 }
@@ -170,35 +182,25 @@ void Session::step() {
 Session::Passage Session::passageOf(const InputEvent& event) const {
   using Kind = InputEvent::Kind;
   if (replay_) return Passage::passes;
-  if (isRecording() && fit_.isPending()) return Passage::waits;
-  if (!order_.isEnded() || pilot_.windowAction(event, keysWhileHeld()) != Action::none)
+  if (isRecording() && own_.fit.isPending()) return Passage::waits;
+  if (!order_.isEnded() || own_.pilot.windowAction(event, keysWhileHeld()) != Action::none)
     return Passage::passes;
   const bool ends = event.kind == Kind::move || event.kind == Kind::release ||
                     event.kind == Kind::leave || event.kind == Kind::up;
-  return ends || !isSaving() ? Passage::waits : Passage::isDropped;
-}
-
-// Adds an event to those that wait. Where moves follow each other, only the last one counts.
-void Session::postpone(InputEvent event, std::deque<InputEvent>& later) {
-  const bool moves = event.kind == InputEvent::Kind::move && !later.empty() &&
-                     later.back().kind == InputEvent::Kind::move;
-  if (moves)
-    later.back() = std::move(event);
-  else
-    later.push_back(std::move(event));
+  return ends || !saver_.isWaiting() ? Passage::waits : Passage::isDropped;
 }
 
 // Handles the user's input. In a scripted session only window commands are taken from the user.
 void Session::takeEvents() {
   const bool pointerWaits = preparation_.state() == PickPreparation::State::waiting && !replay_;
   std::deque<InputEvent> later;
-  while (!waiting_.empty()) {
-    const InputEvent event = std::move(waiting_.front());
-    waiting_.pop_front();
+  while (!own_.waiting.empty()) {
+    const InputEvent event = std::move(own_.waiting.front());
+    own_.waiting.pop_front();
     const Passage passage = passageOf(event);
     if (passage == Passage::isDropped) continue;
     // Keys of the window do not overtake what waits for the next step.
-    const bool isBehind = order_.isEnded() && !isSaving() && !replay_ && !later.empty();
+    const bool isBehind = order_.isEnded() && !saver_.isWaiting() && !replay_ && !later.empty();
     const bool waits = passage == Passage::waits || isBehind;
     if (waits || (pointerWaits && event.kind <= InputEvent::Kind::wheel)) {
       postpone(event, later);
@@ -206,90 +208,66 @@ void Session::takeEvents() {
     }
     take(event);
   }
-  waiting_ = std::move(later);
-  if (!isSaving()) guests_.takeEvents(pointerWaits, callbacks_.onGuestAction);
+  own_.waiting = std::move(later);
+  if (!saver_.isWaiting()) viewers_.takeGuestEvents(pointerWaits, callbacks_.onGuestAction);
 }
 
 // Handles an event of the user. A key that gives up a save, or that only a replay would pass to the
 // world, is not recorded.
 void Session::take(const InputEvent& event) {
-  const bool apart = order_.isEnded(), wasSaving = isSaving();
+  const bool apart = order_.isEnded(), wasSaving = saver_.isWaiting();
   if (isRecording() && !apart) callbacks_.record(clock_.time(), event);
   Action action = Action::none;
   if (replay_)
     action = event.kind == InputEvent::Kind::down ? actionOf(event) : Action::none;
   else
-    action = apart ? pilot_.windowAction(event, keysWhileHeld()) : pilot_.handle(event);
+    action = apart ? own_.pilot.windowAction(event, keysWhileHeld()) : own_.pilot.handle(event);
   if (!replay_) order_.note(action);
   if ((action == Action::frameAll || action == Action::beginAgain) && !replay_)
     want(action);
   else if (action >= Action::save)
     callbacks_.onAction(event, action);
-  const bool gaveUp = wasSaving && !isSaving();
-  if (isRecording() && apart && !gaveUp && pilot_.windowAction(event) != Action::none)
+  const bool gaveUp = wasSaving && !saver_.isWaiting();
+  if (isRecording() && apart && !gaveUp && own_.pilot.windowAction(event) != Action::none)
     callbacks_.record(clock_.time(), event);
 }
 
 // Loads Inlines after the first picture, a few at a time.
 void Session::loadSome() {
-  if (!pictures_.hasShown() || !inlines_.loadSome()) return;
-  if (fit_.repeat() == Fit::Repeat::whenLoaded && !pilot_.hasViewerMoved())
-    fit_.want(Fit::Direction::initial);
+  if (!own_.pictures.hasShown() || !inlines_.loadSome()) return;
+  if (own_.fit.repeat() == Fit::Repeat::whenLoaded && !own_.pilot.hasViewerMoved())
+    own_.fit.want(Fit::Direction::initial);
 }
 
 // --- The picture ---
 
 // Shows the whole world. fit: Action::frameAll or Action::beginAgain.
 void Session::want(Action fit) {
-  fit_.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
+  own_.fit.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
 }
 
-// Lets the viewers draw: those for whom something has changed, each in turn, or else those whose
-// picture could be better, in the order of their numbers.
+// Lets the viewers draw.
 void Session::takeTurns() {
-  using Urgency = PictureLoop::Urgency;
   if (captures_.isPending()) return;
   if (!isLookChosen_ && !inlines_.isLoading()) {
     if (!shared_.isIdle()) return shared_.cancel();
     chooseLookOnce();
   }
   const double now = clock_.reading();
-  if (isSaving() || guests_.all().empty())
-    return pictures_.advance(
-        pilot_, fit_, now, isSaving() ? PictureLoop::Need::stillPicture : PictureLoop::Need::none);
-  std::vector<std::pair<uint32_t, Guest*>> viewers{{0, nullptr}};
-  for (const auto& [viewer, guest] : guests_.all()) viewers.emplace_back(viewer, guest.get());
-  const auto urgencyOf = [&](const Guest* guest) {
-    return guest ? guest->pictures.urgency(guest->pilot, guest->fit)
-                 : pictures_.urgency(pilot_, fit_);
-  };
-  const bool changed = std::any_of(viewers.begin(), viewers.end(), [&](const auto& one) {
-    return urgencyOf(one.second) == Urgency::change;
-  });
-  if (changed) { // begin after the viewer who had the last turn
-    const auto next = std::find_if(viewers.begin(), viewers.end(),
-                                   [&](const auto& one) { return one.first > shared_.viewer(); });
-    std::rotate(viewers.begin(), next, viewers.end());
-  }
-  for (const auto& [viewer, guest] : viewers) {
-    if (changed && urgencyOf(guest) != Urgency::change) continue;
-    if (guest)
-      guest->pictures.advance(guest->pilot, guest->fit, now, PictureLoop::Need::none);
-    else
-      pictures_.advance(pilot_, fit_, now, PictureLoop::Need::none);
-    if (shared_.isMapping()) return;
-  }
+  if (saver_.isWaiting())
+    own_.pictures.advance(own_.pilot, own_.fit, now, PictureLoop::Need::stillPicture);
+  else
+    viewers_.takeTurns(now);
 }
 
 bool Session::look(picture::LivePicture& picture, uint32_t& viewer) {
-  if (pictures_.lookForStill()) return false;
+  if (own_.pictures.lookForStill()) return false;
   const bool idle = shared_.isIdle();
   while (shared_.live.look(picture)) {
     viewer = shared_.viewerOf(picture.number);
     const bool captured = captures_.note(picture, viewer);
-    Guest* const guest = guests_.find(viewer);
-    if (captured || (!guest && viewer != 0)) continue;
-    if (guest ? guest->pictures.note(picture) : pictures_.note(picture)) return true;
+    SessionViewer* const one = viewers_.find(viewer);
+    if (!captured && one && one->pictures.note(picture)) return true;
   }
   if (idle) captures_.noteIdle();
   return false;
@@ -302,79 +280,6 @@ bool Session::look(picture::LivePicture& picture) {
   return false;
 }
 
-void Session::setMotion(PictureLoop::Motion motion, uint32_t viewer) {
-  Guest* const guest = guests_.find(viewer);
-  (guest ? guest->pictures : pictures_).setMotion(motion);
-}
-
-void Session::save(const std::string& path) {
-  picture::Picture picture;
-  if (isSaving()) {
-    message_ = fmt::format("{} is not saved: another picture is waited for", path);
-  } else if (!replay_ && !pictures_.isOutdated(pilot_, fit_) && pictures_.copyStill(picture)) {
-    writer_.begin(std::move(picture), path, channels_, pilot_.falseColour());
-  } else {
-    saveTo_ = path;
-    saver_ = Saver::user;
-  }
-}
-
-void Session::saveWhenFinished(const std::string& path) {
-  if (isSaving()) giveUp("another picture is wanted");
-  saveTo_ = path;
-  saver_ = Saver::script;
-}
-
-bool Session::giveUpSaving() {
-  if (!isSaving() || saver_ == Saver::script) return false;
-  giveUp("given up");
-  return true;
-}
-
-void Session::giveUp(const std::string& why) {
-  message_ = fmt::format("{} is not saved: {}", std::exchange(saveTo_, {}), why);
-  say("vv: " + message_);
-  if (replay_) replay_->resume();
-}
-
-std::string Session::savingText() const {
-  if (!isSaving() || saver_ == Saver::script) return {};
-  const double taken = pictures_.hasStill() ? pictures_.facts().samples : 0;
-  return fmt::format("Saving the picture of this instant: {:.0f} of {} samples; Escape gives up",
-                     taken, options_.render.samples);
-}
-
-// A script continues, and a user's world goes on, when the picture has all its samples. Contents of
-// Inlines that are still to come belong to it.
-void Session::saveIfFinished() {
-  if (!isSaving() || inlines_.isLoading() || !pictures_.isFinished(pilot_)) return;
-  picture::Picture picture;
-  if (!pictures_.copyStill(picture)) return;
-  writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_, pilot_.falseColour());
-  if (replay_) replay_->resume();
-}
-
-std::string Session::endSaving() {
-  if (isSaving()) {
-    picture::Picture picture;
-    bool copied = pictures_.copyStill(picture);
-    // For a moment, while a frame ends, there is no copy.
-    for (int i = 0; i < 1000 && !copied && pictures_.hasStill(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      copied = pictures_.copyStill(picture);
-    }
-    if (copied)
-      writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_, pilot_.falseColour(),
-                    fmt::format(", with {:.0f} of {} samples", pictures_.facts().samples,
-                                options_.render.samples));
-    else
-      giveUp("its picture has not begun yet");
-  }
-  writer_.wait();
-  const std::string written = writer_.takeMessage();
-  return written.empty() ? std::exchange(message_, {}) : written;
-}
-
 bool Session::stop(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (preparation_.state() == PickPreparation::State::running || !shared_.isIdle()) {
@@ -385,74 +290,37 @@ bool Session::stop(double seconds) {
   return true;
 }
 
-// --- Guests ---
+// --- Viewers ---
 
-void Session::addGuest(uint32_t viewer, int width, int height) {
-  Guest& guest = guests_.add(viewer, pilot_, *browser_, shared_, options_);
+void Session::addGuest(uint32_t number, int width, int height) {
+  SessionViewer& guest = viewers_.add(number);
   guest.pilot.step(clock_.time());
-  guest.pictures.setMotion(pictures_.motion());
-  guest.pictures.setMostPreviewPixels(mostPreviewPixels_);
-  resizeGuest(viewer, width, height);
+  guest.resize(width, height);
 }
 
-void Session::setMostPreviewPixels(double pixels) {
-  mostPreviewPixels_ = pixels;
-  pictures_.setMostPreviewPixels(pixels);
-  for (const auto& [viewer, guest] : guests_.all()) guest->pictures.setMostPreviewPixels(pixels);
+void Session::handle(const InputEvent& event, uint32_t viewer) {
+  if (SessionViewer* const one = viewers_.find(viewer)) one->waiting.push_back(event);
 }
 
 bool Session::release() {
-  if (!resting() || !shared_.isIdle() || !pictures_.hasStarted() || isSaving() ||
-      captures_.isPending() || pictures_.stillWaits())
+  if (!resting() || !shared_.isIdle() || !own_.pictures.hasStarted() || saver_.isWaiting() ||
+      captures_.isPending() || own_.pictures.stillWaits())
     return false;
   shared_.release();
-  pictures_.loseStill();
-  for (const auto& [viewer, guest] : guests_.all()) guest->pictures.loseStill();
+  for (const auto& [number, viewer] : viewers_.all()) viewer->pictures.loseStill();
   return true;
 }
 
-void Session::removeGuest(uint32_t viewer) {
-  if (!isGuest(viewer)) return;
-  guests_.remove(viewer);
-  shared_.forget(viewer);
-}
-
-void Session::resizeGuest(uint32_t viewer, int width, int height) {
-  Guest* const guest = guests_.find(viewer);
-  if (!guest) return;
-  guest->pictures.resize(width, height);
-  guest->pilot.setAspect(double(guest->pictures.width()) / guest->pictures.height());
-}
-
-void Session::handleFor(uint32_t viewer, const InputEvent& event) {
-  Guest* const guest = guests_.find(viewer);
-  if (guest)
-    guest->waiting.push_back(event);
-  else if (viewer == 0)
-    handle(event);
-}
-
-const Pilot& Session::pilotOf(uint32_t viewer) const {
-  const Guest* const guest = guests_.find(viewer);
-  return guest ? guest->pilot : pilot_;
-}
-
-const PictureLoop& Session::picturesOf(uint32_t viewer) const {
-  const Guest* const guest = guests_.find(viewer);
-  return guest ? guest->pictures : pictures_;
-}
-
 void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
-  Guest* const guest = guests_.find(viewer);
-  const Pilot& pilot = guest ? guest->pilot : pilot_;
-  const Fit& fit = guest ? guest->fit : fit_;
-  PictureLoop& pictures = guest ? guest->pictures : pictures_;
+  SessionViewer& one = viewers_.findOrOwn(viewer);
+  const Pilot& pilot = one.pilot;
+  PictureLoop& pictures = one.pictures;
   // The picture that is shown may be the one that is wanted, or become it.
-  if (!captures_.isPending() && pictures.isRefining() && !pictures.isOutdated(pilot, fit)) {
+  if (!captures_.isPending() && pictures.isRefining() && !one.isOutdated()) {
     picture::Picture picture;
     if (pictures.isFinished(pilot)) {
       if (pictures.copyStill(picture)) return done(&picture);
-    } else if (shared_.viewer() == (guest ? viewer : 0) && !pictures.isInterrupted() &&
+    } else if (shared_.viewer() == pictures.viewer() && !pictures.isInterrupted() &&
                !shared_.isIdle()) {
       return captures_.adopt(asker, pictures.number(), std::move(done));
     }
@@ -462,15 +330,9 @@ void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
 }
 
 bool Session::isQuiet() const {
-  const auto quiet = [](const Pilot& pilot, const PictureLoop& pictures, const Fit& fit) {
-    return !pilot.isSteering() && !fit.isPending() && pictures.isFinished(pilot);
-  };
-  return resting() && waiting_.empty() && !inlines_.isLoading() && !captures_.isPending() &&
-         quiet(pilot_, pictures_, fit_) &&
-         std::all_of(guests_.all().begin(), guests_.all().end(), [&](const auto& one) {
-           const Guest& guest = *one.second;
-           return guest.waiting.empty() && quiet(guest.pilot, guest.pictures, guest.fit);
-         });
+  const auto isQuiet = [](const auto& one) { return one.second->isQuiet(); };
+  return resting() && !inlines_.isLoading() && !captures_.isPending() &&
+         std::all_of(viewers_.all().begin(), viewers_.all().end(), isQuiet);
 }
 
 } // namespace vv

@@ -9,8 +9,8 @@
 namespace vv {
 
 std::string Session::command(const std::vector<std::string>& arguments, uint32_t viewer) const {
-  const Pilot& pilot = pilotOf(viewer);
-  const PictureLoop& pictures = picturesOf(viewer);
+  const Pilot& pilot = viewers_.findOrOwn(viewer).pilot;
+  const PictureLoop& pictures = viewers_.findOrOwn(viewer).pictures;
   std::optional<bool> headlight = pilot.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
@@ -22,26 +22,21 @@ std::string Session::command(const std::vector<std::string>& arguments, uint32_t
                      arguments);
 }
 
-std::string Session::takeMessageOf(uint32_t guest) {
-  Guest* const found = guests_.find(guest);
-  return found ? found->pilot.takeMessage() : std::string();
-}
-
 std::string Session::takeMessage() {
-  std::string text = std::exchange(message_, {});
-  std::string pilots = pilot_.takeMessage();
-  if (const std::string failure = pictures_.takeFailure(); !failure.empty()) {
+  const std::string pilots = own_.pilot.takeMessage();
+  if (const std::string failure = own_.pictures.takeFailure(); !failure.empty()) {
     sayError(failure);
-    if (isSaving()) giveUp(failure);
+    if (saver_.isWaiting()) saver_.fail(failure);
     return failure;
   }
-  const std::string written = writer_.takeMessage();
-  return !pilots.empty() ? pilots : !written.empty() ? written : text;
+  const std::string saved = saver_.takeMessage();
+  return pilots.empty() ? saved : pilots;
 }
 
 SessionFacts Session::facts(uint32_t viewer) const {
   using Showing = SessionFacts::Showing;
-  const PictureLoop& pictures = picturesOf(viewer);
+  const Pilot& pilot = viewers_.findOrOwn(viewer).pilot;
+  const PictureLoop& pictures = viewers_.findOrOwn(viewer).pictures;
   const picture::LivePicture& picture = pictures.facts();
   const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
   SessionFacts facts;
@@ -50,7 +45,7 @@ SessionFacts Session::facts(uint32_t viewer) const {
   facts.denoisedBy = picture.denoisedBy;
   facts.frameRate = pictures.frameRate();
   constexpr double restless = 3;
-  facts.isRestless = pictures.movingFor() > restless && !pilotOf(viewer).isSteering();
+  facts.isRestless = pictures.movingFor() > restless && !pilot.isSteering();
   facts.width = picture.width;
   facts.height = picture.height;
   facts.samples = picture.samples;
@@ -62,7 +57,7 @@ SessionFacts Session::facts(uint32_t viewer) const {
   facts.errors = d.errors();
   facts.warnings = d.warnings();
   if (!d.list().empty()) facts.lastProblem = d.list().back().text();
-  facts.navigation = navigationName(pilotOf(viewer).navigation());
+  facts.navigation = navigationName(pilot.navigation());
   facts.description = browser_->description();
   facts.loading = inlines_.isLoading();
   if (const auto& cluster = options_.render.cluster) {

@@ -91,7 +91,8 @@ class Window {
   // longer if the window is hidden or shows a finished picture, since events end it. It is never
   // nothing: that would take the processor from the picture that is drawn.
   void wait(double time) {
-    const bool soon = session_ && (session_->drawing() || session_->due());
+    const bool soon =
+        session_ && (session_->pictures().isDrawing() || session_->pictures().isDue());
     const bool idle = !session_ || !screen_.visible() || (input_.empty() && session_->isQuiet());
     const double most = idle && !control_ ? .05 : .004;
     screen_.wait(soon ? .001 : std::min(time, most), events_);
@@ -102,8 +103,9 @@ class Window {
   // moves, the user's input does not wait for the frame rate.
   bool isTime(double time, double next, double period) const {
     if (!session_) return false;
-    if (time >= next + (session_->drawing() ? period : 0)) return true;
-    const bool urgent = session_->due() || (!input_.empty() && !session_->moving());
+    if (time >= next + (session_->pictures().isDrawing() ? period : 0)) return true;
+    const bool urgent =
+        session_->pictures().isDue() || (!input_.empty() && !session_->pictures().isMoving());
     return urgent && time >= advanced_ + inputInterval;
   }
 
@@ -209,10 +211,10 @@ class Window {
                                            scripted ? options_.script.get() : nullptr);
     width_ = screen_.width();
     height_ = screen_.height();
-    fresh->setMotion(motion_);
+    fresh->pictures().setMotion(motion_);
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
-    const std::string saved = session_ ? session_->endSaving() : "";
+    const std::string saved = session_ ? session_->saver().end() : "";
     const std::string recorded = session_ ? endRecording() : "";
     if (control_) control_->detach();
     session_ = std::move(fresh); // ends the previous session
@@ -279,7 +281,7 @@ class Window {
     case Action::quit:
       if (help_ && event.text == "Escape")
         showHelp(false);
-      else if (event.text != "Escape" || !session_ || !session_->giveUpSaving())
+      else if (event.text != "Escape" || !session_ || !session_->saver().giveUp())
         ended_ = true;
       break;
     default: break;
@@ -289,16 +291,16 @@ class Window {
   // A second S gives up what the first one waits for.
   void save(const InputEvent& event, const char* suffix) {
     if (!session_) return;
-    if (event.kind == InputEvent::Kind::save) return session_->saveWhenFinished(event.text);
-    if (session_->giveUpSaving()) return;
-    session_->finishWriting();
-    session_->save(freeName(session_->browser().world().path, suffix));
+    if (event.kind == InputEvent::Kind::save) return session_->saver().saveWhenFinished(event.text);
+    if (session_->saver().giveUp()) return;
+    session_->saver().finishWriting();
+    session_->saver().save(freeName(session_->browser().world().path, suffix));
   }
 
   void switchMotion() {
     using Motion = PictureLoop::Motion;
     motion_ = motion_ == Motion::rebuilt ? Motion::samples : Motion::rebuilt;
-    if (session_) session_->setMotion(motion_);
+    if (session_) session_->pictures().setMotion(motion_);
     message(motion_ == Motion::rebuilt ? "rebuilt pictures while something moves"
                                        : "raw samples while something moves",
             3);
@@ -326,7 +328,8 @@ class Window {
 
   std::string bottomLine() {
     if (!loading_.empty()) return fmt::format("loading {} ...", loading_);
-    if (const std::string text = session_ ? session_->savingText() : ""; !text.empty()) return text;
+    if (const std::string text = session_ ? session_->saver().text() : ""; !text.empty())
+      return text;
     if (!message_.empty() && seconds() < messageEnds_) return message_;
     if (!session_) return failed_ ? message_ : "drop a world file here; F1 lists the keys";
     if (!session_->resting()) return bottom_;
@@ -383,7 +386,7 @@ class Window {
     const int code = interrupted()                     ? exitInterrupted
                      : failed_ == exitDone && !record_ ? exitRender
                                                        : failed_;
-    if (session_) session_->endSaving();
+    if (session_) session_->saver().end();
     control_.reset(); // sends the last answers, before the process may end
     stopOrExit(session_.get(), code, control::Control::isWriting() ? Others::work : Others::rest);
     return code;
