@@ -158,56 +158,13 @@ struct LiveRenderer::Impl {
   //
   // Waits for the oldest frame only when no other frame may be started; waiting earlier would delay
   // the newer one.
-  void loop() {
-    const auto hasWork = [this] { return requested || ending || isTidying(); };
-    std::unique_lock lock(mutex);
-    while (!ending) {
-      if (isTidying()) {
-        tidy(lock);
-      } else if (requested) {
-        FrameRequest frame = *std::exchange(requested, {});
-        lock.unlock();
-        std::string wrong = failureOf([&] { begin(std::move(frame)); });
-        if (!wrong.empty()) steps.beginAnew(); // what the next frame's RT_MOTION means is unknown
-        lock.lock();
-        updateState(std::move(wrong));
-      } else if (inFlight.empty()) {
-        changed.wait(lock, hasWork);
-      } else if (inFlight.size() < most && !cancelled && rtProgress(stage.context()) < 1) {
-        changed.wait_for(lock, patience, hasWork);
-      } else {
-        lock.unlock();
-        std::shared_ptr<const EndedFrame> result;
-        std::string wrong = failureOf([&] { result = finish(); });
-        if (wrong.empty()) wrong = std::exchange(unrebuilt, {});
-        lock.lock();
-        if (result) {
-          if (result->facts.purpose == Purpose::still) lastStill = result;
-          unpolled.push_back(std::move(result));
-          if (unpolled.size() > most) unpolled.pop_front();
-        }
-        updateState(std::move(wrong));
-      }
-    }
-    lock.unlock();
-    stage.close();
-  }
+  void loop();
 
   // Tells whether kept frames are to be freed. The caller holds the mutex.
   bool isTidying() const { return !left.empty() || (released && inFlight.empty() && !requested); }
 
   // Frees what viewers who have left had accumulated, or all viewers.
-  void tidy(std::unique_lock<std::mutex>& lock) {
-    const std::vector<uint32_t> viewers = std::exchange(left, {});
-    const bool all = !requested && inFlight.empty() && std::exchange(released, false);
-    lock.unlock();
-    for (const uint32_t viewer : viewers) previews.forget(viewer);
-    if (all) {
-      previews.forgetAll();
-      os::giveBackMemory();
-    }
-    lock.lock();
-  }
+  void tidy(std::unique_lock<std::mutex>& lock);
 
   template <class Work> std::string failureOf(const Work& work) {
     try {
@@ -222,263 +179,336 @@ struct LiveRenderer::Impl {
 
   // Updates the state after a frame has begun or ended. A frame requested meanwhile keeps its
   // state. The caller holds the mutex.
-  void updateState(std::string wrong) {
-    if (!wrong.empty()) failure = std::move(wrong);
-    framesInFlight = inFlight.size() + (requested ? 1 : 0);
-    if (requested) return;
-    const State now = inFlight.empty()         ? State::idle
-                      : inFlight.size() < most ? State::ready
-                                               : State::rendering;
-    state.store(now, std::memory_order_release);
-  }
-
-  void begin(FrameRequest frame) {
-    FrameInFlight flight{frame.facts, stage.settings, frame.started, {}, {}, {},
-                         {},          frame.denoising};
-    try {
-      map(std::move(frame));
-      flight.map = stage.mapper()->stats();
-      flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height,
-                       flight.settings.background.kind == Background::Kind::file};
-      if (flight.facts.purpose == Purpose::still && hasNames(flight.settings.channels))
-        flight.names = stage.mapper()->names();
-    } catch (...) { // the world is only half mapped: the next frame starts with a new context
-      stage.close();
-      inFlight.clear();
-      throw;
-    }
-    state.store(State::rendering, std::memory_order_release);
-    if (cancelled) return; // cancelled before it began
-    rtSwapBuffers();
-    throwOnError("rendering");
-    flight.step = steps.begin(flight.facts.viewer);
-    inFlight.push_back(std::move(flight));
-    if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
-  }
+  void updateState(std::string wrong);
+  void begin(FrameRequest frame);
 
   // Maps the world for a frame. All references to nodes are released when this returns, because the
   // browser uses the nodes from then on.
-  void map(FrameRequest frame) {
-    const bool anew = !stage.context() || frame.worldChanges.otherWorld;
-    bool changed = !frame.worldChanges.changes.empty();
-    if (!stage.context()) {
-      stage.open([this] { return cancelled.load(); });
-      frame.worldChanges.changes.clear(); // the new mapper already contains them
-      frame.worldChanges.otherWorld = false;
-    }
-    const uint64_t moved = stage.mapper()->stats().instancesMoved;
-    stage.apply(frame.worldChanges);
-    stage.prepare(frame.view);
-    // Billboards follow the camera, without a change of the world's.
-    changed = changed || stage.mapper()->stats().instancesMoved != moved;
-    if (anew)
-      steps.beginAnew();
-    else if (changed)
-      steps.change();
-    stage.setUpFrame();
-    rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
-  }
+  void map(FrameRequest frame);
 
   // Waits for the oldest frame and returns it; null: a preview that was cancelled.
-  std::shared_ptr<const EndedFrame> finish() {
-    const FrameInFlight flight = std::move(inFlight.front());
-    inFlight.pop_front();
-    rtFinishFrame();
-    throwOnError("rendering");
-    auto result = std::make_shared<EndedFrame>();
-    result->facts = flight.facts;
-    // The estimate of the error takes much memory for a moment, so no other picture is kept then.
-    if (flight.facts.purpose == Purpose::still) {
-      const std::lock_guard lock(mutex);
-      lastStill = nullptr;
-    }
-    stage.describe(flight.settings, result->result);
-    stage.readChannels(flight.settings, result->picture, &flight.names);
-    result->result.map = flight.map;
-    result->whole =
-        !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
-    const bool still = flight.facts.purpose == Purpose::still;
-    if (flight.facts.purpose == Purpose::preview && result->whole) rebuild(flight, *result);
-    if (still && result->whole) previews.forget(flight.facts.viewer);
-    const Clock::time_point end = Clock::now();
-    result->seconds = between(flight.started, end);
-    result->alone = between(std::max(flight.started, lastEnd),
-                            inFlight.empty() ? end : inFlight.front().started);
-    lastEnd = end;
-    return still || result->whole ? result : nullptr;
-  }
+  std::shared_ptr<const EndedFrame> finish();
 
   // Replaces the samples of a preview by the rebuilt picture. If that fails, the samples are shown
   // as they are, and the reason is told once until it succeeds again.
-  void rebuild(const FrameInFlight& flight, EndedFrame& frame) {
-    const Clock::time_point begin = Clock::now();
-    const std::string wrong = failureOf([&] {
-      Picture rebuilt = previews.rebuild(flight.facts.viewer, frame.picture, flight.camera,
-                                         flight.facts.lightStride, flight.step, flight.denoising);
-      frame.denoisedBy = previews.denoisedBy();
-      // Every pixel is covered, also where no sample has been taken.
-      std::vector<float>& samples = rebuilt.planes[RT_SAMPLES];
-      samples = std::move(frame.picture.planes[RT_SAMPLES]);
-      const double sum = std::accumulate(samples.begin(), samples.end(), 0.0);
-      std::fill(samples.begin(), samples.end(), float(sum / double(samples.size())));
-      frame.picture = std::move(rebuilt);
-    });
-    frame.rebuilding = secondsSince(begin);
-    if (const std::string problem = previews.takeProblem(); !problem.empty()) stage.warn(problem);
-    if (!wrong.empty()) frame.facts.purpose = Purpose::rawPreview;
-    if (!wrong.empty() && rebuilding) unrebuilt = "the preview cannot be rebuilt: " + wrong;
-    rebuilding = wrong.empty();
-  }
+  void rebuild(const FrameInFlight& flight, EndedFrame& frame);
 
   // --- The browser's thread ---
-  State now() const {
-    const State now = state.load(std::memory_order_acquire);
-    return now == State::ready && cancelled ? State::rendering : now;
-  }
-
-  void cancel() {
-    cancelled = true;
-    if (const RTcontext context = stage.context()) rtCancel(context);
-  }
-
-  std::shared_ptr<const EndedFrame> still() {
-    const std::lock_guard lock(mutex);
-    return lastStill;
-  }
-
-  std::shared_ptr<const EndedFrame> nextUnpolled() {
-    const std::lock_guard lock(mutex);
-    if (unpolled.empty()) return nullptr;
-    std::shared_ptr<const EndedFrame> next = std::move(unpolled.front());
-    unpolled.pop_front();
-    return next;
-  }
+  State now() const;
+  void cancel();
+  std::shared_ptr<const EndedFrame> still();
+  std::shared_ptr<const EndedFrame> nextUnpolled();
 
   // Tells whether the frame in flight is the one that was started last, so that the stage has its
   // settings.
-  bool alone() const {
-    const State now = state.load(std::memory_order_acquire);
-    return (now == State::rendering || now == State::ready) && framesInFlight == 1;
-  }
-
-  uint64_t start(const LiveFrame& frame) {
-    if (now() != State::idle && now() != State::ready)
-      throw std::logic_error("a frame is in flight");
-    stage.reportMessages();
-    current = {current.number + 1, frame.purpose,     frame.viewer,
-               frame.samples,      frame.lightStride, frame.falseColour};
-    stage.settings = settingsOf(given, frame);
-    if (frame.purpose != Purpose::still)
-      makePreview(stage.settings, frame.purpose, frame.lightStride, current.number);
-    started = Clock::now();
-    progress = 0;
-    nextPoll = {};
-    cancelled = false;
-    FrameRequest next{current, frame.view, stage.collectChanges(), started, frame.denoising};
-    {
-      const std::lock_guard lock(mutex);
-      failure.clear();
-      requested = std::move(next);
-      framesInFlight++;
-      state = State::mapping;
-    }
-    changed.notify_all();
-    return current.number;
-  }
-
-  void end() {
-    {
-      const std::lock_guard lock(mutex);
-      ending = true;
-    }
-    cancel();
-    changed.notify_all();
-    thread.join();
-  }
-
-  void forget(uint32_t viewer) {
-    display.forget(viewer);
-    {
-      const std::lock_guard lock(mutex);
-      left.push_back(viewer);
-    }
-    changed.notify_all();
-  }
-
-  void release() {
-    display = {};
-    scratch = {};
-    {
-      const std::lock_guard lock(mutex);
-      lastStill = nullptr;
-      unpolled.clear();
-      released = true;
-    }
-    changed.notify_all();
-  }
+  bool alone() const;
+  uint64_t start(const LiveFrame& frame);
+  void end();
+  void forget(uint32_t viewer);
+  void release();
 
   void show(const Picture& picture, const live::ShownFrame& frame, bool whole, double seconds,
-            LivePicture& out) {
-    out = {};
-    out.number = frame.number;
-    out.purpose = frame.purpose;
-    out.lightStride = frame.lightStride;
-    out.seconds = seconds;
-    out.finished = whole;
-    display.show(picture, frame, whole, seconds, out);
-  }
-
-  bool look(LivePicture& out) {
-    if (now() != State::mapping) stage.reportMessages(); // the mapper adds messages, too
-    const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
-    if (!finished) return alone() && pollInFlight(out);
-    scratch = {}; // the next frame may be long in coming
-    show(finished->picture, finished->facts, finished->whole, finished->seconds, out);
-    out.alone = finished->alone;
-    out.ended = true;
-    out.rebuilding = finished->rebuilding;
-    out.denoisedBy = finished->denoisedBy;
-    out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
-                                     finished->result.stats.renderSeconds);
-    out.map = finished->result.map;
-    out.stats = finished->result.stats;
-    return true;
-  }
+            LivePicture& out);
+  bool look(LivePicture& out);
 
   // Returns the frame in flight, if it has new samples.
-  bool pollInFlight(LivePicture& out) {
-    const Clock::time_point begin = Clock::now();
-    if (current.purpose == Purpose::preview || begin < nextPoll) return false;
-    const RTcontext context = stage.context();
-    const float now = rtProgress(context);
-    if (now <= progress || !stage.snapshot(scratch, shownChannels)) return false;
-    if (now < 1) progress = now; // progress is also 1 before the frame has begun
-    if (!std::any_of(scratch.planes[RT_SAMPLES].begin(), scratch.planes[RT_SAMPLES].end(),
-                     [](float s) { return s > 0; }))
-      return false;
-    show(scratch, current, false, secondsSince(started), out);
-    const double took = secondsSince(begin), rest = std::max(minPollInterval, pausePerPoll * took);
-    nextPoll = Clock::now() +
-               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
-    return true;
-  }
+  bool pollInFlight(LivePicture& out);
 
-  bool copy(Picture& out, uint64_t* number) {
-    const std::shared_ptr<const EndedFrame> finished = still();
-    const bool begun = current.purpose == Purpose::still && alone() &&
-                       stage.snapshot(out, stage.settings.channels);
-    uint64_t copied = current.number;
-    if (!begun || (finished && !all(out.planes[RT_SAMPLES], 1))) {
-      if (!finished) return false;
-      out = finished->picture;
-      copied = finished->facts.number;
-    }
-    if (number) *number = copied;
-    if (!(given.channels & RT_SAMPLES)) out.planes.erase(RT_SAMPLES);
-    if (!(given.channels & RT_RGBA)) out.planes.erase(RT_RGBA);
-    return true;
-  }
+  bool copy(Picture& out, uint64_t* number);
 };
+
+void LiveRenderer::Impl::loop() {
+  const auto hasWork = [this] { return requested || ending || isTidying(); };
+  std::unique_lock lock(mutex);
+  while (!ending) {
+    if (isTidying()) {
+      tidy(lock);
+    } else if (requested) {
+      FrameRequest frame = *std::exchange(requested, {});
+      lock.unlock();
+      std::string wrong = failureOf([&] { begin(std::move(frame)); });
+      if (!wrong.empty()) steps.beginAnew(); // what the next frame's RT_MOTION means is unknown
+      lock.lock();
+      updateState(std::move(wrong));
+    } else if (inFlight.empty()) {
+      changed.wait(lock, hasWork);
+    } else if (inFlight.size() < most && !cancelled && rtProgress(stage.context()) < 1) {
+      changed.wait_for(lock, patience, hasWork);
+    } else {
+      lock.unlock();
+      std::shared_ptr<const EndedFrame> result;
+      std::string wrong = failureOf([&] { result = finish(); });
+      if (wrong.empty()) wrong = std::exchange(unrebuilt, {});
+      lock.lock();
+      if (result) {
+        if (result->facts.purpose == Purpose::still) lastStill = result;
+        unpolled.push_back(std::move(result));
+        if (unpolled.size() > most) unpolled.pop_front();
+      }
+      updateState(std::move(wrong));
+    }
+  }
+  lock.unlock();
+  stage.close();
+}
+
+void LiveRenderer::Impl::tidy(std::unique_lock<std::mutex>& lock) {
+  const std::vector<uint32_t> viewers = std::exchange(left, {});
+  const bool all = !requested && inFlight.empty() && std::exchange(released, false);
+  lock.unlock();
+  for (const uint32_t viewer : viewers) previews.forget(viewer);
+  if (all) {
+    previews.forgetAll();
+    os::giveBackMemory();
+  }
+  lock.lock();
+}
+
+void LiveRenderer::Impl::updateState(std::string wrong) {
+  if (!wrong.empty()) failure = std::move(wrong);
+  framesInFlight = inFlight.size() + (requested ? 1 : 0);
+  if (requested) return;
+  const State now = inFlight.empty()         ? State::idle
+                    : inFlight.size() < most ? State::ready
+                                             : State::rendering;
+  state.store(now, std::memory_order_release);
+}
+
+void LiveRenderer::Impl::begin(FrameRequest frame) {
+  FrameInFlight flight{frame.facts, stage.settings, frame.started, {}, {}, {}, {}, frame.denoising};
+  try {
+    map(std::move(frame));
+    flight.map = stage.mapper()->stats();
+    flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height,
+                     flight.settings.background.kind == Background::Kind::file};
+    if (flight.facts.purpose == Purpose::still && hasNames(flight.settings.channels))
+      flight.names = stage.mapper()->names();
+  } catch (...) { // the world is only half mapped: the next frame starts with a new context
+    stage.close();
+    inFlight.clear();
+    throw;
+  }
+  state.store(State::rendering, std::memory_order_release);
+  if (cancelled) return; // cancelled before it began
+  rtSwapBuffers();
+  throwOnError("rendering");
+  flight.step = steps.begin(flight.facts.viewer);
+  inFlight.push_back(std::move(flight));
+  if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
+}
+
+void LiveRenderer::Impl::map(FrameRequest frame) {
+  const bool anew = !stage.context() || frame.worldChanges.otherWorld;
+  bool changed = !frame.worldChanges.changes.empty();
+  if (!stage.context()) {
+    stage.open([this] { return cancelled.load(); });
+    frame.worldChanges.changes.clear(); // the new mapper already contains them
+    frame.worldChanges.otherWorld = false;
+  }
+  const uint64_t moved = stage.mapper()->stats().instancesMoved;
+  stage.apply(frame.worldChanges);
+  stage.prepare(frame.view);
+  // Billboards follow the camera, without a change of the world's.
+  changed = changed || stage.mapper()->stats().instancesMoved != moved;
+  if (anew)
+    steps.beginAnew();
+  else if (changed)
+    steps.change();
+  stage.setUpFrame();
+  rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
+}
+
+std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
+  const FrameInFlight flight = std::move(inFlight.front());
+  inFlight.pop_front();
+  rtFinishFrame();
+  throwOnError("rendering");
+  auto result = std::make_shared<EndedFrame>();
+  result->facts = flight.facts;
+  // The estimate of the error takes much memory for a moment, so no other picture is kept then.
+  if (flight.facts.purpose == Purpose::still) {
+    const std::lock_guard lock(mutex);
+    lastStill = nullptr;
+  }
+  stage.describe(flight.settings, result->result);
+  stage.readChannels(flight.settings, result->picture, &flight.names);
+  result->result.map = flight.map;
+  result->whole =
+      !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
+  const bool still = flight.facts.purpose == Purpose::still;
+  if (flight.facts.purpose == Purpose::preview && result->whole) rebuild(flight, *result);
+  if (still && result->whole) previews.forget(flight.facts.viewer);
+  const Clock::time_point end = Clock::now();
+  result->seconds = between(flight.started, end);
+  result->alone =
+      between(std::max(flight.started, lastEnd), inFlight.empty() ? end : inFlight.front().started);
+  lastEnd = end;
+  return still || result->whole ? result : nullptr;
+}
+
+void LiveRenderer::Impl::rebuild(const FrameInFlight& flight, EndedFrame& frame) {
+  const Clock::time_point begin = Clock::now();
+  const std::string wrong = failureOf([&] {
+    Picture rebuilt = previews.rebuild(flight.facts.viewer, frame.picture, flight.camera,
+                                       flight.facts.lightStride, flight.step, flight.denoising);
+    frame.denoisedBy = previews.denoisedBy();
+    // Every pixel is covered, also where no sample has been taken.
+    std::vector<float>& samples = rebuilt.planes[RT_SAMPLES];
+    samples = std::move(frame.picture.planes[RT_SAMPLES]);
+    const double sum = std::accumulate(samples.begin(), samples.end(), 0.0);
+    std::fill(samples.begin(), samples.end(), float(sum / double(samples.size())));
+    frame.picture = std::move(rebuilt);
+  });
+  frame.rebuilding = secondsSince(begin);
+  if (const std::string problem = previews.takeProblem(); !problem.empty()) stage.warn(problem);
+  if (!wrong.empty()) frame.facts.purpose = Purpose::rawPreview;
+  if (!wrong.empty() && rebuilding) unrebuilt = "the preview cannot be rebuilt: " + wrong;
+  rebuilding = wrong.empty();
+}
+
+LiveRenderer::State LiveRenderer::Impl::now() const {
+  const State now = state.load(std::memory_order_acquire);
+  return now == State::ready && cancelled ? State::rendering : now;
+}
+
+void LiveRenderer::Impl::cancel() {
+  cancelled = true;
+  if (const RTcontext context = stage.context()) rtCancel(context);
+}
+
+std::shared_ptr<const EndedFrame> LiveRenderer::Impl::still() {
+  const std::lock_guard lock(mutex);
+  return lastStill;
+}
+
+std::shared_ptr<const EndedFrame> LiveRenderer::Impl::nextUnpolled() {
+  const std::lock_guard lock(mutex);
+  if (unpolled.empty()) return nullptr;
+  std::shared_ptr<const EndedFrame> next = std::move(unpolled.front());
+  unpolled.pop_front();
+  return next;
+}
+
+bool LiveRenderer::Impl::alone() const {
+  const State now = state.load(std::memory_order_acquire);
+  return (now == State::rendering || now == State::ready) && framesInFlight == 1;
+}
+
+uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
+  if (now() != State::idle && now() != State::ready) throw std::logic_error("a frame is in flight");
+  stage.reportMessages();
+  current = {current.number + 1, frame.purpose,     frame.viewer,
+             frame.samples,      frame.lightStride, frame.falseColour};
+  stage.settings = settingsOf(given, frame);
+  if (frame.purpose != Purpose::still)
+    makePreview(stage.settings, frame.purpose, frame.lightStride, current.number);
+  started = Clock::now();
+  progress = 0;
+  nextPoll = {};
+  cancelled = false;
+  FrameRequest next{current, frame.view, stage.collectChanges(), started, frame.denoising};
+  {
+    const std::lock_guard lock(mutex);
+    failure.clear();
+    requested = std::move(next);
+    framesInFlight++;
+    state = State::mapping;
+  }
+  changed.notify_all();
+  return current.number;
+}
+
+void LiveRenderer::Impl::end() {
+  {
+    const std::lock_guard lock(mutex);
+    ending = true;
+  }
+  cancel();
+  changed.notify_all();
+  thread.join();
+}
+
+void LiveRenderer::Impl::forget(uint32_t viewer) {
+  display.forget(viewer);
+  {
+    const std::lock_guard lock(mutex);
+    left.push_back(viewer);
+  }
+  changed.notify_all();
+}
+
+void LiveRenderer::Impl::release() {
+  display = {};
+  scratch = {};
+  {
+    const std::lock_guard lock(mutex);
+    lastStill = nullptr;
+    unpolled.clear();
+    released = true;
+  }
+  changed.notify_all();
+}
+
+void LiveRenderer::Impl::show(const Picture& picture, const live::ShownFrame& frame, bool whole,
+                              double seconds, LivePicture& out) {
+  out = {};
+  out.number = frame.number;
+  out.purpose = frame.purpose;
+  out.lightStride = frame.lightStride;
+  out.seconds = seconds;
+  out.finished = whole;
+  display.show(picture, frame, whole, seconds, out);
+}
+
+bool LiveRenderer::Impl::look(LivePicture& out) {
+  if (now() != State::mapping) stage.reportMessages(); // the mapper adds messages, too
+  const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
+  if (!finished) return alone() && pollInFlight(out);
+  scratch = {}; // the next frame may be long in coming
+  show(finished->picture, finished->facts, finished->whole, finished->seconds, out);
+  out.alone = finished->alone;
+  out.ended = true;
+  out.rebuilding = finished->rebuilding;
+  out.denoisedBy = finished->denoisedBy;
+  out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
+                                   finished->result.stats.renderSeconds);
+  out.map = finished->result.map;
+  out.stats = finished->result.stats;
+  return true;
+}
+
+bool LiveRenderer::Impl::pollInFlight(LivePicture& out) {
+  const Clock::time_point begin = Clock::now();
+  if (current.purpose == Purpose::preview || begin < nextPoll) return false;
+  const RTcontext context = stage.context();
+  const float now = rtProgress(context);
+  if (now <= progress || !stage.snapshot(scratch, shownChannels)) return false;
+  if (now < 1) progress = now; // progress is also 1 before the frame has begun
+  if (!std::any_of(scratch.planes[RT_SAMPLES].begin(), scratch.planes[RT_SAMPLES].end(),
+                   [](float s) { return s > 0; }))
+    return false;
+  show(scratch, current, false, secondsSince(started), out);
+  const double took = secondsSince(begin), rest = std::max(minPollInterval, pausePerPoll * took);
+  nextPoll = Clock::now() +
+             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
+  return true;
+}
+
+bool LiveRenderer::Impl::copy(Picture& out, uint64_t* number) {
+  const std::shared_ptr<const EndedFrame> finished = still();
+  const bool begun =
+      current.purpose == Purpose::still && alone() && stage.snapshot(out, stage.settings.channels);
+  uint64_t copied = current.number;
+  if (!begun || (finished && !all(out.planes[RT_SAMPLES], 1))) {
+    if (!finished) return false;
+    out = finished->picture;
+    copied = finished->facts.number;
+  }
+  if (number) *number = copied;
+  if (!(given.channels & RT_SAMPLES)) out.planes.erase(RT_SAMPLES);
+  if (!(given.channels & RT_RGBA)) out.planes.erase(RT_RGBA);
+  return true;
+}
 
 LiveRenderer::LiveRenderer(xvrml::Browser& browser, const RenderSettings& settings)
     : impl_(std::make_unique<Impl>(browser, settings)) {

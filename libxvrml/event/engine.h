@@ -44,6 +44,8 @@ class EngineObserver {
   virtual bool settled() = 0; // no event is left; returns true if it has sent one
 };
 
+// Wide because nodes, routes, prototypes and cascades are states of one world that change together:
+// an event may end a node, and with it routes, while a cascade is under way.
 class Engine : public Events {
  public:
   // Makes the observer of an engine that is being constructed. The observer may keep the reference,

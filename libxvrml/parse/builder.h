@@ -12,6 +12,8 @@
 
 namespace xvrml {
 
+// Wide because there is one function for each event of the sink, and one for each thing that a file
+// may state wrongly.
 class Builder : public ParseSink {
  public:
   Builder(Locator& locator, LoadState& state, ParsedFile& file);

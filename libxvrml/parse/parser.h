@@ -13,6 +13,7 @@
 
 namespace xvrml {
 
+// Wide because there is one function for each rule of the grammar.
 class Parser {
  public:
   // Limit for the nesting of nodes that no option can exceed: the thread's stack allows no more.

@@ -13,6 +13,7 @@
 
 namespace xvrml {
 
+// Wide because there is one function for each kind of element.
 class X3dElements {
  public:
   X3dElements(Locator& locator, const Limits& limits, ParseSink& sink, Budget* budget);

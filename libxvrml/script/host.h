@@ -106,6 +106,7 @@ struct Script {
 // node has been destroyed, and at the end of the destructor. Handles of Scripts may hold the last
 // reference to any node, also to a Script's. So dropping handles may end other Scripts, or the
 // Script itself; end() then moves them to `ended_`, where they stay usable until finish().
+// Wide because Scripts, their handles and their time have one owner.
 class ScriptHost : public ScriptRunner {
  public:
   struct Table; // the XsHost of the scripts, with a reference to this host

@@ -11,6 +11,7 @@
 
 namespace xvrml {
 
+// Wide because there is one function for each entry of XsHost.
 struct HostTable {
   using Host = const XsHost*;
   static constexpr uint64_t stepsOfCall = 100;

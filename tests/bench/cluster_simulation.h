@@ -55,6 +55,7 @@ inline double costOfClock() {
   return times[5000];
 }
 
+// Wide because its functions are those of a whole cluster: the network, the workers and the clock.
 class Simulation {
  public:
   Simulation(const Options& o, const CostMap& costs, uint32_t workers)

@@ -90,6 +90,8 @@ struct RunOptions {
   std::function<void(const ScriptCounts& counts)> onScriptStart;
 };
 
+// A running world, as a program sees it. Wide because it is the counterpart of the Browser object
+// of ISO/IEC 14772-1 4.12.10, of the viewer and of the pointing devices.
 class Browser {
  public:
   // Takes over a loaded world. Sensors, Scripts, bindable nodes and routes become active at time
