@@ -7,6 +7,7 @@ hygiene.py --self    tests the rules of comments with some that must be refused 
 * No source over 500 lines without a stated reason.
 * No line over 100 characters in C and C++, except in worlds and programs in raw strings.
 * No absolute path of a developer's machine, no left-over notes to self, no trailing blanks.
+* No class with over 40 functions or 300 lines without a stated reason in the comment above it.
 * At most 120 lines in the README.md of the root.
 * A first comment in every C and C++ file. That of the header of the same name also serves a .cpp
   file.
@@ -20,6 +21,7 @@ import pathlib
 import re
 import sys
 
+from classes import classes
 from comments import C_SUFFIXES, blocks, paragraphs
 
 SOURCE = {".c", ".cpp", ".h", ".hpp", ".py", ".cmake", ".fbs", ".node", ".sh"}
@@ -41,6 +43,7 @@ HOMES = re.compile(r"(?<![\w.:/$}])/(?:home|root|work|Users|mnt|tmp)/[\w.-]+")
 NOTES = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")
 
 REASON = "Longer than 500 lines because"
+WIDE = "Wide because"
 RAW_STRING = re.compile(r'R"(\w*)\(.*?\)\1"', re.S)
 
 
@@ -86,6 +89,14 @@ def prose(path, text, names):
                    f"a sentence begins with \"{match.group().split()[0]}\": {match.group()[:60]}")
 
 
+def wide_classes(text):
+    """Yields line and complaint of classes that are wider than their comment permits."""
+    for one in classes(text):
+        if (one.functions > 40 or one.lines > 300) and WIDE not in one.head:
+            yield one.number, (f"class {one.name} has {one.functions} functions in {one.lines} lines: "
+                               f"split it, or say why it is one class (\"{WIDE} ...\") above it")
+
+
 def versions(root):
     """Yields places that repeat another version than that of CMakeLists.txt."""
     version = re.search(r"^project\(\w+ VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text(),
@@ -115,6 +126,9 @@ def complaints(root, path, relative, names):
         yield f"{relative}: {len(lines) - 1} lines (at most 60): measurements belong to docs/accuracy.md and docs/benchmarks.md"
     for number, what in prose(path, text, names):
         yield f"{relative}:{number}: {what}"
+    if path.suffix in C_SUFFIXES:
+        for number, what in wide_classes(text):
+            yield f"{relative}:{number}: {what}"
     raw = raw_lines(text)
     for number, line in enumerate(lines, 1):
         where = f"{relative}:{number}"
@@ -165,6 +179,24 @@ def self_test():
             for text in texts:
                 if bool(list(prose(pathlib.Path(name), text + "\n", names))) != wanted:
                     yield f"{name}: {'passes' if wanted else 'is refused'}: {text!r}"
+    declared = [
+        "int f(int a = 1);", "A& operator()(int) const { return g(1); }", "explicit X(B b) : b_{b} {}",
+        "template <class T> void f(std::function<void(int)> call);", "~X();", "bool operator<(X) const;"
+    ]
+    others = [
+        "int a = f(1);", "std::function<void(int)> call;", "using F = void(int);", "enum class E { a, b };",
+        "friend void f(X);", "struct In { int a; };", "int b{f(2)};", "// void f();", "class Forward;"
+    ]
+    for text, wanted in ((f"class X {{\n public:\n  {one}\n}};", count)
+                         for group, count in ((declared, 1), (others, 0)) for one in group):
+        if [one.functions for one in classes(text) if one.name == "X"] != [wanted]:
+            yield f"class: {'is no function' if wanted else 'is a function'}: {text!r}"
+    for text, wanted in (("class X {" + " void f();" * 41 + "};", True),
+                         ("class X {" + " void f();" * 40 + "};", False),
+                         ("class X {" + "\n" * 300 + "};", True),
+                         ("// Wide because it is.\nclass X {" + "\n" * 300 + "};", False)):
+        if bool(list(wide_classes(text))) != wanted:
+            yield f"class: {'passes' if wanted else 'is refused'}: {text[:60]!r}"
 
 
 def main():
