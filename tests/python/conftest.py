@@ -17,6 +17,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "timed: measures wall-clock time, so a busy machine can make it fail")
+
+
 # Previews are filtered in the same way on every machine, unless a test asks for the library.
 os.environ["OPENRT_OIDN_LIBRARY"] = "none"
 

@@ -205,6 +205,7 @@ def test_the_interpreter_ends_while_a_daemon_thread_works(work):
     "world.meshes()", "world.to_vrml()", "xvrml.loads('#VRML V2.0 utf8 Group { }')",
     "browser.tick(browser.now)"
 ])
+@pytest.mark.timed
 def test_the_end_does_not_wait_for_threads_that_begin_again_and_again(work):
     code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1),
                          work=work,

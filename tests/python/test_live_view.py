@@ -473,6 +473,7 @@ def test_wrong_arguments(world):
     "javascript: function turn() { while (true); }",
     "tcl: proc turn {v t} { while 1 {} }",
 ])
+@pytest.mark.timed
 def test_a_script_that_never_ends_leaves_the_view_alone(program):
     """A call of a Script may take two seconds before it is stopped; the steps of a view do not wait
     for that."""

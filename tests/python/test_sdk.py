@@ -395,6 +395,7 @@ w["Lamp"].intensity = 0.5
 
 
 @pytest.mark.parametrize("what", ["render", "load", "cast_rays", "save"])
+@pytest.mark.timed
 def test_a_thread_goes_on_ticking(world, tmp_path, what):
     big = xvrml.World()
     points = np.random.default_rng(1).normal(size=(100_000, 3))

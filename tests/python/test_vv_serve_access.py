@@ -78,6 +78,7 @@ def test_no_request_holds_a_connection(serve):
     assert server.get("/").status == 200
 
 
+@pytest.mark.timed
 def test_silent_connections_keep_nobody_out(serve):
     server = serve(SENSORS, "--spp", 1)
     page = server.join(*SIZE)

@@ -34,6 +34,7 @@ def test_a_crash_names_the_shader(tmp_path):
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.timed
 def test_one_signal_ends_a_render_that_hangs_in_a_shader(tmp_path, number):
     (tmp_path / "hang.wrl").write_text("#VRML V2.0 utf8\nViewpoint { position 0 0 5 }\n" +
                                        (WORLD % ("Hang", "faulty")).split("\n", 1)[1])

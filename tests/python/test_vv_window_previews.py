@@ -166,6 +166,7 @@ def test_a_key_shows_the_raw_samples(window, screen):
     assert w.end() == 0
 
 
+@pytest.mark.timed
 def test_a_finished_picture_lets_the_processor_sleep(window):
     """The window wakes up for its clock, 5 times a second here, and not to ask for input."""
     w = window(coloured("1 0 0"), "--fps", 5)
