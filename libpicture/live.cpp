@@ -439,7 +439,7 @@ struct LiveRenderer::Impl {
     out.rebuilding = finished->rebuilding;
     out.denoisedBy = finished->denoisedBy;
     out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
-                                     finished->result.stats.renderSeconds);
+                                     finished->result.stats.time.render);
     out.map = finished->result.map;
     out.stats = finished->result.stats;
     return true;

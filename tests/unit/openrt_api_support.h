@@ -105,8 +105,8 @@ class CaptureBackend final : public Backend {
     return true;
   }
   void stats(RTstats& stats) const override {
-    stats.cameraRays = 42;
-    stats.degenerate = 1;
+    stats.rays.camera = 42;
+    stats.rejected.primitives = 1;
   }
   Queries* queries() override { return &queries_; }
 

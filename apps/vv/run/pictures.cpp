@@ -430,20 +430,9 @@ class Pictures {
   // Replaces the numbers that belong to the picture by those of all its seeds.
   static void useStatsOf(const picture::Sums& all, RTstats& stats) {
     const RTstats sums = picture::statsOf(all);
-    stats.cameraRays = sums.cameraRays;
-    stats.shadowRays = sums.shadowRays;
-    stats.secondaryRays = sums.secondaryRays;
-    stats.shaderFaults = sums.shaderFaults;
-    stats.errorMean = sums.errorMean;
-    stats.errorMeanInterval = sums.errorMeanInterval;
-    stats.errorHalfWidth = sums.errorHalfWidth;
-    stats.errorP99 = sums.errorP99;
-    stats.errorPixels = sums.errorPixels;
-    stats.errorTrusted = sums.errorTrusted;
-    stats.errorUnmet = sums.errorUnmet;
-    stats.cutByDepth = sums.cutByDepth;
-    stats.cutByEnergy = sums.cutByEnergy;
-    stats.clipped = sums.clipped;
+    stats.rays = sums.rays;
+    stats.error = sums.error;
+    stats.leftOut = sums.leftOut;
   }
 
   // Ends a run whose picture is not finished.
@@ -666,7 +655,7 @@ class Pictures {
     if (options_.verbose)
       say(fmt::format("vv: {}{}{} triangles, mapped in {}, rendered in {}{}, written in {}",
                       request.name.text(), request.name.text().empty() ? "" : ": ",
-                      result.stats.triangles, duration(result.mapSeconds),
+                      result.stats.scene.triangles, duration(result.mapSeconds),
                       duration(result.renderSeconds),
                       options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                       duration(writeSeconds)));
@@ -683,11 +672,11 @@ class Pictures {
           !hint.empty())
         say("vv: " + hint);
     const RTstats& s = result.stats;
-    if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 &&
-        s.errorHalfWidth > 1.001 * options_.render.error)
+    if (options_.render.error > 0 && !result.interrupted && s.error.pixels > 0 &&
+        s.error.halfWidth > 1.001 * options_.render.error)
       sayWarning(fmt::format("{}{}--error promised {:.3g} %, reached {:.3g} %: {}",
                              request.name.text(), request.name.text().empty() ? "" : ": ",
-                             100 * options_.render.error, 100 * s.errorHalfWidth,
+                             100 * options_.render.error, 100 * s.error.halfWidth,
                              whyMissed(result)));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
@@ -725,7 +714,7 @@ class Pictures {
              double(all.size());
       largest = double(*std::max_element(all.begin(), all.end()));
     }
-    const bool lamps = picture::transportInfo(result.stats.transport).tracesLamps;
+    const bool lamps = picture::transportInfo(result.stats.transport.chosen).tracesLamps;
     const std::string paths = lamps && options_.render.timeLimit <= 0
                                   ? ". Paths from lamps are limited as well (docs/error-bars.md): "
                                     "--spp N without --error "

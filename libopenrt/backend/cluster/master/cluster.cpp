@@ -113,7 +113,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     master.require = cluster.require;
     master.session = uint64_t(std::random_device()()) << 32 | 1;
     master.self = identity(self);
-    identity_ = {0, 0, versionText(), self.isa, self.kernel};
+    identity_ = {0, 0, versionText(), self.machine.isa, self.machine.kernel};
     master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
     master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
       std::vector<ThreadPool::Task> task{taskFor(std::move(heavy), std::move(then))};
@@ -217,41 +217,18 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   }
 
   void stats(RTstats& s) const override {
-    const uint64_t degenerate = s.degenerate;
-    const size_t size = s.size;
     if (const Master::FrameState& state = finished_.state; state.work) {
       s = state.prepared.stats; // scene statistics
-      s.size = size;
-      s.degenerate += degenerate;
-      for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel,
-                         s.transportReason + sizeof s.transportReason})
-        text[-1] = '\0'; // text from a remote worker may be unterminated
-      const RayCounters counters = state.work->counters();
-      s.cameraRays = counters.camera;
-      s.shadowRays = counters.shadow;
-      s.secondaryRays = counters.secondary;
-      s.shaderFaults = state.work->shaderFaults();
-      s.renderSeconds = finished_.ended - finished_.begun;
-      s.transport = state.prepared.frame.transport;
-      state.work->describeError(s);
-      state.work->describeLedger(s);
+      s.time.render = finished_.ended - finished_.begun;
+      s.transport.chosen = state.prepared.frame.transport;
+      state.work->describe(s);
     } else {
       core_->ask([&](Backend& backend) { backend.stats(s); });
     }
-    s.commitSeconds = commitSeconds_;
-    Master::Totals totals;
-    {
-      const std::lock_guard lock(mutex_);
-      totals = totals_;
-    }
-    s.workers = totals.workers;
-    s.threads = totals.threads;
-    s.tilesRemote = totals.jobsRemote;
-    s.tilesLocal = totals.jobsHere;
-    s.reissued = totals.reissued;
-    s.duplicates = totals.duplicates;
-    s.bytesSent = totals.bytesSent;
-    s.bytesReceived = totals.bytesReceived;
+    s.time.commit = commitSeconds_;
+    const std::lock_guard lock(mutex_);
+    s.cluster = totals_.cluster;
+    s.machine.threads = totals_.threads;
   }
 
   std::vector<RTworker> workers() const override {
