@@ -9,7 +9,6 @@
 #include <deque>
 #include <exception>
 #include <future>
-#include <iterator>
 #include <mutex>
 #include <random>
 #include <thread>
@@ -22,8 +21,8 @@
 #include "render/frame/threads.h"
 #include "scene/sums_error.h"
 #include "shortage.h"
-#include "start_threads.h"
 #include "steady_clock.h"
+#include "task_threads.h"
 
 namespace openrt {
 namespace {
@@ -36,52 +35,6 @@ Split splitOf(const std::string& word) {
   if (word == "frames") return Split::frames;
   return Split::automatic;
 }
-
-// A thread pool for tasks that would hold up the network. With one thread, tasks run in order.
-class ThreadPool {
- public:
-  using Task = std::function<void()>;
-  explicit ThreadPool(uint32_t threads) {
-    startThreads(threads_, threads, [this](size_t) { run(); });
-  }
-  ~ThreadPool() {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    changed_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
-  }
-  // Takes all tasks and leaves the vector empty.
-  void add(std::vector<Task>& tasks) {
-    if (tasks.empty()) return;
-    {
-      const std::lock_guard lock(mutex_);
-      std::move(tasks.begin(), tasks.end(), std::back_inserter(tasks_));
-    }
-    for (size_t i = 0; i < std::min(tasks.size(), threads_.size()); i++) changed_.notify_one();
-    tasks.clear();
-  }
-
- private:
-  void run() {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      changed_.wait(lock, [this] { return stop_ || !tasks_.empty(); });
-      if (stop_) return;
-      const Task task = std::move(tasks_.front());
-      tasks_.pop_front();
-      lock.unlock();
-      task();
-      lock.lock();
-    }
-  }
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Task> tasks_;
-  bool stop_ = false;
-  std::vector<std::thread> threads_;
-};
 
 // Returns the number of threads that merge remote results while one serves the network.
 uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
@@ -116,8 +69,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     identity_ = {0, 0, versionText(), self.machine.isa, self.machine.kernel};
     master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
     master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
-      std::vector<ThreadPool::Task> task{taskFor(std::move(heavy), std::move(then))};
-      background_.add(task);
+      background_.post(taskFor(std::move(heavy), std::move(then)));
     };
     master.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
       results_.push_back(taskFor(std::move(heavy), std::move(then)));
@@ -380,7 +332,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     changed_.notify_all();
   }
 
-  ThreadPool::Task taskFor(std::function<void()> heavy, std::function<void(double)> then) {
+  TaskThreads::Task taskFor(std::function<void()> heavy, std::function<void(double)> then) {
     return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
       heavy();
       post(std::move(then));
@@ -394,7 +346,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
       commands.swap(commands_);
     }
     for (auto& command : commands) command(steadySeconds());
-    mergers_.add(results_);
+    mergers_.post(results_);
   }
 
   // Handles the messages that have arrived and those that follow at once.
@@ -403,14 +355,14 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     // Results per batch for the merging threads: waking a thread for each one would take longer.
     constexpr size_t together = 16;
     for (int i = 0; i < most; i++) {
-      if (results_.size() >= together) mergers_.add(results_);
+      if (results_.size() >= together) mergers_.post(results_);
       const double asked = steadySeconds();
       Event event = wire_->receive(i == 0 ? seconds : 0);
       const double now = steadySeconds();
       if (i == 0) waited_ += now - asked;
       switch (event.kind) {
       case Event::Kind::nothing:
-      case Event::Kind::woken: return mergers_.add(results_);
+      case Event::Kind::woken: return mergers_.post(results_);
       case Event::Kind::joined: master_->joined(event.peer, event.text, now); break;
       case Event::Kind::message: master_->message(event.peer, std::move(event.frames), now); break;
       case Event::Kind::left: master_->left(event.peer, event.text, now); break;
@@ -419,7 +371,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
         break;
       }
     }
-    mergers_.add(results_);
+    mergers_.post(results_);
   }
 
   // Publishes the state of the frames in flight to the threads that poll or wait.
@@ -477,11 +429,12 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   bool stop_ = false;
   // Start of the current busy period, moved forward by the time spent waiting.
   double waited_ = steadySeconds();
-  std::vector<ThreadPool::Task> results_; // for the merging threads
+  std::vector<TaskThreads::Task> results_; // for the merging threads
   std::unique_ptr<Wire> wire_;
   std::unique_ptr<WorkerCore> core_;
   std::unique_ptr<Master> master_;
-  ThreadPool background_{1}, mergers_{mergersOf(availableThreads())};
+  // Tasks that would hold up the network.
+  TaskThreads background_, mergers_{mergersOf(availableThreads())};
   std::thread thread_;
 };
 
