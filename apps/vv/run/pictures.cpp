@@ -3,7 +3,6 @@
 #include "run/pictures.h"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <map>
 #include <set>
@@ -36,15 +35,11 @@
 #include "session/replay.h"
 #include "start/look.h"
 #include "start/world_clock.h"
+#include "steady_clock.h"
 
 namespace vv {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // A picture to render: its camera, and the name that identifies it.
 struct PictureRequest {
@@ -632,15 +627,15 @@ class Pictures {
     writePictures(request, result.picture, {}, !result.interrupted, Which::raw);
     if (result.interrupted) return;
     addToFilms(request, result.picture, Which::raw);
-    const auto start = Clock::now();
+    const double start = steadySeconds();
     const StageProgress progress(request.name.text(), "denoising", options_.quiet);
     if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
     result.picture = denoiser_->denoised(result.picture);
-    result.denoiseSeconds = secondsSince(start);
+    result.denoiseSeconds = steadySeconds() - start;
   }
 
   void finish(const PictureRequest& request, const Moment& moment, picture::RenderResult& result) {
-    const auto start = Clock::now();
+    const double start = steadySeconds();
     fitExposure(result.picture);
     if (options_.denoise) denoise(request, result);
     sayBias(result.picture);
@@ -649,7 +644,7 @@ class Pictures {
     writePictures(request, result.picture, coloured, !result.interrupted, Which::shown);
     if (!result.interrupted)
       addToFilms(request, coloured ? *coloured : result.picture, Which::shown);
-    const double writeSeconds = secondsSince(start) - result.denoiseSeconds;
+    const double writeSeconds = steadySeconds() - start - result.denoiseSeconds;
     if (!options_.compare.empty() && !result.interrupted)
       writeOut(compareText(result.picture, options_.compare));
     if (options_.verbose)
