@@ -251,7 +251,7 @@ TEST_F(Edits, FramesInFlightKeepTheirScene) {
   rtOrtho(1e-6);
   rtLoadIdentity();
   rtFrameBuffer(64, 64, RT_RGBA);
-  const auto centre = [] {
+  const auto center = [] {
     std::vector<float> pixels(4 * 64 * 64);
     rtReadPixels(RT_RGBA, pixels.data(), pixels.size());
     return Rgba{pixels[0], pixels[1], pixels[2], pixels[3]};
@@ -260,7 +260,7 @@ TEST_F(Edits, FramesInFlightKeepTheirScene) {
   for (int i = 0; i < 6; i++) {
     move(instance, at(0, i % 2 ? 0 : 5));
     rtSwapBuffers();
-    expectGrey(centre(), i % 2 ? 0 : .8);
+    expectGrey(center(), i % 2 ? 0 : .8);
   }
 }
 
