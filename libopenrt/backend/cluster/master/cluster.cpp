@@ -234,22 +234,22 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
                      std::span<RTclosest> closest) override {
     ask([&](Queries& local) { local.closestPoints(points, radius, closest); });
   }
-  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
-    ask([&](Queries& local) { local.castPrecise(rays, hits); });
+  void castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
+    ask([&](Queries& local) { local.castDouble(rays, hits); });
   }
-  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
-    ask([&](Queries& local) { local.occludePrecise(rays, occluded); });
+  void occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
+    ask([&](Queries& local) { local.occludeDouble(rays, occluded); });
   }
-  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
-    ask([&](Queries& local) { local.countPrecise(rays, counts); });
+  void countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
+    ask([&](Queries& local) { local.countDouble(rays, counts); });
   }
-  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
-                   std::span<RThitd> hits) override {
-    ask([&](Queries& local) { local.listPrecise(rays, first, hits); });
+  void listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
+                  std::span<RThitd> hits) override {
+    ask([&](Queries& local) { local.listDouble(rays, first, hits); });
   }
-  void closestPrecise(std::span<const double> points, double radius,
-                      std::span<RThitd> closest) override {
-    ask([&](Queries& local) { local.closestPrecise(points, radius, closest); });
+  void closestDouble(std::span<const double> points, double radius,
+                     std::span<RThitd> closest) override {
+    ask([&](Queries& local) { local.closestDouble(points, radius, closest); });
   }
 
   // Asks about the last committed scene. The local worker has it once all earlier frames are
