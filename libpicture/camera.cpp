@@ -6,18 +6,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "libpicture/vec.h"
+
 namespace picture {
 
 namespace {
-
-struct Vec {
-  double x, y, z;
-};
-Vec cross(Vec a, Vec b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(Vec a) { return std::hypot(a.x, a.y, a.z); }
-Vec divided(Vec a, double s) { return {a.x / s, a.y / s, a.z / s}; }
 
 // Returns the coordinate axis that makes the largest angle with the direction v.
 Vec acrossAxis(Vec v) {
@@ -33,12 +26,12 @@ bool lookAtMatrix(const LookAt& view, double matrix[16]) {
   Vec back{p[0] - view.target[0], p[1] - view.target[1], p[2] - view.target[2]};
   const double distance = length(back);
   if (!(distance > 0) || !std::isfinite(distance)) return false;
-  back = divided(back, distance);
+  back = back / distance;
   Vec up{view.up[0], view.up[1], view.up[2]};
-  up = length(up) > 0 ? divided(up, length(up)) : Vec{0, 1, 0};
+  up = length(up) > 0 ? up / length(up) : Vec{0, 1, 0};
   Vec right = cross(up, back);
   if (length(right) < 1e-9) right = cross(acrossAxis(back), back);
-  right = divided(right, length(right));
+  right = right / length(right);
   up = cross(back, right);
   const double columns[16] = {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0,
                               back.x,  back.y,  back.z,  0, p[0], p[1], p[2], 1};

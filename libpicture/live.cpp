@@ -471,7 +471,7 @@ bool LiveRenderer::Impl::look(LivePicture& out) {
   out.rebuilding = finished->rebuilding;
   out.denoisedBy = finished->denoisedBy;
   out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
-                                   finished->result.stats.renderSeconds);
+                                   finished->result.stats.time.render);
   out.map = finished->result.map;
   out.stats = finished->result.stats;
   return true;

@@ -6,22 +6,13 @@
 #include <fmt/format.h>
 
 #include "libpicture/stage.h"
+#include "libpicture/vec.h"
 #include "xvrml/nodes.h"
 
 namespace picture {
 
 namespace {
 
-struct Vec {
-  double x = 0, y = 0, z = 0;
-};
-Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(Vec a, Vec b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(Vec a) { return std::hypot(a.x, a.y, a.z); }
 Vec of(const xvrml::Vec3f& v) { return {double(v.x), double(v.y), double(v.z)}; }
 void store(Vec v, double out[3]) {
   out[0] = v.x;

@@ -45,7 +45,7 @@ struct RenderSettings {
   // Only this part of the picture is made, with the bytes that it has in the whole one. It lies
   // within the picture.
   Crop crop;
-  int samples = 16;         // RT_SAMPLES_PER_PIXEL
+  int samples = int(qualityInfo(RT_SAMPLES_PER_PIXEL).defaultValue);
   double error = 0;         // RT_TARGET_ERROR; 0: none
   double timeLimit = 0;     // time limit in seconds (RT_TIME_LIMIT); 0: none
   bool progressive = false; // RT_PROGRESSIVE

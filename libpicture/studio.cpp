@@ -5,21 +5,13 @@
 #include <numbers>
 
 #include "libpicture/environment_map.h"
+#include "libpicture/vec.h"
 #include "srgb.h"
 
 namespace picture {
 
 namespace {
 
-struct Vec {
-  double x, y, z;
-};
-Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(Vec a, Vec b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 Vec unit(Vec a) {
   const double length = std::sqrt(dot(a, a));
   return length > 0 ? a * (1 / length) : Vec{0, 1, 0};

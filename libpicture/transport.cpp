@@ -46,7 +46,7 @@ std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves) {
 
 std::vector<std::string> omittedLightNames(const RTstats& stats) {
   std::vector<std::string> names;
-  for (const OmittedLight& left : omittedLights(stats.transport, stats.transportLeavesOut))
+  for (const OmittedLight& left : omittedLights(stats.transport.chosen, stats.transport.leavesOut))
     names.emplace_back(left.name);
   return names;
 }

@@ -19,7 +19,7 @@ struct OmittedLight {
   const char* name; // identifier for programs: "sky" and so on
   const char* text; // description for people
 };
-// leaves: RTstats.transportLeavesOut.
+// leaves: RTstats.transport.leavesOut.
 std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves);
 std::vector<std::string> omittedLightNames(const RTstats& stats);
 

@@ -23,26 +23,26 @@ const picture::Format& formatFor(const std::string& path) {
 }
 
 void describePicture(py::dict& stats, const RTstats& s) {
-  stats["transport"] = picture::transportName(s.transport);
-  stats["transport_reason"] = s.transportReason;
+  stats["transport"] = picture::transportName(s.transport.chosen);
+  stats["transport_reason"] = s.transport.reason;
   stats["transport_leaves_out"] = picture::omittedLightNames(s);
   py::dict left; // the keys have the names of vv --stats
-  left["cut_by_depth"] = s.cutByDepth;
-  left["cut_by_energy"] = s.cutByEnergy;
-  left["clipped"] = s.clipped;
-  left["unreached_lights"] = s.unreachedLights;
-  left["shader_faults"] = s.shaderFaults;
-  left["wrong_hits"] = s.wrongHits;
-  left["rejected_rays"] = s.rejectedRays;
+  left["cut_by_depth"] = s.leftOut.cutByDepth;
+  left["cut_by_energy"] = s.leftOut.cutByEnergy;
+  left["clipped"] = s.leftOut.clipped;
+  left["unreached_lights"] = s.transport.unreachedLights;
+  left["shader_faults"] = s.leftOut.shaderFaults;
+  left["wrong_hits"] = s.rejected.hits;
+  left["rejected_rays"] = s.rejected.rays;
   stats["left_out"] = left;
-  if (s.errorPixels == 0) return; // no error estimate was requested
-  stats["error_mean"] = s.errorMean;
-  stats["error_mean_interval"] = s.errorMeanInterval;
-  stats["error_half_width"] = s.errorHalfWidth;
-  stats["error_p99"] = s.errorP99;
-  stats["error_trusted"] = double(s.errorTrusted) / double(s.errorPixels);
-  stats["error_unmet"] = s.errorUnmet;
-  stats["error_method"] = s.errorMethod;
+  if (s.error.pixels == 0) return; // no error estimate was requested
+  stats["error_mean"] = s.error.mean;
+  stats["error_mean_interval"] = s.error.meanInterval;
+  stats["error_half_width"] = s.error.halfWidth;
+  stats["error_p99"] = s.error.p99;
+  stats["error_trusted"] = double(s.error.trusted) / double(s.error.pixels);
+  stats["error_unmet"] = s.error.unmet;
+  stats["error_method"] = s.error.method;
 }
 
 namespace {
@@ -172,7 +172,7 @@ void setCurve(PictureObject& self, const std::string& name) {
   self.picture.view.curve = curve;
 }
 
-constexpr int pickleVersion = 3; // version 1 had no camera, version 2 not the last six members
+constexpr int pickleVersion = 1;
 
 // Returns the pickled members: version, size, linear, names, time, stats, {channel name: numbers},
 // camera, exposure, view, place in the whole picture, whether z is along the ray, note, denoisedBy.
@@ -193,10 +193,9 @@ py::tuple pickled(const py::object& self) {
 
 PictureObject unpickled(const py::tuple& state) {
   const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
-  const int version =
-      state.empty() || !py::isinstance<py::int_>(state[0]) ? 0 : state[0].cast<int>();
-  constexpr size_t sizes[] = {0, 8, 9, 15}; // by version
-  if (version < 1 || version > pickleVersion || state.size() != sizes[version]) refuse();
+  if (state.size() != 15 || !py::isinstance<py::int_>(state[0]) ||
+      state[0].cast<int>() != pickleVersion)
+    refuse();
   PictureObject object;
   picture::Picture& made = object.picture;
   made.width = state[1].cast<int>();
@@ -216,26 +215,24 @@ PictureObject unpickled(const py::tuple& state) {
     made.planes[channel->bit].assign(plane.data(), plane.data() + plane.size());
   }
   if (!made.planes.count(RT_RGBA)) refuse();
-  if (version > 1 && !state[8].is_none()) {
+  if (!state[8].is_none()) {
     if (!py::isinstance(state[8], py::module_::import("xvrml._camera").attr("Pinhole"))) refuse();
     object.camera = state[8];
   }
-  if (version > 2) {
-    if (!py::isinstance<py::str>(state[10])) refuse();
-    made.view = {exposureOf(state[9]).value_or(0), curveOf(fromText(state[10]))};
-    const auto place = state[11].cast<std::array<int, 4>>();
-    const bool lies = place[2] >= 0 && place[3] >= 0 && place[0] <= 65536 && place[1] <= 65536 &&
-                      place[2] <= place[0] - made.width && place[3] <= place[1] - made.height;
-    if (!lies && place != std::array<int, 4>{}) refuse();
-    made.wholeWidth = place[0];
-    made.wholeHeight = place[1];
-    made.left = place[2];
-    made.top = place[3];
-    made.depthAlongRay = state[12].cast<bool>();
-    made.note = fromText(state[13]);
-    made.denoisedBy = fromText(state[14]);
-    if ((made.note + made.denoisedBy).find_first_of("\n\r") != std::string::npos) refuse();
-  }
+  if (!py::isinstance<py::str>(state[10])) refuse();
+  made.view = {exposureOf(state[9]).value_or(0), curveOf(fromText(state[10]))};
+  const auto place = state[11].cast<std::array<int, 4>>();
+  const bool lies = place[2] >= 0 && place[3] >= 0 && place[0] <= 65536 && place[1] <= 65536 &&
+                    place[2] <= place[0] - made.width && place[3] <= place[1] - made.height;
+  if (!lies && place != std::array<int, 4>{}) refuse();
+  made.wholeWidth = place[0];
+  made.wholeHeight = place[1];
+  made.left = place[2];
+  made.top = place[3];
+  made.depthAlongRay = state[12].cast<bool>();
+  made.note = fromText(state[13]);
+  made.denoisedBy = fromText(state[14]);
+  if ((made.note + made.denoisedBy).find_first_of("\n\r") != std::string::npos) refuse();
   return object;
 }
 

@@ -91,14 +91,14 @@ py::object render(const RtContextPtr& self, const FrameArguments& given) {
     s.size = sizeof s;
     rtGetStats(&s);
     py::dict& stats = made->stats;
-    stats["triangles"] = s.triangles;
-    stats["instances"] = s.instances;
-    stats["camera_rays"] = s.cameraRays;
-    stats["shadow_rays"] = s.shadowRays;
-    stats["secondary_rays"] = s.secondaryRays;
-    stats["build_seconds"] = s.commitSeconds + s.buildSeconds;
-    stats["render_seconds"] = s.renderSeconds;
-    stats["threads"] = s.threads;
+    stats["triangles"] = s.scene.triangles;
+    stats["instances"] = s.scene.instances;
+    stats["camera_rays"] = s.rays.camera;
+    stats["shadow_rays"] = s.rays.shadow;
+    stats["secondary_rays"] = s.rays.secondary;
+    stats["build_seconds"] = s.time.commit + s.time.build;
+    stats["render_seconds"] = s.time.render;
+    stats["threads"] = s.machine.threads;
     describePicture(stats, s);
   };
   struct Drawing {

@@ -69,13 +69,13 @@ struct MeshArguments {
 
 RtObject mesh(const RtContextPtr& self, const MeshArguments& given) {
   const bool wide = py::isinstance<py::array_t<double>>(given.vertices);
-  Dense<double> precise;
+  Dense<double> doubles;
   Dense<float> single;
   if (wide)
-    precise = rows<double>(given.vertices, "vertices", 3);
+    doubles = rows<double>(given.vertices, "vertices", 3);
   else
     single = rows<float>(given.vertices, "vertices", 3);
-  const py::ssize_t count = wide ? precise.shape(0) : single.shape(0);
+  const py::ssize_t count = wide ? doubles.shape(0) : single.shape(0);
   Dense<uint32_t> corners;
   if (!given.faces.is_none()) {
     const auto wanted = rows<int64_t>(given.faces, "faces", 3);
@@ -108,7 +108,7 @@ RtObject mesh(const RtContextPtr& self, const MeshArguments& given) {
     rtLoadName(given.name);
     (given.cull ? rtEnable : rtDisable)(RT_CULL_FACE);
     rtVertexPointer(3, wide ? RT_DOUBLE : RT_FLOAT, 0,
-                    wide ? static_cast<const void*>(precise.data()) : single.data());
+                    wide ? static_cast<const void*>(doubles.data()) : single.data());
     if (n.size()) rtNormalPointer(RT_FLOAT, 0, n.data());
     if (t.size()) rtTexCoordPointer(2, RT_FLOAT, 0, t.data());
     if (c.size()) rtColorPointer(3, RT_FLOAT, 0, c.data());

@@ -45,8 +45,8 @@ int main(int argc, char** argv) {
   rtGetStats(&stats);
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
-  printf("%d frames, %d structures built\n", frames, (int)stats.objectBuilds);
+  printf("%d frames, %d structures built\n", frames, (int)stats.bvh.objectBuilds);
   /* A ball was there in the first frame, but not half a step later, and no structures were built
    * for the later frames. */
-  return !failed && seen[0] > 0.1f && seen[frames / 2] == 0 && stats.objectBuilds <= 2 ? 0 : 2;
+  return !failed && seen[0] > 0.1f && seen[frames / 2] == 0 && stats.bvh.objectBuilds <= 2 ? 0 : 2;
 }

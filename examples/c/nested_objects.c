@@ -71,6 +71,6 @@ int main(int argc, char** argv) {
   rtGetStats(&stats);
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
-  printf("%d balls from %d instances\n", side * side * side, (int)stats.instances);
-  return !failed && stats.instances == 3 * side + 1 && after > 1.5f * before ? 0 : 2;
+  printf("%d balls from %d instances\n", side * side * side, (int)stats.scene.instances);
+  return !failed && stats.scene.instances == 3 * side + 1 && after > 1.5f * before ? 0 : 2;
 }

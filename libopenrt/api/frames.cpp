@@ -95,11 +95,11 @@ void getStats(Context& c, RTstats* out) {
   RTstats stats{};
   stats.size = sizeof(stats);
   c.backend().stats(stats);
-  stats.objects = c.scene.objects.entries.size();
-  stats.instances = c.scene.instances.entries.size();
-  stats.lights = c.scene.lights.entries.size();
-  stats.textures = c.scene.textures.entries.size();
-  stats.degenerate += c.degenerate;
+  stats.scene.objects = c.scene.objects.entries.size();
+  stats.scene.instances = c.scene.instances.entries.size();
+  stats.scene.lights = c.scene.lights.entries.size();
+  stats.scene.textures = c.scene.textures.entries.size();
+  stats.rejected.primitives += c.degenerate;
   stats.frame = c.finishedFrameNumber();
   stats.size = size; // the structure of an older program is shorter
   std::memcpy(out, &stats, std::min(size, sizeof(stats)));

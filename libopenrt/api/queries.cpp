@@ -31,18 +31,18 @@ class NoSurfaces final : public Queries {
     nothing.distance = std::numeric_limits<float>::infinity();
     std::ranges::fill(closest, nothing);
   }
-  void castPrecise(std::span<const RTrayd>, std::span<RThitd> hits) override { missAll(hits); }
-  void occludePrecise(std::span<const RTrayd>, std::span<uint8_t> occluded) override {
+  void castDouble(std::span<const RTrayd>, std::span<RThitd> hits) override { missAll(hits); }
+  void occludeDouble(std::span<const RTrayd>, std::span<uint8_t> occluded) override {
     std::ranges::fill(occluded, uint8_t(0));
   }
-  void countPrecise(std::span<const RTrayd>, std::span<uint32_t> counts) override {
+  void countDouble(std::span<const RTrayd>, std::span<uint32_t> counts) override {
     std::ranges::fill(counts, 0u);
   }
-  void listPrecise(std::span<const RTrayd>, std::span<const size_t>,
-                   std::span<RThitd> hits) override {
+  void listDouble(std::span<const RTrayd>, std::span<const size_t>,
+                  std::span<RThitd> hits) override {
     missAll(hits);
   }
-  void closestPrecise(std::span<const double>, double, std::span<RThitd> closest) override {
+  void closestDouble(std::span<const double>, double, std::span<RThitd> closest) override {
     missAll(closest);
   }
 
@@ -114,29 +114,29 @@ void closestPoints(Context& c, size_t count, const float* points, float radius,
 
 void castRaysd(Context& c, size_t count, const RTrayd* rays, RThitd* hits) {
   require((rays && hits) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
-  queriesOf(c).castPrecise({rays, count}, {hits, count});
+  queriesOf(c).castDouble({rays, count}, {hits, count});
 }
 
 void occludedRaysd(Context& c, size_t count, const RTrayd* rays, uint8_t* occluded) {
   require((rays && occluded) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
-  queriesOf(c).occludePrecise({rays, count}, {occluded, count});
+  queriesOf(c).occludeDouble({rays, count}, {occluded, count});
 }
 
 void countHitsd(Context& c, size_t count, const RTrayd* rays, uint32_t* counts) {
   require((rays && counts) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
-  queriesOf(c).countPrecise({rays, count}, {counts, count});
+  queriesOf(c).countDouble({rays, count}, {counts, count});
 }
 
 void listHitsd(Context& c, size_t count, const RTrayd* rays, const size_t* first, RThitd* hits) {
   if (!checkPlaces(count, rays, first, hits)) return;
-  queriesOf(c).listPrecise({rays, count}, {first, count + 1}, {hits, first[count]});
+  queriesOf(c).listDouble({rays, count}, {first, count + 1}, {hits, first[count]});
 }
 
 void closestPointsd(Context& c, size_t count, const double* points, double radius,
                     RThitd* closest) {
   require((points && closest) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
   require(radius > 0, RT_INVALID_VALUE, "the radius is not above 0");
-  queriesOf(c).closestPrecise({points, 3 * count}, radius, {closest, count});
+  queriesOf(c).closestDouble({points, 3 * count}, radius, {closest, count});
 }
 
 } // namespace

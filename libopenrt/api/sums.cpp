@@ -76,16 +76,11 @@ RTsumsInfo infoOf(const FrameSums& sums) {
 
 void describe(RTsums sums, RTstats& stats) {
   const FrameWork& picture = pictureOf(sums);
-  const RayCounters counters = picture.counters();
-  stats.cameraRays = counters.camera;
-  stats.shadowRays = counters.shadow;
-  stats.secondaryRays = counters.secondary;
-  stats.shaderFaults = picture.shaderFaults();
-  picture.describeError(stats);
-  picture.describeLedger(stats);
-  stats.transport = sums->sums->frame.transport;
-  std::snprintf(stats.isa, sizeof stats.isa, "%s", sums->sums->identity.isa.c_str());
-  std::snprintf(stats.kernel, sizeof stats.kernel, "%s", sums->sums->identity.kernel.c_str());
+  picture.describe(stats);
+  stats.transport.chosen = sums->sums->frame.transport;
+  RTmachineStats& machine = stats.machine;
+  std::snprintf(machine.isa, sizeof machine.isa, "%s", sums->sums->identity.isa.c_str());
+  std::snprintf(machine.kernel, sizeof machine.kernel, "%s", sums->sums->identity.kernel.c_str());
 }
 
 } // namespace

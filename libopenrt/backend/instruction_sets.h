@@ -1,5 +1,6 @@
 // instruction_sets.h: the names of the instruction sets that Embree's kernels are compiled for, as
-// the configuration of contexts (isa=NAME), RTstats.isa and the cluster's messages have them. [any]
+// the configuration of contexts (isa=NAME), RTstats.machine.isa and the cluster's messages have
+// them. [any]
 #pragma once
 
 #include <string>

@@ -24,13 +24,13 @@ class Queries {
   virtual void closestPoints(std::span<const float> points, float radius,
                              std::span<RTclosest> closest) = 0;
   // The same in double precision.
-  virtual void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) = 0;
-  virtual void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) = 0;
-  virtual void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) = 0;
-  virtual void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
-                           std::span<RThitd> hits) = 0;
-  virtual void closestPrecise(std::span<const double> points, double radius,
-                              std::span<RThitd> closest) = 0;
+  virtual void castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) = 0;
+  virtual void occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) = 0;
+  virtual void countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) = 0;
+  virtual void listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
+                          std::span<RThitd> hits) = 0;
+  virtual void closestDouble(std::span<const double> points, double radius,
+                             std::span<RThitd> closest) = 0;
 };
 
 } // namespace openrt

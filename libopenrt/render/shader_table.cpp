@@ -168,8 +168,6 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
     if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
     if (shaderClass.medium) setMedium(slot, host);
   }
-  if (shaderClass.surface && minorOf(shaderClass) < 2)
-    slot.traits |= RTS_SPECULAR; // openrts.h, RTS_SPECULAR
   slots_[number] = slot;
   blocks_[number] = made;
   return true;

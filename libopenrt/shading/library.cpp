@@ -146,7 +146,6 @@ void ShaderLibrary::readClasses() {
        checkPlugin(static_cast<const RtsPlugin*>(symbol), os::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();
     static_cast<RtsClass&>(*loaded) = c;
-    loaded->minor = static_cast<const RtsPlugin*>(symbol)->minor;
     loaded->label = std::string(c.name) + " of " + name;
     classes.push_back(std::move(loaded));
   }

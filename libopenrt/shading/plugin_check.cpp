@@ -36,14 +36,15 @@ size_t parameterAlignment(RtsType type) {
 }
 
 // Checks the header of a plug-in, which decides whether the rest may be read.
-void checkHeader(const RtsPlugin* plugin, size_t symbolBytes, const std::string& path) {
+void checkHeader(const RtsPlugin* plugin, size_t symbolBytes, const std::string& path,
+                 size_t minors) {
   if (symbolBytes != 0 && symbolBytes < sizeof(RtsPlugin))
     refuse(path, "its " RTS_ENTRY_NAME " has " + std::to_string(symbolBytes) +
                      " bytes; a plug-in's has at least " + std::to_string(sizeof(RtsPlugin)));
   if (plugin->magic != RTS_MAGIC) refuse(path, "not a shader plug-in (wrong magic number)");
-  if (plugin->major != RTS_ABI_MAJOR || plugin->minor > RTS_ABI_MINOR)
+  if (plugin->major != RTS_ABI_MAJOR || plugin->minor >= minors)
     refuse(path, "made for shader ABI " + version(plugin->major, plugin->minor) +
-                     "; this library has " + version(RTS_ABI_MAJOR, RTS_ABI_MINOR));
+                     "; this library has " + version(RTS_ABI_MAJOR, unsigned(minors - 1)));
   if (plugin->size != sizeof(RtsPlugin))
     refuse(path, "claims a plug-in structure of " + std::to_string(plugin->size) + " bytes; ABI " +
                      version(plugin->major, plugin->minor) + " has " +
@@ -116,23 +117,18 @@ void checkFunctions(const RtsClass& shaderClass, const std::string& where) {
   if (missing) throw std::runtime_error(where + ": lacks the function " + missing);
 }
 
-// Returns the size of RtsClass in ABI 1.minor.
-size_t classBytes(unsigned minor) {
-  return minor == 0   ? offsetof(RtsClass, surface)
-         : minor == 1 ? offsetof(RtsClass, frequency)
-                      : sizeof(RtsClass);
-}
-
-RtsClass checkClass(const RtsClass* theirs, unsigned minor, const std::string& path) {
+// largest: size of RtsClass in ABI 1.minor.
+RtsClass checkClass(const RtsClass* theirs, unsigned minor, size_t largest,
+                    const std::string& path) {
   if (!theirs) refuse(path, "an empty entry in its table of classes");
   if (theirs->size < minClassSize || theirs->size > sizeof(RtsClass))
     refuse(path, "claims a class structure of " + std::to_string(theirs->size) +
                      " bytes; this library knows " + std::to_string(minClassSize) + " to " +
                      std::to_string(sizeof(RtsClass)));
-  if (theirs->size > classBytes(minor))
+  if (theirs->size > largest)
     refuse(path, "claims a class structure of " + std::to_string(theirs->size) +
                      " bytes; that of ABI " + version(RTS_ABI_MAJOR, minor) + " has " +
-                     std::to_string(classBytes(minor)));
+                     std::to_string(largest));
   RtsClass ours{};
   // Copies whole pointers only: a partly copied function pointer would point anywhere.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
@@ -165,12 +161,13 @@ size_t parameterBytes(RtsType type) {
 }
 
 std::vector<RtsClass> checkPlugin(const RtsPlugin* plugin, size_t symbolBytes,
-                                  const std::string& path) {
-  checkHeader(plugin, symbolBytes, path);
+                                  const std::string& path, std::span<const size_t> classBytes) {
+  checkHeader(plugin, symbolBytes, path, classBytes.size());
   std::vector<RtsClass> classes;
   std::set<std::string> names;
   for (uint32_t i = 0; i < plugin->classCount; i++) {
-    classes.push_back(checkClass(plugin->classes[i], plugin->minor, path));
+    classes.push_back(
+        checkClass(plugin->classes[i], plugin->minor, classBytes[plugin->minor], path));
     if (!names.insert(classes.back().name).second)
       refuse(path, std::string("two classes called ") + classes.back().name);
   }

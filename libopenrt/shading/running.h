@@ -13,7 +13,6 @@ namespace openrt {
 
 // A class in a loaded library. Every RtsClass that the registry returns is a LoadedClass.
 struct LoadedClass : RtsClass {
-  uint16_t minor = RTS_ABI_MINOR;         // ABI minor version of its library
   std::string label;                      // "CLASS of LIBRARY"
   mutable std::atomic<bool> found{false}; // was returned by find(), so it may be in use
   // The host's tables for a reloaded library; empty: the plug-in's own tables are used.
@@ -24,10 +23,6 @@ struct LoadedClass : RtsClass {
 
 inline const char* labelOf(const RtsClass& shaderClass) {
   return static_cast<const LoadedClass&>(shaderClass).label.c_str();
-}
-
-inline uint16_t minorOf(const RtsClass& shaderClass) {
-  return static_cast<const LoadedClass&>(shaderClass).minor;
 }
 
 // The initial-exec model allocates no storage lazily: a signal handler may be the first to read it.

@@ -74,11 +74,12 @@ void printStats(const Backend& backend, uint64_t frames) {
               "\"secondaryRays\": %llu,\n"
               " \"commitSeconds\": %g, \"buildSeconds\": %g, \"renderSeconds\": %g, \"threads\": "
               "%u, \"isa\": \"%s\", \"kernel\": \"%s\"}\n",
-              static_cast<unsigned long long>(frames), static_cast<unsigned long long>(s.triangles),
-              static_cast<unsigned long long>(s.cameraRays),
-              static_cast<unsigned long long>(s.shadowRays),
-              static_cast<unsigned long long>(s.secondaryRays), s.commitSeconds, s.buildSeconds,
-              s.renderSeconds, s.threads, s.isa, s.kernel);
+              static_cast<unsigned long long>(frames),
+              static_cast<unsigned long long>(s.scene.triangles),
+              static_cast<unsigned long long>(s.rays.camera),
+              static_cast<unsigned long long>(s.rays.shadow),
+              static_cast<unsigned long long>(s.rays.secondary), s.time.commit, s.time.build,
+              s.time.render, s.machine.threads, s.machine.isa, s.machine.kernel);
 }
 
 int reportError(ExitCode code, const std::string& message) {

@@ -155,9 +155,9 @@ FrameSize Pacing::settle(int width, int height, int samples) const {
 }
 
 Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
-  const bool direct =
-      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
-  if (stats.cameraRays > 0 && direct)
+  const bool direct = stats.transport.chosen == RT_TRANSPORT_DIRECT ||
+                      stats.transport.chosen == RT_TRANSPORT_WHITTED;
+  if (stats.rays.camera > 0 && direct)
     return rebuilt ? Pacing::Light::sparseDirect : Pacing::Light::direct;
   return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;
 }

@@ -104,12 +104,12 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
                sparse = pass.sparse ? either(coloured, isFinite(depth)) : samples > zero;
     const Mask some = either(samples > zero, sparse), hit = both(some, isFinite(depth));
 
-    const Lanes centreX = countFrom(x), centreY = all(float(y));
-    const Lanes filmX = (centreX + all(0.5f)) * all(1.0f / float(w)),
+    const Lanes centerX = countFrom(x), centerY = all(float(y));
+    const Lanes filmX = (centerX + all(0.5f)) * all(1.0f / float(w)),
                 filmY = all((float(y) + 0.5f) / float(h));
     const Place place = placeOf(p, point);
-    const Lanes offsetX = place.x * all(float(w)) - (centreX + all(0.5f)),
-                offsetY = place.y * all(float(h)) - (centreY + all(0.5f));
+    const Lanes offsetX = place.x * all(float(w)) - (centerX + all(0.5f)),
+                offsetY = place.y * all(float(h)) - (centerY + all(0.5f));
     // The camera is known to be what was said if the sample projects into its own pixel.
     const Mask own = both(both(hit, isPlace(p, place)),
                           both(absolute(offsetX) <= one, absolute(offsetY) <= one));
@@ -123,7 +123,7 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
                environment = hn::AndNot(hit, both(some, isPlace(q, far)));
     const Mask still = both(both(motion.x == zero, motion.y == zero), motion.z == zero);
     const Lanes wide = all(float(before.layout.width)), high = all(float(before.layout.height));
-    const Lanes stayX = centreX * all(alongX.ratio) + all(alongX.shift);
+    const Lanes stayX = centerX * all(alongX.ratio) + all(alongX.shift);
     Lanes pastX = nan, pastY = nan;
     if (projects) {
       pastX = select(moved, stayX + (past.x - place.x) * wide,

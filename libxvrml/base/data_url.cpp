@@ -3,17 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "base/percent.h"
+
 namespace xvrml {
-namespace {
-
-int hexDigit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-} // namespace
 
 bool isDataUrl(std::string_view url) {
   constexpr std::string_view scheme = "data:";
@@ -40,12 +32,7 @@ bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::strin
     return false;
   }
   if (!head.ends_with(";base64")) {
-    for (size_t i = 0; i < body.size(); ++i) { // here %00 is a byte like any other
-      const int high = body[i] == '%' && i + 2 < body.size() ? hexDigit(body[i + 1]) : -1;
-      const int low = high >= 0 ? hexDigit(body[i + 2]) : -1;
-      out.bytes += low >= 0 ? char(high * 16 + low) : body[i];
-      if (low >= 0) i += 2;
-    }
+    out.bytes = percentDecoded(body); // here %00 is a byte like any other
   } else {
     constexpr std::string_view digits =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -34,7 +34,7 @@ void addDisc(Mesh& mesh, float y, float radius, bool up) {
   // The texture is upright when the top, or the bottom, is tilted towards +z: t runs to -z on the
   // top and to +z on the bottom.
   const Vec3f normal{0, up ? 1.f : -1.f, 0};
-  const uint32_t centre = uint32_t(mesh.ownPoints.size());
+  const uint32_t center = uint32_t(mesh.ownPoints.size());
   addVertex(mesh, {0, y, 0}, normal, {0.5f, 0.5f});
   for (int i = 0; i < roundSegments; i++) {
     Vec2f at = aroundAxis(double(i) / roundSegments);
@@ -42,8 +42,8 @@ void addDisc(Mesh& mesh, float y, float radius, bool up) {
               {0.5f + at.x / 2, 0.5f + (up ? -at.y : at.y) / 2});
   }
   for (uint32_t i = 0; i < roundSegments; i++) {
-    uint32_t a = centre + 1 + i, b = centre + 1 + (i + 1) % roundSegments;
-    addTriangle(mesh, centre, up ? a : b, up ? b : a);
+    uint32_t a = center + 1 + i, b = center + 1 + (i + 1) % roundSegments;
+    addTriangle(mesh, center, up ? a : b, up ? b : a);
   }
 }
 

@@ -23,13 +23,13 @@ Mesh finish(Mesh&& mesh, bool solid) {
 }
 
 // Makes triangles from the first vertex to each pair of the vertices after it.
-Mesh fan(const Arc& arc, bool centre, float radius, bool solid) {
+Mesh fan(const Arc& arc, bool center, float radius, bool solid) {
   Mesh mesh;
-  if (centre) addOnDisk(mesh, {0, 0}, radius);
+  if (center) addOnDisk(mesh, {0, 0}, radius);
   for (const Vec2f& at : arc.points) addOnDisk(mesh, at, radius);
   const uint32_t count = uint32_t(mesh.ownPoints.size());
   for (uint32_t i = 1; i + 1 < count; i++) addTriangle(mesh, 0, i, i + 1);
-  if (centre && arc.whole) addTriangle(mesh, 0, count - 1, 1);
+  if (center && arc.whole) addTriangle(mesh, 0, count - 1, 1);
   return finish(std::move(mesh), solid);
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/percent.h"
 #include "graph/url.h"
 #include "lower_case.h"
 #include "xvrml/world.h"
@@ -15,24 +16,10 @@
 namespace xvrml {
 namespace {
 
-int hexDigit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-// Decodes %XX (RFC 3986 2.1). Returns false for %00, which no file name can contain.
+// Decodes %XX. Returns false if there is a NUL, which no file name can contain.
 bool percentDecode(std::string_view text, std::string& out) {
-  out.clear();
-  for (size_t i = 0; i < text.size(); ++i) {
-    const int high = text[i] == '%' && i + 2 < text.size() ? hexDigit(text[i + 1]) : -1;
-    const int low = high >= 0 ? hexDigit(text[i + 2]) : -1;
-    if (low >= 0) i += 2;
-    out += low >= 0 ? static_cast<char>(high * 16 + low) : text[i];
-    if (out.back() == '\0') return false;
-  }
-  return true;
+  out = percentDecoded(text);
+  return out.find('\0') == out.npos;
 }
 
 // Returns the real path of the folder that holds the file. Two such paths can be compared.

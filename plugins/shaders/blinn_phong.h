@@ -11,12 +11,12 @@ namespace blinn_phong {
 // Returns the factor with which the BRDF (N.H)^n reflects all light that arrives along the normal,
 // and less from any other direction. Its inverse is the integral of (N.H)^n cos over the hemisphere
 // (F. Giesen, "Phong Normalization Factor Derivations", 2009).
-inline float normalisation(float exponent) {
+inline float normalization(float exponent) {
   return (exponent + 2) * (exponent + 4) / (8 * rts::pi * (std::exp2(-exponent / 2) + exponent));
 }
 // Returns the reflectance, for light along the normal, of a highlight that is as bright at its peak
 // as in VRML97, where a light's colour is the radiance of a white Lambertian surface.
-inline float reflectance(float exponent) { return 1 / (rts::pi * normalisation(exponent)); }
+inline float reflectance(float exponent) { return 1 / (rts::pi * normalization(exponent)); }
 
 // Largest exponent: half vectors in float do not resolve sharper highlights.
 inline constexpr float sharpest = 1e6f;
@@ -27,7 +27,7 @@ struct Lobe {
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     const float cosine = rts::dot(direction, normal);
     if (!(cosine > 0) || !(rts::dot(toEye, normal) > 0)) return {};
-    const float value = normalisation(power()) * peakShape(toEye, direction, normal) * cosine;
+    const float value = normalization(power()) * peakShape(toEye, direction, normal) * cosine;
     return {value, value, value};
   }
   float density(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {

@@ -232,7 +232,7 @@ TEST_F(DebugRules, ThePictureIsTheOtherBackends) {
   EXPECT_EQ(log.count("shader Nan of faulty returned NaN"), 1u);
   RThit hit{};
   EXPECT_EQ(rtPick(1, 1, &hit), 1);
-  EXPECT_EQ(stats().shaderFaults, 2u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 2u);
 }
 
 TEST(DebugConfiguration, WrapsAnyBackend) {

@@ -32,7 +32,7 @@ TEST_F(Faults, NaNInRadianceIsZeroCountedAndNamedOnceAFrame) {
     for (int k = 0; k < 3; k++)
       EXPECT_EQ(pixels[4 * i + size_t(k)], left && k < 2 ? 0.0f : 0.5f) << i << " " << k;
   }
-  EXPECT_EQ(stats().shaderFaults, 8u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 8u);
   EXPECT_EQ(log.count("shader Nan of faulty returned NaN or infinity"), 1u);
   EXPECT_TRUE(log.has("(8 points)"));
   picture(4);
@@ -45,7 +45,7 @@ TEST_F(Faults, ALobeThatIsNotFiniteHasNoWeight) {
   const std::vector<float> pixels = picture(2);
   for (size_t i = 0; i < 4; i++)
     for (int k = 0; k < 3; k++) EXPECT_EQ(pixels[4 * i + size_t(k)], 0.25f);
-  EXPECT_EQ(stats().shaderFaults, 4u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 4u);
   EXPECT_EQ(log.count("shader NanLobe of faulty"), 1u);
 }
 
@@ -107,7 +107,7 @@ TEST_F(Faults, GoodShadersHaveNone) {
   rtEndObject();
   rtInstantiateObject(object);
   picture(8);
-  EXPECT_EQ(stats().shaderFaults, 0u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 0u);
   EXPECT_TRUE(log.lines.empty());
   EXPECT_EQ(rtRunningShader(), nullptr);
 }
@@ -175,7 +175,7 @@ TEST_F(Faults, NaNInALobeOfItsOwnIsCounted) {
   EXPECT_EQ(pixels[0], 0.0f);
   EXPECT_NEAR(pixels[1], 0.5 * 0.25 * 3.14159265,
               1e-6); // the light gives a white diffuse surface a radiance of 1: an irradiance of pi
-  EXPECT_GT(stats().shaderFaults, 0u);
+  EXPECT_GT(stats().leftOut.shaderFaults, 0u);
   EXPECT_EQ(log.count("shader BadLobe of faulty"), 1u);
 }
 

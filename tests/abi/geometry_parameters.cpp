@@ -237,8 +237,8 @@ TEST_F(GeometryParameters, LinesAndNestedAndMovedObjectsHaveThemToo) {
   picture(16);
   rtInstanceMatrix(place, m); // the same matrix: nothing changes
   EXPECT_NEAR(picture(16)[4 * (8 * 16 + 4)], 4.5 / 8, 1e-6);
-  EXPECT_LE(stats().objectBuilds,
-            before.objectBuilds + 2); // it became dynamic; the parameters add no builds
+  EXPECT_LE(stats().bvh.objectBuilds,
+            before.bvh.objectBuilds + 2); // it became dynamic; the parameters add no builds
 }
 
 TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
@@ -263,15 +263,15 @@ TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
   // Changing the shader's own value builds nothing, and the geometry keeps its values.
   rtParameter3f(color, 1, 1, 1);
   EXPECT_EQ(picture(1)[0], 0.25f);
-  EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
-  EXPECT_EQ(stats().topLevelBuilds, first.topLevelBuilds);
+  EXPECT_EQ(stats().bvh.objectBuilds, first.bvh.objectBuilds);
+  EXPECT_EQ(stats().bvh.topLevelBuilds, first.bvh.topLevelBuilds);
   rtParameter1i(show, 1);
   EXPECT_EQ(picture(1)[0], 0.125f);
-  EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
+  EXPECT_EQ(stats().bvh.objectBuilds, first.bvh.objectBuilds);
   rtParameter1i(show, 0);
   define(objects[0], 0.75f); // other values build only this object
   EXPECT_EQ(picture(1)[0], 0.75f);
-  EXPECT_EQ(stats().objectBuilds, first.objectBuilds + 1);
+  EXPECT_EQ(stats().bvh.objectBuilds, first.bvh.objectBuilds + 1);
 }
 
 TEST_F(GeometryParameters, StockClassesHaveThem) {

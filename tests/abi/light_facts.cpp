@@ -52,7 +52,7 @@ TEST_P(LightFacts, AreThoseOfItsOwnHits) {
     EXPECT_EQ(pixels[i], 0.0f) << "wrong facts, pixel " << i / 4;
     EXPECT_GT(pixels[i + 1], 0.0f) << "no light, pixel " << i / 4;
   }
-  EXPECT_EQ(stats().shaderFaults, 0u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lights, LightFacts, testing::Values(1, 16, 17, 40));

@@ -19,7 +19,7 @@ TEST_F(NoHits, ATransportReadsTheValuesOfAPathThatBegins) {
   rtUseTransport(named("NoHitsTransport"));
   const std::vector<float> pixels = picture(5); // not a multiple of RTS_LANES
   for (size_t i = 0; i < pixels.size(); i++) EXPECT_EQ(pixels[i], 1.0f) << i;
-  EXPECT_EQ(stats().shaderFaults, 0u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 0u);
 }
 
 TEST_F(NoHits, ACameraAndAnEnvironmentReadThemToo) {
@@ -31,7 +31,7 @@ TEST_F(NoHits, ACameraAndAnEnvironmentReadThemToo) {
     EXPECT_EQ(pixels[i + 1], 1.0f) << "facts in generate, pixel " << i / 4;
     EXPECT_EQ(pixels[i + 2], 1.0f) << "random points in miss, pixel " << i / 4;
   }
-  EXPECT_EQ(stats().shaderFaults, 0u);
+  EXPECT_EQ(stats().leftOut.shaderFaults, 0u);
 }
 
 } // namespace

@@ -1,6 +1,5 @@
-// shader_helper_host.cpp: the features of openrts.hpp since ABI 1.2: custom lobes, media, rays and
-// facts about a hit, frequencies, prepare, extents, projections, transports. All of them must be
-// harmless on an older host.
+// shader_helper_host.cpp: the features of openrts.hpp beyond shading: custom lobes, media, rays and
+// facts about a hit, frequencies, prepare, extents, projections, transports.
 #include "openrt/openrts.hpp"
 
 #include <gtest/gtest.h>
@@ -153,7 +152,7 @@ struct Batch {
   RtsShading shading{};
 };
 
-TEST(ShaderHelper12, LobesOfOnesOwn) {
+TEST(ShaderHelperHost, LobesOfOnesOwn) {
   const RtsClass& c = classOf<Everything>();
   Batch b(c, 19);
   ASSERT_EQ(c.prepare(&b.host, b.params.get()), nullptr);
@@ -201,7 +200,7 @@ TEST(ShaderHelper12, LobesOfOnesOwn) {
   EXPECT_FLOAT_EQ(density[0], 2);
 }
 
-TEST(ShaderHelper12, PrepareReleaseMediaTraitsAndFrequencies) {
+TEST(ShaderHelperHost, PrepareReleaseMediaTraitsAndFrequencies) {
   const RtsClass& c = classOf<Everything>();
   FakeHost host;
   ParamBlock p(c);
@@ -229,7 +228,7 @@ TEST(ShaderHelper12, PrepareReleaseMediaTraitsAndFrequencies) {
   EXPECT_EQ(classOf<Asking>().traits(&host, nullptr), unsigned(RTS_GLOBAL | RTS_UNLIT));
 }
 
-TEST(ShaderHelper12, TraitsOfEmission) {
+TEST(ShaderHelperHost, TraitsOfEmission) {
   const RtsClass& c = classOf<Glowing>();
   FakeHost host;
   ParamBlock p(c);
@@ -245,11 +244,10 @@ struct Told {
   int what;
   float radiance[3], transmission[3];
 };
-void expectTold(const Told& t, bool old = false) {
+void expectTold(const Told& t) {
   const RtsClass& c = classOf<Asking>();
   Batch b(c, 20);
   b.params.setInt("what", t.what);
-  if (old) b.host.minor = 1;
   c.shade(&b.host, b.host.batch(), &b.hits, &b.shading);
   for (size_t k = 0; k < 3; k++) {
     EXPECT_FLOAT_EQ(b.out[k][2], t.radiance[k]) << "question " << t.what << ", " << k;
@@ -258,7 +256,7 @@ void expectTold(const Told& t, bool old = false) {
 }
 
 // Lane 2 of 20, with the values of fake_host.h.
-TEST(ShaderHelper12, HitsSendRaysAndAsk) {
+TEST(ShaderHelperHost, HitsSendRaysAndAsk) {
   expectTold({0, {.25f, .5f, .75f}, {0, 0, 0}});
   expectTold({1, {1, 1, 1}, {0, 0, 0}});
   expectTold({2, {-1, 4, 7}, {0, 1, 0}});
@@ -267,16 +265,7 @@ TEST(ShaderHelper12, HitsSendRaysAndAsk) {
   expectTold({5, {102, 202, 302}, {2, .5f / 3, 0}});
 }
 
-TEST(ShaderHelper12, OlderHostsHaveNoAnswers) {
-  expectTold({0, {0, 0, 0}, {0, 0, 0}}, true);
-  expectTold({1, {1, 1, 1}, {1, 1, 1}}, true);
-  expectTold({2, {0, INFINITY, 0}, {0, 0, 0}}, true);
-  expectTold({3, {.5f, .5f, .5f}, {.5f, .5f, .5f}}, true);
-  expectTold({4, {0, 0, 0}, {0, 0, 0}}, true);
-  expectTold({5, {0, 0, 0}, {0, 1, 0}}, true);
-}
-
-TEST(ShaderHelper12, EveryQuestionIsAskedOnceABatchAndRaysBearTheirHit) {
+TEST(ShaderHelperHost, EveryQuestionIsAskedOnceABatchAndRaysBearTheirHit) {
   const RtsClass& c = classOf<Asking>();
   Batch b(c, 20);
   b.params.setInt("what", 3);
@@ -288,7 +277,7 @@ TEST(ShaderHelper12, EveryQuestionIsAskedOnceABatchAndRaysBearTheirHit) {
   EXPECT_EQ(b.host.requestHits[13], 13u);
 }
 
-TEST(ShaderHelper12, ExtentsAndProjections) {
+TEST(ShaderHelperHost, ExtentsAndProjections) {
   FakeHost host;
   const RtsClass& lamp = classOf<Lamp>();
   const RtsClass& eye = classOf<Eye>();
@@ -318,7 +307,7 @@ TEST(ShaderHelper12, ExtentsAndProjections) {
   EXPECT_EQ(projection.parallel, 1);
 }
 
-TEST(ShaderHelper12, TransportsFollowCameraRays) {
+TEST(ShaderHelperHost, TransportsFollowCameraRays) {
   FakeHost host;
   host.hitCount = 3;
   const RtsClass& c = classOf<Follow>();

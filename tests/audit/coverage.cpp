@@ -21,8 +21,8 @@ picture::Shot shoot(size_t pixels, int samples, int seed) {
   rtGetStats(&stats);
   return {read(RT_RGBA, 4 * pixels), read(RT_ERROR, 3 * pixels),
           read(RT_TRUST, pixels),    read(RT_VARIANCE, 3 * pixels),
-          double(samples),           stats.errorMean,
-          stats.errorMeanInterval};
+          double(samples),           stats.error.mean,
+          stats.error.meanInterval};
 }
 
 } // namespace

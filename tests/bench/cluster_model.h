@@ -50,7 +50,7 @@ class CostMap {
     height_ = uint32_t(number());
     cells_.resize(size_t(width_) * height_);
     for (double& c : cells_) c = number();
-    normalise();
+    normalize();
   }
   // Makes a picture. A third of it is background at a tenth of the cost. The rest is log-normal
   // (sigma 0.5), with eight hot spots of ten times the cost; their radius is a fortieth of the
@@ -72,7 +72,7 @@ class CostMap {
         }
         cells_[y * width_ + x] = cost;
       }
-    normalise();
+    normalize();
   }
   // Returns the mean cost of the cells that a tile touches, weighted by where its pixels lie.
   double of(const Tile& tile, uint32_t width, uint32_t height) const {
@@ -89,7 +89,7 @@ class CostMap {
   }
 
  private:
-  void normalise() {
+  void normalize() {
     double sum = 0;
     for (const double c : cells_) sum += c;
     for (double& c : cells_) c *= double(cells_.size()) / sum;

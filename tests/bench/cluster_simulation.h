@@ -137,7 +137,7 @@ class Simulation {
     outcome.out = (end.out - mark_.out) / all;
     outcome.jobs = double(end.jobs - mark_.jobs) / all;
     outcome.perJob = (end.work - mark_.work) / double(std::max<uint64_t>(end.jobs - mark_.jobs, 1));
-    outcome.again = (master_->totals().reissued - mark_.again) / uint64_t(n);
+    outcome.again = (master_->totals().cluster.reissued - mark_.again) / uint64_t(n);
     return outcome;
   }
 
@@ -195,7 +195,7 @@ class Simulation {
   }
   Counts counts() const {
     return {masterCpu_, mergingCpu_, socket_.busy, bytesIn_,
-            bytesOut_,  work_,       jobs_,        master_->totals().reissued};
+            bytesOut_,  work_,       jobs_,        master_->totals().cluster.reissued};
   }
 
   void commit() {

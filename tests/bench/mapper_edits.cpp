@@ -143,7 +143,7 @@ void MoveOneAndRender(benchmark::State& state) {
   }
   rtGetStats(&after);
   state.counters["objectBuilds"] = benchmark::Counter(
-      double(after.objectBuilds - before.objectBuilds), benchmark::Counter::kAvgIterations);
+      double(after.bvh.objectBuilds - before.bvh.objectBuilds), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(MoveOneAndRender)->Arg(10)->Arg(10'000)->Unit(benchmark::kMillisecond);
 

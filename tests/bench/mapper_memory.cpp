@@ -87,7 +87,7 @@ void Town(benchmark::State& state) {
   for (auto _ : state) rtRender();
   RTstats stats{sizeof(RTstats)};
   rtGetStats(&stats);
-  state.counters["render"] = stats.renderSeconds;
+  state.counters["render"] = stats.time.render;
   state.counters["MB"] = memory / 1e6;
   state.SetLabel(std::to_string(still.mapper->stats().objects) + " objects");
 }
@@ -124,9 +124,9 @@ void Forest(benchmark::State& state) {
   RTstats stats{sizeof(RTstats)};
   rtGetStats(&stats);
   state.counters["MB"] = memory / 1e6;
-  state.counters["bvhMB"] = double(stats.bvhBytes) / 1e6;
-  state.counters["triangles"] = double(stats.triangles);
-  state.counters["stored"] = double(stats.uniqueTriangles);
+  state.counters["bvhMB"] = double(stats.bvh.bytes) / 1e6;
+  state.counters["triangles"] = double(stats.scene.triangles);
+  state.counters["stored"] = double(stats.scene.uniqueTriangles);
 }
 BENCHMARK(Forest)->Arg(1)->Arg(100)->Arg(10'000)->Unit(benchmark::kMillisecond)->Iterations(3);
 

@@ -86,8 +86,8 @@ class EditScene {
   void report(benchmark::State& state) {
     const RTstats now = stats();
     const double n = double(state.iterations());
-    state.counters["objects"] = double(now.objectBuilds - before_.objectBuilds) / n;
-    state.counters["topLevels"] = double(now.topLevelBuilds - before_.topLevelBuilds) / n;
+    state.counters["objects"] = double(now.bvh.objectBuilds - before_.bvh.objectBuilds) / n;
+    state.counters["topLevels"] = double(now.bvh.topLevelBuilds - before_.bvh.topLevelBuilds) / n;
     if (rtGetError() != RT_NO_ERROR) state.SkipWithError(rtGetErrorMessage());
   }
   RTid shader = 0;
@@ -199,7 +199,7 @@ void forest(benchmark::State& state) {
     }
     look(0);
     rtRender();
-    bytes = double(stats().bvhBytes) / 1e6;
+    bytes = double(stats().bvh.bytes) / 1e6;
     resident = residentMegabytes() - before;
     rtDeleteContext(context);
   }

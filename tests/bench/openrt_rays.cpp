@@ -191,7 +191,7 @@ void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0,
   rtGetStats(&stats);
   state.counters["ratio"] = rawTime / ourTime;
   state.counters["Mrays/s"] =
-      double(stats.cameraRays + stats.shadowRays) * double(state.iterations()) / ourTime / 1e6;
+      double(stats.rays.camera + stats.rays.shadow) * double(state.iterations()) / ourTime / 1e6;
   state.counters["mean_difference"] = difference / double(image.size());
   if (rtGetError() != RT_NO_ERROR) state.SkipWithError(rtGetErrorMessage());
   rtDeleteContext(rtGetCurrent());

@@ -39,9 +39,11 @@ def build():
     return ROOT / "build/release"
 
 
-def structure(name):
-    """Reads a structure from the headers of the C API."""
+def structure(name, **groups):
+    """Reads a structure from the headers of the C API. groups: structures that it consists of, by
+    name."""
     kinds = {
+        **groups,
         "size_t": ctypes.c_size_t,
         "uint64_t": ctypes.c_uint64,
         "uint32_t": ctypes.c_uint32,
@@ -64,7 +66,20 @@ def structure(name):
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 
-Stats, Worker = structure("RTstats"), structure("RTworker")
+Stats = structure(
+    "RTstats", **{
+        name: structure(name)
+        for name in ("RTsceneStats", "RTrejectedStats", "RTtimeStats", "RTrayStats", "RTbvhStats",
+                     "RTmachineStats", "RTtransportStats", "RTerrorStats", "RTleftOutStats",
+                     "RTclusterStats")
+    })
+Worker = structure("RTworker")
+
+
+def values(record):
+    """Returns the members of a structure by name, those of a group as a dict of their own."""
+    members = {name: getattr(record, name) for name, _ in record._fields_}
+    return {n: values(v) if isinstance(v, ctypes.Structure) else v for n, v in members.items()}
 
 
 class RtError(RuntimeError):
@@ -128,14 +143,14 @@ class Context:
     def stats(self):
         out = Stats(size=ctypes.sizeof(Stats))
         self("GetStats", ctypes.byref(out))
-        return {name: getattr(out, name) for name, _ in Stats._fields_}
+        return values(out)
 
     def workers(self):
         """Returns the records of rtGetWorkers."""
         out = (Worker * 64)()
         out[0].size = ctypes.sizeof(Worker)
         count = self("GetWorkers", self.handle, out, len(out))
-        return [{name: getattr(w, name) for name, _ in Worker._fields_} for w in out[:count]]
+        return [values(w) for w in out[:count]]
 
     def wait_for(self, count, seconds=20):
         """Returns whether this many workers joined before the time was up."""

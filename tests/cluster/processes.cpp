@@ -28,8 +28,8 @@ Workers start(int count) {
 
 // Waits until this many workers have joined.
 void join(uint32_t count) {
-  EXPECT_TRUE(until([&] { return statistics().workers >= count; }))
-      << statistics().workers << " of " << count << " workers";
+  EXPECT_TRUE(until([&] { return statistics().cluster.workers >= count; }))
+      << statistics().cluster.workers << " of " << count << " workers";
 }
 
 uint64_t jobsOf(const std::vector<RTworker>& workers) {
@@ -54,9 +54,9 @@ TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
       rtRender();
       EXPECT_EQ(different(pixels(look), one), 0u);
       const RTstats stats = statistics();
-      EXPECT_EQ(stats.workers, uint32_t(count));
-      EXPECT_EQ(stats.threads, uint32_t(count) + 1);
-      EXPECT_EQ(jobsOf(workers()), stats.tilesLocal + stats.tilesRemote);
+      EXPECT_EQ(stats.cluster.workers, uint32_t(count));
+      EXPECT_EQ(stats.machine.threads, uint32_t(count) + 1);
+      EXPECT_EQ(jobsOf(workers()), stats.cluster.tilesLocal + stats.cluster.tilesRemote);
     }
   }
 }
@@ -112,14 +112,14 @@ TEST(ClusterProcesses, GuidedPathsAreTheSameOnAllMachines) {
   {
     const Context context("threads=1");
     one = render();
-    EXPECT_NE(std::strstr(statistics().transportReason, ", guided"), nullptr)
-        << statistics().transportReason;
+    EXPECT_NE(std::strstr(statistics().transport.reason, ", guided"), nullptr)
+        << statistics().transport.reason;
   }
   const Workers helping = start(2);
   const Context context("backend=cluster threads=1 " + workersOption(helping));
   join(2);
   EXPECT_EQ(different(render(), one), 0u);
-  EXPECT_GT(statistics().tilesRemote, 0u);
+  EXPECT_GT(statistics().cluster.tilesRemote, 0u);
 }
 
 // The second worker joins between frames, and gets the scene of the frame before.
@@ -163,10 +163,10 @@ TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {
     EXPECT_EQ(different(pixels({}), expected({}, time)), 0u);
   }
   const RTstats stats = statistics();
-  EXPECT_EQ(stats.tilesLocal, 0u);
-  EXPECT_GT(stats.tilesRemote, 0u);
-  EXPECT_GT(stats.bytesSent, 10000u);
-  EXPECT_GT(stats.bytesReceived, 10000u);
+  EXPECT_EQ(stats.cluster.tilesLocal, 0u);
+  EXPECT_GT(stats.cluster.tilesRemote, 0u);
+  EXPECT_GT(stats.cluster.bytesSent, 10000u);
+  EXPECT_GT(stats.cluster.bytesReceived, 10000u);
 }
 
 TEST(ClusterProcesses, WorkersUseTheInstructionSetOfTheMaster) {
@@ -185,7 +185,7 @@ TEST(ClusterProcesses, WorkersUseTheInstructionSetOfTheMaster) {
       World world;
       join(workers);
       rtRender();
-      EXPECT_EQ(statistics().workers, workers);
+      EXPECT_EQ(statistics().cluster.workers, workers);
       return pixels({});
     };
     const Picture one = picture("threads=1" + option, 0);
@@ -213,7 +213,7 @@ TEST(ClusterProcesses, WhoJoinsInMidFrameHelps) {
   Worker late({"--connect", "127.0.0.1:" + std::to_string(port)});
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_EQ(different(pixels(longer()), one), 0u);
-  EXPECT_GT(statistics().tilesRemote, 0u);
+  EXPECT_GT(statistics().cluster.tilesRemote, 0u);
 }
 
 TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
@@ -231,7 +231,7 @@ TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
     for (int i = 0; i < victims; i++) helping[size_t(i)]->kill();
     EXPECT_EQ(rtFinishFrame(), 1);
     EXPECT_EQ(different(pixels(longer()), one), 0u);
-    EXPECT_EQ(statistics().workers, uint32_t(3 - victims));
+    EXPECT_EQ(statistics().cluster.workers, uint32_t(3 - victims));
     EXPECT_EQ(context.said("all workers have left"), victims == 3);
   }
 }
@@ -248,7 +248,7 @@ TEST(ClusterProcesses, AllGoneAndNoThreadsOfItsOwnTheMasterFinishesAllTheSame) {
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_EQ(different(pixels(longer()), one), 0u);
   EXPECT_TRUE(context.said("all workers have left"));
-  EXPECT_GT(statistics().tilesLocal, 0u);
+  EXPECT_GT(statistics().cluster.tilesLocal, 0u);
 }
 
 TEST(ClusterProcesses, NobodyToCallIsNoReasonToFail) {
@@ -272,7 +272,7 @@ TEST(ClusterProcesses, AWorkerThatIsStoppedIsLeftOutUntilItGoesOn) {
   helping[0]->signal(SIGSTOP);
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_EQ(different(pixels(longer()), one), 0u);
-  ASSERT_TRUE(until([&] { return statistics().workers == 1; }));
+  ASSERT_TRUE(until([&] { return statistics().cluster.workers == 1; }));
   helping[0]->signal(SIGCONT);
   join(2);
   rtRender();

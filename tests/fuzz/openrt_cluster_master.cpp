@@ -156,7 +156,7 @@ struct Game {
     case 2: {
       message::Ready ready{
           of, {in.byte() < 250, in.flip()}, uint8_t(in.below(std::size(transports))), {}};
-      ready.stats.triangles = in.below(8) == 0;
+      ready.stats.scene.triangles = in.below(8) == 0;
       return ready;
     }
     case 3: return message::Failed{.epoch = of, .why = "why"};
@@ -238,8 +238,7 @@ struct Game {
     state.work->film().read(RT_RGBA, out);
     RTstats stats{};
     stats.size = sizeof stats;
-    state.work->describeError(stats);
-    state.work->describeLedger(stats);
+    state.work->describe(stats);
     if (state.over) master->forget(of);
   }
 };

@@ -243,26 +243,26 @@ class Game {
   void ask() {
     Queries* const queries = backend_->queries();
     if (!queries || in_.empty()) return;
-    RTrayd precise{};
+    RTrayd rayInDouble{};
     RTray ray{};
     for (size_t k = 0; k < 3; k++) {
-      precise.origin[k] = number();
-      precise.direction[k] = number();
-      ray.origin[k] = float(precise.origin[k]);
-      ray.direction[k] = float(precise.direction[k]);
+      rayInDouble.origin[k] = number();
+      rayInDouble.direction[k] = number();
+      ray.origin[k] = float(rayInDouble.origin[k]);
+      ray.direction[k] = float(rayInDouble.direction[k]);
     }
-    precise.tfar = number();
-    ray.tfar = float(precise.tfar);
+    rayInDouble.tfar = number();
+    ray.tfar = float(rayInDouble.tfar);
     RThit hit{};
-    RThitd hitPrecise{};
+    RThitd hitDouble{};
     uint8_t occluded = 0;
     uint32_t count = 0;
     queries->castRays({&ray, 1}, {&hit, 1});
     queries->occludedRays({&ray, 1}, {&occluded, 1});
     queries->countHits({&ray, 1}, {&count, 1});
-    queries->castPrecise({&precise, 1}, {&hitPrecise, 1});
-    queries->occludePrecise({&precise, 1}, {&occluded, 1});
-    queries->countPrecise({&precise, 1}, {&count, 1});
+    queries->castDouble({&rayInDouble, 1}, {&hitDouble, 1});
+    queries->occludeDouble({&rayInDouble, 1}, {&occluded, 1});
+    queries->countDouble({&rayInDouble, 1}, {&count, 1});
     // As rtPick allows.
     const auto place = [this] { return std::clamp(length() - 10, -1e9, 1e9); };
     const double x = place();

@@ -149,7 +149,7 @@ TEST_P(ClosedFurnaces, NoLightComesIn) {
   for (size_t i = 0; i < rgba.size(); i += 4) lit += rgba[i] != 0;
   EXPECT_EQ(lit, 0);
   const RTstats s = stats();
-  EXPECT_GT(s.secondaryRays + s.shadowRays, 1'000'000u);
+  EXPECT_GT(s.rays.secondary + s.rays.shadow, 1'000'000u);
 }
 
 // The light of a furnace is e / (1 - a), whatever mirrors and glass do with it. Light that glass

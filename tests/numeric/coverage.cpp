@@ -166,7 +166,7 @@ TEST_F(Coverage, FogHidesNoNames) {
   rtBindShader(0);
   place(ball);
   const Pairs pairs = see(16);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_PATH));
   EXPECT_EQ(pairs[0], std::make_pair(6.f, 1.f));
 }
 

@@ -46,13 +46,13 @@ TEST_F(EditMemory, NothingIsLeftBehind) {
     rtRender();
   };
   for (int i = 0; i < 6; i++) round(i);
-  const uint64_t bytes = stats().bvhBytes;
+  const uint64_t bytes = stats().bvh.bytes;
   EXPECT_GT(bytes, 10000u);
   for (int i = 0; i < 60; i++) round(i);
-  EXPECT_LE(stats().bvhBytes, bytes + bytes / 10);
+  EXPECT_LE(stats().bvh.bytes, bytes + bytes / 10);
   for (RTid object : objects) rtDeleteObject(object);
   look();
-  EXPECT_LT(stats().bvhBytes, bytes / 2);
+  EXPECT_LT(stats().bvh.bytes, bytes / 2);
 }
 
 } // namespace

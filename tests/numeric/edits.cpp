@@ -30,8 +30,8 @@ class Edits : public Scene {
   Built built() {
     rtRender();
     const RTstats now = stats();
-    const Built result{now.objectBuilds - last_.objectBuilds,
-                       now.topLevelBuilds - last_.topLevelBuilds};
+    const Built result{now.bvh.objectBuilds - last_.bvh.objectBuilds,
+                       now.bvh.topLevelBuilds - last_.bvh.topLevelBuilds};
     last_ = now;
     return result;
   }
@@ -210,12 +210,12 @@ TEST_F(Edits, ASingularMatrixHidesAndAGoodOneShowsAgain) {
   move(instance, at(0, 0, 0, 0));
   EXPECT_EQ(built(), (Built{0, 1}));
   expectGrey(look(), 0);
-  EXPECT_EQ(stats().rejectedInstances, 1u);
+  EXPECT_EQ(stats().rejected.instances, 1u);
   built();
   move(instance, at(0));
   EXPECT_EQ(built(), (Built{0, 1}));
   expectGrey(look(), .8);
-  EXPECT_EQ(stats().rejectedInstances, 0u);
+  EXPECT_EQ(stats().rejected.instances, 0u);
 }
 
 TEST_F(Edits, RayQueriesSeeTheLastCommit) {
@@ -251,7 +251,7 @@ TEST_F(Edits, FramesInFlightKeepTheirScene) {
   rtOrtho(1e-6);
   rtLoadIdentity();
   rtFrameBuffer(64, 64, RT_RGBA);
-  const auto centre = [] {
+  const auto center = [] {
     std::vector<float> pixels(4 * 64 * 64);
     rtReadPixels(RT_RGBA, pixels.data(), pixels.size());
     return Rgba{pixels[0], pixels[1], pixels[2], pixels[3]};
@@ -260,7 +260,7 @@ TEST_F(Edits, FramesInFlightKeepTheirScene) {
   for (int i = 0; i < 6; i++) {
     move(instance, at(0, i % 2 ? 0 : 5));
     rtSwapBuffers();
-    expectGrey(centre(), i % 2 ? 0 : .8);
+    expectGrey(center(), i % 2 ? 0 : .8);
   }
 }
 

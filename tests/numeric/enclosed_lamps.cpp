@@ -46,7 +46,7 @@ class EnclosedLamps : public Scene {
     rtQuality(RT_TRANSPORT, transport);
     rtQuality(RT_SAMPLES_PER_PIXEL, transport == RT_TRANSPORT_LIGHT ? 512 : 64);
     const double value = mean(picture(8));
-    EXPECT_EQ(stats().transport, transport);
+    EXPECT_EQ(stats().transport.chosen, transport);
     return value;
   }
   static void expectAsThroughAir() { expectLit(meanOf(RT_TRANSPORT_PATH)); }

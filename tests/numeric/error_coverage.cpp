@@ -160,8 +160,8 @@ TEST_F(ErrorBars, WhatIsMetByChanceAndWasNotMetIsInTheInterval) {
   const auto picture = [](RTenum transport) {
     rtQuality(RT_TRANSPORT, transport);
     rtRender();
-    printf("%.4f +- %.4f, unmet %.4g\n", stats().errorMean, stats().errorMeanInterval,
-           stats().errorUnmet);
+    printf("%.4f +- %.4f, unmet %.4g\n", stats().error.mean, stats().error.meanInterval,
+           stats().error.unmet);
     return stats();
   };
   audit::floorAt(-1, white, 10);
@@ -174,16 +174,16 @@ TEST_F(ErrorBars, WhatIsMetByChanceAndWasNotMetIsInTheInterval) {
   rtFrameBuffer(16, 16, RT_RGBA | RT_ERROR);
   rtQuality(RT_SAMPLES_PER_PIXEL, 64);
   const RTstats open = picture(RT_TRANSPORT_PATH);
-  EXPECT_EQ(open.errorUnmet, 0);
-  EXPECT_LT(open.errorMean + open.errorMeanInterval, .2);
+  EXPECT_EQ(open.error.unmet, 0);
+  EXPECT_LT(open.error.mean + open.error.meanInterval, .2);
   audit::put(audit::ball(glass, .3f), .5, -.6, 0, 0);
   const RTstats ball = picture(RT_TRANSPORT_PATH);
-  EXPECT_GT(ball.errorUnmet, 1);
-  EXPECT_GT(ball.errorMean + ball.errorMeanInterval, .5);
-  EXPECT_LE(ball.errorMean + ball.errorMeanInterval, 1 + 1e-9);
+  EXPECT_GT(ball.error.unmet, 1);
+  EXPECT_GT(ball.error.mean + ball.error.meanInterval, .5);
+  EXPECT_LE(ball.error.mean + ball.error.meanInterval, 1 + 1e-9);
   audit::put(audit::box(glass, 2, .01, 2), 0, 1.2, 1,
              0); // before the eye: then paths from lamps do not reach it
-  EXPECT_GT(picture(RT_TRANSPORT_LIGHT).errorUnmet, 1);
+  EXPECT_GT(picture(RT_TRANSPORT_LIGHT).error.unmet, 1);
 }
 
 TEST_F(ErrorBars, DirectLightIsExactInsideASurface) {
@@ -201,8 +201,8 @@ TEST_F(ErrorBars, DirectLightIsExactInsideASurface) {
   rtRender();
   for (float h : read(RT_ERROR, 3 * 64)) EXPECT_EQ(h, 0);
   for (float t : read(RT_TRUST, 64)) EXPECT_EQ(t, 1);
-  EXPECT_EQ(stats().errorHalfWidth, 0);
-  EXPECT_EQ(stats().errorTrusted, 64u);
+  EXPECT_EQ(stats().error.halfWidth, 0);
+  EXPECT_EQ(stats().error.trusted, 64u);
 }
 
 TEST_F(ErrorBars, ATargetIsReachedWithoutBias) {
@@ -221,8 +221,8 @@ TEST_F(ErrorBars, ATargetIsReachedWithoutBias) {
   for (int seed = 1; seed <= seeds; seed++) {
     rtQuality(RT_SEED, seed);
     rtRender();
-    EXPECT_LT(stats().errorHalfWidth, .1);
-    EXPECT_GT(stats().errorHalfWidth, .02) << "far more samples than needed";
+    EXPECT_LT(stats().error.halfWidth, .1);
+    EXPECT_GT(stats().error.halfWidth, .02) << "far more samples than needed";
     const std::vector<float> rgba = read(RT_RGBA, 4 * 256);
     double off = 0; // the error of the picture's mean
     for (size_t i = 0; i < 256; i++) off += (double(rgba[4 * i]) - truth[4 * i]) / 256;
@@ -257,13 +257,13 @@ TEST_F(ErrorBars, ATargetIsReachedUnderATinyLamp) {
         rtRender();
         const std::vector<float> samples = read(RT_SAMPLES, 256);
         const float taken = *std::max_element(samples.begin(), samples.end());
-        const double paths = double(stats().cameraRays) / 256;
+        const double paths = double(stats().rays.camera) / 256;
         printf("target %.2f: half-width %.4f of %.0f samples at most, %.0f with pilots\n", target,
-               stats().errorHalfWidth, double(taken), paths);
+               stats().error.halfWidth, double(taken), paths);
         EXPECT_LE(taken, most);
         EXPECT_LE(paths, taken + 32 + most / 3.0);
         EXPECT_TRUE(most != 64 || taken == 64) << "out of reach";
-        reached += stats().errorHalfWidth <= target;
+        reached += stats().error.halfWidth <= target;
         all += taken == float(most);
       }
     }
@@ -323,7 +323,7 @@ TEST_F(ErrorBars, RoundsUnderATimeLimitAreReplicates) {
   const std::vector<float> samples = read(RT_SAMPLES, 1024), half = read(RT_ERROR, 3 * 1024);
   for (float n : samples) EXPECT_EQ(n, samples[0]); // whole rounds
   EXPECT_GE(samples[0], 1);
-  EXPECT_STREQ(stats().errorMethod, "replicated nets, Student's t");
+  EXPECT_STREQ(stats().error.method, "replicated nets, Student's t");
   rtQuality(RT_SAMPLES_PER_PIXEL, 64); // so many are taken, and no more
   rtQualityf(RT_TIME_LIMIT, 600);
   rtRender();
@@ -351,7 +351,7 @@ TEST_F(ErrorBars, OneOrTwoThreadsGiveTheSameBytes) {
       const std::vector<float> more = read(channel, channel == RT_ERROR ? 3 * 1600 : 1600);
       all.insert(all.end(), more.begin(), more.end());
     }
-    all.push_back(float(stats().errorMean));
+    all.push_back(float(stats().error.mean));
     if (first.empty()) first = all;
     EXPECT_EQ(std::memcmp(first.data(), all.data(), all.size() * sizeof(float)), 0);
     rtDeleteContext(context);

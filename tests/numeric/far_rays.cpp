@@ -49,7 +49,7 @@ TEST_F(FarRays, HitSmallInstancesFromAnywhere) {
     EXPECT_EQ(cast({{0, 0, z}, 2 * z, {0, 0, -1}, infinity}).t, infinity); // begins behind it
     EXPECT_EQ(cast({{1, 0, z}, 0, {0, 0, -1}, infinity}).t, infinity);     // passes it
   }
-  EXPECT_EQ(stats().rejectedRays, 0u);
+  EXPECT_EQ(stats().rejected.rays, 0u);
 }
 
 TEST_F(FarRays, HitSmallInstancesAlongDirectionsOfAnyLength) {
@@ -61,7 +61,7 @@ TEST_F(FarRays, HitSmallInstancesAlongDirectionsOfAnyLength) {
     const float t = cast({{0, 0, 5}, 0, {0, 0, -length}, infinity}).t;
     EXPECT_NEAR(double(t) * double(length), 5 - 1e-3, 1e-5);
   }
-  EXPECT_EQ(stats().rejectedRays, 0u);
+  EXPECT_EQ(stats().rejected.rays, 0u);
 }
 
 TEST_F(FarRays, InstancesThatAreTooSmallForTheirDistanceAreNotDrawn) {
@@ -74,11 +74,11 @@ TEST_F(FarRays, InstancesThatAreTooSmallForTheirDistanceAreNotDrawn) {
     const RTid small = ellipsoid({size, size / 2, size});
     rtPopMatrix();
     look();
-    EXPECT_EQ(stats().rejectedInstances, 1u);
+    EXPECT_EQ(stats().rejected.instances, 1u);
     EXPECT_EQ(cast({{5, 0, 0}, 0, {1, 0, 0}, infinity}).t, infinity);
     rtDeleteInstance(small);
     look();
-    EXPECT_EQ(stats().rejectedInstances, 0u);
+    EXPECT_EQ(stats().rejected.instances, 0u);
   }
 }
 
@@ -101,7 +101,7 @@ TEST_F(FarRays, FlatInstancesAreHitOrCounted) {
       rtPopMatrix();
       look();
       const float t = cast({{0, 0, 0}, 0, {0, 0, -1}, infinity}).t;
-      const bool drawn = stats().rejectedInstances == 0;
+      const bool drawn = stats().rejected.instances == 0;
       if (flat >= 1e-5) {
         EXPECT_TRUE(drawn) << flat;
         EXPECT_NEAR(double(t), 5, 1) << flat;

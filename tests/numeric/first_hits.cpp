@@ -363,9 +363,9 @@ TEST_F(PicturesWithFirstHits, WithSparseLightTraceFewShadowRays) {
     picture(look, RT_RGBA, &dense);
     look.stride = 3;
     picture(look, RT_RGBA, &sparse);
-    EXPECT_EQ(dense.shadowRays, plain.shadowRays);
-    EXPECT_GT(sparse.shadowRays, 0u);
-    EXPECT_LT(sparse.shadowRays, dense.shadowRays / 6);
+    EXPECT_EQ(dense.rays.shadow, plain.rays.shadow);
+    EXPECT_GT(sparse.rays.shadow, 0u);
+    EXPECT_LT(sparse.rays.shadow, dense.rays.shadow / 6);
   }
 }
 
@@ -430,9 +430,9 @@ TEST_F(PicturesWithFirstHits, WithoutLightFollowNone) {
       dark.channels = features;
       RTstats stats{};
       expectSame(picture(dark, features, &stats), picture(lit, features));
-      EXPECT_EQ(stats.shadowRays, 0u);
-      EXPECT_EQ(stats.cameraRays, uint64_t(width * height * lit.samples));
-      EXPECT_EQ(stats.secondaryRays == 0, follow == 0);
+      EXPECT_EQ(stats.rays.shadow, 0u);
+      EXPECT_EQ(stats.rays.camera, uint64_t(width * height * lit.samples));
+      EXPECT_EQ(stats.rays.secondary == 0, follow == 0);
     }
 }
 

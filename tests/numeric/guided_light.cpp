@@ -118,7 +118,7 @@ TEST_F(GuidedLight, ThePictureDoesNotDependOnThreads) {
     RTstats stats{};
     stats.size = sizeof stats;
     rtGetStats(&stats);
-    EXPECT_NE(std::string(stats.transportReason).find(", guided"), std::string::npos);
+    EXPECT_NE(std::string(stats.transport.reason).find(", guided"), std::string::npos);
     rtDeleteContext(context);
   }
   rtMakeCurrent(own);

@@ -1,6 +1,6 @@
-// ledger.cpp: what pictures leave out on purpose and report: RTstats.cutByDepth, cutByEnergy,
-// clipped, unreachedLights, wrongHits. N18 of the accuracy catalogue, and the checks for slivers
-// (N6).
+// ledger.cpp: what pictures leave out on purpose and report: RTstats.leftOut,
+// RTstats.transport.unreachedLights, RTstats.rejected.hits. N18 of the accuracy catalogue, and the
+// checks for slivers (N6).
 #include "numeric/support.h"
 
 namespace numeric {
@@ -28,8 +28,8 @@ TEST_F(Ledger, WhatTheDepthLimitCuts) {
   for (const int depth : {1, 3, 10}) {
     rtQuality(RT_MAX_DEPTH, depth);
     between();
-    expectClose(stats().cutByDepth, 3 * std::pow(.9, depth + 1));
-    EXPECT_EQ(stats().cutByEnergy, 0);
+    expectClose(stats().leftOut.cutByDepth, 3 * std::pow(.9, depth + 1));
+    EXPECT_EQ(stats().leftOut.cutByEnergy, 0);
   }
 }
 
@@ -65,7 +65,7 @@ TEST_F(Ledger, D16AChainOf25ReflectionsNeedsADepthOf25) {
     rtQuality(RT_MAX_DEPTH, depth);
     const Rgba seen = render();
     EXPECT_NEAR(double(seen.r), depth < 25 ? 0 : 3 * throughput, 1e-5 * 3 * throughput);
-    EXPECT_NEAR(stats().cutByDepth, depth < 25 ? 3 * throughput : 0, 1e-5 * 3 * throughput);
+    EXPECT_NEAR(stats().leftOut.cutByDepth, depth < 25 ? 3 * throughput : 0, 1e-5 * 3 * throughput);
   }
 }
 
@@ -73,13 +73,13 @@ TEST_F(Ledger, WhatTheEnergyCutCuts) {
   mirrors(.5);
   rtQualityf(RT_ENERGY_CUT, .01);
   between();
-  expectClose(stats().cutByEnergy, 3 * std::pow(.5, 7)); // the first power of .5 below .01
-  EXPECT_EQ(stats().cutByDepth, 0);
+  expectClose(stats().leftOut.cutByEnergy, 3 * std::pow(.5, 7)); // the first power of .5 below .01
+  EXPECT_EQ(stats().leftOut.cutByDepth, 0);
   rtQualityf(RT_ENERGY_CUT, 0);
   rtQuality(RT_MAX_DEPTH, 20);
   between();
-  EXPECT_EQ(stats().cutByEnergy, 0);
-  EXPECT_GT(stats().cutByDepth, 0);
+  EXPECT_EQ(stats().leftOut.cutByEnergy, 0);
+  EXPECT_GT(stats().leftOut.cutByDepth, 0);
 }
 
 TEST_F(Ledger, N18ClampingSaysWhatItTakesAway) {
@@ -89,10 +89,10 @@ TEST_F(Ledger, N18ClampingSaysWhatItTakesAway) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_SAMPLES_PER_PIXEL, 16);
   expectColor(look(), {5, 1, .5});
-  EXPECT_EQ(stats().clipped, 0);
+  EXPECT_EQ(stats().leftOut.clipped, 0);
   rtQualityf(RT_CLAMP, 2);
   expectColor(look(), {2, 1, .5});
-  expectClose(stats().clipped, 3);
+  expectClose(stats().leftOut.clipped, 3);
 }
 
 // A noisy picture. With and without clamping the paths are the same.
@@ -125,7 +125,7 @@ TEST_F(Ledger, N18WhatIsClippedIsWhatIsMissing) {
   };
   const double all = mean();
   rtQualityf(RT_CLAMP, 2);
-  const double rest = mean(), clipped = stats().clipped;
+  const double rest = mean(), clipped = stats().leftOut.clipped;
   EXPECT_GT(clipped, .05 * all);
   expectClose(rest + clipped, all);
 }
@@ -136,13 +136,13 @@ TEST_F(Ledger, LightsThatPathsCannotReachThroughGlass) {
   use(tilted(20));
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   look();
-  EXPECT_EQ(stats().unreachedLights, 0u);
+  EXPECT_EQ(stats().transport.unreachedLights, 0u);
   const RTid pane = place(square(Shader("Glass"), 1));
   look();
-  EXPECT_EQ(stats().unreachedLights, 2u);
+  EXPECT_EQ(stats().transport.unreachedLights, 2u);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
   look();
-  EXPECT_EQ(stats().unreachedLights, 0u);
+  EXPECT_EQ(stats().transport.unreachedLights, 0u);
   rtDeleteInstance(pane);
 }
 
@@ -201,11 +201,12 @@ TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
     rtDeleteObject(object);
   }
   EXPECT_EQ(wrong, 0u);
-  EXPECT_GT(stats().wrongHits, 0u) << "nothing was rejected";
+  EXPECT_GT(stats().rejected.hits, 0u) << "nothing was rejected";
   // Rays in floats may miss a triangle 1e-4 high; the share is measured.
   EXPECT_GT(found, triangles * each / 4u);
   printf("slivers: %.3f of the rays found, %llu wrong hits rejected\n",
-         double(found) / (triangles * each), static_cast<unsigned long long>(stats().wrongHits));
+         double(found) / (triangles * each),
+         static_cast<unsigned long long>(stats().rejected.hits));
 }
 
 } // namespace

@@ -52,7 +52,7 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   const double before = .5 / pi * direct, expected = .5 / pi * (direct + mirrored),
                tolerance = .02 * (expected - before) + .001 * expected;
   EXPECT_NEAR(mean(picture(4, 32768)), expected, tolerance);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_LIGHT));
   rtPushMatrix();
   rtLoadIdentity();
   rtLookAt(x, 0, 1.2, x, 0, ceilingAt, 0, 1, 0);

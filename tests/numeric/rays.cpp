@@ -85,7 +85,7 @@ class Watertight : public Scene, public testing::WithParamInterface<double> {
 TEST_P(Watertight, NoRandomRayLeavesAClosedBall) { // N3
   Ball(GetParam()).place();
   rtRender();
-  EXPECT_EQ(stats().triangles, 39600u);
+  EXPECT_EQ(stats().scene.triangles, 39600u);
   std::vector<RTray> rays;
   for (int i = 0; i < 200000; i++)
     rays.push_back(ray(inside(), {direction_(random_), direction_(random_), direction_(random_)}));
@@ -267,14 +267,14 @@ TEST_F(Rays, HostileRaysHitNothingAndAreCounted) {
   const std::vector<RTray> rays = hostileRays();
   std::vector<RThit> hits(rays.size());
   std::vector<uint8_t> occluded(rays.size(), 1);
-  const uint64_t before = stats().rejectedRays;
+  const uint64_t before = stats().rejected.rays;
   rtCastRays(rays.size(), rays.data(), hits.data());
   rtOccludedRays(rays.size(), rays.data(), occluded.data());
   for (size_t i = 0; i < rays.size(); i++) {
     EXPECT_TRUE(std::isinf(hits[i].t)) << i;
     EXPECT_EQ(occluded[i], 0) << i;
   }
-  EXPECT_EQ(stats().rejectedRays - before, 2 * rays.size());
+  EXPECT_EQ(stats().rejected.rays - before, 2 * rays.size());
   const RTray good{{0, 0, 5}, 0, {0, 0, -1}, infinity};
   RThit hit;
   rtCastRays(1, &good, &hit);
@@ -340,7 +340,7 @@ TEST_F(Rays, SingularInstancesDrawNothing) {
     const Rgba pixel = look();
     EXPECT_EQ(pixel.r, 0);
     EXPECT_EQ(pixel.a, 0);
-    EXPECT_EQ(stats().rejectedInstances, 1u);
+    EXPECT_EQ(stats().rejected.instances, 1u);
     rtDeleteInstance(instance);
   }
   place(plane);
@@ -450,8 +450,8 @@ TEST_F(Rays, DegenerateTrianglesAreDropped) {
   place(object);
   use(tilted(0));
   expectGrey(look(0, -.5), .8);
-  EXPECT_EQ(stats().degenerate, 2u);
-  EXPECT_EQ(stats().triangles, 1u);
+  EXPECT_EQ(stats().rejected.primitives, 2u);
+  EXPECT_EQ(stats().scene.triangles, 1u);
 }
 
 } // namespace

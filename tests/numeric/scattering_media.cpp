@@ -114,7 +114,7 @@ TEST_F(ScatteringMedia, WhittedCountsScatteringAsLoss) {
   box(fog({.2, .4, .8}, {.1, 0, .3}), {5, 5, 1});
   placeAt(-3, square(glowing(1)));
   expectColor(look(0, 0, 10), {std::exp(-.6), std::exp(-.8), std::exp(-2.2)});
-  EXPECT_TRUE(stats().transportLeavesOut & RT_LEAVES_BETWEEN);
+  EXPECT_TRUE(stats().transport.leavesOut & RT_LEAVES_BETWEEN);
 }
 
 // A lamp that is seen through a medium. It is so small that light which is scattered towards the
@@ -404,7 +404,7 @@ TEST_F(ScatteringMedia, SmokeDimsWhatALampLightsAndACameraSees) {
   use(bulb({0, 0, 1}, 1000));
   const double lux = 1000 / (4 * pi * 4) * std::exp(-.3 * 2);
   expectGrey(look(0, 0, 0), lux / pi * std::exp(-.3), 1e-4);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_PATH));
 }
 
 // The stack of media has four places: a body within four others is as if it were not there.
@@ -448,10 +448,10 @@ TEST_F(ScatteringMedia, FogChoosesPathsFromTheCamera) {
   for (const RTenum asked : {RT_TRANSPORT_AUTO, RT_TRANSPORT_LIGHT}) {
     rtQuality(RT_TRANSPORT, int(asked));
     picture(2);
-    EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
-    EXPECT_NE(std::string(stats().transportReason).find("Fog scatters or absorbs light inside"),
+    EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_PATH));
+    EXPECT_NE(std::string(stats().transport.reason).find("Fog scatters or absorbs light inside"),
               std::string::npos)
-        << stats().transportReason;
+        << stats().transport.reason;
   }
 }
 

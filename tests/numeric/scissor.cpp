@@ -57,7 +57,7 @@ class Scissor : public testing::Test {
     RTstats stats{};
     stats.size = sizeof stats;
     rtGetStats(&stats);
-    return stats.cameraRays;
+    return stats.rays.camera;
   }
 
   static void expectSameInside(const Settings& s, const Rectangle& r, const Channels& whole,

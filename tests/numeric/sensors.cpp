@@ -84,11 +84,11 @@ TEST_F(Sensors, TheyFollowPathsUnlessLightPathsAreAskedFor) {
   const double expected = pi * polygon(rectangle(.5, .999));
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_AUTO);
   expectReading(read({0, 0, .001}, up), expected);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
-  EXPECT_STREQ(stats().transportReason, "sensors follow paths");
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_PATH));
+  EXPECT_STREQ(stats().transport.reason, "sensors follow paths");
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT); // nothing mirrors or refracts
   expectReading(read({0, 0, .001}, up), expected);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_LIGHT));
 }
 
 // A room with a lamp, a box and coloured walls.
@@ -169,8 +169,8 @@ TEST_F(Room, ATargetErrorIsReached) {
   rtQuality(RT_SAMPLES_PER_PIXEL, 65536);
   rtQualityf(RT_TARGET_ERROR, .01);
   table();
-  EXPECT_LT(stats().errorHalfWidth, .0115);
-  EXPECT_GT(stats().errorHalfWidth, .001) << "it stops before all samples are taken";
+  EXPECT_LT(stats().error.halfWidth, .0115);
+  EXPECT_GT(stats().error.halfWidth, .001) << "it stops before all samples are taken";
 }
 
 } // namespace

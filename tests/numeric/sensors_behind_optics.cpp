@@ -72,8 +72,8 @@ TEST_F(SensorsBehindOptics, AMirrorGivesTheLightOfTheImageAndTheIntervalsHold) {
     EXPECT_LT(coverage, samples == 16 ? 1 : .975);
     EXPECT_NEAR(sum / expectedSum, 1, samples == 16 ? .06 : .015);
   }
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
-  EXPECT_EQ(stats().unreachedLights, 0u);
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_LIGHT));
+  EXPECT_EQ(stats().transport.unreachedLights, 0u);
 }
 
 // D17: a paraboloid with a point source in its focus sends out a parallel beam. A ring of the
@@ -218,8 +218,8 @@ TEST_F(UnderABall, OtherSensorsFollowPaths) {
     rtQuality(RT_SAMPLES_PER_PIXEL, 16);
     rtFrameBuffer(2, 2, RT_RGBA);
     rtRender();
-    EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
-    EXPECT_STREQ(stats().transportReason, "sensors follow paths");
+    EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_PATH));
+    EXPECT_STREQ(stats().transport.reason, "sensors follow paths");
     rtQuality(RT_MEASURE, RT_MEASURE_NOTHING);
   };
   rtPushMatrix();

@@ -109,7 +109,7 @@ TEST_F(SparseLampPaths, AndLitPixelsAddUpToTheWholeLight) {
     RTstats stats{};
     stats.size = sizeof stats;
     rtGetStats(&stats);
-    EXPECT_EQ(stats.transport, RTenum(RT_TRANSPORT_LIGHT));
+    EXPECT_EQ(stats.transport.chosen, RTenum(RT_TRANSPORT_LIGHT));
   });
 }
 

@@ -137,7 +137,7 @@ TEST_F(StockShaders, G2AFurnaceOfGlobalIllumination) {
   rtQuality(RT_MAX_DEPTH, 60);
   rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
   expectGrey(look(), 1, 5e-3);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH)) << "it asks for path tracing";
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_PATH)) << "it asks for path tracing";
 }
 
 TEST_F(StockShaders, Vrml97AnswersLightsTheSameWayWhenPathsAreTraced) {
@@ -145,7 +145,7 @@ TEST_F(StockShaders, Vrml97AnswersLightsTheSameWayWhenPathsAreTraced) {
   use(tilted(60));
   const Vec expected{.1 + .4, .2 + .4, .3 + .4};
   expectColor(look(), expected);
-  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_DIRECT))
+  EXPECT_EQ(stats().transport.chosen, RTenum(RT_TRANSPORT_DIRECT))
       << "the standard's surface does not ask for more than lights";
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   expectColor(look(), expected);

@@ -43,7 +43,7 @@ TEST_F(StraightPassages, AHundredClearSheetsHideNothing) {
     for (const RTenum transport : all) {
       rtQuality(RT_TRANSPORT, int(transport));
       expectGrey(look(), 2);
-      EXPECT_EQ(stats().cutByDepth, 0) << name;
+      EXPECT_EQ(stats().leftOut.cutByDepth, 0) << name;
     }
     for (const RTid instance : placed) rtDeleteInstance(instance);
   }
@@ -66,7 +66,7 @@ TEST_F(StraightPassages, WhatIsBehindMoreSheetsThanTheLimitIsInTheLedger) {
   for (const RTenum transport : all) {
     rtQuality(RT_TRANSPORT, int(transport));
     expectGrey(look(), 0);
-    expectClose(stats().cutByDepth, 3);
+    expectClose(stats().leftOut.cutByDepth, 3);
   }
 }
 
@@ -80,7 +80,7 @@ TEST_F(StraightPassages, ShadowRaysPassAsManySheets) {
   for (const RTenum transport : all) {
     rtQuality(RT_TRANSPORT, int(transport));
     expectGrey(look(0, 0, .5), lit);
-    EXPECT_EQ(stats().cutByDepth, 0);
+    EXPECT_EQ(stats().leftOut.cutByDepth, 0);
   }
 }
 
@@ -93,7 +93,7 @@ TEST_F(StraightPassages, WhatIsCutFromAShadowRayIsInTheLedger) {
     rtQuality(RT_TRANSPORT, int(transport));
     expectGrey(look(0, 0, .5), 0);
     // The rays that the floor scatters meet the sheets, too.
-    expectClose(stats().cutByDepth, transport < RT_TRANSPORT_PATH ? 3 : 6);
+    expectClose(stats().leftOut.cutByDepth, transport < RT_TRANSPORT_PATH ? 3 : 6);
   }
 }
 

@@ -48,7 +48,7 @@ class Sunlight : public Lamps {
     RTstats stats{};
     stats.size = sizeof stats;
     rtGetStats(&stats);
-    return stats.transportReason;
+    return stats.transport.reason;
   }
 };
 
@@ -113,7 +113,7 @@ TEST_F(Sunlight, WorldsWithASunAndGlassAreLightTraced) {
     RTstats stats{};
     stats.size = sizeof stats;
     rtGetStats(&stats);
-    return stats.transport;
+    return stats.transport.chosen;
   };
   shine(25, .005, 40000, .5);
   EXPECT_EQ(chosen(), RT_TRANSPORT_PATH);

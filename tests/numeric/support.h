@@ -102,7 +102,7 @@ class Scene : public testing::Test {
   }
   void TearDown() override {
     const RTstats last = stats(); // statistics of the last frame
-    noteRays(last.cameraRays + last.shadowRays + last.secondaryRays);
+    noteRays(last.rays.camera + last.rays.shadow + last.rays.secondary);
     const RTenum error = rtGetError();
     EXPECT_EQ(error, RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     rtDeleteContext(context_);

@@ -109,9 +109,9 @@ TEST_P(Transports, TheChoiceLeavesNothingOutThatPathsFind) {
   rtPerspective(50);
   rtPopMatrix();
   const double chosen = mean(RT_TRANSPORT_AUTO, 256, 1);
-  EXPECT_EQ(stats().transport, row.chosen) << stats().transportReason;
-  EXPECT_EQ(stats().transportLeavesOut, row.chosenLeaves);
-  EXPECT_LT(std::string(stats().transportReason).size(), sizeof(RTstats::transportReason) - 1)
+  EXPECT_EQ(stats().transport.chosen, row.chosen) << stats().transport.reason;
+  EXPECT_EQ(stats().transport.leavesOut, row.chosenLeaves);
+  EXPECT_LT(std::string(stats().transport.reason).size(), sizeof(RTtransportStats::reason) - 1)
       << "cut off";
   if (row.reference) {
     const double reference = mean(row.reference, 1024, 2);
@@ -121,17 +121,17 @@ TEST_P(Transports, TheChoiceLeavesNothingOutThatPathsFind) {
     // Without random decisions only the sample positions differ.
     expectClose(chosen, reference, info.tracesPaths ? 2e-2 : 2e-3);
     const double plain = mean(whitted, 256, 1);
-    EXPECT_EQ(stats().transportLeavesOut, row.whittedLeaves);
+    EXPECT_EQ(stats().transport.leavesOut, row.whittedLeaves);
     if (row.whittedLeaves)
       EXPECT_LT(plain, reference * .98) << "what whitted says it leaves out is there";
     else
       expectClose(plain, reference, 2e-3);
   } else {
     mean(whitted, 1, 1);
-    EXPECT_EQ(stats().transportLeavesOut, row.whittedLeaves);
+    EXPECT_EQ(stats().transport.leavesOut, row.whittedLeaves);
   }
   mean(direct, 1, 1);
-  EXPECT_EQ(stats().transportLeavesOut, row.directLeaves);
+  EXPECT_EQ(stats().transport.leavesOut, row.directLeaves);
 }
 
 using T = Transports;
@@ -304,30 +304,30 @@ TEST_F(Unlisted, ValuesOfAGeometryMayScatter) {
   Transports::backdrop(1);
   rtQuality(RT_SAMPLES_PER_PIXEL, 64);
   expectGrey(look(), .5, 1e-2);
-  EXPECT_EQ(stats().transport, path);
+  EXPECT_EQ(stats().transport.chosen, path);
 }
 
 // The choice is made again for each frame.
 TEST_F(Unlisted, AScenesChangeChangesTheChoice) {
   place(square(Transports::diffuse(.5)));
   look();
-  EXPECT_EQ(stats().transport, whitted);
+  EXPECT_EQ(stats().transport.chosen, whitted);
   Shader sky("VRML97Environment");
   rtUseEnvironment(sky.setList("skyColor", {0, 0, 0}));
   look();
-  EXPECT_EQ(stats().transport, whitted);
+  EXPECT_EQ(stats().transport.chosen, whitted);
   sky.setList("skyColor", {1, 1, 1});
   EXPECT_GT(look().g, .3);
-  EXPECT_EQ(stats().transport, path);
+  EXPECT_EQ(stats().transport.chosen, path);
   sky.setList("skyColor", {0, 0, 0});
   EXPECT_EQ(look().g, 0);
-  EXPECT_EQ(stats().transport, whitted);
+  EXPECT_EQ(stats().transport.chosen, whitted);
   const RTid lamp = use(point({0, 0, 3}, {0, 0, 1}));
   look();
-  EXPECT_EQ(stats().transport, path);
+  EXPECT_EQ(stats().transport.chosen, path);
   rtRemoveLight(lamp);
   look();
-  EXPECT_EQ(stats().transport, whitted);
+  EXPECT_EQ(stats().transport.chosen, whitted);
 }
 
 // The search finds a small sun between the positions of the coarse scan.
@@ -342,7 +342,7 @@ TEST_F(Unlisted, ASmallSunIsSeen) {
   rtUseEnvironment(Shader("EnvironmentMap").setTexture("texture", map));
   place(square(Transports::diffuse(.5)));
   look();
-  EXPECT_EQ(stats().transport, path);
+  EXPECT_EQ(stats().transport.chosen, path);
 }
 
 } // namespace

@@ -213,7 +213,7 @@ def test_the_master_is_killed_and_starts_again(expected):
                 master.kill()
             with openrt_c.context(cluster(workers, local=0), **FRAME) as c:
                 assert render(c)[0] == expected
-                assert c.stats()["tilesRemote"] > 0
+                assert c.stats()["cluster"]["tilesRemote"] > 0
             sizes.append([resident(w.process.pid) for w in workers])
         print("workers' memory after each master:", sizes)
 
@@ -244,7 +244,7 @@ def test_another_machine_with_a_key_and_a_cable_that_is_pulled(expected, tmp_pat
                                       **FRAME) as c:
                     assert c.wait_for(1), talk(c)
                     assert render(c)[0] == expected
-                    assert c.stats()["tilesRemote"] > 0
+                    assert c.stats()["cluster"]["tilesRemote"] > 0
                     out, took = render(c, lambda: there.plug(False))
                     print(f"the cable is pulled: {took:.2f} s")
                     assert out == expected

@@ -167,10 +167,6 @@ def test_copies_of_pictures_keep_the_camera():
             assert np.array_equal(again.camera.K, image.camera.K) and np.array_equal(
                 again.camera.T, image.camera.T)
             assert again.camera.center == image.camera.center
-    former = list(image.__getstate__())[:8]  # the state as version 1 stored it
-    again = xvrml.Picture.__new__(xvrml.Picture)
-    again.__setstate__((1, *former[1:]))
-    assert again.camera is None and np.array_equal(again.array, image.array)
 
 
 def test_damaged_pickles_are_refused():

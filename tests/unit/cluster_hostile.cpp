@@ -172,10 +172,10 @@ TEST(Hostile, whoDoesNotReadIsNoticed) {
 
 TEST(Hostile, whoSaysHelloAgainAndAgainIsLetGo) {
   LoneMaster m;
-  EXPECT_EQ(m.master->totals().workers, 1u);
+  EXPECT_EQ(m.master->totals().cluster.workers, 1u);
   for (int i = 0; i < 10000; i++) m.tell(message::Hello{.threads = 1});
   EXPECT_EQ(m.closed.size(), 1u);
-  EXPECT_EQ(m.master->totals().workers, 0u);
+  EXPECT_EQ(m.master->totals().cluster.workers, 0u);
   EXPECT_LT(m.log.size(), 20u);
 }
 
@@ -214,8 +214,8 @@ TEST(Hostile, textsAreUtf8AndMoveNoCursor) {
   EXPECT_EQ(shown("\xc0\xaf\xed\xa0\x80\xf5\x80\xe2\x82"), "?????????")
       << "overlong, half a pair, cut";
   message::Ready ready{1, {}, RT_TRANSPORT_PATH, {}};
-  std::memcpy(ready.stats.isa, "a\x1b\xffz", 4);
+  std::memcpy(ready.stats.machine.isa, "a\x1b\xffz", 4);
   Message out;
   ASSERT_EQ(decode(encode(1, ready), out), "");
-  EXPECT_STREQ(std::get<message::Ready>(out.body).stats.isa, "a ?z");
+  EXPECT_STREQ(std::get<message::Ready>(out.body).stats.machine.isa, "a ?z");
 }

@@ -148,7 +148,7 @@ struct FakeWorker {
     ready.epoch = at;
     ready.facts.camera = true;
     ready.transport = RT_TRANSPORT_DIRECT;
-    ready.stats.triangles = scene.objects.size() + (nonsense ? 1 : 0);
+    ready.stats.scene.triangles = scene.objects.size() + (nonsense ? 1 : 0);
     say(std::move(ready));
   }
   void work() {
@@ -385,7 +385,7 @@ TEST_P(ClusterMaster, AllLostAndOthersComeInMidFrame) {
   ASSERT_TRUE(runUntil([&] { return over(1) && over(2); }));
   expectSame(1);
   expectSame(2);
-  EXPECT_EQ(master->totals().workers, 2u);
+  EXPECT_EQ(master->totals().cluster.workers, 2u);
   EXPECT_EQ(master->workers().at(0).alive, 0);
 }
 
@@ -457,7 +457,7 @@ TEST_P(ClusterMaster, NobodyWorksWithOtherVersionsOfShaders) {
   for (int i = 0; i < 300; i++) step();
   EXPECT_NE(before.refused.find("reloaded"), std::string::npos);
   EXPECT_NE(after.refused.find("reloaded"), std::string::npos);
-  EXPECT_EQ(master->totals().workers, 0u);
+  EXPECT_EQ(master->totals().cluster.workers, 0u);
 }
 
 TEST_P(ClusterMaster, WhoSendsWhatCannotBeReadIsRefusedAtOnce) {
@@ -498,13 +498,13 @@ TEST_P(ClusterMaster, ResultsThatAreNoneAreBorneThreeTimes) {
   master->commit(1, edits(1), true, now);
   ASSERT_TRUE(runUntil([&] { return !bad.refused.empty(); }));
   EXPECT_NE(bad.refused.find("the result does not fit its job"), bad.refused.npos);
-  EXPECT_EQ(master->totals().jobsRemote, 0u);
+  EXPECT_EQ(master->totals().cluster.tilesRemote, 0u);
   join();
   ASSERT_TRUE(runUntil([&] { return over(1); }));
   expectSame(1);
   uint64_t done = 0;
   for (const RTworker& worker : master->workers()) done += worker.jobs;
-  EXPECT_EQ(master->totals().jobsRemote, done);
+  EXPECT_EQ(master->totals().cluster.tilesRemote, done);
 }
 
 TEST_P(ClusterMaster, ACancelledFrameIsOverAtOnceAndTheNextIsRight) {
@@ -530,7 +530,7 @@ TEST_P(ClusterMaster, RequiredWorkersAreWaitedForAWhile) {
   join();
   master->commit(1, edits(1), true, now);
   for (int i = 0; i < 500; i++) step();
-  EXPECT_EQ(master->totals().jobsRemote, 0u); // one worker is fewer than required
+  EXPECT_EQ(master->totals().cluster.tilesRemote, 0u); // one worker is fewer than required
   join();
   ASSERT_TRUE(runUntil([&] { return over(1); }));
   expectSame(1);

@@ -222,7 +222,7 @@ class UselessWorker {
     m.facts = found->second.facts;
     m.transport = found->second.frame.transport;
     m.stats = found->second.stats;
-    if (way_ == Misbehaviour::liesAboutScene) m.stats.triangles++;
+    if (way_ == Misbehaviour::liesAboutScene) m.stats.scene.triangles++;
     told_ = steadySeconds();
     say(std::move(m));
     if (way_ == Misbehaviour::refusesLater)

@@ -134,8 +134,8 @@ TEST_F(WorkerCoreTest, ItsPicturesAreThoseOfTheLocalBackend) {
   EXPECT_EQ(sink.all()[0].what, "ready");
   EXPECT_TRUE(sink.last.facts.camera);
   EXPECT_NE(sink.last.frame.transport, RT_TRANSPORT_AUTO);
-  EXPECT_GT(sink.last.stats.triangles, 0u);
-  EXPECT_GT(std::strlen(sink.last.stats.isa), 0u);
+  EXPECT_GT(sink.last.stats.scene.triangles, 0u);
+  EXPECT_GT(std::strlen(sink.last.stats.machine.isa), 0u);
   EXPECT_EQ(picture(core, 1, lease), expected(all, 1));
   const size_t before = sink.all().size();
   core.scene(2, all[1], false, true);
@@ -204,7 +204,7 @@ TEST_F(WorkerCoreTest, WholeScenesHaveTheInstructionSetThatWasSet) {
   Lease lease = 0;
   RTstats stats{};
   core.ask([&](Backend& backend) { backend.stats(stats); });
-  const std::string machine = instructionSetsFrom(stats.isa);
+  const std::string machine = instructionSetsFrom(stats.machine.isa);
   for (const std::string_view name : instructionSets) {
     if (!listsInstructionSet(machine, std::string(name))) continue;
     SCOPED_TRACE(name);
@@ -212,7 +212,7 @@ TEST_F(WorkerCoreTest, WholeScenesHaveTheInstructionSetThatWasSet) {
     core.useInstructionSet(std::string(name));
     core.scene(++epoch, all[0], true, true);
     ASSERT_TRUE(sink.wait(before + 1));
-    EXPECT_EQ(sink.last.stats.isa, name);
+    EXPECT_EQ(sink.last.stats.machine.isa, name);
     options.isa = name;
     EXPECT_EQ(picture(core, epoch, lease), expected(all, 1));
   }

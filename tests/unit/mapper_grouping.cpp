@@ -64,9 +64,9 @@ TEST_F(MapGrouping, NestedTransformsNest) {
 
 TEST_F(MapGrouping, EqualGeometryIsStoredOnce) {
   load(repeat("Transform { translation 1 0 0 children Shape { geometry " + grid(40) + " } }\n", 4));
-  EXPECT_EQ(last_.uniqueTriangles, 0u);
-  EXPECT_EQ(frame().uniqueTriangles, 3200u);
-  EXPECT_EQ(frame().triangles, 12800u);
+  EXPECT_EQ(last_.scene.uniqueTriangles, 0u);
+  EXPECT_EQ(frame().scene.uniqueTriangles, 3200u);
+  EXPECT_EQ(frame().scene.triangles, 12800u);
   const ExplainedObject* o = explained("4 geometries equal by content");
   ASSERT_NE(o, nullptr);
   EXPECT_EQ(o->instances, 4u);
@@ -76,7 +76,7 @@ TEST_F(MapGrouping, EqualGeometryIsStoredOnce) {
 TEST_F(MapGrouping, AlmostEqualGeometryIsNot) {
   const std::string a = grid(40), b = "ElevationGrid { solid FALSE" + grid(40).substr(15);
   load("Shape { geometry " + a + " }\nShape { geometry " + b + " }\n");
-  EXPECT_EQ(frame().uniqueTriangles, 6400u) << "one is seen from both sides";
+  EXPECT_EQ(frame().scene.uniqueTriangles, 6400u) << "one is seen from both sides";
 }
 
 TEST_F(MapGrouping, EqualGeometryThatChangesIsNotEqualAnyMore) {
@@ -90,12 +90,12 @@ TEST_F(MapGrouping, EqualGeometryThatChangesIsNotEqualAnyMore) {
            " Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } " + f + " } }\n";
   };
   load(faces("A") + faces("B") + faces("C"));
-  EXPECT_EQ(frame().uniqueTriangles, 2000u);
+  EXPECT_EQ(frame().scene.uniqueTriangles, 2000u);
   send("B", "set_point", MFVec3f{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}});
-  EXPECT_EQ(frame().uniqueTriangles, 4000u);
+  EXPECT_EQ(frame().scene.uniqueTriangles, 4000u);
   send("A", "set_point", MFVec3f{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
-  EXPECT_EQ(frame().uniqueTriangles, 6000u);
-  EXPECT_EQ(frame().triangles, 6000u);
+  EXPECT_EQ(frame().scene.uniqueTriangles, 6000u);
+  EXPECT_EQ(frame().scene.triangles, 6000u);
 }
 
 TEST_F(MapGrouping, OrtStaticMergesWhatEventsReach) {
@@ -120,7 +120,7 @@ TEST_F(MapGrouping, OrtInstanceIsAnObjectHoweverSmall) {
   EXPECT_EQ(
       reasons(),
       "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 shapes | 0 0 1\n");
-  EXPECT_EQ(frame().uniqueTriangles, 12u);
+  EXPECT_EQ(frame().scene.uniqueTriangles, 12u);
 }
 
 TEST_F(MapGrouping, TheInnerHintHolds) {
@@ -135,9 +135,9 @@ TEST_F(MapGrouping, TheInnerHintHolds) {
 TEST_F(MapGrouping, HintsAreOrdinaryGroups) {
   load("DEF S ORTStatic { children DEF B ORTInstance { } }\n" + box);
   send("B", "addChildren", MFNode{make(box)});
-  EXPECT_EQ(frame().triangles, 24u);
+  EXPECT_EQ(frame().scene.triangles, 24u);
   send("S", "set_children", MFNode{});
-  EXPECT_EQ(frame().triangles, 12u);
+  EXPECT_EQ(frame().scene.triangles, 12u);
 }
 
 // A tree with 10,000 USEs: only the instances cost memory. The null backend builds no acceleration

@@ -51,12 +51,12 @@ TEST_F(MapUpdate, ARoutedTransformMovesItsInstanceAlone) {
 TEST_F(MapUpdate, ATransformThatNothingWasKnownToReachIsPromotedOnce) {
   load(rest() + "Transform { translation 9 0 0 children DEF T Transform { children Shape { "
                 "geometry Box { } } } }\n");
-  const uint64_t before = frame().triangles;
+  const uint64_t before = frame().scene.triangles;
   send("T", "set_translation", Vec3f{1, 2, 3});
   const Cost first = cost();
   EXPECT_EQ(first.regroupings, 1u);
   EXPECT_EQ(first.defined, 2u) << "the world without it, and its own object";
-  EXPECT_EQ(last_.triangles, before);
+  EXPECT_EQ(last_.scene.triangles, before);
   send("T", "set_translation", Vec3f{30, 2, 3});
   EXPECT_EQ(cost(), (Cost{.moved = 1}));
   EXPECT_NEAR(mapper_->bounds().maximum[0], 40, 1e-5);
@@ -91,27 +91,27 @@ TEST_F(MapUpdate, ATransformWithAViewpointAloneIsNoObject) {
 TEST_F(MapUpdate, ATransformOutOfAllNumbersAndBack) {
   load(rest() + "DEF T Transform { children Shape { geometry Box { } } }\n" +
        clock("T.set_translation"));
-  const uint64_t before = frame().triangles;
+  const uint64_t before = frame().scene.triangles;
   send("T", "set_scale", Vec3f{1e38f, 1e38f, 1e38f});
   cost();
   send("T", "set_scale", Vec3f{0, 0, 0});
   cost();
   send("T", "set_scale", Vec3f{1, 1, 1});
   EXPECT_EQ(cost(), (Cost{.moved = 1}));
-  EXPECT_EQ(last_.triangles, before);
+  EXPECT_EQ(last_.scene.triangles, before);
 }
 
 TEST_F(MapUpdate, ACoordinateRebuildsItsObjectAlone) {
   load(rest() + "Shape { geometry " + square("F") +
        " }\nDEF I CoordinateInterpolator { }\nROUTE I.value_changed TO FC.set_point\n");
-  const uint64_t before = frame().triangles;
+  const uint64_t before = frame().scene.triangles;
   send("FC", "set_point", MFVec3f{{-1, -1, 0}, {1, -1, 0}, {1, 5, 0}, {-1, 1, 0}});
   EXPECT_EQ(cost(), (Cost{.defined = 1}));
-  EXPECT_EQ(last_.triangles, before);
+  EXPECT_EQ(last_.scene.triangles, before);
   send("FC", "set_point", MFVec3f{{-1, -1, 0}, {1, -1, 0}, {1, 5, 0}});
   EXPECT_EQ(cost(), (Cost{.defined = 1}));
-  EXPECT_EQ(last_.triangles, before - 2) << "a face without its fourth point";
-  EXPECT_EQ(mapper_->stats().triangles, last_.triangles);
+  EXPECT_EQ(last_.scene.triangles, before - 2) << "a face without its fourth point";
+  EXPECT_EQ(mapper_->stats().triangles, last_.scene.triangles);
   EXPECT_NE(explained("ROUTE from I.value_changed"), nullptr);
 }
 
@@ -211,7 +211,7 @@ TEST_F(MapUpdate, ABoxThatEqualsOthersBecomesSeparate) {
   for (const float width : {4.f, 2.f, 6.f}) {
     Node& box = node("A");
     EXPECT_TRUE(engine_->store(box, *box.type().find("size"), Vec3f{width, 2, 2}));
-    EXPECT_EQ(frame().triangles, 24u);
+    EXPECT_EQ(frame().scene.triangles, 24u);
     EXPECT_EQ(mapper_->bounds().minimum[0], -2 - double(width) / 2);
     EXPECT_EQ(mapper_->bounds().maximum[0], 3) << "the other box";
   }
@@ -296,31 +296,31 @@ TEST_F(MapUpdate, ASwitchRegroupsItselfAlone) {
   load(rest() + "DEF S Switch { whichChoice 0 choice [ Shape { geometry Box { } } Group { children "
                 "[ Shape { geometry Box { } } PointLight { } ] } ] }\nDEF I Script { eventOut "
                 "SFInt32 value }\nROUTE I.value TO S.whichChoice\n");
-  const uint64_t with = frame().triangles;
+  const uint64_t with = frame().scene.triangles;
   send("S", "set_whichChoice", 1);
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1, .lights = 3}))
       << "its object, its light, the headlight, which is made again behind it";
-  EXPECT_EQ(last_.triangles, with);
+  EXPECT_EQ(last_.scene.triangles, with);
   send("S", "set_whichChoice", -1);
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1, .lights = 1}));
-  EXPECT_EQ(last_.triangles, with - 12);
+  EXPECT_EQ(last_.scene.triangles, with - 12);
   send("S", "set_whichChoice", 0);
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1}));
 }
 
 TEST_F(MapUpdate, ChildrenComeAndGo) {
   load(rest() + "Transform { translation 1 0 0 children DEF G Group { } }\n");
-  const uint64_t without = frame().triangles;
+  const uint64_t without = frame().scene.triangles;
   const NodeRef box = make("Shape { geometry Box { } }"),
                 more = make("Transform { children Shape { geometry Box { } } }");
   send("G", "addChildren", MFNode{box});
   EXPECT_EQ(cost().defined, 2u) << "the world, which it was part of, and its own object";
-  EXPECT_EQ(last_.triangles, without + 12);
+  EXPECT_EQ(last_.scene.triangles, without + 12);
   send("G", "addChildren", MFNode{more});
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1}));
   send("G", "removeChildren", MFNode{box, more});
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1}));
-  EXPECT_EQ(last_.triangles, without);
+  EXPECT_EQ(last_.scene.triangles, without);
 }
 
 TEST_F(MapUpdate, AnInsertedTransformMovesLikeAnyOther) {
@@ -337,28 +337,28 @@ TEST_F(MapUpdate, AnInsertedTransformMovesLikeAnyOther) {
 TEST_F(MapUpdate, AShapeWithAnotherGeometry) {
   load(rest() + "DEF S Shape { }\nSwitch { choice [ Shape { geometry DEF Ball Sphere { } } Shape { "
                 "geometry DEF Cube Box { } } ] }\n");
-  const uint64_t without = frame().triangles;
+  const uint64_t without = frame().scene.triangles;
   send("S", "set_geometry", NodeRef(&node("Cube")));
   cost();
-  EXPECT_EQ(last_.triangles, without + 12);
+  EXPECT_EQ(last_.scene.triangles, without + 12);
   send("S", "set_geometry", NodeRef());
   EXPECT_EQ(cost().defined, 1u);
-  EXPECT_EQ(last_.triangles, without);
+  EXPECT_EQ(last_.scene.triangles, without);
 }
 
 TEST_F(MapUpdate, AGeometryAfterTheOther) {
   load(rest() +
        "DEF S Shape { appearance Appearance { material Material { } } geometry Box { } }\n");
-  const uint64_t without = frame().triangles - 12;
+  const uint64_t without = frame().scene.triangles - 12;
   Node& shape = node("S");
   EXPECT_TRUE(engine_->dispatch(shape, "set_appearance",
                                 NodeRef())); // from here on it is an instance of its geometry
-  EXPECT_EQ(frame().triangles, without + 12);
+  EXPECT_EQ(frame().scene.triangles, without + 12);
   for (int n = 2; n < 9; ++n) {
     const NodeRef scrap = make("Shape { geometry " + grid(n) + " }");
     send("S", "set_geometry", static_cast<nodes::Shape&>(*scrap).geometry);
     scraps_.clear(); // releases the previous mesh
-    EXPECT_EQ(frame().triangles, without + 2 * uint64_t(n * n));
+    EXPECT_EQ(frame().scene.triangles, without + 2 * uint64_t(n * n));
   }
 }
 
@@ -370,11 +370,11 @@ TEST_F(MapUpdate, ALightChangesItsParameters) {
   EXPECT_GT(c.parameters, 0u);
   send("L", "set_on", false);
   EXPECT_EQ(cost().lights, 1u);
-  EXPECT_EQ(last_.lights, 3u);
+  EXPECT_EQ(last_.scene.lights, 3u);
   send("L", "set_on", true);
   EXPECT_EQ(cost(), (Cost{.parameters = c.parameters, .lights = 3}))
       << "it, and the headlight again behind it";
-  EXPECT_EQ(last_.lights, 4u);
+  EXPECT_EQ(last_.scene.lights, 4u);
 }
 
 TEST_F(MapUpdate, ALightThatIsTurnedOnForTheFirstTime) {
@@ -382,7 +382,7 @@ TEST_F(MapUpdate, ALightThatIsTurnedOnForTheFirstTime) {
        "Group { children [ DEF L DirectionalLight { on FALSE } Shape { geometry Box { } } ] }\n");
   send("L", "set_on", true);
   cost();
-  EXPECT_EQ(last_.lights, 4u);
+  EXPECT_EQ(last_.scene.lights, 4u);
   EXPECT_NE(explained("scope of a DirectionalLight"), nullptr);
 }
 
@@ -408,11 +408,11 @@ TEST_F(MapUpdate, TimeCostsNothing) {
 
 TEST_F(MapUpdate, LevelsOfAnLodAreReplaced) {
   load(rest() + "DEF L LOD { range 100 level [ Shape { geometry Box { } } Group { } ] }\n");
-  const uint64_t before = frame().triangles;
+  const uint64_t before = frame().scene.triangles;
   const NodeRef grown = make("Shape { geometry " + grid(3) + " }");
   send("L", "set_level", MFNode{grown});
   cost();
-  EXPECT_EQ(last_.triangles, before - 12 + 18);
+  EXPECT_EQ(last_.scene.triangles, before - 12 + 18);
 }
 
 TEST_F(MapUpdate, WhatIsInNoPictureCostsNothing) {
@@ -444,22 +444,22 @@ TEST_F(MapUpdate, ABoundViewpointIsTheOneFromOutside) {
   bound.viewpoint = &node("V");
   mapper_->bind(bound);
   EXPECT_EQ(mapper_->boundViewpoint(), 1);
-  EXPECT_EQ(frame().lights, 1u) << "no NavigationInfo is bound: the default has a headlight";
+  EXPECT_EQ(frame().scene.lights, 1u) << "no NavigationInfo is bound: the default has a headlight";
   mapper_->bind({});
   EXPECT_EQ(mapper_->boundViewpoint(), -1);
 }
 
 TEST_F(MapUpdate, ARootThatComesLaterIsSeen) {
   load(rest());
-  const uint64_t before = frame().triangles;
+  const uint64_t before = frame().scene.triangles;
   const NodeRef box = make("Shape { geometry Box { } }");
   engine_->adopt(*box);
   world_->scope.roots.push_back(box);
   cost();
-  EXPECT_EQ(last_.triangles, before + 12);
+  EXPECT_EQ(last_.scene.triangles, before + 12);
   world_->scope.roots.pop_back();
   cost();
-  EXPECT_EQ(last_.triangles, before);
+  EXPECT_EQ(last_.scene.triangles, before);
 }
 
 TEST_F(MapUpdate, ASecondMapperInTheSameContextFindsAnEmptyScene) {
@@ -468,9 +468,9 @@ TEST_F(MapUpdate, ASecondMapperInTheSameContextFindsAnEmptyScene) {
   mapper_ = nullptr;
   mapper_ = std::make_unique<OpenRTMapper>(*world_, MapOptions());
   const RTstats second = frame();
-  EXPECT_EQ(first.triangles, second.triangles);
-  EXPECT_EQ(first.lights, second.lights);
-  EXPECT_EQ(first.objects, second.objects);
+  EXPECT_EQ(first.scene.triangles, second.scene.triangles);
+  EXPECT_EQ(first.scene.lights, second.scene.lights);
+  EXPECT_EQ(first.scene.objects, second.scene.objects);
 }
 
 } // namespace

@@ -77,16 +77,16 @@ TEST_F(MapVertexAlpha, IndicesCountsAndVerticesChangeAtRunTime) {
   loadX3d("Shape { geometry DEF T IndexedTriangleSet { index [ 0 1 2 ] " + points +
           " } }\nShape { geometry DEF F TriangleFanSet { fanCount [ 3 ] " + points +
           " } }\nShape { geometry DEF P TriangleSet2D { vertices [ 0 0, 1 0, 0 1 ] } }\n");
-  EXPECT_EQ(frame().triangles, 3u);
+  EXPECT_EQ(frame().scene.triangles, 3u);
   send("T", "set_index", MFInt32{0, 1, 2, 0, 2, 3});
-  EXPECT_EQ(frame().triangles, 4u);
+  EXPECT_EQ(frame().scene.triangles, 4u);
   send("F", "set_fanCount", MFInt32{4});
-  EXPECT_EQ(frame().triangles, 5u);
+  EXPECT_EQ(frame().scene.triangles, 5u);
   send("P", "set_vertices", MFVec2f{{0, 0}, {1, 0}, {0, 1}, {0, 0}, {2, 0}, {0, 2}});
-  EXPECT_EQ(frame().triangles, 6u);
+  EXPECT_EQ(frame().scene.triangles, 6u);
   send("T", "set_index", MFInt32{INT32_MAX, -1, INT32_MIN});
   send("F", "set_fanCount", MFInt32{2'000'000'000, -1});
-  EXPECT_EQ(frame().triangles, 4u);
+  EXPECT_EQ(frame().scene.triangles, 4u);
 }
 
 } // namespace

@@ -77,7 +77,7 @@ TEST_F(MapWorld, AnEmptyWorldHasTheStandardsDefaults) {
   EXPECT_NEAR(camera.fovy, std::numbers::pi / 4, 1e-6);
   mapper.map(camera);
   EXPECT_EQ(mapper.stats().lights, 1u) << "the headlight";
-  EXPECT_EQ(engine().triangles, 0u);
+  EXPECT_EQ(engine().scene.triangles, 0u);
   expectNoMessages();
 }
 
@@ -219,7 +219,7 @@ TEST_F(MapWorld, StaticGeometryIsOneObject) {
   EXPECT_EQ(s.triangles, 600u);
   EXPECT_EQ(s.objects, 1u);
   EXPECT_EQ(s.instances, 1u);
-  EXPECT_EQ(engine().triangles, 600u);
+  EXPECT_EQ(engine().scene.triangles, 600u);
   expectNoMessages();
 }
 
@@ -230,16 +230,16 @@ TEST_F(MapWorld, AGroupUsedOftenIsOneObjectWithInstances) {
   EXPECT_EQ(s.objects, 2u);
   EXPECT_EQ(s.instances, 11u) << "ten trees and the world";
   const RTstats e = engine();
-  EXPECT_EQ(e.uniqueTriangles, 800u);
-  EXPECT_EQ(e.triangles, 8000u);
+  EXPECT_EQ(e.scene.uniqueTriangles, 800u);
+  EXPECT_EQ(e.scene.triangles, 8000u);
 }
 
 TEST_F(MapWorld, GeometryUsedByManyShapesIsStoredOnce) {
   map("Shape { appearance Appearance { material Material { } } geometry DEF G " + grid(40) +
       " }\n" + repeat("Transform { translation 1 0 0 children Shape { geometry USE G } }\n", 3));
   const RTstats e = engine();
-  EXPECT_EQ(e.uniqueTriangles, 3200u);
-  EXPECT_EQ(e.triangles, 12800u);
+  EXPECT_EQ(e.scene.uniqueTriangles, 3200u);
+  EXPECT_EQ(e.scene.triangles, 12800u);
 }
 
 TEST_F(MapWorld, SmallThingsUsedOftenAreMerged) {
@@ -256,15 +256,15 @@ TEST_F(MapWorld, AGroupWithAScopedLightIsNeverShared) {
   EXPECT_EQ(s.lights, 5u) << "one a place, and the headlight";
   EXPECT_EQ(s.objects, 5u) << "one a place, and the world";
   const RTstats e = engine();
-  EXPECT_EQ(e.lights, 5u);
-  EXPECT_EQ(e.triangles, 12800u);
+  EXPECT_EQ(e.scene.lights, 5u);
+  EXPECT_EQ(e.scene.triangles, 12800u);
 }
 
 TEST_F(MapWorld, LightsThatAreOffAreNotThere) {
   const MapStats s = map("PointLight { on FALSE } SpotLight { } DirectionalLight { on FALSE } "
                          "NavigationInfo { headlight FALSE }");
   EXPECT_EQ(s.lights, 1u);
-  EXPECT_EQ(engine().lights, 1u);
+  EXPECT_EQ(engine().scene.lights, 1u);
 }
 
 // 2^30 spheres: shared subtrees stay shared, counts are exact or saturate, nothing is expanded.
@@ -306,7 +306,7 @@ TEST_F(MapWorld, DeepNestingIsSafe) {
   mapper_ = std::make_unique<OpenRTMapper>(*world_, MapOptions());
   mapper_->map(mapper_->viewpointCamera(0));
   EXPECT_NEAR(mapper_->bounds().maximum[2], depth + 1, 1e-6);
-  EXPECT_EQ(engine().triangles, 12u);
+  EXPECT_EQ(engine().scene.triangles, 12u);
 }
 
 TEST_F(MapWorld, LevelsOfDetailFollowTheCamera) {
@@ -318,7 +318,7 @@ TEST_F(MapWorld, LevelsOfDetailFollowTheCamera) {
   for (const auto& [distance, triangles] : wanted) {
     camera.matrix[14] = distance;
     mapper.map(camera);
-    EXPECT_EQ(engine().triangles, triangles) << distance;
+    EXPECT_EQ(engine().scene.triangles, triangles) << distance;
   }
   expectNoMessages();
 }
@@ -330,10 +330,10 @@ TEST_F(MapWorld, LevelsAreMeasuredInTheirOwnSystem) {
   CameraSettings camera = mapper.viewpointCamera(0);
   camera.matrix[14] = 20; // distance 1 in local units
   mapper.map(camera);
-  EXPECT_EQ(engine().triangles, 8u);
+  EXPECT_EQ(engine().scene.triangles, 8u);
   camera.matrix[14] = 30; // distance 2 in local units
   mapper.map(camera);
-  EXPECT_EQ(engine().triangles, 12u);
+  EXPECT_EQ(engine().scene.triangles, 12u);
 }
 
 TEST_F(MapWorld, LightsOfLevelsThatAreNotDrawnAreOff) {
@@ -342,13 +342,13 @@ TEST_F(MapWorld, LightsOfLevelsThatAreNotDrawnAreOff) {
            "{ } ] } Group { children [ Shape { geometry Box { } } ] } ] }");
   CameraSettings camera = mapper.viewpointCamera(0);
   mapper.map(camera);
-  EXPECT_EQ(engine().lights, 0u);
+  EXPECT_EQ(engine().scene.lights, 0u);
   camera.matrix[14] = 1;
   mapper.map(camera);
-  EXPECT_EQ(engine().lights, 1u);
+  EXPECT_EQ(engine().scene.lights, 1u);
   camera.matrix[14] = 10;
   mapper.map(camera);
-  EXPECT_EQ(engine().lights, 0u);
+  EXPECT_EQ(engine().scene.lights, 0u);
 }
 
 TEST_F(MapWorld, MappingAgainKeepsWhatIsThere) {
@@ -363,10 +363,10 @@ TEST_F(MapWorld, MappingAgainKeepsWhatIsThere) {
     mapper.map(camera);
   }
   const RTstats last = engine();
-  EXPECT_EQ(first.objects, last.objects);
-  EXPECT_EQ(first.instances, last.instances);
-  EXPECT_EQ(first.lights, last.lights);
-  EXPECT_EQ(last.lights, 3u);
+  EXPECT_EQ(first.scene.objects, last.scene.objects);
+  EXPECT_EQ(first.scene.instances, last.scene.instances);
+  EXPECT_EQ(first.scene.lights, last.scene.lights);
+  EXPECT_EQ(last.scene.lights, 3u);
   expectNoMessages();
 }
 
@@ -393,7 +393,7 @@ TEST_F(MapWorld, ABadShaderIsAnErrorWithItsPlace) {
       "\"nosuchshader\" } } geometry Box { } }");
   ASSERT_EQ(world_->diagnostics.errors(), 1u);
   EXPECT_EQ(world_->diagnostics.list()[0].line, 3u);
-  EXPECT_EQ(engine().triangles, 12u) << "the shape is there all the same";
+  EXPECT_EQ(engine().scene.triangles, 12u) << "the shape is there all the same";
 }
 
 TEST_F(MapWorld, ShaderOptionsAreParametersOfTheClass) {

@@ -97,7 +97,7 @@ TEST_F(Arrays, DegeneratePrimitivesAreDropped) {
   RTstats stats;
   stats.size = sizeof(stats);
   rtGetStats(&stats);
-  EXPECT_EQ(stats.degenerate, 3u); // two, plus the one that the backend reports
+  EXPECT_EQ(stats.rejected.primitives, 3u); // two, plus the one that the backend reports
 }
 
 TEST_F(Arrays, NothingDrawnMakesNoGeometry) {

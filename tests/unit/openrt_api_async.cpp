@@ -194,7 +194,7 @@ TEST_F(Async, QueriesAndStatisticsWhileAFrameIsInFlight) {
   RTstats stats{};
   stats.size = sizeof stats;
   rtGetStats(&stats);
-  EXPECT_EQ(stats.triangles, 2u);
+  EXPECT_EQ(stats.scene.triangles, 2u);
   rtSwapBuffers();
   for (float r : red()) ASSERT_NEAR(r, 0.5f, 1e-6f);
 }

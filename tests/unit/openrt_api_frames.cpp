@@ -226,20 +226,20 @@ TEST_F(Frames, StatisticsMergeBothSides) {
   std::memset(&stats, 0xff, sizeof(stats));
   stats.size = sizeof(stats);
   rtGetStats(&stats);
-  EXPECT_TRUE(stats.objects == 1 && stats.instances == 2 && stats.textures == 3 &&
-              stats.lights == 0);
-  EXPECT_EQ(stats.cameraRays, 42u);
-  EXPECT_EQ(stats.degenerate, 1u);
+  EXPECT_TRUE(stats.scene.objects == 1 && stats.scene.instances == 2 && stats.scene.textures == 3 &&
+              stats.scene.lights == 0);
+  EXPECT_EQ(stats.rays.camera, 42u);
+  EXPECT_EQ(stats.rejected.primitives, 1u);
   EXPECT_EQ(stats.size, sizeof(stats));
 }
 
 TEST_F(Frames, StatisticsRespectAnOlderStructure) {
   RTstats stats;
   std::memset(&stats, 0xff, sizeof(stats));
-  stats.size = offsetof(RTstats, lights);
+  stats.size = offsetof(RTstats, scene.lights);
   rtGetStats(&stats);
-  EXPECT_EQ(stats.instances, 0u);
-  EXPECT_EQ(stats.lights, ~uint64_t(0));
+  EXPECT_EQ(stats.scene.instances, 0u);
+  EXPECT_EQ(stats.scene.lights, ~uint64_t(0));
   EXPECT_FAILS(RT_INVALID_VALUE, rtGetStats(nullptr));
   stats.size = 1;
   EXPECT_FAILS(RT_INVALID_VALUE, rtGetStats(&stats));

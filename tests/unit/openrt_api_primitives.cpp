@@ -36,7 +36,7 @@ class Primitives : public ApiTest {
     RTstats stats;
     stats.size = sizeof(stats);
     rtGetStats(&stats);
-    return stats.degenerate - 1; // the capturing backend adds one
+    return stats.rejected.primitives - 1; // the capturing backend adds one
   }
   const Commit* last = nullptr;
 };

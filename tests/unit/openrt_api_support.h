@@ -50,17 +50,17 @@ class FakeQueries final : public Queries {
   }
   void listHits(std::span<const RTray>, std::span<const size_t>, std::span<RThit>) override {}
   void closestPoints(std::span<const float>, float, std::span<RTclosest>) override {}
-  void castPrecise(std::span<const RTrayd>, std::span<RThitd> hits) override {
+  void castDouble(std::span<const RTrayd>, std::span<RThitd> hits) override {
     for (RThitd& hit : hits) hit.t = 7;
   }
-  void occludePrecise(std::span<const RTrayd>, std::span<uint8_t> occluded) override {
+  void occludeDouble(std::span<const RTrayd>, std::span<uint8_t> occluded) override {
     for (uint8_t& o : occluded) o = 1;
   }
-  void countPrecise(std::span<const RTrayd>, std::span<uint32_t> counts) override {
+  void countDouble(std::span<const RTrayd>, std::span<uint32_t> counts) override {
     for (uint32_t& count : counts) count = 0;
   }
-  void listPrecise(std::span<const RTrayd>, std::span<const size_t>, std::span<RThitd>) override {}
-  void closestPrecise(std::span<const double>, double, std::span<RThitd>) override {}
+  void listDouble(std::span<const RTrayd>, std::span<const size_t>, std::span<RThitd>) override {}
+  void closestDouble(std::span<const double>, double, std::span<RThitd>) override {}
 };
 
 class CaptureBackend final : public Backend {
@@ -105,8 +105,8 @@ class CaptureBackend final : public Backend {
     return true;
   }
   void stats(RTstats& stats) const override {
-    stats.cameraRays = 42;
-    stats.degenerate = 1;
+    stats.rays.camera = 42;
+    stats.rejected.primitives = 1;
   }
   Queries* queries() override { return &queries_; }
 

@@ -80,8 +80,7 @@ class Player {
     EXPECT_TRUE(work_->over());
     EXPECT_EQ(work_->progress(), 1);
     EXPECT_NEAR(work_->undone(), 0, 1e-6);
-    work_->describeLedger(stats);
-    work_->describeError(stats);
+    work_->describe(stats);
   }
   Picture picture() const { return pictureOf(*work_, frame_); }
   uint32_t jobs() const { return jobs_; }
@@ -132,8 +131,8 @@ void expectTheSameInEveryWay(const Settings& settings, uint32_t ways = 3) {
                           {.seed = seed, .atOnce = 4 * seed * seed, .progressive = progressive});
       EXPECT_TRUE(sameBytes(played.picture(), expected))
           << "way " << seed << (progressive ? ", progressive" : "");
-      EXPECT_EQ(played.stats.cutByDepth, plain.stats.cutByDepth);
-      EXPECT_EQ(played.stats.errorMean, plain.stats.errorMean);
+      EXPECT_EQ(played.stats.leftOut.cutByDepth, plain.stats.leftOut.cutByDepth);
+      EXPECT_EQ(played.stats.error.mean, plain.stats.error.mean);
     }
   for (const uint32_t threads : {1, 2, 5}) {
     Room other(settings, threads);

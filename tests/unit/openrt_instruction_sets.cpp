@@ -40,15 +40,15 @@ TEST(InstructionSets, EachRendersTheSameBytesEachTime) {
   RTstats best{};
   const std::vector<float> automatic = picture("auto", 1, best);
   for (const std::string_view name : instructionSets) {
-    if (!listsInstructionSet(instructionSetsFrom(best.isa), std::string(name))) continue;
+    if (!listsInstructionSet(instructionSetsFrom(best.machine.isa), std::string(name))) continue;
     SCOPED_TRACE(name);
     RTstats stats{};
     const std::vector<float> one = picture(std::string(name), 1, stats);
-    EXPECT_EQ(stats.isa, name);
+    EXPECT_EQ(stats.machine.isa, name);
     EXPECT_EQ(picture(std::string(name), 1, stats), one);
     EXPECT_EQ(picture(std::string(name), 3, stats), one);
     EXPECT_NEAR(brightness(one) / brightness(automatic), 1, .02);
-    if (name == best.isa) { EXPECT_EQ(one, automatic); }
+    if (name == best.machine.isa) { EXPECT_EQ(one, automatic); }
   }
 }
 
@@ -56,10 +56,10 @@ TEST(InstructionSets, OthersAreRefusedAndThoseOfTheMachineNamed) {
   RTstats best{};
   picture("auto", 1, best);
   const std::string expected =
-      "expected auto, or one that this machine has: " + instructionSetsFrom(best.isa);
+      "expected auto, or one that this machine has: " + instructionSetsFrom(best.machine.isa);
   std::vector<std::string> lacking = {"mmx", "", "AVX2", "avx2,sse2"};
   for (const std::string_view name : instructionSets) {
-    if (name == best.isa) break;
+    if (name == best.machine.isa) break;
     lacking.emplace_back(name);
   }
   for (const std::string& name : lacking) {

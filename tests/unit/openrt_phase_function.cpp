@@ -14,7 +14,7 @@ constexpr double anisotropies[] = {-.99, -.5, -1e-3, -1e-4, -5e-5, 0, 1e-6, 9e-5
 
 // Integrates over the sphere by the midpoint rule in the distribution of the sampled cosine, whose
 // integrand has no peak.
-TEST(PhaseFunction, IsNormalisedAndHasItsMeanCosine) {
+TEST(PhaseFunction, IsNormalizedAndHasItsMeanCosine) {
   for (const double g : anisotropies) {
     // Substitutes cosine = 1 - 2 x^4 towards the peak at 1, or at -1 if g is negative.
     constexpr int n = 200000;

@@ -199,7 +199,8 @@ TEST_F(Replay, GuidedPathsHaveTheSameBytes) {
         RTstats stats{};
         stats.size = sizeof stats;
         rtGetStats(&stats);
-        EXPECT_NE(std::strstr(stats.transportReason, ", guided"), nullptr) << stats.transportReason;
+        EXPECT_NE(std::strstr(stats.transport.reason, ", guided"), nullptr)
+            << stats.transport.reason;
       });
   ASSERT_EQ(replay(quoted("guided") + " -o " + quoted("frame.pfm") + " --threads 1"), 0) << said();
   EXPECT_TRUE(same(readPfm("frame.pfm"), frame));

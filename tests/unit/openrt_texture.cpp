@@ -49,7 +49,7 @@ Rgba at(const Texture& texture, float u, float v) {
   return out;
 }
 
-TEST(OpenrtTexture, TexelCentresGiveTheTexelsFirstRowAtTheBottom) {
+TEST(OpenrtTexture, TexelCentersGiveTheTexelsFirstRowAtTheBottom) {
   const Texture t = floats(describe(3, 2, 2), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
   EXPECT_EQ(t.components(), 3u);
   EXPECT_FLOAT_EQ(at(t, 0.25f, 0.25f).r, 1);

@@ -218,8 +218,8 @@ TEST(Live, anotherCameraMakesNothingAnew) {
     EXPECT_EQ(next.map.instancesMoved, first.map.instancesMoved);
     EXPECT_EQ(next.map.parametersSet, first.map.parametersSet);
     EXPECT_EQ(next.map.regroupings, first.map.regroupings);
-    EXPECT_EQ(next.stats.objectBuilds, first.stats.objectBuilds);
-    EXPECT_EQ(next.stats.topLevelBuilds, first.stats.topLevelBuilds);
+    EXPECT_EQ(next.stats.bvh.objectBuilds, first.stats.bvh.objectBuilds);
+    EXPECT_EQ(next.stats.bvh.topLevelBuilds, first.stats.bvh.topLevelBuilds);
   }
 }
 
@@ -243,7 +243,7 @@ TEST(Live, aTargetErrorEndsTheRefinement) {
   const LivePicture picture = finish(live, frame);
   EXPECT_LT(picture.samples, 256);
   EXPECT_GE(picture.samples, 32);
-  EXPECT_LE(picture.stats.errorMean, 0.05);
+  EXPECT_LE(picture.stats.error.mean, 0.05);
   EXPECT_EQ(picture.rgb, displayBytes(still(*other, settings, frame).picture));
 }
 

@@ -144,7 +144,7 @@ TEST(LiveCluster, framesThatOverlapComeInTheirOrderAndAreTheStillOnes) {
     EXPECT_TRUE(made.finished);
     EXPECT_EQ(made.samples, frame(i).samples);
     EXPECT_EQ(made.rgb, displayBytes(still(*other, frame(i))));
-    EXPECT_EQ(made.stats.cameraRays,
+    EXPECT_EQ(made.stats.rays.camera,
               uint64_t(made.width) * uint64_t(made.height) * uint64_t(frame(i).samples));
     EXPECT_GT(made.seconds, 0);
     EXPECT_LE(made.alone, made.seconds);

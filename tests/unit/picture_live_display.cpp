@@ -175,7 +175,7 @@ TEST(LiveDisplay, viewersSeeTheirOwnPictures) {
   EXPECT_EQ(show(display, uniform(100, 1), stillFrame(100, 256, 7), false).rgb[0], 100);
 }
 
-TEST(LiveDisplay, picturesAreScaledBetweenTheCentresOfPixels) {
+TEST(LiveDisplay, picturesAreScaledBetweenTheCentersOfPixels) {
   const std::vector<uint8_t> two = {0, 10, 250, 200, 110, 50};
   EXPECT_EQ(live::scaled(two, 2, 1, 2, 1), two);
   const std::vector<uint8_t> wide = live::scaled(two, 2, 1, 8, 3);

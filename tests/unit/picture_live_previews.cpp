@@ -55,7 +55,7 @@ TEST(LivePreview, saysWhatItIs) {
     EXPECT_EQ(preview.samples, 1);
     EXPECT_GT(preview.rebuilding, 0);
     EXPECT_LE(preview.overhead + preview.rebuilding, preview.seconds * (1 + 1e-9));
-    EXPECT_EQ(preview.stats.errorPixels, 0u); // no error bar comes from a preview
+    EXPECT_EQ(preview.stats.error.pixels, 0u); // no error bar comes from a preview
   }
   const LivePicture still = finish(live, frameOf(Purpose::still, 64, 48, 4));
   EXPECT_FALSE(still.preview);

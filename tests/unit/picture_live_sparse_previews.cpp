@@ -34,7 +34,7 @@ TEST_P(LiveSparseLight, picturesShownArePreviews) {
     EXPECT_TRUE(picture.preview);
     EXPECT_EQ(picture.lightStride, GetParam());
     EXPECT_GT(picture.rebuilding, 0);
-    EXPECT_EQ(picture.stats.errorPixels, 0u); // no error bar comes from a preview
+    EXPECT_EQ(picture.stats.error.pixels, 0u); // no error bar comes from a preview
   }
   Picture copied;
   EXPECT_FALSE(live.copy(copied)); // for a file, there is no picture yet
@@ -48,7 +48,7 @@ TEST_P(LiveSparseLight, theLightOfFewerRaysFillsThePicture) {
     LiveRenderer live(*browser, settingsOf());
     LivePicture picture;
     for (int i = 0; i < 32; ++i) picture = finish(live, sparseOf(stride));
-    rays = picture.stats.shadowRays + picture.stats.secondaryRays;
+    rays = picture.stats.rays.shadow + picture.stats.rays.secondary;
     return meanOf(picture);
   };
   uint64_t all = 0, few = 0;

@@ -20,10 +20,10 @@ SessionFacts facts(Showing showing, double frameRate) {
   f.width = 400;
   f.height = 300;
   f.samples = 12;
-  f.stats.cameraRays = 1000;
-  f.stats.renderSeconds = 1;
-  f.stats.errorPixels = 100;
-  f.stats.errorHalfWidth = 0.25;
+  f.stats.rays.camera = 1000;
+  f.stats.time.render = 1;
+  f.stats.error.pixels = 100;
+  f.stats.error.halfWidth = 0.25;
   f.finished = true;
   return f;
 }

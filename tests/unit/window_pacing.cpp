@@ -204,13 +204,13 @@ TEST(Pacing, rebuiltPicturesLoseLightBeforeSize) {
 
 TEST(Pacing, theTransportTellsTheLight) {
   RTstats stats{};
-  stats.cameraRays = 1;
+  stats.rays.camera = 1;
   for (const RTenum transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED}) {
-    stats.transport = transport;
+    stats.transport.chosen = transport;
     EXPECT_EQ(lightOf(stats, true), Pacing::Light::sparseDirect);
     EXPECT_EQ(lightOf(stats, false), Pacing::Light::direct);
   }
-  stats.transport = RT_TRANSPORT_PATH;
+  stats.transport.chosen = RT_TRANSPORT_PATH;
   EXPECT_EQ(lightOf(stats, true), Pacing::Light::sparse);
   EXPECT_EQ(lightOf(stats, false), Pacing::Light::sampled);
   for (const bool rebuilt : {true, false})

@@ -55,7 +55,7 @@ TEST(Matrix, TransformIsTheStandardsSequence) {
   expectNear(transformPoint(transformMatrix(f), p), q);
 }
 
-TEST(Matrix, TransformKeepsItsCentreButForTheTranslation) {
+TEST(Matrix, TransformKeepsItsCenterButForTheTranslation) {
   TransformFields f;
   f.center = {3, 4, 5};
   f.scale = {7, 8, 9};

@@ -85,7 +85,7 @@ bool Audit::run(const picture::View& view) {
     double samples = 0;
     for (float n : planes[RT_SAMPLES]) samples += double(n) / double(planes[RT_SAMPLES].size());
     shots.push_back({planes[RT_RGBA], planes[RT_ERROR], planes[RT_TRUST], planes[RT_VARIANCE],
-                     samples, result.stats.errorMean, result.stats.errorMeanInterval});
+                     samples, result.stats.error.mean, result.stats.error.meanInterval});
     samples_ += samples / options_.audit;
     if (i == 0) first_ = std::move(result.picture);
   }

@@ -113,9 +113,10 @@ std::vector<std::string> clusterLines(const picture::RenderResult& result) {
   std::vector<std::string> lines;
   lines.push_back(fmt::format("vv: cluster: {}; {} of {} jobs done by workers, {} handed out "
                               "again, {} done twice, {} sent, {} received",
-                              workersText(result.workers), s.tilesRemote,
-                              s.tilesRemote + s.tilesLocal, s.reissued, s.duplicates,
-                              bytesText(s.bytesSent), bytesText(s.bytesReceived)));
+                              workersText(result.workers), s.cluster.tilesRemote,
+                              s.cluster.tilesRemote + s.cluster.tilesLocal, s.cluster.reissued,
+                              s.cluster.duplicates, bytesText(s.cluster.bytesSent),
+                              bytesText(s.cluster.bytesReceived)));
   lines.push_back("  " + headings());
   for (const RTworker& worker : result.workers)
     lines.push_back(

@@ -57,7 +57,7 @@ bool showsNothing(const picture::Picture& picture) {
 }
 
 bool mayBeUnlit(const Options& options, const picture::RenderResult& result) {
-  return result.stats.lights == 0 && result.picture.planes.contains(RT_RGBA) &&
+  return result.stats.scene.lights == 0 && result.picture.planes.contains(RT_RGBA) &&
          (options.render.background.kind == picture::Background::Kind::colour ||
           options.render.background.kind == picture::Background::Kind::backdrop);
 }
@@ -111,7 +111,7 @@ std::string hintFor(const Options& options, const picture::View& view,
   if (!seen.black || lookAt(probe(view, renderer, Headlight::on)).black) return {};
   const std::string black =
       showsNothing(result.picture) ? "the picture is black: " : "all shapes in view are black: ";
-  if (result.stats.lights == 0)
+  if (result.stats.scene.lights == 0)
     return black + "the world has no light and its headlight is off; --headlight on";
   return black + "no light reaches what is in view; --headlight on adds one at the camera";
 }

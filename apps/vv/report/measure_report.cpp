@@ -65,7 +65,7 @@ std::string wayToReach(const Measurement& m) {
   if (m.sensor.luminance) return "";
   if (!m.sensor.cells) return "; give the sensor a size and use --transport light";
   // The engine has refused to follow paths from lamps, and says why.
-  const std::string reason = m.stats.transportReason;
+  const std::string reason = m.stats.transport.reason;
   if (reason.find("not at lamps") != std::string::npos) return "; " + reason;
   return "; --transport light follows it";
 }
@@ -77,7 +77,8 @@ std::string whyMissed(const Measurement& m, const Promise& promise) {
   const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
   if (promise.timed && taken < promise.allowed)
     return "the time limit ended the measurement; --time-limit allows more time";
-  const bool capped = picture::transportInfo(m.stats.transport).tracesLamps && !promise.timed;
+  const bool capped =
+      picture::transportInfo(m.stats.transport.chosen).tracesLamps && !promise.timed;
   if (taken < promise.allowed)
     return capped ? "--error alone decides how many paths from lamps are taken; --spp N without "
                     "--error takes N of both"
@@ -140,8 +141,8 @@ std::string measurementsJson(const std::vector<Measurement>& sensors,
                                {"minimum", all.least},
                                {"maximum", all.most},
                                {"uniformity", all.uniformity()},
-                               {"relative_half_width", numberOrNull(m.stats.errorHalfWidth)},
-                               {"unreached_lamps", m.stats.unreachedLights},
+                               {"relative_half_width", numberOrNull(m.stats.error.halfWidth)},
+                               {"unreached_lamps", m.stats.transport.unreachedLights},
                                {"interrupted", m.interrupted},
                                {"points", std::move(points)}});
   }
@@ -165,20 +166,20 @@ std::vector<std::string> measurementWarnings(const Measurement& m, const Promise
   const Summary all(m);
   if (all.points == 0) return out;
   const auto add = [&](const std::string& text) { out.push_back(m.sensor.name + ": " + text); };
-  if (promise.error > 0 && m.stats.errorHalfWidth > 1.001 * promise.error) {
+  if (promise.error > 0 && m.stats.error.halfWidth > 1.001 * promise.error) {
     const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
     add(fmt::format("--error promised {:.3g} %, reached {:.3g} % with {} samples; {}",
-                    100 * promise.error, 100 * m.stats.errorHalfWidth, taken,
+                    100 * promise.error, 100 * m.stats.error.halfWidth, taken,
                     whyMissed(m, promise)));
   }
   if (const size_t doubtful = all.points - all.trusted)
     add(fmt::format("the intervals of {} of {} points are not trusted: too few paths have found "
                     "the light there (docs/error-bars.md)",
                     doubtful, all.points));
-  if (m.stats.unreachedLights > 0)
+  if (m.stats.transport.unreachedLights > 0)
     add(fmt::format("the light that {} lamps without extent send through glass or mirrors is "
                     "missing{}",
-                    m.stats.unreachedLights, wayToReach(m)));
+                    m.stats.transport.unreachedLights, wayToReach(m)));
   return out;
 }
 

@@ -32,26 +32,25 @@ std::string dump(const Json& json) {
   return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
-// Returns the error estimate of the whole picture, relative (openrt.h, RTstats). Samples that are
-// no replicates bound the error of the picture only loosely, and statistics do not change how a
+// Returns the error estimate of the whole picture, relative (openrt.h, RTerrorStats). Samples that
+// are no replicates bound the error of the picture only loosely, and statistics do not change how a
 // picture is made: nothing is said about it unless the user has asked for errors.
-Json errorEstimate(const RTstats& s, bool asked) {
-  const bool known = s.errorPixels > 0 && asked;
+Json errorEstimate(const RTerrorStats& s, bool asked) {
+  const bool known = s.pixels > 0 && asked;
   const auto value = [known](double x) { return known ? Json(x) : Json(nullptr); };
-  return {
-      {"mean_rel", value(s.errorMean)},
-      {"mean_rel_interval", value(s.errorMeanInterval)},
-      {"half_width", value(s.errorHalfWidth)},
-      {"p99", value(s.errorP99)},
-      {"pixels_trusted", value(known ? double(s.errorTrusted) / double(s.errorPixels) : 0)},
-      {"unmet", value(s.errorUnmet)},
-      {"level", s.errorLevel},
-      {"method", asked ? s.errorMethod : "none: --channels rgba,error,trust or --error tells it"}};
+  return {{"mean_rel", value(s.mean)},
+          {"mean_rel_interval", value(s.meanInterval)},
+          {"half_width", value(s.halfWidth)},
+          {"p99", value(s.p99)},
+          {"pixels_trusted", value(known ? double(s.trusted) / double(s.pixels) : 0)},
+          {"unmet", value(s.unmet)},
+          {"level", s.level},
+          {"method", asked ? s.method : "none: --channels rgba,error,trust or --error tells it"}};
 }
 
 Json transportJson(const Options& options, const RTstats& s) {
-  return {{"chosen", picture::transportName(s.transport)},
-          {"reason", s.transportReason},
+  return {{"chosen", picture::transportName(s.transport.chosen)},
+          {"reason", s.transport.reason},
           {"claim", transportClaim(s, options.render)},
           {"leaves_out", picture::omittedLightNames(s)}};
 }
@@ -59,7 +58,7 @@ Json transportJson(const Options& options, const RTstats& s) {
 // Returns the state of the cluster since the program began to connect to the workers. `tiles`
 // counts jobs, which may be parts of tiles.
 Json clusterJson(const picture::RenderResult& result) {
-  const RTstats& s = result.stats;
+  const RTclusterStats& s = result.stats.cluster;
   Json machines = Json::array();
   for (const RTworker& worker : result.workers) {
     Json machine;
@@ -100,10 +99,6 @@ Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
   return list;
 }
 
-} // namespace
-
-namespace {
-
 // Returns the number of samples taken per pixel, averaged over the picture; null if the picture has
 // no channel of samples.
 Json meanSamples(const picture::RenderResult& result) {
@@ -129,12 +124,12 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
   json["scene"] = {{"path", world.path},
                    {"nodes", world.nodeCount},
                    {"shapes", result.map.shapes},
-                   {"triangles", s.triangles},
-                   {"unique_triangles", s.uniqueTriangles},
-                   {"objects", s.objects},
-                   {"instances", s.instances},
-                   {"textures", s.textures},
-                   {"lights", s.lights},
+                   {"triangles", s.scene.triangles},
+                   {"unique_triangles", s.scene.uniqueTriangles},
+                   {"objects", s.scene.objects},
+                   {"instances", s.scene.instances},
+                   {"textures", s.scene.textures},
+                   {"lights", s.scene.lights},
                    {"warnings", world.diagnostics.warnings() + world.diagnostics.errors()}};
   json["scripts"] = {{"scripts", running.scripts.scripts},
                      {"started", running.scripts.started},
@@ -166,25 +161,30 @@ void addMachine(Json& json, const Options& options, const picture::RenderResult&
   const RTstats& s = result.stats;
   json["transport"] = transportJson(options, result.stats);
   const picture::RenderSettings& r = options.render;
-  json["error"] =
-      errorEstimate(s, (r.channels & (RT_ERROR | RT_TRUST)) || r.error > 0 || r.timeLimit > 0);
-  json["left_out"] = {{"cut_by_depth", s.cutByDepth},
-                      {"cut_by_energy", s.cutByEnergy},
-                      {"clipped", s.clipped},
-                      {"unreached_lights", s.unreachedLights},
-                      {"shader_faults", s.shaderFaults},
-                      {"wrong_hits", s.wrongHits},
-                      {"rejected_rays", s.rejectedRays}};
-  json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvhBytes}, {"scene", nullptr}};
+  json["error"] = errorEstimate(s.error, (r.channels & (RT_ERROR | RT_TRUST)) || r.error > 0 ||
+                                             r.timeLimit > 0);
+  json["left_out"] = {{"cut_by_depth", s.leftOut.cutByDepth},
+                      {"cut_by_energy", s.leftOut.cutByEnergy},
+                      {"clipped", s.leftOut.clipped},
+                      {"unreached_lights", s.transport.unreachedLights},
+                      {"shader_faults", s.leftOut.shaderFaults},
+                      {"wrong_hits", s.rejected.hits},
+                      {"rejected_rays", s.rejected.rays}};
+  json["memory"] = {{"peak_rss", peakMemory()}, {"bvh", s.bvh.bytes}, {"scene", nullptr}};
   json["cluster"] = clusterJson(result);
-  json["machine"] = {{"isa", s.isa}, {"threads", s.threads}, {"embree", s.kernel}};
+  json["machine"] = {
+      {"isa", s.machine.isa}, {"threads", s.machine.threads}, {"embree", s.machine.kernel}};
 }
 
-Json rayStats(uint64_t camera, uint64_t shadow, uint64_t secondary, double seconds) {
-  return {{"camera", camera},
-          {"shadow", shadow},
-          {"secondary", secondary},
-          {"per_second", seconds > 0 ? double(camera + shadow + secondary) / seconds : 0.0}};
+Json rayStats(const RTrayStats& rays) {
+  return {{"camera", rays.camera}, {"shadow", rays.shadow}, {"secondary", rays.secondary}};
+}
+
+Json rayStats(const RTrayStats& rays, double seconds) {
+  Json json = rayStats(rays);
+  const auto all = double(rays.camera + rays.shadow + rays.secondary);
+  json["per_second"] = seconds > 0 ? all / seconds : 0.0;
+  return json;
 }
 
 } // namespace
@@ -200,13 +200,13 @@ std::string statsJson(const Options& options, const std::string& commandLine,
                   {"graph", world.times.load},
                   {"start", times.start},
                   {"map", result.mapSeconds},
-                  {"build", s.commitSeconds + s.buildSeconds},
+                  {"build", s.time.commit + s.time.build},
                   {"first_pass", result.renderSeconds},
                   {"render", result.renderSeconds},
                   {"write", times.write},
                   {"total", times.total}};
   if (result.denoiseSeconds > 0) json["time"]["denoise"] = result.denoiseSeconds;
-  json["rays"] = rayStats(s.cameraRays, s.shadowRays, s.secondaryRays, s.renderSeconds);
+  json["rays"] = rayStats(s.rays, s.time.render);
   addMachine(json, options, result);
   return dump(json);
 }
@@ -223,15 +223,14 @@ std::string mergedStatsJson(const std::string& commandLine, const picture::Sums&
                    {"spp", uint64_t(info.samples) * info.seeds},
                    {"seeds", info.seeds},
                    {"channels", channelNames(info.channels)}};
-  json["error"] = errorEstimate(s, std::strncmp(s.errorMethod, "replicated", 10) == 0 ||
-                                       (info.channels & (RT_ERROR | RT_TRUST)));
-  json["left_out"] = {{"cut_by_depth", s.cutByDepth},
-                      {"cut_by_energy", s.cutByEnergy},
-                      {"clipped", s.clipped},
-                      {"shader_faults", s.shaderFaults}};
-  json["rays"] = {
-      {"camera", s.cameraRays}, {"shadow", s.shadowRays}, {"secondary", s.secondaryRays}};
-  json["machine"] = {{"isa", s.isa}, {"embree", s.kernel}};
+  json["error"] = errorEstimate(s.error, std::strncmp(s.error.method, "replicated", 10) == 0 ||
+                                             (info.channels & (RT_ERROR | RT_TRUST)));
+  json["left_out"] = {{"cut_by_depth", s.leftOut.cutByDepth},
+                      {"cut_by_energy", s.leftOut.cutByEnergy},
+                      {"clipped", s.leftOut.clipped},
+                      {"shader_faults", s.leftOut.shaderFaults}};
+  json["rays"] = rayStats(s.rays);
+  json["machine"] = {{"isa", s.machine.isa}, {"embree", s.machine.kernel}};
   return dump(json);
 }
 
@@ -240,7 +239,7 @@ struct SequenceStats::Impl {
   picture::RenderResult last{}; // the last result, without the pixels
   Json samples;                 // mean number of samples of the last picture
   double map = 0, build = 0, render = 0, denoise = 0, write = 0, first = 0, tracing = 0;
-  uint64_t camera = 0, shadow = 0, secondary = 0;
+  RTrayStats rays{};
 };
 
 SequenceStats::SequenceStats() : impl_(std::make_unique<Impl>()) {}
@@ -250,7 +249,7 @@ void SequenceStats::add(const PictureName& name, double worldTime,
                         const picture::RenderResult& result, double writeSeconds) {
   Impl& sum = *impl_;
   const RTstats& s = result.stats;
-  const double build = s.commitSeconds + s.buildSeconds;
+  const double build = s.time.commit + s.time.build;
   Json frame = {{"frame", name.frame.value_or(0)}, {"world_time", worldTime}};
   if (!name.viewpoint.empty()) frame["viewpoint"] = name.viewpoint;
   frame["time"] = {{"map", result.mapSeconds},
@@ -265,10 +264,10 @@ void SequenceStats::add(const PictureName& name, double worldTime,
   sum.render += result.renderSeconds;
   sum.denoise += result.denoiseSeconds;
   sum.write += writeSeconds;
-  sum.tracing += s.renderSeconds;
-  sum.camera += s.cameraRays;
-  sum.shadow += s.shadowRays;
-  sum.secondary += s.secondaryRays;
+  sum.tracing += s.time.render;
+  sum.rays.camera += s.rays.camera;
+  sum.rays.shadow += s.rays.shadow;
+  sum.rays.secondary += s.rays.secondary;
   sum.samples = meanSamples(result);
   sum.last.map = result.map;
   sum.last.picture.view = result.picture.view;
@@ -290,7 +289,7 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
                   {"render", sum.render},       {"write", sum.write},
                   {"total", totalSeconds}};
   if (sum.denoise > 0) json["time"]["denoise"] = sum.denoise;
-  json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
+  json["rays"] = rayStats(sum.rays, sum.tracing);
   addMachine(json, options, sum.last);
   json["fps"] = options.fps;
   json["frames"] = sum.frames;
@@ -391,11 +390,11 @@ std::string explainWorld(const Options& options, const xvrml::World& world, cons
            {"triangles", triangles},
            {"bytes", bytes},
            {"instances", instances},
-           {"instanced_triangles", stats.triangles}}}});
+           {"instanced_triangles", stats.scene.triangles}}}});
   }
   std::string text =
-      fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport),
-                  stats.transportReason, transportClaim(stats, options.render));
+      fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport.chosen),
+                  stats.transport.reason, transportClaim(stats, options.render));
   text += compatText(options, compat);
   text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes",
                       "instances", "object: reason");
@@ -404,7 +403,7 @@ std::string explainWorld(const Options& options, const xvrml::World& world, cons
                         o.instances, oneLine(o.name), oneLine(o.reason));
   return text +
          fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n",
-                     triangles, shapes, bytes, instances, objects.size(), stats.triangles);
+                     triangles, shapes, bytes, instances, objects.size(), stats.scene.triangles);
 }
 
 namespace {

@@ -27,20 +27,9 @@ picture::SumsView viewOf(const Options& options) {
 // Replaces the numbers that belong to the picture by those of its sums.
 void useStatsOf(const picture::Sums& all, RTstats& stats) {
   const RTstats sums = picture::statsOf(all);
-  stats.cameraRays = sums.cameraRays;
-  stats.shadowRays = sums.shadowRays;
-  stats.secondaryRays = sums.secondaryRays;
-  stats.shaderFaults = sums.shaderFaults;
-  stats.errorMean = sums.errorMean;
-  stats.errorMeanInterval = sums.errorMeanInterval;
-  stats.errorHalfWidth = sums.errorHalfWidth;
-  stats.errorP99 = sums.errorP99;
-  stats.errorPixels = sums.errorPixels;
-  stats.errorTrusted = sums.errorTrusted;
-  stats.errorUnmet = sums.errorUnmet;
-  stats.cutByDepth = sums.cutByDepth;
-  stats.cutByEnergy = sums.cutByEnergy;
-  stats.clipped = sums.clipped;
+  stats.rays = sums.rays;
+  stats.error = sums.error;
+  stats.leftOut = sums.leftOut;
 }
 
 } // namespace

@@ -27,7 +27,7 @@ std::string whyMissed(const Options& options, const picture::RenderResult& resul
            double(all.size());
     largest = double(*std::max_element(all.begin(), all.end()));
   }
-  const bool lamps = picture::transportInfo(result.stats.transport).tracesLamps;
+  const bool lamps = picture::transportInfo(result.stats.transport.chosen).tracesLamps;
   const std::string paths = lamps && options.render.timeLimit <= 0
                                 ? ". Paths from lamps are limited as well (docs/error-bars.md): "
                                   "--spp N without --error "
@@ -75,7 +75,7 @@ void PictureRemarks::sayTimes(const PictureRequest& request, const picture::Rend
                               double writeSeconds, bool last) const {
   if (!options_.verbose) return;
   say(fmt::format("vv: {}{} triangles, mapped in {}, rendered in {}{}, written in {}",
-                  begin(request), result.stats.triangles, duration(result.mapSeconds),
+                  begin(request), result.stats.scene.triangles, duration(result.mapSeconds),
                   duration(result.renderSeconds),
                   options_.denoise ? ", denoised in " + duration(result.denoiseSeconds) : "",
                   duration(writeSeconds)));
@@ -105,11 +105,11 @@ void PictureRemarks::sayHint(const PictureRequest& request, const picture::Rende
 void PictureRemarks::warnOfError(const PictureRequest& request,
                                  const picture::RenderResult& result) const {
   const RTstats& s = result.stats;
-  if (options_.render.error <= 0 || result.interrupted || s.errorPixels <= 0 ||
-      s.errorHalfWidth <= 1.001 * options_.render.error)
+  if (options_.render.error <= 0 || result.interrupted || s.error.pixels <= 0 ||
+      s.error.halfWidth <= 1.001 * options_.render.error)
     return;
   sayWarning(fmt::format("{}--error promised {:.3g} %, reached {:.3g} %: {}", begin(request),
-                         100 * options_.render.error, 100 * s.errorHalfWidth,
+                         100 * options_.render.error, 100 * s.error.halfWidth,
                          whyMissed(options_, result)));
 }
 

@@ -15,7 +15,7 @@
 #include "server/reports.h"
 #include "server/save_queue.h"
 #include "server/served_world.h"
-#include "server/task_thread.h"
+#include "task_threads.h"
 
 namespace vv::server {
 
@@ -60,7 +60,7 @@ class Saves {
   int inMaking_ = 0; // files that are encoded or wait for that
   std::mutex mutex_;
   std::vector<uint64_t> made_; // the pages whose files have been made since takeMadeFiles()
-  TaskThread encoder_;         // the last member: its tasks use the others
+  TaskThreads encoder_;        // the last member: its tasks use the others
 };
 
 } // namespace vv::server

@@ -21,8 +21,8 @@
 #include "server/reports.h"
 #include "server/saves.h"
 #include "server/served_world.h"
-#include "server/task_thread.h"
 #include "server/texts.h"
+#include "task_threads.h"
 #include "xvrml/node_plugin.h"
 
 namespace vv::server {
@@ -433,7 +433,7 @@ class Server {
 
   std::unique_ptr<Host> host_;
   std::unique_ptr<Saves> saves_;
-  TaskThread encoder_; // the last member: its tasks use the others
+  TaskThreads encoder_; // the last member: its tasks use the others
 };
 
 } // namespace

@@ -16,14 +16,14 @@ std::string count(uint64_t n, const char* one, const char* many) {
 }
 
 double megaraysPerSecond(const RTstats& s) {
-  const double rays = double(s.cameraRays + s.shadowRays + s.secondaryRays);
-  return s.renderSeconds > 0 ? rays / s.renderSeconds * 1e-6 : 0;
+  const double rays = double(s.rays.camera + s.rays.shadow + s.rays.secondary);
+  return s.time.render > 0 ? rays / s.time.render * 1e-6 : 0;
 }
 
 // Says how the picture was made: "preview   29 fps", "12 of 256 samples".
 std::string sampling(const SessionFacts& f) {
   using Showing = SessionFacts::Showing;
-  if (f.stats.cameraRays == 0) return "first picture ...";
+  if (f.stats.rays.camera == 0) return "first picture ...";
   const std::string what = f.showing == Showing::preview   ? "preview"
                            : f.showing == Showing::samples ? "raw samples"
                                                            : "";
@@ -74,12 +74,12 @@ std::string filterText(const std::string& denoisedBy) {
 std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, OverlayLevel level) {
   if (level == OverlayLevel::none) return {};
   std::string first = sampling(f);
-  if (f.stats.cameraRays > 0) first += fmt::format("   {:.1f} Mray/s", megaraysPerSecond(f.stats));
+  if (f.stats.rays.camera > 0) first += fmt::format("   {:.1f} Mray/s", megaraysPerSecond(f.stats));
   if (f.frameRate > 0) first += fmt::format("   {}x{}", f.width, f.height);
   // Only a still picture has an error that means anything.
   if (f.showing == SessionFacts::Showing::still && f.frameRate <= 0 && f.finished &&
-      f.stats.errorPixels > 0)
-    first += fmt::format("   error {:.2g} %", 100 * f.stats.errorHalfWidth);
+      f.stats.error.pixels > 0)
+    first += fmt::format("   error {:.2g} %", 100 * f.stats.error.halfWidth);
   if (f.cluster) first += "   " + workersText(f.workers);
   if (paused) first += "   paused";
   if (f.isRestless && !paused) first += "   P pauses: full picture";
@@ -90,16 +90,17 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
     return {first};
   }
   std::vector<std::string> lines{first};
-  lines.push_back(fmt::format("\t{} of {}, {}", count(f.stats.triangles, "triangle", "triangles"),
-                              count(f.stats.objects, "object", "objects"),
-                              count(f.stats.instances, "instance", "instances")));
-  lines.push_back(fmt::format("\t{}, {}", count(f.stats.lights, "light", "lights"),
+  lines.push_back(fmt::format("\t{} of {}, {}",
+                              count(f.stats.scene.triangles, "triangle", "triangles"),
+                              count(f.stats.scene.objects, "object", "objects"),
+                              count(f.stats.scene.instances, "instance", "instances")));
+  lines.push_back(fmt::format("\t{}, {}", count(f.stats.scene.lights, "light", "lights"),
                               count(f.map.textures, "texture", "textures")));
-  if (f.stats.transport)
-    lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport),
-                                f.stats.transportReason));
+  if (f.stats.transport.chosen)
+    lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport.chosen),
+                                f.stats.transport.reason));
   lines.push_back(fmt::format("\t{}, picture of {}x{}", f.navigation, f.width, f.height));
-  if (f.showing == SessionFacts::Showing::preview && f.stats.cameraRays > 0)
+  if (f.showing == SessionFacts::Showing::preview && f.stats.rays.camera > 0)
     lines.push_back("\t" + filterText(f.denoisedBy));
   for (const std::string& line : workerLines(f.workers)) lines.push_back("\t" + line);
   if (!wrong.empty()) lines.push_back(wrong);

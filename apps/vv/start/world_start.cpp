@@ -1,6 +1,5 @@
 #include "start/world_start.h"
 
-#include <chrono>
 #include <filesystem>
 #include <system_error>
 
@@ -9,6 +8,7 @@
 #include "options/definitions.h"
 #include "process/messages.h"
 #include "report/progress.h"
+#include "steady_clock.h"
 
 namespace vv {
 
@@ -26,11 +26,10 @@ std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world
     if (*progress && counts.scripts > 0)
       (*progress)->show(1 - float(counts.waiting) / float(counts.scripts));
   };
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = steadySeconds();
   auto browser = std::make_unique<xvrml::Browser>(std::move(world), options.running, 0, run);
   progress->reset();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = steadySeconds() - begin;
   if (const xvrml::ScriptCounts counts = browser->scripts(); options.verbose && counts.scripts > 0)
     say(fmt::format("vv: {} of {} Scripts started in {}", counts.started, counts.scripts,
                     duration(seconds)));

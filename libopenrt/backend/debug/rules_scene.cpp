@@ -37,9 +37,10 @@ bool drawable(const Scene& scene, uint32_t id) {
 void emptyInstances(const RuleContext& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances)
     if (!drawable(f.scene, instance.object))
-      report(id, nameOf("instance", id) + " stands for " + nameOf("object", instance.object) +
-                     ", which is empty: define it between rtBeginObject and rtEndObject; geometry "
-                     "whose primitives are all degenerate is dropped (RTstats.degenerate)");
+      report(id,
+             nameOf("instance", id) + " stands for " + nameOf("object", instance.object) +
+                 ", which is empty: define it between rtBeginObject and rtEndObject; geometry "
+                 "whose primitives are all degenerate is dropped (RTstats.rejected.primitives)");
 }
 
 void flatInstances(const RuleContext& f, const Report& report) {

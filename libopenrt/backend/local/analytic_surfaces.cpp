@@ -16,13 +16,13 @@ const PlacedSurface& surfaceOf(const void* part, uint32_t primitive) {
 void boundsOf(const RTCBoundsFunctionArguments* a) {
   const PlacedSurface& placed = surfaceOf(a->geometryUserPtr, a->primID);
   const Vec3d low = placed.surface->low(), high = placed.surface->high();
-  const Vec3d centre = placed.toKernel.point((low + high) * 0.5), half = (high - low) * 0.5;
+  const Vec3d center = placed.toKernel.point((low + high) * 0.5), half = (high - low) * 0.5;
   Vec3d reach;
   for (int k = 0; k < 3; k++) reach[size_t(k)] = dot(abs(placed.toKernel.row(k)), half);
   // The widened limits of the surface (scene/analytic.h) and rounding to float are inside this.
-  const double slack = 1e-6 * (largest(reach) + largest(abs(centre)));
+  const double slack = 1e-6 * (largest(reach) + largest(abs(center)));
   reach += Vec3d{slack, slack, slack};
-  storeBounds(Vec3f(centre - reach), Vec3f(centre + reach), *a->bounds_o);
+  storeBounds(Vec3f(center - reach), Vec3f(center + reach), *a->bounds_o);
 }
 
 // Calls store(t, normal) for the crossings of a ray within its interval, nearest first, until one

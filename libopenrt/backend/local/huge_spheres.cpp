@@ -30,9 +30,9 @@ const Matrix4d& unitOf(const void* part, uint32_t primitive) {
 
 void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Matrix4d& m = unitOf(a->geometryUserPtr, a->primID);
-  const Vec3d centre = m.translation(), slack = 1e-6 * abs(centre),
+  const Vec3d center = m.translation(), slack = 1e-6 * abs(center),
               half = Vec3d{length(m.row(0)), length(m.row(1)), length(m.row(2))} * (1 + 1e-6);
-  storeBounds(Vec3f(centre - half - slack), Vec3f(centre + half + slack), *a->bounds_o);
+  storeBounds(Vec3f(center - half - slack), Vec3f(center + half + slack), *a->bounds_o);
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {

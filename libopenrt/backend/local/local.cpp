@@ -403,35 +403,24 @@ bool LocalBackend::read(RTenum channel, std::span<float> out) const {
 void LocalBackend::stats(RTstats& s) const {
   if (accel_) {
     const AccelBuilder::Counts counts = builder_.count(*accel_, flat_);
-    s.triangles = counts.triangles;
-    s.uniqueTriangles = counts.uniqueTriangles;
-    s.degenerate += counts.degenerate;
-    s.rejectedRays = accel_->rejectedRays;
-    s.rejectedInstances = flat_.rejected + counts.rejectedInstances;
+    s.scene.triangles = counts.triangles;
+    s.scene.uniqueTriangles = counts.uniqueTriangles;
+    s.rejected.primitives = counts.degenerate;
+    s.rejected.rays = accel_->rejectedRays;
+    s.rejected.instances = flat_.rejected + counts.rejectedInstances;
   }
-  if (finished_) {
-    const RayCounters counters = finished_->work().counters();
-    s.cameraRays = counters.camera;
-    s.shadowRays = counters.shadow;
-    s.secondaryRays = counters.secondary;
-    s.renderSeconds = finished_->seconds();
-    s.shaderFaults = finished_->work().shaderFaults();
-    finished_->work().describeError(s);
-    finished_->work().describeLedger(s);
-  }
-  if (ready_) s.transport = ready_->frame.transport;
-  s.unreachedLights = unreachedLights_;
-  s.transportLeavesOut = transportLeavesOut_;
-  std::snprintf(s.transportReason, sizeof s.transportReason, "%s", transportReason_.c_str());
-  s.objectBuilds = builder_.objectBuilds;
-  s.topLevelBuilds = builder_.topLevelBuilds;
-  s.commitSeconds = commitSeconds_;
-  s.buildSeconds = buildSeconds_;
-  s.wrongHits = device_->wrongHits;
-  s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));
-  s.threads = threads_;
-  std::snprintf(s.isa, sizeof s.isa, "%s", device_->isa.c_str());
-  std::snprintf(s.kernel, sizeof s.kernel, "%s", kernelText().c_str());
+  s.rejected.hits = device_->wrongHits;
+  s.time = {commitSeconds_, buildSeconds_, finished_ ? finished_->seconds() : 0};
+  if (finished_) finished_->work().describe(s);
+  s.bvh = {uint64_t(std::max<int64_t>(device_->bytes, 0)), builder_.objectBuilds,
+           builder_.topLevelBuilds};
+  s.machine.threads = threads_;
+  std::snprintf(s.machine.isa, sizeof s.machine.isa, "%s", device_->isa.c_str());
+  std::snprintf(s.machine.kernel, sizeof s.machine.kernel, "%s", kernelText().c_str());
+  if (ready_) s.transport.chosen = ready_->frame.transport;
+  s.transport.unreachedLights = unreachedLights_;
+  s.transport.leavesOut = transportLeavesOut_;
+  std::snprintf(s.transport.reason, sizeof s.transport.reason, "%s", transportReason_.c_str());
 }
 
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options) {

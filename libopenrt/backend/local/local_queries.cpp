@@ -85,7 +85,7 @@ LocalQueries::~LocalQueries() = default;
 
 void LocalQueries::clear() {
   exact_ = nullptr;
-  precise_ = nullptr;
+  double_ = nullptr;
   bodies_ = nullptr;
 }
 
@@ -124,7 +124,7 @@ void LocalQueries::forBatches(
   });
 }
 
-const ExactScene& LocalQueries::exact() {
+const ExactScene& LocalQueries::exactScene() {
   prepare();
   if (!exact_ || exactIsFormer_) {
     exact_ = std::make_unique<const ExactScene>(*device_, at_->accel, exact_.get());
@@ -222,7 +222,7 @@ void LocalQueries::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
         if (const float scale = directionScale(rays[ray]); scale != 1) hits[ray].t *= scale;
       });
   if (again.empty()) return;
-  const ExactScene& scene = exact();
+  const ExactScene& scene = exactScene();
   forEachExact(rays, again.data(), [&](size_t i, const ExactRay& ray) {
     ExactScene::Hit found;
     scene.nearest(ray, found);
@@ -264,7 +264,7 @@ RThit LocalQueries::hitOf(const RayHits& found, uint32_t i) const {
 }
 
 void LocalQueries::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
-  const ExactScene& scene = exact();
+  const ExactScene& scene = exactScene();
   forEachExact(
       rays, nullptr, [&](size_t i, const ExactRay& ray) { counts[i] = uint32_t(scene.count(ray)); },
       [&](size_t i) { counts[i] = 0; });
@@ -272,7 +272,7 @@ void LocalQueries::countHits(std::span<const RTray> rays, std::span<uint32_t> co
 
 void LocalQueries::listHits(std::span<const RTray> rays, std::span<const size_t> first,
                             std::span<RThit> hits) {
-  const ExactScene& scene = exact();
+  const ExactScene& scene = exactScene();
   RThit none{};
   none.t = std::numeric_limits<float>::infinity();
   const auto write = [&](size_t ray, std::span<const ExactScene::Hit> all, const ExactRay& exact) {
@@ -387,7 +387,7 @@ void LocalQueries::occludedRays(std::span<const RTray> rays, std::span<uint8_t> 
         occluded[ray] = found.record[i] != noHit;
       });
   if (again.empty()) return;
-  const ExactScene& scene = exact();
+  const ExactScene& scene = exactScene();
   forEachExact(rays, again.data(),
                [&](size_t i, const ExactRay& ray) { occluded[i] = scene.occluded(ray); });
 }

@@ -13,7 +13,7 @@
 #include "backend/local/accel/closed_bodies.h"
 #include "backend/local/accel/exact_scene.h"
 #include "backend/local/accel/survey.h"
-#include "backend/local/precise/precise_scene.h"
+#include "backend/local/double/double_scene.h"
 #include "backend/local/ray_order.h"
 #include "backend/queries.h"
 #include "render/render_scene.h"
@@ -38,7 +38,7 @@ class LocalQueries final : public Queries {
                std::function<PreparedGeometry()> prepare);
   ~LocalQueries() override;
   // The geometry is about to change. The structures made of it are kept for its meshes.
-  void outdate() { exactIsFormer_ = preciseIsFormer_ = bodiesAreFormer_ = true; }
+  void outdate() { exactIsFormer_ = doubleIsFormer_ = bodiesAreFormer_ = true; }
   // The geometry is gone.
   void clear();
 
@@ -50,22 +50,22 @@ class LocalQueries final : public Queries {
                 std::span<RThit> hits) override;
   void closestPoints(std::span<const float> points, float radius,
                      std::span<RTclosest> closest) override;
-  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override;
-  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override;
-  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
-  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
-                   std::span<RThitd> hits) override;
-  void closestPrecise(std::span<const double> points, double radius,
-                      std::span<RThitd> closest) override;
+  void castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) override;
+  void occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override;
+  void countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
+  void listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
+                  std::span<RThitd> hits) override;
+  void closestDouble(std::span<const double> points, double radius,
+                     std::span<RThitd> closest) override;
 
  private:
   void prepare() { at_.emplace(prepare_()); }
   // Makes the scene for exact queries of what is committed, if it does not exist yet.
-  const ExactScene& exact();
+  const ExactScene& exactScene();
   // Finds the closed meshes of what is committed, likewise.
   const ClosedBodies& closedBodies();
-  // Makes the scene for queries in double precision, likewise (precise_queries.cpp).
-  const PreciseScene& precise();
+  // Makes the scene for queries in double precision, likewise (double_queries.cpp).
+  const DoubleScene& doubleScene();
   void requireNoAnalytic(); // throws if the scene has quadrics or aspheres
   // Computes the ray of the camera through a pixel.
   bool cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const;
@@ -82,7 +82,7 @@ class LocalQueries final : public Queries {
   // Makes the exact ray of a query; returns false if it cannot be traced.
   bool loadExact(const RTray& ray, ExactRay& to) const;
   template <class Use, class Refuse>
-  void forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse);
+  void forEachDouble(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse);
   // Finds the nearest hits of rays in single precision and calls take(ray, hits, index of its hit)
   // for each, on all threads. Returns by ray whether it must be decided again; empty: none must.
   template <class Take>
@@ -90,7 +90,7 @@ class LocalQueries final : public Queries {
   bool isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i, const RayHits& found) const;
   RThit hitOf(const RayHits& found, uint32_t i) const;
   RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
-  RThitd hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const;
+  RThitd hitOf(const DoubleScene::Hit& found, const DoubleRay& ray) const;
 
   std::shared_ptr<EmbreeDevice> device_;
   uint32_t threads_;
@@ -98,9 +98,9 @@ class LocalQueries final : public Queries {
   std::optional<PreparedGeometry> at_; // geometry of the query in progress
   // Null until a query needs them.
   std::unique_ptr<const ExactScene> exact_;
-  std::unique_ptr<const PreciseScene> precise_;
+  std::unique_ptr<const DoubleScene> double_;
   std::unique_ptr<const ClosedBodies> bodies_;
-  bool exactIsFormer_ = false, preciseIsFormer_ = false, bodiesAreFormer_ = false;
+  bool exactIsFormer_ = false, doubleIsFormer_ = false, bodiesAreFormer_ = false;
 };
 
 } // namespace openrt

@@ -33,9 +33,9 @@ class NullBackend final : public Backend {
   }
 
   void stats(RTstats& stats) const override {
-    stats.uniqueTriangles = 0;
-    for (const auto& [id, count] : triangles_) stats.uniqueTriangles += count;
-    stats.threads = 0;
+    stats.scene.uniqueTriangles = 0;
+    for (const auto& [id, count] : triangles_) stats.scene.uniqueTriangles += count;
+    stats.machine.threads = 0;
   }
 
  private:

@@ -83,8 +83,8 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *                          instruction set of the ray kernels. auto (default) is the best one of
  *                          the machine. Machines give the same bytes with the same one, if their
  *                          processors are of one maker. One that the machine lacks is an
- *                          RT_INVALID_VALUE, whose message lists those that it has. RTstats.isa is
- *                          the one in use.
+ *                          RT_INVALID_VALUE, whose message lists those that it has.
+ *                          RTstats.machine.isa is the one in use.
  *   file=PATH              the recording to write (backend=record)
  *   record=PATH            a recording that is written while another backend renders. openrt-replay
  *                          makes the same bytes of it.

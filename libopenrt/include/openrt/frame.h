@@ -75,7 +75,7 @@ enum {
    * this fraction of the camera ray. */
   RT_ENERGY_CUT = 9,
   /* rtQualityf: upper bound of a sample's radiance in each colour; 0 (default): none. It biases the
-   * picture; RTstats.clipped tells by how much. */
+   * picture; RTstats.leftOut.clipped tells by how much. */
   RT_CLAMP = 10,
   /* 0 (default) or 1: the whole picture is made early and then improved, for callers of rtSnapshot.
    * The finished picture has the same bytes. It takes a few per cent longer. */
@@ -142,7 +142,7 @@ enum {
  * from lamps add their flux to the cells that they cross. A cell is the part of the camera's plane
  * that a pixel covers, and this light is its mean over the cell; all other light is that at the
  * point. The camera must have parallel rays that start in a plane across them, as an orthographic
- * one. Other sensors follow paths then, too (RTstats.transport tells it). */
+ * one. Other sensors follow paths then, too (RTstats.transport.chosen tells it). */
 enum {
   RT_MEASURE_NOTHING = 0, /* pixels are those of a picture */
   /* Luminance in cd/m2 of the light that arrives at the origin of the ray against its direction. */
@@ -157,7 +157,7 @@ enum {
  */
 enum {
   /* The cheapest transport that leaves out nothing which the scene's lobes do with light.
-   * RTstats.transport tells which one that is. */
+   * RTstats.transport.chosen tells which one that is. */
   RT_TRANSPORT_AUTO = 0,
   /* Light that comes straight from lights. No mirror images, nothing behind glass. */
   RT_TRANSPORT_DIRECT = 1,
@@ -170,9 +170,9 @@ enum {
    * surfaces which the camera sees directly, also of lights without extent. */
   RT_TRANSPORT_LIGHT = 4
 };
-/* Bits of RTstats.transportLeavesOut: light of the scene that the transport does not follow. Images
- * in mirrors and glass; light between surfaces; surfaces that emit; light of the environment; light
- * of lamps that mirrors or lenses send. */
+/* Bits of RTstats.transport.leavesOut: light of the scene that the transport does not follow.
+ * Images in mirrors and glass; light between surfaces; surfaces that emit; light of the
+ * environment; light of lamps that mirrors or lenses send. */
 enum {
   RT_LEAVES_IMAGES = 1,
   RT_LEAVES_BETWEEN = 2,
@@ -212,7 +212,7 @@ typedef struct RTtransportInfo {
   int tracesPaths; /* 1 if it follows light between surfaces, with random decisions; else 0 */
   int tracesLamps; /* 1 if it also traces paths that start at lamps; else 0 */
   uint32_t omits;  /* RT_LEAVES_* bits: kinds of light that it does not follow everywhere.
-                      RTstats.transportLeavesOut tells which of these a scene has. */
+                      RTstats.transport.leavesOut tells which of these a scene has. */
 } RTtransportInfo;
 /* Writes what is known about a transport (RT_TRANSPORT_*; the numbers are 0, 1 ... without a gap).
  * Returns 1, or 0 if there is no such transport, or if info is NULL or info->size is not set. Works
@@ -265,62 +265,105 @@ RT_API int rtSnapshot(RTcontext context, RTenum channel, float* out, size_t coun
  * top. count is the number of floats that out has room for. [context-thread] */
 RT_API void rtReadPixels(RTenum channel, float* out, size_t count);
 
-/* Statistics of the scene and of the last frame. */
-typedef struct RTstats {
-  size_t size; /* Set it to sizeof(RTstats) before the call. */
+/* Statistics, by subject ----------------------------------------------------------------------- */
+
+typedef struct RTsceneStats {
   uint64_t triangles, uniqueTriangles, objects, instances, lights, textures;
-  uint64_t degenerate;        /* primitives that were dropped */
-  uint64_t rejectedRays;      /* rays that were not finite */
-  uint64_t rejectedInstances; /* instances whose matrix is singular or out of range */
-  uint64_t cameraRays, shadowRays, secondaryRays;
-  double commitSeconds, buildSeconds, renderSeconds;
-  uint64_t bvhBytes;
-  uint64_t objectBuilds;   /* acceleration structures built for objects (or for merged static ones)
-                              since the context was made */
+} RTsceneStats;
+
+/* Input that is not used. */
+typedef struct RTrejectedStats {
+  uint64_t primitives; /* degenerate primitives, which were dropped */
+  uint64_t instances;  /* instances whose matrix is singular or out of range */
+  uint64_t rays;       /* rays that were not finite */
+  uint64_t hits;       /* hits of slivers that single precision reported and double precision
+                          refuted (docs/decisions/0041) */
+} RTrejectedStats;
+
+/* Seconds. */
+typedef struct RTtimeStats {
+  double commit, build, render;
+} RTtimeStats;
+
+typedef struct RTrayStats {
+  uint64_t camera, shadow, secondary;
+} RTrayStats;
+
+/* The acceleration structures. */
+typedef struct RTbvhStats {
+  uint64_t bytes;
+  uint64_t objectBuilds;   /* structures built for objects (or for merged static ones) since the
+                              context was made */
   uint64_t topLevelBuilds; /* times the top level above them was built or refitted */
+} RTbvhStats;
+
+typedef struct RTmachineStats {
   uint32_t threads;
   char isa[16];    /* instruction set of the ray kernels, for example "avx2" */
   char kernel[32]; /* for example "Embree 3.13.5" */
+} RTmachineStats;
 
-  /* The error of the picture as a whole. The error of a pixel is (errors of the colours summed) /
-   * (colours summed + 0.03), at most 1. */
-  double errorMean;         /* estimate of the mean over the pixels of their true error */
-  double errorMeanInterval; /* With 95 % probability that mean lies in errorMean +- this. */
-  double errorHalfWidth; /* mean over the pixels of RT_ERROR; RT_TARGET_ERROR is compared to it */
-  double errorP99;       /* RT_ERROR that 99 % of the pixels stay below */
-  double errorLevel;     /* 0.95 */
-  uint64_t errorPixels;  /* finished pixels, which these numbers are about; 0 without RT_VARIANCE
-                            or RT_ERROR */
-  uint64_t errorTrusted; /* number of them with RT_TRUST 1 */
-  char errorMethod[48];  /* "replicated nets, Student's t", "sample variance" or "" */
-  RTenum transport;      /* RT_TRANSPORT_* that made the last frame */
-  char transportReason[96]; /* the reason for people */
+/* The light transport of the last frame. */
+typedef struct RTtransportStats {
+  RTenum chosen;            /* RT_TRANSPORT_* that made the frame */
+  char reason[96];          /* the reason for people */
+  uint32_t leavesOut;       /* RT_LEAVES_* bits */
+  uint64_t unreachedLights; /* lights whose rays by way of mirrors or glass are not followed;
+                               RT_TRANSPORT_LIGHT follows them if the class of the light has an
+                               extent and that of the camera has project */
+} RTtransportStats;
 
-  /* Light that is left out, as a mean over the pixels of the sum over the colours. No error bar
-   * covers it. */
+/* The error of the picture as a whole. The error of a pixel is (errors of the colours summed) /
+ * (colours summed + 0.03), at most 1. */
+typedef struct RTerrorStats {
+  double mean;         /* estimate of the mean over the pixels of their true error */
+  double meanInterval; /* With 95 % probability that mean lies in mean +- this. */
+  double halfWidth;    /* mean over the pixels of RT_ERROR; RT_TARGET_ERROR is compared to it */
+  double p99;          /* RT_ERROR that 99 % of the pixels stay below */
+  double level;        /* 0.95 */
+  uint64_t pixels;     /* finished pixels, which these numbers are about; 0 without RT_VARIANCE or
+                          RT_ERROR */
+  uint64_t trusted;    /* number of them with RT_TRUST 1 */
+  double unmet;    /* radiance that may be missing, with 95 %: paths meet it by chance alone, and
+                      few have met it */
+  char method[48]; /* "replicated nets, Student's t", "sample variance" or "" */
+} RTerrorStats;
+
+/* Light that is left out, as a mean over the pixels of the sum over the colours. No error bar
+ * covers it. */
+typedef struct RTleftOutStats {
   double cutByDepth;  /* throughput of paths that RT_MAX_DEPTH ended, and of paths and shadow rays
                          after 512 straight passages; times the radiance beyond it is the loss */
   double cutByEnergy; /* the same of branches that RT_ENERGY_CUT ended */
   double clipped;     /* radiance that RT_CLAMP took away */
-  uint64_t unreachedLights; /* lights whose rays by way of mirrors or glass are not followed;
-                               RT_TRANSPORT_LIGHT follows them if the class of the light has an
-                               extent and that of the camera has project */
   uint64_t shaderFaults; /* hits at which a shader returned NaN or infinity, which counts as 0; the
                             log names the class */
-  uint64_t wrongHits;    /* hits of slivers that single precision reported and double precision
-                            refuted (docs/decisions/0041) */
-  uint64_t frame;        /* number of the finished frame, counted from 1; 0 if there is none */
+} RTleftOutStats;
 
-  /* backend=cluster, since the context was made; else 0. A tile here is a job, which may be a part
-   * of a tile. */
+/* backend=cluster, since the context was made; else 0. A tile here is a job, which may be a part
+ * of a tile. */
+typedef struct RTclusterStats {
   uint32_t workers;                 /* connected workers, without this process */
   uint64_t tilesRemote, tilesLocal; /* done by workers; done by this process */
   uint64_t reissued;                /* jobs given out again because they were late or lost */
   uint64_t duplicates;              /* results that came after the job had been done */
   uint64_t bytesSent, bytesReceived;
-  uint32_t transportLeavesOut; /* RT_LEAVES_* bits */
-  double errorUnmet;           /* radiance that may be missing, with 95 %: paths meet it by chance
-                                  alone, and few have met it */
+} RTclusterStats;
+
+/* Statistics of the scene and of the last frame. */
+typedef struct RTstats {
+  size_t size;    /* Set it to sizeof(RTstats) before the call. */
+  uint64_t frame; /* number of the finished frame, counted from 1; 0 if there is none */
+  RTsceneStats scene;
+  RTrejectedStats rejected;
+  RTtimeStats time;
+  RTrayStats rays;
+  RTbvhStats bvh;
+  RTmachineStats machine;
+  RTtransportStats transport;
+  RTerrorStats error;
+  RTleftOutStats leftOut;
+  RTclusterStats cluster;
 } RTstats;
 /* Writes the statistics of the last commit and of the last finished frame. [context-thread] */
 RT_API void rtGetStats(RTstats* stats);

@@ -30,7 +30,7 @@ enum {
  * object begins without normals, texture coordinates and colours: its vertices have those that were
  * set since rtBeginObject. A normal of 0 0 0 stands for the normal of the face. Positions given in
  * double keep their precision wherever they lie (up to 1e38). Degenerate primitives are dropped and
- * counted (RTstats.degenerate). [context-thread] */
+ * counted (RTstats.rejected.primitives). [context-thread] */
 RT_API void rtBegin(RTenum mode);
 RT_API void rtEnd(void);
 RT_API void rtVertex2f(float x, float y);

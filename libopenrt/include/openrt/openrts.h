@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 5 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 0 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -85,7 +85,7 @@ enum {
   RTS_HIT_TEXCOORD = 4, /* the geometry has texture coordinates (else uv is 0) */
   RTS_HIT_LINE = 8,     /* the hit is on a line or a point, not on a surface */
   /* The geometry has RT_CULL_FACE: the rays of paths pass its back, and only shadow rays to lights
-   * without a surface hit it (older hosts: never set). */
+   * without a surface hit it. */
   RTS_HIT_ONE_SIDED = 16
 };
 
@@ -101,7 +101,7 @@ typedef struct RtsHits {
   const float* distance;     /* path length from the camera */
   const uint32_t* flags;     /* RTS_HIT_* */
   const void* const* params; /* the shader's parameter struct, for each lane */
-  const float* segment;      /* since 1.1: length of the last ray of the path */
+  const float* segment;      /* length of the last ray of the path */
 } RtsHits;
 
 /* The result of `shade`. All arrays are zero on entry. */
@@ -111,7 +111,7 @@ typedef struct RtsShading {
   float* albedo[3];       /* surface colour for the albedo channel; NULL where it is not rendered */
 } RtsShading;
 
-/* Lobes (since 1.1) are the terms of a surface's BSDF. The shader only describes them; the engine's
+/* Lobes are the terms of a surface's BSDF. The shader only describes them; the engine's
  * transport computes direct light, follows mirror directions and samples the lobes. Weights are
  * linear, 0..1; the reflectances of one hit should add up to at most 1. The transports direct and
  * whitted evaluate direct light for every lobe that scatters (all except REFLECTION, DIELECTRIC and
@@ -125,7 +125,7 @@ typedef enum RtsLobeKind {
    * class has `medium`, the engine knows both indices and ignores the parameter. */
   RTS_LOBE_DIELECTRIC,
   RTS_LOBE_TRANSPARENT, /* passes straight through; weight: transmittance */
-  /* Since 1.2. The rough lobes are microfacet models after B. Walter et al., "Microfacet Models for
+  /* The rough lobes are microfacet models after B. Walter et al., "Microfacet Models for
    * Refraction through Rough Surfaces", EGSR 2007 (GGX, Smith shadowing). alpha, 0..1, is the width
    * of the distribution of slopes; values below 1e-4 count as 1e-4. */
   /* Rough reflection. Weight: reflectance of a facet. parameter[0]: alpha. parameter[1]: relative
@@ -150,16 +150,16 @@ typedef struct RtsLobe {
   float* weight[3];
   float* normal[3]; /* unit, on the side of the hit's geometric normal */
   float* parameter[2];
-  /* Since 1.2, for RTS_LOBE_CUSTOM. */
+  /* For RTS_LOBE_CUSTOM. */
   const RtsLobeFunctions* functions;
   float* data[RTS_MAX_LOBE_FLOATS]; /* the requested number of arrays, initially 0 */
-  /* Since 1.4. 1: the lobe is a coat over the batch's other lobes, such as varnish or a highlight,
+  /* 1: the lobe is a coat over the batch's other lobes, such as varnish or a highlight,
    * whose light does not have the colour of the surface (RT_REFLECTION in frame.h). No picture of
    * RT_RGBA depends on it. Initially 0. */
   uint32_t coat;
 } RtsLobe;
 
-/* The functions of a custom lobe (since 1.2). They get n pairs of a hit of the batch (hit[i] is its
+/* The functions of a custom lobe. They get n pairs of a hit of the batch (hit[i] is its
  * lane) and a direction. Directions are unit, in render space, and point away from the surface; the
  * direction towards the eye is -hits->direction. A lobe must be reciprocal unless it transmits, and
  * must conserve energy. Results for hits where the lobe's weight is 0 are ignored. The arrays of
@@ -203,7 +203,7 @@ typedef struct RtsRays {
   float* direction[3]; /* unit */
 } RtsRays;
 
-/* Since 1.2. The interior of a body whose surface has the shader, by colour channel; an index that
+/* The interior of a body whose surface has the shader, by colour channel; an index that
  * differs by channel is dispersion. Faces point outwards; equal media bound one body. Where bodies
  * overlap, that of the highest priority counts (C. Schmidt, B. Budge, "Simple Nested Dielectrics in
  * Ray Traced Images", JGT 7(2), 2002); boundaries of the others inside it are invisible. */
@@ -211,7 +211,7 @@ typedef struct RtsMedium {
   float index[3];      /* index of refraction, > 0 */
   float absorption[3]; /* per world unit of length; transmittance is exp(-absorption x length) */
   int32_t priority;
-  /* Since 1.3; the host sets them to 0 before it calls `medium`. A medium scatters in transports
+  /* The host sets them to 0 before it calls `medium`. A medium scatters in transports
    * that follow paths. In the others it attenuates light by both coefficients. */
   float scattering[3]; /* per world unit of length, >= 0: light that goes on in other directions */
   /* Mean cosine of the angle of scattering, -1 < g < 1; 0: all directions alike. The phase function
@@ -219,7 +219,7 @@ typedef struct RtsMedium {
   float anisotropy;
 } RtsMedium;
 
-/* Since 1.2. The position and strength of a light in its local space, for selecting one of many
+/* The position and strength of a light in its local space, for selecting one of many
  * lights and for tracing paths that start at the light. */
 typedef struct RtsExtent {
   int32_t parallel; /* 1: light falls along `direction` everywhere; 0: it comes from `position` */
@@ -231,7 +231,7 @@ typedef struct RtsExtent {
   float radius; /* nothing beyond this distance is lit; infinite if there is no limit */
 } RtsExtent;
 
-/* Since 1.2. Where points appear in the picture. */
+/* Where points appear in the picture. */
 typedef struct RtsProjection {
   float* xy[2]; /* pixels from the top left corner */
   /* Vector from the point to the sampled point on the lens; for parallel views a unit vector
@@ -243,7 +243,7 @@ typedef struct RtsProjection {
   int parallel; /* set by the camera; 1: parallel view */
 } RtsProjection;
 
-/* Since 1.2. Rays that a shader traces, from hits of its batch or from any other place. */
+/* Rays that a shader traces, from hits of its batch or from any other place. */
 typedef struct RtsRequest {
   uint32_t count;
   /* Lane of the hit that each ray belongs to (in a transport: of the camera ray). */
@@ -272,7 +272,7 @@ typedef enum RtsKind {
   RTS_LIGHT = 2,
   RTS_CAMERA = 3,
   RTS_ENVIRONMENT = 4,
-  RTS_TRANSPORT = 5,            /* since 1.2 */
+  RTS_TRANSPORT = 5,
   RTS_KIND_32_BITS = 0x7fffffff /* not a kind: fixes the size of the enumeration */
 } RtsKind;
 
@@ -282,8 +282,8 @@ enum {
   RTS_UNLIT = 2,       /* surface: never evaluates lights */
   RTS_NO_SHADOW = 4,   /* light: casts no shadows */
   RTS_EMISSIVE = 8,    /* surface with `surface`: emission may be above 0 */
-  /* Since 1.2; the automatic choice of the transport depends on these. */
-  RTS_SPECULAR = 16, /* surface: may have REFLECTION or DIELECTRIC lobes. Implied for ABI 1.1 */
+  /* The automatic choice of the transport depends on these. */
+  RTS_SPECULAR = 16, /* surface: may have REFLECTION or DIELECTRIC lobes */
   RTS_GLOSSY = 32,   /* surface: may have scattering lobes other than DIFFUSE */
   RTS_GLOBAL = 64,   /* surface: needs indirect light, so path tracing is chosen */
   /* Hosts that do not know the following bits ignore them. */
@@ -293,13 +293,13 @@ enum {
    * directions: it depends on the parameters only. The host then calls `surface` once for the light
    * samples of a shape. Has no effect on geometry with parameter values of its own. */
   RTS_UNIFORM_EMISSION = 512,
-  /* Since 1.3. surface with `medium`: only its medium acts on light, as in a cloud. Where the
+  /* surface with `medium`: only its medium acts on light, as in a cloud. Where the
    * indices of refraction on both sides are equal, the surface is invisible: no channel shows it,
    * and light samples pass through it. */
   RTS_MEDIUM_ONLY = 1024
 };
 
-/* Since 1.2: how often a parameter's value may change. Functions always find the value for a hit in
+/* How often a parameter's value may change. Functions always find the value for a hit in
  * the hit's parameter struct. */
 enum {
   RTS_PER_SHADER = 0,
@@ -340,11 +340,10 @@ typedef struct RtsClass {
    * NULL: no fog. [render] */
   void (*attenuate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                     const float* const fromEye[3], float* const color[3], float* fraction);
-  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. If a class has
-   * both this and `shade` (since 1.2), path tracing calls this and the other transports call
+  /* surface: describes every hit by lobes (RtsHost.lobe) and emission. If a class has
+   * both this and `shade`, path tracing calls this and the other transports call
    * `shade`. [render] */
   void (*surface)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
-  /* The following fields exist since 1.2; all are optional. */
   /* RTS_PER_* for each parameter. NULL: all are RTS_PER_SHADER. */
   const uint8_t* frequency;
   /* Called once for each new set of parameter values, before any other function gets it. May write
@@ -409,10 +408,9 @@ struct RtsHost {
   float* (*scratch)(RtsBatch* batch, uint32_t n);
   /* Passes a message to the application's log callback. level: 0 debug to 3 error. */
   void (*log)(const RtsHost* host, int level, const char* utf8);
-  /* Since 1.1, for `surface`: adds a lobe to the batch's hits and returns it. The host owns it.
+  /* For `surface`: adds a lobe to the batch's hits and returns it. The host owns it.
    * Returns NULL for an unknown kind and after RTS_MAX_LOBES lobes of a batch. */
   RtsLobe* (*lobe)(RtsBatch* batch, RtsLobeKind kind);
-  /* The following functions exist since 1.2. */
   /* As `lobe`, for a custom lobe with a number of floats (at most RTS_MAX_LOBE_FLOATS) per hit. */
   RtsLobe* (*customLobe)(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t floats);
   /* Writes a point of the unit square for each hit (camera: each point of the picture; transport:
@@ -449,7 +447,7 @@ struct RtsHost {
   /* Writes a bound of the rounding error of the hits' positions along the geometric normal, in
    * world units. */
   void (*error)(RtsBatch* batch, float* error);
-  /* Since 1.5, for `miss`: writes 1 for each direction that is seen as a backdrop: the ray comes
+  /* For `miss`: writes 1 for each direction that is seen as a backdrop: the ray comes
    * from the camera and has passed transparent surfaces at most. Writes 0 for directions from which
    * light is wanted: those of mirrored, refracted and scattered rays and of light samples. */
   void (*backdrop)(RtsBatch* batch, uint32_t* seen);

@@ -172,7 +172,6 @@ template <> struct HitOf<float> : Tracer, HitNumbers<float> {
   // Returns the filtered texel (linear rgba) at texture coordinates; white if there is no texture.
   Vec4 sample(Texture texture, Vec2 place) const;
 
-  // The following functions need a host of version 1.2; each says what it returns on older ones.
   using Tracer::findHit;
   using Tracer::occluded;
   using Tracer::trace;
@@ -188,27 +187,25 @@ template <> struct HitOf<float> : Tracer, HitNumbers<float> {
     return occludedFrom(nullptr, towards, length);
   }
   // Returns position and geometric normal (not unit) in the frame of the object, so that a solid
-  // texture moves with the object. Older hosts: in render space.
+  // texture moves with the object.
   using Local = LocalOf<float>;
   Local local() const;
   // Returns the derivatives of the position with respect to the texture coordinates, in render
-  // space; 0 without texture coordinates and on older hosts.
+  // space; 0 without texture coordinates.
   struct Derivatives {
     Vec3 alongS, alongT;
   };
   Derivatives derivatives() const;
-  // Returns rtLoadName, outermost instance and triangle. Older hosts: 0.
+  // Returns rtLoadName, outermost instance and triangle.
   struct Ids {
     uint32_t name = 0, instance = 0, primitive = 0;
   };
   Ids ids() const;
-  // Returns the number of surfaces that the path hit before this one. Older hosts: 0.
+  // Returns the number of surfaces that the path hit before this one.
   uint32_t depth() const;
-  // Returns the path throughput: the fraction of radiance from here that reaches the camera. Older
-  // hosts: 1.
+  // Returns the path throughput: the fraction of radiance from here that reaches the camera.
   Color throughput() const;
   // Returns a bound of the position's rounding error along the geometric normal, in world units.
-  // Older hosts: 0.
   float error() const;
 };
 
@@ -328,8 +325,7 @@ class LobeList {
   void begin() { // starts the next hit
     for (uint32_t i = 0; i < count_; i++) free_[i] = true;
   }
-  // Returns a lobe of this kind that the hit has not used yet, or null after RTS_MAX_LOBES lobes
-  // and on hosts that do not know the kind.
+  // Returns a lobe of this kind that the hit has not used yet, or null after RTS_MAX_LOBES lobes.
   RtsLobe* take(RtsLobeKind kind, bool coat, const RtsLobeFunctions* functions, uint32_t floats) {
     for (uint32_t i = 0; i < count_; i++) {
       if (!free_[i] || lobes_[i]->kind != kind || functions_[i] != functions) continue;
@@ -338,15 +334,13 @@ class LobeList {
       return lobes_[i];
     }
     if (count_ == RTS_MAX_LOBES) return nullptr;
-    const bool own = host_->minor >= 2 && host_->customLobe;
-    RtsLobe* made = !functions ? host_->lobe(batch_, kind)
-                    : own      ? host_->customLobe(batch_, functions, floats)
-                               : nullptr;
+    RtsLobe* made =
+        functions ? host_->customLobe(batch_, functions, floats) : host_->lobe(batch_, kind);
     if (made) {
       lobes_[count_] = made;
       functions_[count_] = functions;
       coats_[count_] = coat;
-      if (host_->minor >= 4) made->coat = coat;
+      made->coat = coat;
       free_[count_++] = false;
     }
     return made;
@@ -387,7 +381,7 @@ template <class F> class ClosuresOf {
   void roughDielectric(Color tint, F eta, F alpha) {
     add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha);
   }
-  // Adds a custom lobe (lobeFunctions), the same for all lanes; needs a host of version 1.2.
+  // Adds a custom lobe (lobeFunctions), the same for all lanes.
   template <class L> void custom(Color weight, const L& lobe);
   // Sets the normal of the lobes that are added after it; the default is the hit's shading normal.
   // It must be on the side of the geometric normal.

@@ -8,11 +8,6 @@
 namespace rts {
 namespace detail {
 
-// Returns a host function that exists since 1.2, or null on older hosts.
-template <class F> F since12(const RtsHost* host, F RtsHost::*function) {
-  return host->minor >= 2 ? host->*function : nullptr;
-}
-
 // A request of one ray, with arrays padded to RTS_LANES because the host may read whole vectors.
 struct OneRay {
   OneRay(const Tracer& from, const Vec3* start, Vec3 direction, float end) {
@@ -41,16 +36,15 @@ struct OneRay {
 inline float* lanes(const Tracer& t) { return t.host->scratch(t.batch, t.count); }
 inline uint32_t* wholeNumbers(const Tracer& t) { return reinterpret_cast<uint32_t*>(lanes(t)); }
 
-// Fills the six arrays of `cache` by a host function that writes two vectors. Returns false if the
-// host does not have the function.
+// Fills the six arrays of `cache` by a host function that writes two vectors. Returns false if
+// there is no batch of hits.
 template <class F> bool askVectors(const Tracer& t, F RtsHost::*member, float* (&cache)[6]) {
   if (cache[0]) return true;
-  const F function = t.asked ? since12(t.host, member) : nullptr;
-  if (!function) return false;
+  if (!t.asked) return false;
   for (float*& array : cache) array = lanes(t);
   float* const first[3] = {cache[0], cache[1], cache[2]};
   float* const second[3] = {cache[3], cache[4], cache[5]};
-  function(t.batch, first, second);
+  (t.host->*member)(t.batch, first, second);
   return true;
 }
 
@@ -58,21 +52,16 @@ template <class F> bool askVectors(const Tracer& t, F RtsHost::*member, float* (
 
 inline Color Tracer::traceFrom(const Vec3* origin, Vec3 direction, float length,
                                float* alpha) const {
-  const auto function = detail::since12(host, &RtsHost::trace);
-  if (alpha) *alpha = 0;
-  if (!function) return {};
   const detail::OneRay ray(*this, origin, direction, length);
   alignas(64) float out[4][RTS_LANES] = {};
   float* const rgba[4] = {out[0], out[1], out[2], alpha ? out[3] : nullptr};
-  function(batch, &ray.request, rgba);
+  host->trace(batch, &ray.request, rgba);
   if (alpha) *alpha = out[3][0];
   return {out[0][0], out[1][0], out[2][0]};
 }
 
 inline Found Tracer::findFrom(const Vec3* origin, Vec3 direction, float length) const {
   Found found;
-  const auto function = detail::since12(host, &RtsHost::findHit);
-  if (!function) return found;
   const detail::OneRay ray(*this, origin, direction, length);
   alignas(64) float out[10][RTS_LANES] = {};
   alignas(64) uint32_t name[RTS_LANES] = {};
@@ -84,7 +73,7 @@ inline Found Tracer::findFrom(const Vec3* origin, Vec3 direction, float length) 
     table.normal[k] = out[6 + k];
   }
   table.name = name;
-  function(batch, &ray.request, &table);
+  host->findHit(batch, &ray.request, &table);
   found.distance = out[9][0];
   if (!found.any()) return found;
   found.position = {out[0][0], out[1][0], out[2][0]};
@@ -95,23 +84,20 @@ inline Found Tracer::findFrom(const Vec3* origin, Vec3 direction, float length) 
 }
 
 inline Color Tracer::occludedFrom(const Vec3* origin, Vec3 direction, float length) const {
-  const auto function = detail::since12(host, &RtsHost::occluded);
-  if (!function) return {1, 1, 1};
   const detail::OneRay ray(*this, origin, direction, length);
   alignas(64) float out[3][RTS_LANES] = {};
   float* const transmission[3] = {out[0], out[1], out[2]};
-  function(batch, &ray.request, transmission);
+  host->occluded(batch, &ray.request, transmission);
   return {out[0][0], out[1][0], out[2][0]};
 }
 
 inline Vec2 Tracer::random(uint32_t pair) const {
-  const auto function = detail::since12(host, &RtsHost::random);
-  if (!function || !asked || pair >= 4) return {0.5f, 0.5f};
+  if (!asked || pair >= 4) return {0.5f, 0.5f};
   float*(&square)[2] = asked->random[pair];
   if (!square[0]) {
     for (float*& axis : square) axis = detail::lanes(*this);
     float* const out[2] = {square[0], square[1]};
-    function(batch, pair, out);
+    host->random(batch, pair, out);
   }
   return {square[0][lane], square[1][lane]};
 }
@@ -165,40 +151,35 @@ inline Hit::Derivatives Hit::derivatives() const {
 inline Hit::Ids Hit::ids() const {
   uint32_t*(&a)[3] = asked->ids;
   if (!a[0]) {
-    const auto function = detail::since12(host, &RtsHost::ids);
-    if (!function) return {};
     for (uint32_t*& array : a) array = detail::wholeNumbers(*this);
-    function(batch, a[0], a[1], a[2]);
+    host->ids(batch, a[0], a[1], a[2]);
   }
   return {a[0][lane], a[1][lane], a[2][lane]};
 }
 
 namespace detail {
-inline bool askPath(const Tracer& t) {
+// Returns what was asked, with depths and throughputs.
+inline const Asked& askPath(const Tracer& t) {
   Asked& a = *t.asked;
-  if (a.depth) return true;
-  const auto function = since12(t.host, &RtsHost::path);
-  if (!function) return false;
+  if (a.depth) return a;
   a.depth = wholeNumbers(t);
   for (float*& array : a.throughput) array = lanes(t);
-  function(t.batch, a.depth, a.throughput);
-  return true;
+  t.host->path(t.batch, a.depth, a.throughput);
+  return a;
 }
 } // namespace detail
 
-inline uint32_t Hit::depth() const { return detail::askPath(*this) ? asked->depth[lane] : 0; }
+inline uint32_t Hit::depth() const { return detail::askPath(*this).depth[lane]; }
 
 inline Color Hit::throughput() const {
-  if (!detail::askPath(*this)) return {1, 1, 1};
-  return {asked->throughput[0][lane], asked->throughput[1][lane], asked->throughput[2][lane]};
+  float* const* t = detail::askPath(*this).throughput;
+  return {t[0][lane], t[1][lane], t[2][lane]};
 }
 
 inline float Hit::error() const {
   if (!asked->error) {
-    const auto function = detail::since12(host, &RtsHost::error);
-    if (!function) return 0;
     asked->error = detail::lanes(*this);
-    function(batch, asked->error);
+    host->error(batch, asked->error);
   }
   return asked->error[lane];
 }

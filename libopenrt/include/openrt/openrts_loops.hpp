@@ -84,15 +84,15 @@ template <class F> inline constexpr uint32_t widthOf = sizeof(F) / sizeof(float)
 
 // Reads the numbers of hit i, or of the group that begins at i. If shadowRay is true, reads only
 // the arrays that are valid in `transmit` (openrts.h).
-template <class F> void readNumbers(const RtsHost* host, const RtsHits* hits, uint32_t i,
-                                    bool shadowRay, HitNumbers<F>& h) {
+template <class F>
+void readNumbers(const RtsHits* hits, uint32_t i, bool shadowRay, HitNumbers<F>& h) {
   h.position = vec3<F>(hits->position, i);
   h.direction = vec3<F>(hits->direction, i);
   if (!shadowRay) {
     h.geometric = vec3<F>(hits->geometric, i);
     h.normal = vec3<F>(hits->normal, i);
     h.distance = load<F>(hits->distance + i);
-    if (host->minor >= 1) h.segment = load<F>(hits->segment + i);
+    h.segment = load<F>(hits->segment + i);
   }
   h.uv = {load<F>(hits->uv[0] + i), load<F>(hits->uv[1] + i)};
   h.color = {load<F>(hits->color[0] + i), load<F>(hits->color[1] + i), load<F>(hits->color[2] + i),
@@ -109,7 +109,7 @@ struct HitBatch {
 
   template <class F> HitOf<F> at(uint32_t i) {
     HitOf<F> h;
-    readNumbers<F>(host, hits, i, shadowRays, h);
+    readNumbers<F>(hits, i, shadowRays, h);
     if constexpr (std::is_same_v<F, float>) {
       h.flags = hits->flags[i];
       setTracer(h, i);

@@ -40,7 +40,7 @@ RT_API int rtPick(double x, double y, RThit* hit);
  * or if it hits near an edge, at a grazing angle or near its ends. One error is not noticed: a ray
  * exactly through a vertex may pass that surface and hit the middle of a triangle behind it or,
  * from outside of the bounds, nothing. rtListHits has the right first hit there. A ray that is not
- * finite hits nothing and is counted (RTstats.rejectedRays). [context-thread] */
+ * finite hits nothing and is counted (RTstats.rejected.rays). [context-thread] */
 RT_API void rtCastRays(size_t count, const RTray* rays, RThit* hits);
 /* Writes occluded[i] = 1 if anything lies between tnear and tfar of ray i, else 0. Decides as
  * rtCastRays does. [context-thread] */

@@ -146,8 +146,8 @@ void ErrorMap::addMissing(const Tile& tile, double bound, double expected,
     }
 }
 
-ErrorSummary ErrorMap::summary() const {
-  ErrorSummary s;
+RTerrorStats ErrorMap::summary() const {
+  RTerrorStats s{};
   std::vector<float> halves;
   halves.reserve(relative_.size());
   for (size_t i = 0; i < relative_.size(); i++) {

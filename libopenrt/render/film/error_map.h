@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "openrt/frame.h"
 #include "render/film/ledger.h"
 #include "render/film/picture_error.h"
 #include "render/wave/tiles.h"
@@ -34,11 +35,6 @@ struct PixelError {
 // Returns the sum of the colours' errors over the sum of the colours and `darkest`, at most 1.
 float relativeError(double sum, const float colors[3]);
 
-struct ErrorSummary { // statistics as in RTstats
-  double mean = 0, meanInterval = 0, halfWidth = 0, p99 = 0;
-  uint64_t pixels = 0, trusted = 0;
-};
-
 class ErrorMap {
  public:
   // summary: statistics only. full: also the data for doubtConstants(). doubts: only the data for
@@ -63,8 +59,8 @@ class ErrorMap {
   //    interval of the summary's mean.
   void addMissing(const Tile& tile, double bound, double expected,
                   const std::function<void(size_t pixel)>& distrusted);
-  // Returns the statistics of the picture.
-  ErrorSummary summary() const;
+  // Returns the statistics of the picture, without level, unmet and method.
+  RTerrorStats summary() const;
 
  private:
   struct Seen {

@@ -99,6 +99,7 @@ struct FrameWork::Impl {
   void notifyChange();
   void resume();
   void add(const RayTotals& rays);
+  RTerrorStats errorStats() const; // the error of the picture, once over
   bool findKnown(const Job& job, KeptBlock& block);
   void keepBlock(TileState& state, const SumBlock& block) const;
   KeptBlock encoded(const SumBlock& block, const Replicates& replicates) const;
@@ -112,7 +113,7 @@ struct FrameWork::Impl {
   const RequiredSums required;
   Film film;
   mutable std::shared_mutex ending; // exclusive while the picture as a whole is evaluated
-  double unmet = 0;                 // RTstats.errorUnmet, once over
+  double unmet = 0;                 // RTerrorStats.unmet, once over
   std::unique_ptr<TileState[]> tiles;
   std::unique_ptr<LightImage> light, early; // null if there is no light tracing
   std::unique_ptr<Pilots> pilots;           // null without a target error
@@ -639,35 +640,29 @@ RayCounters FrameWork::counters() const {
   return impl_->counters;
 }
 
-uint64_t FrameWork::shaderFaults() const {
-  std::lock_guard lock(impl_->mutex);
-  return impl_->counters.faults.count(Fault::notFinite) + impl_->faultsBefore;
-}
-
-void FrameWork::describeError(RTstats& stats) const {
-  stats.errorLevel = 0.95;
-  if (impl_->film.errors().empty()) return;
-  const ErrorSummary s = impl_->film.errors().summary();
-  stats.errorMean = s.mean;
-  stats.errorMeanInterval = s.meanInterval;
-  stats.errorUnmet = impl_->unmet;
-  stats.errorHalfWidth = s.halfWidth;
-  stats.errorP99 = s.p99;
-  stats.errorPixels = s.pixels;
-  stats.errorTrusted = s.trusted;
-  const bool many =
-      impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();
-  std::snprintf(stats.errorMethod, sizeof stats.errorMethod, "%s",
-                many ? "replicated nets, Student's t" : "sample variance");
-}
-
-void FrameWork::describeLedger(RTstats& stats) const {
+void FrameWork::describe(RTstats& stats) const {
+  stats.error = impl_->errorStats();
   Ledger all;
   for (uint32_t i = 0; i < impl_->count; i++) all.addMean(impl_->tiles[i].ledger);
   const double pixels = std::max(double(impl_->grid.pixels()), 1.0);
-  stats.cutByDepth = all.cutByDepth / pixels;
-  stats.cutByEnergy = all.cutByEnergy / pixels;
-  stats.clipped = all.clipped / pixels;
+  const std::lock_guard lock(impl_->mutex);
+  const RayCounters& rays = impl_->counters;
+  stats.rays = {rays.camera, rays.shadow, rays.secondary};
+  stats.leftOut = {all.cutByDepth / pixels, all.cutByEnergy / pixels, all.clipped / pixels,
+                   rays.faults.count(Fault::notFinite) + impl_->faultsBefore};
+}
+
+RTerrorStats FrameWork::Impl::errorStats() const {
+  RTerrorStats stats{};
+  const bool known = !film.errors().empty();
+  if (known) stats = film.errors().summary();
+  stats.level = 0.95;
+  if (!known) return stats;
+  stats.unmet = unmet;
+  const bool many = schedule.timed() || replicatesOf(frame, frame.samples, 0).many();
+  std::snprintf(stats.method, sizeof stats.method, "%s",
+                many ? "replicated nets, Student's t" : "sample variance");
+  return stats;
 }
 
 } // namespace openrt

@@ -92,9 +92,9 @@ class FrameWork {
   // Returns the results so far of a frame whose sums are kept; null for another one.
   std::shared_ptr<FrameSums> sums() const;
   RayCounters counters() const;
-  uint64_t shaderFaults() const; // hits at which a shader returned numbers that are not finite
-  void describeError(RTstats& stats) const;  // valid once over() is true
-  void describeLedger(RTstats& stats) const; // valid once over() is true
+  // Writes what is known about the picture: its rays, its error and the light that it leaves out.
+  // Valid once over() is true.
+  void describe(RTstats& stats) const;
 
  private:
   struct Impl;

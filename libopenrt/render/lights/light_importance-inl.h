@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 // The fields of LightNode and LightReceiver.
 template <class V> struct LightLanes {
-  Vec3<V> centre, axis;
+  Vec3<V> center, axis;
   V radius2, reach2, cosine, sine, beyond, both, intensity, irradiance, used;
 };
 template <class V> struct ReceiverLanes {
@@ -32,7 +32,7 @@ inline constexpr float cosineSlack = 1e-5f;
 // distance near the light's bounding sphere.
 template <class V> inline V importance(const LightLanes<V>& light, const ReceiverLanes<V>& to) {
   const V zero = constant<V>(0), one = constant<V>(1), slack = constant<V>(cosineSlack);
-  const Vec3<V> d = to.place - light.centre;
+  const Vec3<V> d = to.place - light.center;
   const V square = dot(d, d), radius2 = light.radius2;
   const auto within = square <= radius2 * constant<V>(1 + cosineSlack);
   const V inverse = one / sqrt(select(within, one, square));

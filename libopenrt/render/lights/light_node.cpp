@@ -24,7 +24,7 @@ void importances(const LightNode& node, const LightReceiver& receiver,
       all(receiver.least)};
   for (size_t i = 0; i < LightNode::width; i += hn::Lanes(tag)) {
     const auto some = [&](const float* values) { return hn::LoadU(tag, values + i); };
-    const LightLanes<V> light{{some(node.centre[0]), some(node.centre[1]), some(node.centre[2])},
+    const LightLanes<V> light{{some(node.center[0]), some(node.center[1]), some(node.center[2])},
                               {some(node.axis[0]), some(node.axis[1]), some(node.axis[2])},
                               some(node.radius2),
                               some(node.reach2),

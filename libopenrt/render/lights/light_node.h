@@ -13,7 +13,7 @@ struct LightNode {
   static constexpr uint32_t width = 8;
   // radius2: squared radius of the box's bounding sphere. reach2: squared radius of influence from
   // the centre.
-  float centre[3][width], radius2[width], reach2[width];
+  float center[3][width], radius2[width], reach2[width];
   float axis[3][width], cosine[width], sine[width], beyond[width], both[width];
   float intensity[width], irradiance[width], used[width];
   uint32_t child[width]; // index of a node, or of a light if `leaf`

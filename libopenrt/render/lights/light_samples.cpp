@@ -43,7 +43,7 @@ HWY_INLINE Importances importancesAt(const LightNode& node, const Receivers& fro
   out.count = 0;
   for (uint32_t c = 0; c < LightNode::width && node.used[c] > 0; c++, out.count++) {
     const auto all = [&](const float* values) { return lanesOf(values[c]); };
-    const LightLanes<Lanes> light{{all(node.centre[0]), all(node.centre[1]), all(node.centre[2])},
+    const LightLanes<Lanes> light{{all(node.center[0]), all(node.center[1]), all(node.center[2])},
                                   {all(node.axis[0]), all(node.axis[1]), all(node.axis[2])},
                                   all(node.radius2),
                                   all(node.reach2),

@@ -70,7 +70,7 @@ void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
     }
   }
   if (!(low.x <= high.x) || !(low.y <= high.y) || !(low.z <= high.z)) return;
-  centre_ = Vec3f((low + high) / 2);
+  center_ = Vec3f((low + high) / 2);
   radius_ = float(length(high - low) / 2 * (1 + 1e-5));
 }
 
@@ -82,7 +82,7 @@ void LightSources::measureSceneExtent(const RenderScene& scene) {
 
 LightSources::LightSources(const RenderScene& scene, const RenderScene* before, Kind kind) {
   if (before && before->lightSources && sameSpecularSurfaces(scene, *before)) {
-    centre_ = before->lightSources->centre_;
+    center_ = before->lightSources->center_;
     radius_ = before->lightSources->radius_;
   } else
     boundSpecularSurfaces(scene);
@@ -113,8 +113,8 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before, 
 // Returns the cosine of the half angle of the cone about the specular surfaces as seen from a
 // point; -1 from inside their bounding sphere.
 double LightSources::coneToSpecular(const Vec3f& from, Vec3f& axis) const {
-  const double distance = length(Vec3d(centre_) - Vec3d(from));
-  axis = distance > 0 ? Vec3f(Vec3d(centre_ - from) / distance) : Vec3f{0, 0, 1};
+  const double distance = length(Vec3d(center_) - Vec3d(from));
+  axis = distance > 0 ? Vec3f(Vec3d(center_ - from) / distance) : Vec3f{0, 0, 1};
   const double sine = radius_ / distance;
   return sine < 1 ? std::sqrt(1 - sine * sine) : -1;
 }
@@ -125,7 +125,7 @@ Vec3f LightSources::startOfParallel(const Vec3f& towards, const float place[2]) 
   Vec3f s, t;
   basisOf(towards, s, t);
   const float r = radius_ * std::sqrt(place[0]), phi = float(2 * M_PI) * place[1];
-  return centre_ + r * (std::cos(phi) * s + std::sin(phi) * t) - far_ * towards;
+  return center_ + r * (std::cos(phi) * s + std::sin(phi) * t) - far_ * towards;
 }
 
 LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double pick,

@@ -47,7 +47,7 @@ class LightSources {
   Vec3f startOfParallel(const Vec3f& towards, const float place[2]) const;
   std::vector<Source> sources_;
   std::vector<double> cumulative_; // cumulative power of the sources
-  Vec3f centre_;                   // centre_, radius_: bounding sphere of all specular surfaces
+  Vec3f center_;                   // center_, radius_: bounding sphere of all specular surfaces
   float radius_ = 0;
   float far_ = 0; // distance at which light from afar starts: the whole scene lies in front of it
 };

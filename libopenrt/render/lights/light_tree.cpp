@@ -87,8 +87,8 @@ struct Bins {
   int axis = -1; // -1: none
   float low = 0, high = 0;
   // Returns the bin of a centre's coordinate on the axis.
-  uint32_t of(float centre) const {
-    return std::min(uint32_t((double(centre) - low) / (double(high) - low) * count), count - 1);
+  uint32_t of(float center) const {
+    return std::min(uint32_t((double(center) - low) / (double(high) - low) * count), count - 1);
   }
 };
 
@@ -109,8 +109,8 @@ class Builder {
     constexpr float infinite = std::numeric_limits<float>::infinity();
     Vec3f low{infinite, infinite, infinite}, high = -low;
     for (uint32_t i = range.begin; i < range.end; i++) {
-      low = min(low, centre(order_[i]));
-      high = max(high, centre(order_[i]));
+      low = min(low, center(order_[i]));
+      high = max(high, center(order_[i]));
     }
     const Vec3f size = high - low;
     int widest = 0;
@@ -126,25 +126,25 @@ class Builder {
     const auto first = order_.begin() + range.begin, last = order_.begin() + range.end;
     if (best.bins.axis >= 0) {
       const auto found = std::stable_partition(first, last, [&](uint32_t i) {
-        return best.bins.of(centre(i)[best.bins.axis]) <= best.last;
+        return best.bins.of(center(i)[best.bins.axis]) <= best.last;
       });
       if (found != first && found != last) return uint32_t(found - order_.begin());
     }
     std::nth_element(first, order_.begin() + middle, last, [&](uint32_t a, uint32_t b) {
-      const float x = centre(a)[widest], y = centre(b)[widest];
+      const float x = center(a)[widest], y = center(b)[widest];
       return x != y ? x < y : a < b;
     });
     return middle;
   }
 
  private:
-  Vec3f centre(uint32_t i) const { return lights_[i].low / 2 + lights_[i].high / 2; }
+  Vec3f center(uint32_t i) const { return lights_[i].low / 2 + lights_[i].high / 2; }
   // Sorts the lights of a range into bins and replaces `best` if a cut between them costs less.
   void tryCuts(const Range& range, const LightBounds& whole, Bins bins, Cut& best) const {
     LightBounds in[Bins::count];
     bool used[Bins::count] = {};
     for (uint32_t i = range.begin; i < range.end; i++) {
-      const uint32_t b = bins.of(centre(order_[i])[bins.axis]);
+      const uint32_t b = bins.of(center(order_[i])[bins.axis]);
       if (used[b])
         unite(in[b], lights_[order_[i]]);
       else {
@@ -264,10 +264,10 @@ void LightTree::build(std::span<const LightBounds> lights) {
 
 void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
   Node& node = nodes_[number];
-  const Vec3f centre = b.low / 2 + b.high / 2;
-  const Vec3d half = max(Vec3d(b.high) - Vec3d(centre), Vec3d(centre) - Vec3d(b.low));
+  const Vec3f center = b.low / 2 + b.high / 2;
+  const Vec3d half = max(Vec3d(b.high) - Vec3d(center), Vec3d(center) - Vec3d(b.low));
   const double diagonal = dot(half, half);
-  store(centre, node.centre, i);
+  store(center, node.center, i);
   store(b.axis, node.axis, i);
   node.radius2[i] = float(std::min(diagonal * (1 + 1e-6), 3e38));
   const double far = double(b.reach) * (1 + 1e-5) + std::sqrt(diagonal);

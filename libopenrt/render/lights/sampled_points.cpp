@@ -51,12 +51,12 @@ Rounding roundingOf(const EmissiveShapes::Shape& s, const Record& r, const Vec3f
 // The centre of a sphere and both of its maps are rounded relative to their coordinates.
 Rounding roundingOfSphere(const Record& r, const Vec3f& direction, const Vec3f& origin,
                           double distance) {
-  const Vec3f centre = r.toRender.translation();
+  const Vec3f center = r.toRender.translation();
   const Vec3d local =
       r.fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
   const double size = std::sqrt(squaredNormOf(r.toRender));
-  return {roundings(24) * (distanceBetween(centre, origin) + size) +
-              roundings(8) * (length(Vec3d(centre)) + length(Vec3d(origin))),
+  return {roundings(24) * (distanceBetween(center, origin) + size) +
+              roundings(8) * (length(Vec3d(center)) + length(Vec3d(origin))),
           std::fabs(cosineOf(r.fromRender.transposed(local), direction))};
 }
 
@@ -64,14 +64,14 @@ Rounding roundingOfSphere(const Record& r, const Vec3f& direction, const Vec3f& 
 Rounding roundingOfSurface(const Record& r, const Vec3f& direction, const Vec3f& origin,
                            double distance) {
   const AnalyticSurface& surface = *r.surface;
-  const Vec3d centre = r.toRender.point((surface.low() + surface.high()) / 2),
+  const Vec3d center = r.toRender.point((surface.low() + surface.high()) / 2),
               local =
                   r.fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
   const double size = std::sqrt(squaredNormOf(r.toRender)) * length(surface.high() - surface.low());
   Vec3d gradient;
   surface.valueAt(local, gradient);
-  return {roundings(24) * (length(centre - Vec3d(origin)) + size) +
-              roundings(8) * (length(centre) + length(Vec3d(origin))),
+  return {roundings(24) * (length(center - Vec3d(origin)) + size) +
+              roundings(8) * (length(center) + length(Vec3d(origin))),
           std::fabs(cosineOf(r.fromRender.transposed(gradient), direction))};
 }
 

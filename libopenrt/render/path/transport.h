@@ -45,8 +45,8 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before);
 struct TransportChoice {
   RTenum transport = RT_TRANSPORT_DIRECT; // never RT_TRANSPORT_AUTO
   std::string reason;                     // explanation for the user
-  uint32_t unreached = 0;                 // RTstats.unreachedLights
-  uint32_t leavesOut = 0;                 // RTstats.transportLeavesOut
+  uint32_t unreached = 0;                 // RTstats.transport.unreachedLights
+  uint32_t leavesOut = 0;                 // RTstats.transport.leavesOut
 };
 TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before);
 

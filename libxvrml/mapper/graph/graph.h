@@ -158,7 +158,6 @@ using PlanFunction = void (*)(PlanContext& context, Node& node, Plan& plan);
 // plans.cpp has them. Types of plug-ins have none: what their nodes expand to is planned instead
 // (renderedNode() in xvrml/world.h).
 PlanFunction planOf(const NodeType& type);
-void setPlan(const NodeType& type, PlanFunction plan); // replaces it; nothing calls this today
 
 class Graph {
  public:

@@ -190,11 +190,4 @@ PlanFunction planOf(const NodeType& type) {
   return type.index >= 0 && size_t(type.index) < plans.size() ? plans[size_t(type.index)] : nullptr;
 }
 
-void setPlan(const NodeType& type, PlanFunction plan) {
-  if (type.index < 0) return;
-  std::vector<PlanFunction>& plans = table();
-  if (size_t(type.index) >= plans.size()) plans.resize(size_t(type.index) + 1, nullptr);
-  plans[size_t(type.index)] = plan;
-}
-
 } // namespace xvrml::mapper

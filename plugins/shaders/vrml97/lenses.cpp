@@ -75,7 +75,7 @@ void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, 
                       const float* const xy[2], const float size[2], RtsRays* out) {
   const auto& p = *static_cast<const ThinLensParams*>(params);
   const double step = planeHeight(p.fovy) / static_cast<double>(size[1]), focus = p.focus;
-  const bool open = p.radius > 0 && host->minor >= 2 && host->random;
+  const bool open = p.radius > 0;
   float* square[2] = {};
   if (open) {
     for (float*& s : square) s = host->scratch(batch, n);

@@ -1,6 +1,6 @@
 /* case.c: one plug-in per macro CASE_... Each differs from a good one in a single point.
- * Exceptions, which are good: CASE_older_class, whose class structure ends where an older header
- * would have ended it, and CASE_minor_0, CASE_minor_1 and CASE_class_truncated. */
+ * Exceptions, which are good: CASE_shorter_class and CASE_class_truncated, whose class structures
+ * end earlier, as those of an older header would. */
 #include <openrt/openrts.h>
 
 #include <math.h>
@@ -62,13 +62,7 @@ static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   for (uint32_t i = 0; i < hits->count; i++) out->radiance[1][i] = 0.5f;
 }
 #endif
-#if defined(CASE_minor_0) || defined(CASE_minor_1)
-static const char* nonsense(const RtsHost* host, void* params) {
-  (void)host;
-  (void)params;
-  return "must not be called";
-}
-#elif defined(CASE_frequency_value)
+#if defined(CASE_frequency_value)
 static const uint8_t frequency[] = {RTS_PER_VERTEX, 3};
 #elif defined(CASE_frequency_type) || defined(CASE_frequency_size)
 static const uint8_t frequency[] = {RTS_PER_VERTEX, RTS_PER_VERTEX};
@@ -87,12 +81,8 @@ static void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
 }
 
 static const RtsClass example = {
-#if defined(CASE_older_class)
+#if defined(CASE_shorter_class)
     .size = offsetof(RtsClass, transmit),
-#elif defined(CASE_minor_0)
-    .size = offsetof(RtsClass, surface),
-#elif defined(CASE_minor_1)
-    .size = offsetof(RtsClass, frequency),
 #elif defined(CASE_class_truncated)
     .size = offsetof(RtsClass, transmit) + 3, /* in the middle of a pointer */
 #elif defined(CASE_class_too_small)
@@ -128,10 +118,7 @@ static const RtsClass example = {
     .shade = shade,
 #endif
     .transmit = transmit,
-#if defined(CASE_minor_0) || defined(CASE_minor_1)
-    .prepare = nonsense, /* beyond the end of the older structures: the host must not read it */
-    .frequency = (const uint8_t*)1,
-#elif defined(CASE_frequency_value) || defined(CASE_frequency_type) || defined(CASE_frequency_size)
+#if defined(CASE_frequency_value) || defined(CASE_frequency_type) || defined(CASE_frequency_size)
     .frequency = frequency,
 #endif
 };
@@ -157,10 +144,6 @@ RTS_EXPORT const RtsPlugin rtsPlugin = {
 #endif
 #if defined(CASE_newer_minor)
     RTS_ABI_MINOR + 1,
-#elif defined(CASE_minor_0) || defined(CASE_minor_0_too_large)
-    0,
-#elif defined(CASE_minor_1)
-    1,
 #else
     RTS_ABI_MINOR,
 #endif

@@ -11,13 +11,13 @@ namespace {
 const std::string golden = "0 0.850651 0.525731 1.25";
 const SFRotation wild{0, 1.618034f, 1, 1.25f};
 
-TEST(Rotations, OfAFileAreNormalised) {
+TEST(Rotations, OfAFileAreNormalized) {
   Running r("DEF T Transform { rotation 0 1.618034 1 1.25 scaleOrientation 3 0 4 1 }");
   EXPECT_EQ(r.get("T", "rotation"), golden);
   EXPECT_EQ(r.get("T", "scaleOrientation"), "0.6 0 0.8 1");
 }
 
-TEST(Rotations, InListsAreNormalisedOneByOne) {
+TEST(Rotations, InListsAreNormalizedOneByOne) {
   Running r("DEF O OrientationInterpolator { key [ 0 1 ] keyValue [ 1 0 0 0, 0 1.618034 1 1.25 ] } "
             "DEF E Extrusion { orientation [ 0 0 5 1, 0 0 1 2 ] }");
   EXPECT_EQ(r.get("O", "keyValue"), "[1 0 0 0, " + golden + "]");
@@ -42,7 +42,7 @@ TEST(Rotations, ComponentsUpToOneAreNoWordWorth) {
   EXPECT_EQ(r.get("V", "rotation"), "0 0 0 1");             // no rotation
 }
 
-TEST(Rotations, OfEventsAreNormalisedAndSentSo) {
+TEST(Rotations, OfEventsAreNormalizedAndSentSo) {
   Running r("DEF T Transform {} DEF U Transform {} ROUTE T.rotation_changed TO U.set_rotation");
   r.log("T", "rotation");
   r.set("T", "rotation", wild);
@@ -51,7 +51,7 @@ TEST(Rotations, OfEventsAreNormalisedAndSentSo) {
   EXPECT_EQ(r.get("U", "rotation"), golden);
 }
 
-TEST(Rotations, ThroughPrototypesAreNormalisedWhereANodeTakesThem) {
+TEST(Rotations, ThroughPrototypesAreNormalizedWhereANodeTakesThem) {
   Running r("PROTO P [ exposedField SFRotation turn 0 0 2 1 ] { Transform { rotation IS turn } } "
             "DEF A P {} DEF B P { turn 0 1.618034 1 1.25 }");
   const auto inside = [&](const char* name) {
@@ -67,7 +67,7 @@ TEST(Rotations, ThroughPrototypesAreNormalisedWhereANodeTakesThem) {
   EXPECT_EQ(r.take(), Log{"0 A.turn " + golden});
 }
 
-TEST(Rotations, OfProgramsAreNormalisedAndWrittenSo) {
+TEST(Rotations, OfProgramsAreNormalizedAndWrittenSo) {
   const NodeType& type = *findNodeType("Transform");
   const NodeRef node(type.create(type));
   node->set(*type.find("rotation"), wild);

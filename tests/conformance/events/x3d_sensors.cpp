@@ -249,7 +249,7 @@ TEST(LodLevel, IsSentWhenTheViewersDistanceChoosesAnother) {
 
 // --- ProximitySensor (22.4.1) ---
 
-TEST(ProximitySensor, TellsTheCentreOfRotation) {
+TEST(ProximitySensor, TellsTheCenterOfRotation) {
   Running r(head + "DEF V Viewpoint { position 0 0 0 centerOfRotation 1 2 3 }\nTransform { "
                    "translation 1 0 0 children DEF P ProximitySensor { size 100 100 100 } }\n");
   r.log("P", "centerOfRotation_changed");

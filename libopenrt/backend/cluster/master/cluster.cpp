@@ -9,7 +9,6 @@
 #include <deque>
 #include <exception>
 #include <future>
-#include <iterator>
 #include <mutex>
 #include <random>
 #include <thread>
@@ -22,8 +21,8 @@
 #include "render/frame/threads.h"
 #include "scene/sums_error.h"
 #include "shortage.h"
-#include "start_threads.h"
 #include "steady_clock.h"
+#include "task_threads.h"
 
 namespace openrt {
 namespace {
@@ -36,52 +35,6 @@ Split splitOf(const std::string& word) {
   if (word == "frames") return Split::frames;
   return Split::automatic;
 }
-
-// A thread pool for tasks that would hold up the network. With one thread, tasks run in order.
-class ThreadPool {
- public:
-  using Task = std::function<void()>;
-  explicit ThreadPool(uint32_t threads) {
-    startThreads(threads_, threads, [this](size_t) { run(); });
-  }
-  ~ThreadPool() {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    changed_.notify_all();
-    for (std::thread& thread : threads_) thread.join();
-  }
-  // Takes all tasks and leaves the vector empty.
-  void add(std::vector<Task>& tasks) {
-    if (tasks.empty()) return;
-    {
-      const std::lock_guard lock(mutex_);
-      std::move(tasks.begin(), tasks.end(), std::back_inserter(tasks_));
-    }
-    for (size_t i = 0; i < std::min(tasks.size(), threads_.size()); i++) changed_.notify_one();
-    tasks.clear();
-  }
-
- private:
-  void run() {
-    std::unique_lock lock(mutex_);
-    for (;;) {
-      changed_.wait(lock, [this] { return stop_ || !tasks_.empty(); });
-      if (stop_) return;
-      const Task task = std::move(tasks_.front());
-      tasks_.pop_front();
-      lock.unlock();
-      task();
-      lock.lock();
-    }
-  }
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Task> tasks_;
-  bool stop_ = false;
-  std::vector<std::thread> threads_;
-};
 
 // Returns the number of threads that merge remote results while one serves the network.
 uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
@@ -113,11 +66,10 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     master.require = cluster.require;
     master.session = uint64_t(std::random_device()()) << 32 | 1;
     master.self = identity(self);
-    identity_ = {0, 0, versionText(), self.isa, self.kernel};
+    identity_ = {0, 0, versionText(), self.machine.isa, self.machine.kernel};
     master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
     master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
-      std::vector<ThreadPool::Task> task{taskFor(std::move(heavy), std::move(then))};
-      background_.add(task);
+      background_.post(taskFor(std::move(heavy), std::move(then)));
     };
     master.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
       results_.push_back(taskFor(std::move(heavy), std::move(then)));
@@ -217,41 +169,18 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   }
 
   void stats(RTstats& s) const override {
-    const uint64_t degenerate = s.degenerate;
-    const size_t size = s.size;
     if (const Master::FrameState& state = finished_.state; state.work) {
       s = state.prepared.stats; // scene statistics
-      s.size = size;
-      s.degenerate += degenerate;
-      for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel,
-                         s.transportReason + sizeof s.transportReason})
-        text[-1] = '\0'; // text from a remote worker may be unterminated
-      const RayCounters counters = state.work->counters();
-      s.cameraRays = counters.camera;
-      s.shadowRays = counters.shadow;
-      s.secondaryRays = counters.secondary;
-      s.shaderFaults = state.work->shaderFaults();
-      s.renderSeconds = finished_.ended - finished_.begun;
-      s.transport = state.prepared.frame.transport;
-      state.work->describeError(s);
-      state.work->describeLedger(s);
+      s.time.render = finished_.ended - finished_.begun;
+      s.transport.chosen = state.prepared.frame.transport;
+      state.work->describe(s);
     } else {
       core_->ask([&](Backend& backend) { backend.stats(s); });
     }
-    s.commitSeconds = commitSeconds_;
-    Master::Totals totals;
-    {
-      const std::lock_guard lock(mutex_);
-      totals = totals_;
-    }
-    s.workers = totals.workers;
-    s.threads = totals.threads;
-    s.tilesRemote = totals.jobsRemote;
-    s.tilesLocal = totals.jobsHere;
-    s.reissued = totals.reissued;
-    s.duplicates = totals.duplicates;
-    s.bytesSent = totals.bytesSent;
-    s.bytesReceived = totals.bytesReceived;
+    s.time.commit = commitSeconds_;
+    const std::lock_guard lock(mutex_);
+    s.cluster = totals_.cluster;
+    s.machine.threads = totals_.threads;
   }
 
   std::vector<RTworker> workers() const override {
@@ -305,22 +234,22 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
                      std::span<RTclosest> closest) override {
     ask([&](Queries& local) { local.closestPoints(points, radius, closest); });
   }
-  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
-    ask([&](Queries& local) { local.castPrecise(rays, hits); });
+  void castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
+    ask([&](Queries& local) { local.castDouble(rays, hits); });
   }
-  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
-    ask([&](Queries& local) { local.occludePrecise(rays, occluded); });
+  void occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
+    ask([&](Queries& local) { local.occludeDouble(rays, occluded); });
   }
-  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
-    ask([&](Queries& local) { local.countPrecise(rays, counts); });
+  void countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
+    ask([&](Queries& local) { local.countDouble(rays, counts); });
   }
-  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
-                   std::span<RThitd> hits) override {
-    ask([&](Queries& local) { local.listPrecise(rays, first, hits); });
+  void listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
+                  std::span<RThitd> hits) override {
+    ask([&](Queries& local) { local.listDouble(rays, first, hits); });
   }
-  void closestPrecise(std::span<const double> points, double radius,
-                      std::span<RThitd> closest) override {
-    ask([&](Queries& local) { local.closestPrecise(points, radius, closest); });
+  void closestDouble(std::span<const double> points, double radius,
+                     std::span<RThitd> closest) override {
+    ask([&](Queries& local) { local.closestDouble(points, radius, closest); });
   }
 
   // Asks about the last committed scene. The local worker has it once all earlier frames are
@@ -403,7 +332,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     changed_.notify_all();
   }
 
-  ThreadPool::Task taskFor(std::function<void()> heavy, std::function<void(double)> then) {
+  TaskThreads::Task taskFor(std::function<void()> heavy, std::function<void(double)> then) {
     return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
       heavy();
       post(std::move(then));
@@ -417,7 +346,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
       commands.swap(commands_);
     }
     for (auto& command : commands) command(steadySeconds());
-    mergers_.add(results_);
+    mergers_.post(results_);
   }
 
   // Handles the messages that have arrived and those that follow at once.
@@ -426,14 +355,14 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     // Results per batch for the merging threads: waking a thread for each one would take longer.
     constexpr size_t together = 16;
     for (int i = 0; i < most; i++) {
-      if (results_.size() >= together) mergers_.add(results_);
+      if (results_.size() >= together) mergers_.post(results_);
       const double asked = steadySeconds();
       Event event = wire_->receive(i == 0 ? seconds : 0);
       const double now = steadySeconds();
       if (i == 0) waited_ += now - asked;
       switch (event.kind) {
       case Event::Kind::nothing:
-      case Event::Kind::woken: return mergers_.add(results_);
+      case Event::Kind::woken: return mergers_.post(results_);
       case Event::Kind::joined: master_->joined(event.peer, event.text, now); break;
       case Event::Kind::message: master_->message(event.peer, std::move(event.frames), now); break;
       case Event::Kind::left: master_->left(event.peer, event.text, now); break;
@@ -442,7 +371,7 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
         break;
       }
     }
-    mergers_.add(results_);
+    mergers_.post(results_);
   }
 
   // Publishes the state of the frames in flight to the threads that poll or wait.
@@ -500,11 +429,12 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   bool stop_ = false;
   // Start of the current busy period, moved forward by the time spent waiting.
   double waited_ = steadySeconds();
-  std::vector<ThreadPool::Task> results_; // for the merging threads
+  std::vector<TaskThreads::Task> results_; // for the merging threads
   std::unique_ptr<Wire> wire_;
   std::unique_ptr<WorkerCore> core_;
   std::unique_ptr<Master> master_;
-  ThreadPool background_{1}, mergers_{mergersOf(availableThreads())};
+  // Tasks that would hold up the network.
+  TaskThreads background_, mergers_{mergersOf(availableThreads())};
   std::thread thread_;
 };
 

@@ -225,17 +225,17 @@ void Master::forget(Epoch epoch) {
 
 Master::Totals Master::totals() const {
   Totals t;
-  t.workers = impl_->alive();
-  t.jobsRemote = impl_->jobsRemote;
-  t.jobsHere = impl_->jobsHere;
-  t.reissued = impl_->scheduler.reissued();
-  t.duplicates = impl_->scheduler.duplicates();
-  t.bytesSent = impl_->goneSent;
-  t.bytesReceived = impl_->goneReceived;
+  t.cluster = {.workers = impl_->alive(),
+               .tilesRemote = impl_->jobsRemote,
+               .tilesLocal = impl_->jobsHere,
+               .reissued = impl_->scheduler.reissued(),
+               .duplicates = impl_->scheduler.duplicates(),
+               .bytesSent = impl_->goneSent,
+               .bytesReceived = impl_->goneReceived};
   t.threads = impl_->options.localThreads;
   for (const auto& [peer, remote] : impl_->remotes) {
-    t.bytesSent += remote.facts.bytesSent;
-    t.bytesReceived += remote.facts.bytesReceived;
+    t.cluster.bytesSent += remote.facts.bytesSent;
+    t.cluster.bytesReceived += remote.facts.bytesReceived;
     if (remote.welcome) t.threads += remote.facts.threads;
   }
   return t;

@@ -79,9 +79,7 @@ class Master {
   void forget(Epoch epoch); // drops a frame that was read
 
   struct Totals {
-    uint32_t workers = 0; // connected remote workers
-    uint64_t jobsRemote = 0, jobsHere = 0, reissued = 0, duplicates = 0, bytesSent = 0,
-             bytesReceived = 0;
+    RTclusterStats cluster{};
     uint32_t threads = 0; // threads of all connected workers
   };
   Totals totals() const;

@@ -15,18 +15,19 @@ std::string plural(uint32_t n, const char* what) {
 }
 
 std::string whatOf(const Prepared& p) {
-  return plural(uint32_t(p.stats.triangles), "triangle") + ", transport " +
+  return plural(uint32_t(p.stats.scene.triangles), "triangle") + ", transport " +
          std::to_string(p.frame.transport) + (p.facts.camera ? "" : ", no camera") +
          (p.facts.lamps ? ", paths from lamps" : "");
 }
 
 bool same(const Prepared& a, const Prepared& b) {
   return a.facts.camera == b.facts.camera && a.facts.lamps == b.facts.lamps &&
-         a.frame.transport == b.frame.transport && a.stats.triangles == b.stats.triangles &&
-         a.stats.uniqueTriangles == b.stats.uniqueTriangles &&
-         a.stats.rejectedInstances == b.stats.rejectedInstances &&
-         a.stats.unreachedLights == b.stats.unreachedLights &&
-         a.stats.transportLeavesOut == b.stats.transportLeavesOut;
+         a.frame.transport == b.frame.transport &&
+         a.stats.scene.triangles == b.stats.scene.triangles &&
+         a.stats.scene.uniqueTriangles == b.stats.scene.uniqueTriangles &&
+         a.stats.rejected.instances == b.stats.rejected.instances &&
+         a.stats.transport.unreachedLights == b.stats.transport.unreachedLights &&
+         a.stats.transport.leavesOut == b.stats.transport.leavesOut;
 }
 
 } // namespace

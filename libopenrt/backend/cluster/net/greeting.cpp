@@ -36,9 +36,9 @@ message::Hello identity(const RTstats& local) {
   self.library = version();
   self.api = OPENRT_VERSION_MAJOR << 16 | OPENRT_VERSION_MINOR;
   self.shaderAbi = RTS_ABI_MAJOR << 16 | RTS_ABI_MINOR;
-  self.isa = local.isa;
-  self.isas = instructionSetsFrom(local.isa);
-  self.kernel = local.kernel;
+  self.isa = local.machine.isa;
+  self.isas = instructionSetsFrom(local.machine.isa);
+  self.kernel = local.machine.kernel;
   self.platform = platform();
   char host[256] = "";
   if (gethostname(host, sizeof host - 1) == 0) self.host = host;

@@ -20,7 +20,7 @@ constexpr float mostFinite = std::numeric_limits<float>::max();
 uint32_t Accel::moveNear(const Rays& rays, const float* ends, uint32_t first, uint32_t size,
                          int* valid, const PacketRays& to, FarRays& far) const {
   const Vec3d low(low_), high(high_);
-  const Vec3d centre = (low + high) * (0.5 * double(scale_));
+  const Vec3d center = (low + high) * (0.5 * double(scale_));
   const double radius = length(high - low) * double(scale_); // twice that of the scene
   uint32_t refused = 0;
   for (uint32_t i = 0; i < size && first + i < rays.count; i++) {
@@ -35,7 +35,7 @@ uint32_t Accel::moveNear(const Rays& rays, const float* ends, uint32_t first, ui
       continue;
     }
     const double stretch = length(given);
-    const Vec3d direction = given / stretch, towards = centre - origin;
+    const Vec3d direction = given / stretch, towards = center - origin;
     const double along = dot(towards, direction), shift = std::max(0.0, along - radius),
                  perLength = stretch * double(scale_);
     const double from = std::max(0.0, near * perLength - shift), until = end * perLength - shift;

@@ -20,6 +20,13 @@ struct FrameRay {
   double near, far;
 };
 
+// How to search a body for what a ray may meet.
+enum class Search {
+  none,  // the ray passes the body
+  boxes, // the boxes along the ray hold all candidates
+  all    // rounding is too large for the boxes: everything in the body is a candidate
+};
+
 // Below these numbers all are tried, without a CandidateScene.
 inline constexpr uint32_t fewTriangles = 12, fewSurfaces = 6;
 

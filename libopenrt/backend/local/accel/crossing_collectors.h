@@ -1,4 +1,4 @@
-// crossing_collectors.h: what a search of an ExactScene or a PreciseScene does with the crossings
+// crossing_collectors.h: what a search of an ExactScene or a DoubleScene does with the crossings
 // that it finds. Hit is that of the scene. [one thread]
 #pragma once
 

@@ -4,14 +4,10 @@
 // thread]
 #pragma once
 
-#include <map>
 #include <memory>
-#include <tuple>
 #include <vector>
 
 #include "backend/local/accel/accel.h"
-#include "backend/local/accel/candidates.h"
-#include "backend/local/accel/crossing_collectors.h"
 #include "backend/local/crossing.h"
 
 namespace openrt {
@@ -41,33 +37,14 @@ class ExactScene {
   Vec3d point(const Hit& hit, const ExactRay& ray) const;
 
  private:
-  struct Mesh;
   struct Surface;
-  using Collector = CrossingCollector<Hit>;
+  struct Surfaces; // an ExactSearch of them
   class Nearest;
-  class MeshVisitor;
-  class TopVisitor;
-  using Key = std::tuple<const float*, const uint32_t*, uint32_t>; // vertices, indices, number
-  std::shared_ptr<const Mesh> meshOf(const EmbreeDevice& device, const Record& r,
-                                     const ExactScene* former);
-  void makeTop(const EmbreeDevice& device);
-  void search(const ExactRay& ray, Collector& to) const;
-  double meet(const Surface& surface, const ExactRay& ray, Collector& to) const;
-  double meetTriangle(const Surface& surface, uint32_t triangle, const ExactRay& ray,
-                      Collector& to) const;
-  double meetSphere(const Surface& surface, const ExactRay& ray, Collector& to) const;
-  double meetAnalytic(const Surface& surface, const ExactRay& ray, Collector& to) const;
 
   const Accel& accel_;
-  std::map<Key, std::shared_ptr<const Mesh>> meshes_; // each once, however often it is placed
   // Own the vertices, so that equal addresses mean the same meshes.
   std::vector<std::shared_ptr<const Blas>> owners_;
-  std::vector<Surface> surfaces_;
-  std::vector<uint32_t> surfaceOf_; // by record
-  // The frame of top_: render space minus `center_`, times `unit_`.
-  Vec3d center_;
-  double unit_ = 1;
-  std::unique_ptr<CandidateScene> top_; // the boxes of the surfaces; null if they are few
+  std::unique_ptr<Surfaces> surfaces_;
 };
 
 } // namespace openrt

@@ -1,14 +1,14 @@
 // closest.cpp: closest places in double (closest.h). The formulas for triangles are templates over
 // the kind of number: double to reject most triangles, then Bounded, and Dyadic where that leaves a
 // decision open.
-#include "backend/local/precise/closest.h"
+#include "backend/local/double/closest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
-#include "backend/local/precise/dyadic.h"
+#include "backend/local/double/dyadic.h"
 
 namespace openrt {
 namespace {
@@ -112,14 +112,14 @@ Bounded rootOf(const Bounded& square) {
   return {most / 2, most / 2};
 }
 
-PreciseClosest resultOf(const Located<Bounded>& found) {
+DoubleClosest resultOf(const Located<Bounded>& found) {
   const Bounded distance = rootOf(found.square);
   return {std::max(distance.value, 0.0), std::clamp(found.u.value, 0.0, 1.0),
           std::clamp(found.v.value, 0.0, 1.0), distance.error,
           std::max(found.u.error, found.v.error)};
 }
 
-bool isGood(const PreciseClosest& c) {
+bool isGood(const DoubleClosest& c) {
   return c.distanceError <= distanceTolerance * c.distance && c.uvError <= uvTolerance;
 }
 
@@ -141,13 +141,13 @@ bool isFarther(const Vec3d& point, const PlacedTriangle& triangle, double most) 
 
 } // namespace
 
-std::optional<PreciseClosest> closestOnTriangle(const Vec3d& point, const PlacedTriangle& triangle,
-                                                double most) {
+std::optional<DoubleClosest> closestOnTriangle(const Vec3d& point, const PlacedTriangle& triangle,
+                                               double most) {
   if (isFarther(point, triangle, most)) return {};
   const Seen<Bounded> rough(point, triangle);
   Part part = rough.part();
   if (part != Part::unsure && part != Part::none) {
-    const PreciseClosest found = resultOf(locate(rough, part));
+    const DoubleClosest found = resultOf(locate(rough, part));
     if (found.distance - found.distanceError > most) return {};
     if (isGood(found)) return found;
   }

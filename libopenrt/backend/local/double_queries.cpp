@@ -1,4 +1,4 @@
-// precise_queries.cpp: answers ray queries in double precision, on threads of its own.
+// double_queries.cpp: answers ray queries in double precision, on threads of its own.
 // Called on the application's thread.
 #include <tbb/task_arena.h>
 
@@ -17,7 +17,7 @@ constexpr size_t block = 256;
 constexpr double farthest = 1e18, infinite = std::numeric_limits<double>::infinity();
 
 // Returns false if the ray is refused. Comparisons with NaN are false.
-bool load(const RTrayd& from, PreciseRay& to) {
+bool load(const RTrayd& from, DoubleRay& to) {
   to = {vectorOf(from.origin), vectorOf(from.direction), from.tnear, from.tfar};
   const double most = largest(abs(to.direction));
   return isFinite(to.origin) && isFinite(to.direction) && largest(abs(to.origin)) <= farthest &&
@@ -32,29 +32,29 @@ RThitd nothing() {
 
 } // namespace
 
-const PreciseScene& LocalQueries::precise() {
+const DoubleScene& LocalQueries::doubleScene() {
   prepare();
-  if (!precise_ || preciseIsFormer_) {
-    const PreciseScene::Input input{at_->scene, at_->flat, at_->survey, at_->accel};
-    precise_ = std::make_unique<const PreciseScene>(*device_, input, precise_.get());
+  if (!double_ || doubleIsFormer_) {
+    const DoubleScene::Input input{at_->scene, at_->flat, at_->survey, at_->accel};
+    double_ = std::make_unique<const DoubleScene>(*device_, input, double_.get());
     if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
-      precise_ = nullptr;
+      double_ = nullptr;
       throw std::bad_alloc();
     }
-    preciseIsFormer_ = false;
+    doubleIsFormer_ = false;
   }
-  return *precise_;
+  return *double_;
 }
 
 // Calls use(i, ray) for every ray, and refuse(i) for those that cannot be traced.
 template <class Use, class Refuse> void
-LocalQueries::forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse) {
+LocalQueries::forEachDouble(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse) {
   tbb::task_arena arena{int(threads_)};
   arena.execute([&] {
     parallelFor(tbb::blocked_range<size_t>(0, rays.size(), block), [&](const auto& range) {
       uint64_t refused = 0;
       for (size_t i = range.begin(); i < range.end(); i++) {
-        PreciseRay ray;
+        DoubleRay ray;
         if (load(rays[i], ray)) {
           use(i, ray);
         } else {
@@ -67,15 +67,15 @@ LocalQueries::forEachPrecise(std::span<const RTrayd> rays, const Use& use, const
   });
 }
 
-RThitd LocalQueries::hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const {
+RThitd LocalQueries::hitOf(const DoubleScene::Hit& found, const DoubleRay& ray) const {
   const Record& r = at_->accel.records[found.record];
   RThitd hit{};
   hit.t = found.at.t;
   hit.u = found.at.u;
   hit.v = found.at.v;
-  const PrecisePlace place = precise_->place(found, ray);
+  const DoublePlace place = double_->place(found, ray);
   store(place.point, hit.position);
-  store(precise_->normal(found, ray), hit.normal);
+  store(double_->normal(found, ray), hit.normal);
   hit.tError = found.at.tError;
   hit.uvError = found.at.uvError;
   hit.positionError = place.error;
@@ -86,53 +86,53 @@ RThitd LocalQueries::hitOf(const PreciseScene::Hit& found, const PreciseRay& ray
   return hit;
 }
 
-void LocalQueries::castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) {
-  const PreciseScene& scene = precise();
-  forEachPrecise(
+void LocalQueries::castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) {
+  const DoubleScene& scene = doubleScene();
+  forEachDouble(
       rays,
-      [&](size_t i, const PreciseRay& ray) {
-        PreciseScene::Hit found;
+      [&](size_t i, const DoubleRay& ray) {
+        DoubleScene::Hit found;
         hits[i] = scene.nearest(ray, found) ? hitOf(found, ray) : nothing();
       },
       [&](size_t i) { hits[i] = nothing(); });
 }
 
-void LocalQueries::occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) {
-  const PreciseScene& scene = precise();
-  forEachPrecise(
-      rays, [&](size_t i, const PreciseRay& ray) { occluded[i] = scene.occluded(ray); },
+void LocalQueries::occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) {
+  const DoubleScene& scene = doubleScene();
+  forEachDouble(
+      rays, [&](size_t i, const DoubleRay& ray) { occluded[i] = scene.occluded(ray); },
       [&](size_t i) { occluded[i] = 0; });
 }
 
-void LocalQueries::countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) {
-  const PreciseScene& scene = precise();
-  forEachPrecise(
-      rays, [&](size_t i, const PreciseRay& ray) { counts[i] = uint32_t(scene.count(ray)); },
+void LocalQueries::countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) {
+  const DoubleScene& scene = doubleScene();
+  forEachDouble(
+      rays, [&](size_t i, const DoubleRay& ray) { counts[i] = uint32_t(scene.count(ray)); },
       [&](size_t i) { counts[i] = 0; });
 }
 
-void LocalQueries::listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
-                               std::span<RThitd> hits) {
-  const PreciseScene& scene = precise();
+void LocalQueries::listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
+                              std::span<RThitd> hits) {
+  const DoubleScene& scene = doubleScene();
   const auto fillRest = [&](size_t ray, size_t written) {
     for (size_t i = first[ray] + written; i < first[ray + 1]; i++) hits[i] = nothing();
   };
-  forEachPrecise(
+  forEachDouble(
       rays,
-      [&](size_t ray, const PreciseRay& exact) {
-        thread_local std::vector<PreciseScene::Hit> all;
-        scene.all(exact, all);
-        const size_t room = first[ray + 1] - first[ray], count = std::min(all.size(), room);
-        for (size_t i = 0; i < count; i++) hits[first[ray] + i] = hitOf(all[i], exact);
-        fillRest(ray, count);
+      [&](size_t i, const DoubleRay& ray) {
+        thread_local std::vector<DoubleScene::Hit> all;
+        scene.all(ray, all);
+        const size_t room = first[i + 1] - first[i], count = std::min(all.size(), room);
+        for (size_t k = 0; k < count; k++) hits[first[i] + k] = hitOf(all[k], ray);
+        fillRest(i, count);
       },
       [&](size_t ray) { fillRest(ray, 0); });
 }
 
-void LocalQueries::closestPrecise(std::span<const double> points, double radius,
-                                  std::span<RThitd> closest) {
+void LocalQueries::closestDouble(std::span<const double> points, double radius,
+                                 std::span<RThitd> closest) {
   requireNoAnalytic();
-  const PreciseScene& scene = precise();
+  const DoubleScene& scene = doubleScene();
   if (scene.unevenSphere() != noHit)
     throw std::runtime_error("the scene has a sphere with different scales along its axes, whose "
                              "closest points cannot be found in double precision: make it of "
@@ -143,7 +143,7 @@ void LocalQueries::closestPrecise(std::span<const double> points, double radius,
       for (size_t i = range.begin(); i < range.end(); i++) {
         const Vec3d point = vectorOf(&points[3 * i]);
         RThitd& hit = closest[i] = nothing();
-        PreciseScene::Closest found;
+        DoubleScene::Closest found;
         if (!isFinite(point) || largest(abs(point)) > farthest ||
             !scene.closest(point, radius, found))
           continue;

@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "backend/local/precise/crossings.h"
-#include "backend/local/precise/dyadic.h"
+#include "backend/local/double/crossings.h"
+#include "backend/local/double/dyadic.h"
 
 namespace openrt {
 namespace {
@@ -23,7 +23,7 @@ template <class T> Vec3<T> turned(const Matrix4d& m, const Vec3<T>& p) {
 template <class T> struct Plane {
   Vec3<T> ab, ac, normal, direction;
 
-  Plane(const PreciseRay& ray, const PlacedTriangle& s)
+  Plane(const DoubleRay& ray, const PlacedTriangle& s)
       : ab(turned(s.world, Vec3<T>(s.b) - Vec3<T>(s.a))),
         ac(turned(s.world, Vec3<T>(s.c) - Vec3<T>(s.a))), normal(cross(ab, ac)),
         direction(ray.direction) {}
@@ -36,7 +36,7 @@ template <class T> struct Seen : Plane<T> {
   using Plane<T>::ab, Plane<T>::ac, Plane<T>::normal, Plane<T>::direction;
   Vec3<T> a, b, c;
 
-  Seen(const PreciseRay& ray, const PlacedTriangle& s, const Plane<T>& plane)
+  Seen(const DoubleRay& ray, const PlacedTriangle& s, const Plane<T>& plane)
       : Plane<T>(plane),
         a(column<T>(s.world, 3) - Vec3<T>(ray.origin) + turned(s.world, Vec3<T>(s.a))), b(a + ab),
         c(a + ac) {}
@@ -62,7 +62,7 @@ int sideOfMovedRay(const Seen<Dyadic>& s, int k) {
 // The triangle in exact numbers, of which each part is made when it is needed.
 class Exact {
  public:
-  Exact(const PreciseRay& ray, const PlacedTriangle& s) : ray_(ray), triangle_(s) {}
+  Exact(const DoubleRay& ray, const PlacedTriangle& s) : ray_(ray), triangle_(s) {}
   const Plane<Dyadic>& plane() {
     if (!plane_) plane_.emplace(ray_, triangle_);
     return *plane_;
@@ -73,7 +73,7 @@ class Exact {
   }
 
  private:
-  const PreciseRay& ray_;
+  const DoubleRay& ray_;
   const PlacedTriangle& triangle_;
   std::optional<Plane<Dyadic>> plane_;
   std::optional<Seen<Dyadic>> seen_;
@@ -111,7 +111,7 @@ std::array<size_t, 2> axesAcross(const Vec3<Bounded>& n) {
 
 } // namespace
 
-bool crosses(const PreciseRay& ray, const PlacedTriangle& triangle, PreciseCrossing& at) {
+bool crosses(const DoubleRay& ray, const PlacedTriangle& triangle, CrossingPoint& at) {
   const Seen<Bounded> rough(ray, triangle, Plane<Bounded>(ray, triangle));
   // The three sides of a ray that crosses have the sign of their sum, which is that of
   // normal . direction. Most triangles are rejected by two certain signs that differ.
@@ -152,18 +152,18 @@ bool crosses(const PreciseRay& ray, const PlacedTriangle& triangle, PreciseCross
 
 namespace {
 
-PrecisePlace placeOf(const Vec3<Bounded>& p) {
+DoublePlace placeOf(const Vec3<Bounded>& p) {
   return {{p.x.value, p.y.value, p.z.value}, std::max({p.x.error, p.y.error, p.z.error})};
 }
 
 } // namespace
 
-PrecisePlace placeOnRay(const PreciseRay& ray, const PreciseCrossing& at) {
+DoublePlace placeOnRay(const DoubleRay& ray, const CrossingPoint& at) {
   const Bounded t(at.t, at.tError);
   return placeOf(Vec3<Bounded>(ray.origin) + Vec3<Bounded>(ray.direction) * t);
 }
 
-PrecisePlace placeOnTriangle(const PlacedTriangle& s, const PreciseCrossing& at) {
+DoublePlace placeOnTriangle(const PlacedTriangle& s, const CrossingPoint& at) {
   const Vec3<Bounded> a(s.a), b(s.b), c(s.c);
   const Bounded u(at.u, at.uvError), v(at.v, at.uvError);
   const Vec3<Bounded> p = a + (b - a) * u + (c - a) * v;

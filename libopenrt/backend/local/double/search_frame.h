@@ -3,7 +3,7 @@
 #pragma once
 
 #include "backend/local/accel/candidates.h"
-#include "backend/local/precise/crossings.h"
+#include "backend/local/double/crossings.h"
 
 namespace openrt {
 
@@ -15,23 +15,19 @@ class SearchFrame {
   // The body lies within center +- 1 / unit, in a space that the matrix maps to the world.
   SearchFrame(const Matrix4d& toWorld, const Vec3d& center, double unit);
 
-  enum class Search {
-    none, // the ray passes the body
-    tree, // the boxes along `ray` hold all candidates
-    all   // rounding is too large for the boxes: everything in the body is a candidate
-  };
   struct Way {
     Search search = Search::none;
     FrameRay ray;      // begins at `start`; its direction has unit length
     double start = 0;  // in the world's t
     double length = 1; // the length of `ray` for each unit of the world's t
-    // Converts t of the world, beyond which nothing is of interest, to t of `ray`, and not too low.
-    double fromWorld(double t) const {
+    // Converts t of the ray given, beyond which nothing is of interest, to t of `ray`, and not too
+    // low.
+    double fromRay(double t) const {
       return (t - start + 0x1p-50 * (std::fabs(t) + std::fabs(start))) * length;
     }
   };
   // far: as the ray's, or nearer.
-  Way wayOf(const PreciseRay& ray, double far) const;
+  Way wayOf(const DoubleRay& ray, double far) const;
 
   // A point in the frame; no component is off by more than the error.
   struct Spot {

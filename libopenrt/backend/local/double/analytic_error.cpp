@@ -1,8 +1,8 @@
 // analytic_error.cpp: bounds the errors of crossings with analytic surfaces (crossings.h). The
 // equation is evaluated with Bounded numbers on both sides of a crossing. Where its signs are
 // certain and differ, a true crossing lies between (intermediate value theorem).
-#include "backend/local/precise/bounded.h"
-#include "backend/local/precise/crossings.h"
+#include "backend/local/double/bounded.h"
+#include "backend/local/double/crossings.h"
 
 namespace openrt {
 namespace {
@@ -25,7 +25,7 @@ Bounded asphereAt(const std::vector<double>& n, const Vec& p) {
 
 class Equation {
  public:
-  Equation(const PreciseRay& ray, const Matrix4d& world, const AnalyticSurface& surface)
+  Equation(const DoubleRay& ray, const Matrix4d& world, const AnalyticSurface& surface)
       : quadric_(surface.kind() == edit::Primitive::Quadric), numbers_(surface.numbers()),
         direction_(ray.direction) {
     const Vec x(world.column(0)), y(world.column(1)), z(world.column(2));
@@ -52,7 +52,7 @@ class Equation {
 
 } // namespace
 
-double analyticError(const PreciseRay& ray, const Matrix4d& world, const AnalyticSurface& surface,
+double analyticError(const DoubleRay& ray, const Matrix4d& world, const AnalyticSurface& surface,
                      double t) {
   const Equation equation(ray, world, surface);
   const double reach =

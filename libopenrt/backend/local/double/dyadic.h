@@ -8,7 +8,7 @@
 #include <iterator>
 #include <vector>
 
-#include "backend/local/precise/bounded.h"
+#include "backend/local/double/bounded.h"
 
 namespace openrt {
 

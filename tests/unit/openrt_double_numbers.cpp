@@ -1,16 +1,16 @@
-// openrt_precise_numbers.cpp: Dyadic numbers are exact, and Bounded numbers are within their
+// openrt_double_numbers.cpp: Dyadic numbers are exact, and Bounded numbers are within their
 // bounds.
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "backend/local/precise/dyadic.h"
+#include "backend/local/double/dyadic.h"
 
 namespace openrt {
 namespace {
 
-class PreciseNumbers : public testing::Test {
+class DoubleNumbers : public testing::Test {
  protected:
   std::mt19937_64 random_{5};
   int whole(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
@@ -25,7 +25,7 @@ class PreciseNumbers : public testing::Test {
 
 __int128 wideOf(double x) { return __int128(x); }
 
-TEST_F(PreciseNumbers, SumsAndProductsAreThoseOfWholeNumbers) {
+TEST_F(DoubleNumbers, SumsAndProductsAreThoseOfWholeNumbers) {
   for (int i = 0; i < 20000; i++) {
     // Whole numbers below 2^60 in 53 bits: products of two and sums of those fit into 128 bits.
     const double a = std::ldexp(any(0), whole(0, 7)), b = std::ldexp(any(0), whole(0, 7)),
@@ -45,7 +45,7 @@ TEST_F(PreciseNumbers, SumsAndProductsAreThoseOfWholeNumbers) {
   }
 }
 
-TEST_F(PreciseNumbers, SumsOfDifferentSizesLoseNothing) {
+TEST_F(DoubleNumbers, SumsOfDifferentSizesLoseNothing) {
   for (int i = 0; i < 5000; i++) {
     const double a = any(900), b = any(900), c = any(900);
     const Dyadic x(a), y(b), z(c);
@@ -59,7 +59,7 @@ TEST_F(PreciseNumbers, SumsOfDifferentSizesLoseNothing) {
   }
 }
 
-TEST_F(PreciseNumbers, EveryOperationStaysWithinItsBound) {
+TEST_F(DoubleNumbers, EveryOperationStaysWithinItsBound) {
   const auto expectWithin = [](const Bounded& found, const Dyadic& truth) {
     const Dyadic off = Dyadic(found.value) - truth, bound(found.error);
     EXPECT_TRUE((bound - off).sign() >= 0 && (bound + off).sign() >= 0);
@@ -87,7 +87,7 @@ TEST_F(PreciseNumbers, EveryOperationStaysWithinItsBound) {
   }
 }
 
-TEST_F(PreciseNumbers, WhatIsUnknownHasNoSign) {
+TEST_F(DoubleNumbers, WhatIsUnknownHasNoSign) {
   EXPECT_EQ((Bounded(1) / Bounded(0x1p-60, 0x1p-50)).sign(), 0);
   EXPECT_EQ((Bounded(1e300) * 1e300 - Bounded(1e300) * 1e300).sign(), 0);
   EXPECT_EQ((Bounded(1e-300) * 1e-300).sign(), 0);

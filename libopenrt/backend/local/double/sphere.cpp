@@ -5,8 +5,8 @@
 // polynomials of the given numbers, so that Dyadic numbers hold them exactly.
 #include <algorithm>
 
-#include "backend/local/precise/crossings.h"
-#include "backend/local/precise/dyadic.h"
+#include "backend/local/double/crossings.h"
+#include "backend/local/double/dyadic.h"
 
 namespace openrt {
 namespace {
@@ -16,7 +16,7 @@ constexpr double tolerance = 0x1p-44; // relative error of t from which on it is
 template <class T> struct Quadratic {
   T a, b, c, discriminant; // discriminant: b^2 - a c
 
-  Quadratic(const PreciseRay& ray, const Matrix4d& world, double radius) {
+  Quadratic(const DoubleRay& ray, const Matrix4d& world, double radius) {
     const Vec3<T> x(world.column(0)), y(world.column(1)), z(world.column(2));
     const Vec3<T> yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
     const Vec3<T> from = Vec3<T>(ray.origin) - Vec3<T>(world.translation()), along(ray.direction);
@@ -57,8 +57,8 @@ template <class T> bool isBehind(const Quadratic<T>& q, int root, double t) {
 
 } // namespace
 
-int crossSphere(const PreciseRay& ray, const Matrix4d& world, double radius,
-                PreciseCrossing (&at)[2]) {
+int crossSphere(const DoubleRay& ray, const Matrix4d& world, double radius,
+                CrossingPoint (&at)[2]) {
   const Quadratic<Bounded> rough(ray, world, radius);
   if (rough.discriminant.sign() < 0) return 0;
   Roots found{{Bounded(0, HUGE_VAL), Bounded(0, HUGE_VAL)}};

@@ -1,5 +1,5 @@
 // search_frame.cpp: the way of a ray through a SearchFrame, with the bound of its error.
-#include "backend/local/precise/search_frame.h"
+#include "backend/local/double/search_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ SearchFrame::Spot SearchFrame::spotOf(const Vec3d& point) const {
   return {Vec3d(inverse_ * from), double(error)};
 }
 
-SearchFrame::Way SearchFrame::wayOf(const PreciseRay& ray, double far) const {
+SearchFrame::Way SearchFrame::wayOf(const DoubleRay& ray, double far) const {
   const Long from = Long(ray.origin) - center_, along(ray.direction);
   const Long origin = inverse_ * from, direction = inverse_ * along;
   const long double length = std::sqrt(dot(direction, direction)),
@@ -92,11 +92,11 @@ SearchFrame::Way SearchFrame::wayOf(const PreciseRay& ray, double far) const {
     way.search = Search::none;
     return way;
   }
-  if (error <= mostError) way.search = Search::tree;
+  if (error <= mostError) way.search = Search::boxes;
   way.start = double(start);
   way.length = double(length);
   way.ray = {Vec3d(origin + direction * way.start), Vec3d(direction / length), 0,
-             way.fromWorld(double(end))};
+             way.fromRay(double(end))};
   return way;
 }
 

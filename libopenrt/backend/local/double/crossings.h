@@ -10,22 +10,18 @@
 // Pure functions. [any thread]
 #pragma once
 
+#include "backend/local/crossing.h"
 #include "scene/analytic.h"
 #include "scene/matrix.h"
 
 namespace openrt {
 
 // A ray in the world. All numbers are finite, except that far may be infinite.
-struct PreciseRay {
+struct DoubleRay {
   Vec3d origin, direction;
   double near, far; // in lengths of the direction
 
   Vec3d at(double t) const { return origin + direction * t; }
-};
-
-struct PreciseCrossing {
-  double t = 0, u = 0, v = 0;
-  double tError = 0, uvError = 0; // none of t, u and v is farther from the truth
 };
 
 // Vertices as they are stored, and the matrix that places them in the world.
@@ -35,26 +31,25 @@ struct PlacedTriangle {
 };
 
 // Returns whether the ray crosses the triangle within its interval, and where.
-bool crosses(const PreciseRay& ray, const PlacedTriangle& triangle, PreciseCrossing& at);
+bool crosses(const DoubleRay& ray, const PlacedTriangle& triangle, CrossingPoint& at);
 
 // The places of a hit and bounds of the errors of their components: `onRay` from t, `onTriangle`
 // from u and v. Where vertices are nearer to 0 than the ray's origin, the latter is better.
-struct PrecisePlace {
+struct DoublePlace {
   Vec3d point;
   double error;
 };
-PrecisePlace placeOnRay(const PreciseRay& ray, const PreciseCrossing& at);
-PrecisePlace placeOnTriangle(const PlacedTriangle& triangle, const PreciseCrossing& at);
+DoublePlace placeOnRay(const DoubleRay& ray, const CrossingPoint& at);
+DoublePlace placeOnTriangle(const PlacedTriangle& triangle, const CrossingPoint& at);
 
 // Finds where the ray crosses the sphere of a radius about the origin of a frame, ascending.
 // Returns how many crossings are in the interval. A ray that only touches the sphere passes it.
-int crossSphere(const PreciseRay& ray, const Matrix4d& world, double radius,
-                PreciseCrossing (&at)[2]);
+int crossSphere(const DoubleRay& ray, const Matrix4d& world, double radius, CrossingPoint (&at)[2]);
 
 // Returns a bound of the error of a crossing with an analytic surface: the surface's equation has
 // different signs at both ends of t +- bound. Infinite if none is found below a thousandth
 // of the distance.
-double analyticError(const PreciseRay& ray, const Matrix4d& world, const AnalyticSurface& surface,
+double analyticError(const DoubleRay& ray, const Matrix4d& world, const AnalyticSurface& surface,
                      double t);
 
 } // namespace openrt

@@ -1,5 +1,5 @@
 // dyadic.cpp: arithmetic of Dyadic numbers, as one does it by hand, with digits of 32 bits.
-#include "backend/local/precise/dyadic.h"
+#include "backend/local/double/dyadic.h"
 
 #include <cmath>
 
