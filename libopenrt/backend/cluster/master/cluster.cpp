@@ -80,114 +80,21 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
     thread_ = std::thread([this] { run(); });
   }
 
-  ~ClusterBackend() override {
-    cancel();
-    post([this](double) { stop_ = true; });
-    thread_.join();
-  }
+  ~ClusterBackend() override;
 
   bool pipelines() const override { return true; }
 
-  void apply(std::shared_ptr<const Commit> commit) override {
-    const double begin = steadySeconds();
-    unsent_.push_back(std::move(commit));
-    commitSeconds_ = steadySeconds() - begin;
-  }
-
-  bool keepSums(const SumsRequest& request) override {
-    keep_ = request;
-    return true;
-  }
-
-  std::shared_ptr<FrameSums> sums() const override {
-    std::shared_ptr<FrameWork> work;
-    {
-      const std::lock_guard lock(mutex_);
-      work = framesInFlight_.empty() ? finished_.state.work : framesInFlight_.front().state.work;
-    }
-    return work ? work->sums() : nullptr;
-  }
-
-  void start() override {
-    if (unsent_.empty()) unsent_.push_back(std::make_shared<Commit>());
-    FrameInFlight flight;
-    flight.epoch = epoch_ + unsent_.size();
-    flight.begun = steadySeconds();
-    {
-      const std::lock_guard lock(mutex_);
-      framesInFlight_.push_back(flight);
-    }
-    postCommits(true);
-  }
-
-  void wait() override {
-    std::unique_lock lock(mutex_);
-    if (framesInFlight_.empty()) return;
-    changed_.wait(lock, [this] { return framesInFlight_.front().state.over || !broken_.empty(); });
-    finished_ = std::move(framesInFlight_.front());
-    framesInFlight_.pop_front();
-    const std::string broken = broken_;
-    lock.unlock();
-    if (!finished_.state.over) throw ClusterError(broken);
-    post([this, epoch = finished_.epoch](double) { master_->forget(epoch); });
-    const Master::FrameState& state = finished_.state;
-    if (state.failure.empty()) return;
-    if (state.missing) throw ClusterError(state.failure);
-    if (state.sumsWrong) throw SumsError(state.failure);
-    throw std::runtime_error(state.failure);
-  }
-
-  void cancel() override {
-    Epoch last = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      if (framesInFlight_.empty()) return;
-      last = framesInFlight_.back().epoch;
-    }
-    post([this, last](double now) { master_->cancel(last, now); });
-  }
-
-  float progress() const override {
-    const std::lock_guard lock(mutex_);
-    if (framesInFlight_.empty()) return 1;
-    const Master::FrameState& state = framesInFlight_.front().state;
-    if (state.over || !broken_.empty()) return 1; // wait() returns at once
-    return state.work ? state.work->progress() : 0;
-  }
-
-  bool snapshot(RTenum channel, std::span<float> out) const override {
-    std::shared_ptr<FrameWork> work;
-    {
-      const std::lock_guard lock(mutex_);
-      if (!framesInFlight_.empty()) work = framesInFlight_.front().state.work;
-    }
-    return work && work->snapshot(channel, out);
-  }
-
-  bool read(RTenum channel, std::span<float> out) const override {
-    return finished_.state.work && finished_.state.work->film().read(channel, out);
-  }
-
-  void stats(RTstats& s) const override {
-    if (const Master::FrameState& state = finished_.state; state.work) {
-      s = state.prepared.stats; // scene statistics
-      s.time.render = finished_.ended - finished_.begun;
-      s.transport.chosen = state.prepared.frame.transport;
-      state.work->describe(s);
-    } else {
-      core_->ask([&](Backend& backend) { backend.stats(s); });
-    }
-    s.time.commit = commitSeconds_;
-    const std::lock_guard lock(mutex_);
-    s.cluster = totals_.cluster;
-    s.machine.threads = totals_.threads;
-  }
-
-  std::vector<RTworker> workers() const override {
-    // The network thread may be inside the application's log callback.
-    const std::lock_guard lock(mutex_);
-    return workers_;
-  }
+  void apply(std::shared_ptr<const Commit> commit) override;
+  bool keepSums(const SumsRequest& request) override;
+  std::shared_ptr<FrameSums> sums() const override;
+  void start() override;
+  void wait() override;
+  void cancel() override;
+  float progress() const override;
+  bool snapshot(RTenum channel, std::span<float> out) const override;
+  bool read(RTenum channel, std::span<float> out) const override;
+  void stats(RTstats& s) const override;
+  std::vector<RTworker> workers() const override;
 
   Queries* queries() override { return this; }
 
@@ -199,82 +106,31 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   };
 
   // Posts the commits to the network thread. If `frame`, the last one starts a frame.
-  void postCommits(bool frame) {
-    KeepSums kept{keep_.keep, identity_, frame ? std::exchange(keep_.from, nullptr) : nullptr};
-    kept.identity.world = keep_.scene.world;
-    kept.identity.view = keep_.scene.view;
-    while (!unsent_.empty()) {
-      const bool last = unsent_.size() == 1;
-      post([this, epoch = ++epoch_, commit = std::move(unsent_.front()), render = frame && last,
-            kept](double now) { master_->commit(epoch, commit, render, now, kept); });
-      unsent_.pop_front();
-    }
-  }
+  void postCommits(bool frame);
 
   // Queries: the local worker answers them.
-  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override {
-    ask([&](Queries& local) { local.castRays(rays, hits); });
-  }
-  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override {
-    ask([&](Queries& local) { local.occludedRays(rays, occluded); });
-  }
-  bool pick(double x, double y, RThit& hit) override {
-    bool seen = false;
-    ask([&](Queries& local) { seen = local.pick(x, y, hit); });
-    return seen;
-  }
-  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override {
-    ask([&](Queries& local) { local.countHits(rays, counts); });
-  }
+  void castRays(std::span<const RTray> rays, std::span<RThit> hits) override;
+  void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) override;
+  bool pick(double x, double y, RThit& hit) override;
+  void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override;
   void listHits(std::span<const RTray> rays, std::span<const size_t> first,
-                std::span<RThit> hits) override {
-    ask([&](Queries& local) { local.listHits(rays, first, hits); });
-  }
+                std::span<RThit> hits) override;
   void closestPoints(std::span<const float> points, float radius,
-                     std::span<RTclosest> closest) override {
-    ask([&](Queries& local) { local.closestPoints(points, radius, closest); });
-  }
-  void castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
-    ask([&](Queries& local) { local.castDouble(rays, hits); });
-  }
-  void occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
-    ask([&](Queries& local) { local.occludeDouble(rays, occluded); });
-  }
-  void countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
-    ask([&](Queries& local) { local.countDouble(rays, counts); });
-  }
+                     std::span<RTclosest> closest) override;
+  void castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) override;
+  void occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override;
+  void countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
   void listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
-                  std::span<RThitd> hits) override {
-    ask([&](Queries& local) { local.listDouble(rays, first, hits); });
-  }
+                  std::span<RThitd> hits) override;
   void closestDouble(std::span<const double> points, double radius,
-                     std::span<RThitd> closest) override {
-    ask([&](Queries& local) { local.closestDouble(points, radius, closest); });
-  }
+                     std::span<RThitd> closest) override;
 
   // Asks about the last committed scene. The local worker has it once all earlier frames are
   // finished.
-  void ask(const std::function<void(Queries&)>& question) {
-    postCommits(false);
-    for (;;) {
-      if (call([this](double) { return master_->sendSceneToLocal(); })) break;
-      std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, std::chrono::milliseconds(20)); // perhaps a frame has ended
-    }
-    core_->ask([&](Backend& backend) { question(*backend.queries()); });
-  }
+  void ask(const std::function<void(Queries&)>& question);
 
   // [any] Runs a function on the network thread.
-  void post(std::function<void(double)> command) const {
-    bool first = false;
-    {
-      const std::lock_guard lock(commandMutex_);
-      if (closed_) return;
-      first = commands_.empty();
-      commands_.push_back(std::move(command));
-    }
-    if (first) wire_->wake();
-  }
+  void post(std::function<void(double)> command) const;
 
   // Returns the result of a function that runs on the network thread.
   template <class F> auto call(const F& function) const -> decltype(function(0.0)) {
@@ -296,112 +152,20 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   }
 
   // WorkerSink, called on the local worker's threads.
-  void ready(Epoch epoch, const Prepared& prepared) override {
-    post([this, epoch, prepared](double now) { master_->localReady(epoch, prepared, now); });
-  }
-  void failed(Epoch epoch, const std::string& why) override {
-    post([this, epoch, why](double now) { master_->localFailed(epoch, why, now); });
-  }
-  void done(Epoch epoch, const LeasedJob& job, JobResult&& result) override {
-    post([this, epoch, job, result = std::make_shared<JobResult>(std::move(result))](double now) {
-      master_->localDone(epoch, job, std::move(*result), now);
-    });
-  }
+  void ready(Epoch epoch, const Prepared& prepared) override;
+  void failed(Epoch epoch, const std::string& why) override;
+  void done(Epoch epoch, const LeasedJob& job, JobResult&& result) override;
 
-  void run() noexcept {
-    try {
-      while (!stop_) {
-        runCommands();
-        const double next = master_->advance(steadySeconds());
-        publish();
-        receiveMessages(std::clamp(next - steadySeconds(), 0.0, 0.1));
-        master_->busy(steadySeconds() - waited_);
-        waited_ = steadySeconds();
-      }
-    } catch (const std::exception& e) {
-      const std::lock_guard lock(mutex_);
-      broken_ = std::string("the cluster has failed: ") + e.what();
-    }
-    std::vector<std::function<void(double)>> left;
-    {
-      const std::lock_guard lock(commandMutex_);
-      closed_ = true;
-      left.swap(commands_);
-    }
-    left.clear(); // threads that wait for a command get an exception
-    changed_.notify_all();
-  }
+  void run() noexcept;
 
-  TaskThreads::Task taskFor(std::function<void()> heavy, std::function<void(double)> then) {
-    return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
-      heavy();
-      post(std::move(then));
-    };
-  }
-
-  void runCommands() {
-    std::vector<std::function<void(double)>> commands;
-    {
-      const std::lock_guard lock(commandMutex_);
-      commands.swap(commands_);
-    }
-    for (auto& command : commands) command(steadySeconds());
-    mergers_.post(results_);
-  }
+  TaskThreads::Task taskFor(std::function<void()> heavy, std::function<void(double)> then);
+  void runCommands();
 
   // Handles the messages that have arrived and those that follow at once.
-  void receiveMessages(double seconds) {
-    constexpr int most = 256; // messages before jobs are handed out
-    // Results per batch for the merging threads: waking a thread for each one would take longer.
-    constexpr size_t together = 16;
-    for (int i = 0; i < most; i++) {
-      if (results_.size() >= together) mergers_.post(results_);
-      const double asked = steadySeconds();
-      Event event = wire_->receive(i == 0 ? seconds : 0);
-      const double now = steadySeconds();
-      if (i == 0) waited_ += now - asked;
-      switch (event.kind) {
-      case Event::Kind::nothing:
-      case Event::Kind::woken: return mergers_.post(results_);
-      case Event::Kind::joined: master_->joined(event.peer, event.text, now); break;
-      case Event::Kind::message: master_->message(event.peer, std::move(event.frames), now); break;
-      case Event::Kind::left: master_->left(event.peer, event.text, now); break;
-      case Event::Kind::refused:
-        if (log_) log_(2, ("cluster: " + event.text).c_str(), logUser_);
-        break;
-      }
-    }
-    mergers_.post(results_);
-  }
+  void receiveMessages(double seconds);
 
   // Publishes the state of the frames in flight to the threads that poll or wait.
-  void publish() {
-    constexpr double often = 0.1; // seconds between counts while no frame ends
-    bool ended = false;
-    std::vector<std::shared_ptr<FrameWork>> works;
-    {
-      const std::lock_guard lock(mutex_);
-      for (FrameInFlight& flight : framesInFlight_) {
-        if (flight.state.over) continue;
-        flight.state = master_->frame(flight.epoch);
-        if (!flight.state.over) continue;
-        flight.ended = steadySeconds();
-        ended = true;
-        if (flight.state.work) works.push_back(flight.state.work);
-      }
-      if (const double now = steadySeconds(); ended || now > totalsAt_ + often) {
-        totals_ = master_->totals();
-        workers_ = master_->workers();
-        totalsAt_ = now;
-      }
-    }
-    if (log_)
-      for (const auto& work : works) {
-        const RayCounters counters = work->counters();
-        counters.faults.report(log_, logUser_, counters.camera);
-      }
-    if (ended) changed_.notify_all();
-  }
+  void publish();
 
   RTlogCallback log_;
   void* logUser_;
@@ -437,6 +201,304 @@ class ClusterBackend final : public Backend, private Queries, private WorkerSink
   TaskThreads background_, mergers_{mergersOf(availableThreads())};
   std::thread thread_;
 };
+
+ClusterBackend::~ClusterBackend() {
+  cancel();
+  post([this](double) { stop_ = true; });
+  thread_.join();
+}
+
+void ClusterBackend::apply(std::shared_ptr<const Commit> commit) {
+  const double begin = steadySeconds();
+  unsent_.push_back(std::move(commit));
+  commitSeconds_ = steadySeconds() - begin;
+}
+
+bool ClusterBackend::keepSums(const SumsRequest& request) {
+  keep_ = request;
+  return true;
+}
+
+std::shared_ptr<FrameSums> ClusterBackend::sums() const {
+  std::shared_ptr<FrameWork> work;
+  {
+    const std::lock_guard lock(mutex_);
+    work = framesInFlight_.empty() ? finished_.state.work : framesInFlight_.front().state.work;
+  }
+  return work ? work->sums() : nullptr;
+}
+
+void ClusterBackend::start() {
+  if (unsent_.empty()) unsent_.push_back(std::make_shared<Commit>());
+  FrameInFlight flight;
+  flight.epoch = epoch_ + unsent_.size();
+  flight.begun = steadySeconds();
+  {
+    const std::lock_guard lock(mutex_);
+    framesInFlight_.push_back(flight);
+  }
+  postCommits(true);
+}
+
+void ClusterBackend::wait() {
+  std::unique_lock lock(mutex_);
+  if (framesInFlight_.empty()) return;
+  changed_.wait(lock, [this] { return framesInFlight_.front().state.over || !broken_.empty(); });
+  finished_ = std::move(framesInFlight_.front());
+  framesInFlight_.pop_front();
+  const std::string broken = broken_;
+  lock.unlock();
+  if (!finished_.state.over) throw ClusterError(broken);
+  post([this, epoch = finished_.epoch](double) { master_->forget(epoch); });
+  const Master::FrameState& state = finished_.state;
+  if (state.failure.empty()) return;
+  if (state.missing) throw ClusterError(state.failure);
+  if (state.sumsWrong) throw SumsError(state.failure);
+  throw std::runtime_error(state.failure);
+}
+
+void ClusterBackend::cancel() {
+  Epoch last = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (framesInFlight_.empty()) return;
+    last = framesInFlight_.back().epoch;
+  }
+  post([this, last](double now) { master_->cancel(last, now); });
+}
+
+float ClusterBackend::progress() const {
+  const std::lock_guard lock(mutex_);
+  if (framesInFlight_.empty()) return 1;
+  const Master::FrameState& state = framesInFlight_.front().state;
+  if (state.over || !broken_.empty()) return 1; // wait() returns at once
+  return state.work ? state.work->progress() : 0;
+}
+
+bool ClusterBackend::snapshot(RTenum channel, std::span<float> out) const {
+  std::shared_ptr<FrameWork> work;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!framesInFlight_.empty()) work = framesInFlight_.front().state.work;
+  }
+  return work && work->snapshot(channel, out);
+}
+
+bool ClusterBackend::read(RTenum channel, std::span<float> out) const {
+  return finished_.state.work && finished_.state.work->film().read(channel, out);
+}
+
+void ClusterBackend::stats(RTstats& s) const {
+  if (const Master::FrameState& state = finished_.state; state.work) {
+    s = state.prepared.stats; // scene statistics
+    s.time.render = finished_.ended - finished_.begun;
+    s.transport.chosen = state.prepared.frame.transport;
+    state.work->describe(s);
+  } else {
+    core_->ask([&](Backend& backend) { backend.stats(s); });
+  }
+  s.time.commit = commitSeconds_;
+  const std::lock_guard lock(mutex_);
+  s.cluster = totals_.cluster;
+  s.machine.threads = totals_.threads;
+}
+
+std::vector<RTworker> ClusterBackend::workers() const {
+  // The network thread may be inside the application's log callback.
+  const std::lock_guard lock(mutex_);
+  return workers_;
+}
+
+void ClusterBackend::postCommits(bool frame) {
+  KeepSums kept{keep_.keep, identity_, frame ? std::exchange(keep_.from, nullptr) : nullptr};
+  kept.identity.world = keep_.scene.world;
+  kept.identity.view = keep_.scene.view;
+  while (!unsent_.empty()) {
+    const bool last = unsent_.size() == 1;
+    post([this, epoch = ++epoch_, commit = std::move(unsent_.front()), render = frame && last,
+          kept](double now) { master_->commit(epoch, commit, render, now, kept); });
+    unsent_.pop_front();
+  }
+}
+
+void ClusterBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+  ask([&](Queries& local) { local.castRays(rays, hits); });
+}
+
+void ClusterBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {
+  ask([&](Queries& local) { local.occludedRays(rays, occluded); });
+}
+
+bool ClusterBackend::pick(double x, double y, RThit& hit) {
+  bool seen = false;
+  ask([&](Queries& local) { seen = local.pick(x, y, hit); });
+  return seen;
+}
+
+void ClusterBackend::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
+  ask([&](Queries& local) { local.countHits(rays, counts); });
+}
+
+void ClusterBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first,
+                              std::span<RThit> hits) {
+  ask([&](Queries& local) { local.listHits(rays, first, hits); });
+}
+
+void ClusterBackend::closestPoints(std::span<const float> points, float radius,
+                                   std::span<RTclosest> closest) {
+  ask([&](Queries& local) { local.closestPoints(points, radius, closest); });
+}
+
+void ClusterBackend::castDouble(std::span<const RTrayd> rays, std::span<RThitd> hits) {
+  ask([&](Queries& local) { local.castDouble(rays, hits); });
+}
+
+void ClusterBackend::occludeDouble(std::span<const RTrayd> rays, std::span<uint8_t> occluded) {
+  ask([&](Queries& local) { local.occludeDouble(rays, occluded); });
+}
+
+void ClusterBackend::countDouble(std::span<const RTrayd> rays, std::span<uint32_t> counts) {
+  ask([&](Queries& local) { local.countDouble(rays, counts); });
+}
+
+void ClusterBackend::listDouble(std::span<const RTrayd> rays, std::span<const size_t> first,
+                                std::span<RThitd> hits) {
+  ask([&](Queries& local) { local.listDouble(rays, first, hits); });
+}
+
+void ClusterBackend::closestDouble(std::span<const double> points, double radius,
+                                   std::span<RThitd> closest) {
+  ask([&](Queries& local) { local.closestDouble(points, radius, closest); });
+}
+
+void ClusterBackend::ask(const std::function<void(Queries&)>& question) {
+  postCommits(false);
+  for (;;) {
+    if (call([this](double) { return master_->sendSceneToLocal(); })) break;
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(20)); // perhaps a frame has ended
+  }
+  core_->ask([&](Backend& backend) { question(*backend.queries()); });
+}
+
+void ClusterBackend::post(std::function<void(double)> command) const {
+  bool first = false;
+  {
+    const std::lock_guard lock(commandMutex_);
+    if (closed_) return;
+    first = commands_.empty();
+    commands_.push_back(std::move(command));
+  }
+  if (first) wire_->wake();
+}
+
+void ClusterBackend::ready(Epoch epoch, const Prepared& prepared) {
+  post([this, epoch, prepared](double now) { master_->localReady(epoch, prepared, now); });
+}
+
+void ClusterBackend::failed(Epoch epoch, const std::string& why) {
+  post([this, epoch, why](double now) { master_->localFailed(epoch, why, now); });
+}
+
+void ClusterBackend::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
+  post([this, epoch, job, result = std::make_shared<JobResult>(std::move(result))](double now) {
+    master_->localDone(epoch, job, std::move(*result), now);
+  });
+}
+
+void ClusterBackend::run() noexcept {
+  try {
+    while (!stop_) {
+      runCommands();
+      const double next = master_->advance(steadySeconds());
+      publish();
+      receiveMessages(std::clamp(next - steadySeconds(), 0.0, 0.1));
+      master_->busy(steadySeconds() - waited_);
+      waited_ = steadySeconds();
+    }
+  } catch (const std::exception& e) {
+    const std::lock_guard lock(mutex_);
+    broken_ = std::string("the cluster has failed: ") + e.what();
+  }
+  std::vector<std::function<void(double)>> left;
+  {
+    const std::lock_guard lock(commandMutex_);
+    closed_ = true;
+    left.swap(commands_);
+  }
+  left.clear(); // threads that wait for a command get an exception
+  changed_.notify_all();
+}
+
+TaskThreads::Task ClusterBackend::taskFor(std::function<void()> heavy,
+                                          std::function<void(double)> then) {
+  return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
+    heavy();
+    post(std::move(then));
+  };
+}
+
+void ClusterBackend::runCommands() {
+  std::vector<std::function<void(double)>> commands;
+  {
+    const std::lock_guard lock(commandMutex_);
+    commands.swap(commands_);
+  }
+  for (auto& command : commands) command(steadySeconds());
+  mergers_.post(results_);
+}
+
+void ClusterBackend::receiveMessages(double seconds) {
+  constexpr int most = 256; // messages before jobs are handed out
+  // Results per batch for the merging threads: waking a thread for each one would take longer.
+  constexpr size_t together = 16;
+  for (int i = 0; i < most; i++) {
+    if (results_.size() >= together) mergers_.post(results_);
+    const double asked = steadySeconds();
+    Event event = wire_->receive(i == 0 ? seconds : 0);
+    const double now = steadySeconds();
+    if (i == 0) waited_ += now - asked;
+    switch (event.kind) {
+    case Event::Kind::nothing:
+    case Event::Kind::woken: return mergers_.post(results_);
+    case Event::Kind::joined: master_->joined(event.peer, event.text, now); break;
+    case Event::Kind::message: master_->message(event.peer, std::move(event.frames), now); break;
+    case Event::Kind::left: master_->left(event.peer, event.text, now); break;
+    case Event::Kind::refused:
+      if (log_) log_(2, ("cluster: " + event.text).c_str(), logUser_);
+      break;
+    }
+  }
+  mergers_.post(results_);
+}
+
+void ClusterBackend::publish() {
+  constexpr double often = 0.1; // seconds between counts while no frame ends
+  bool ended = false;
+  std::vector<std::shared_ptr<FrameWork>> works;
+  {
+    const std::lock_guard lock(mutex_);
+    for (FrameInFlight& flight : framesInFlight_) {
+      if (flight.state.over) continue;
+      flight.state = master_->frame(flight.epoch);
+      if (!flight.state.over) continue;
+      flight.ended = steadySeconds();
+      ended = true;
+      if (flight.state.work) works.push_back(flight.state.work);
+    }
+    if (const double now = steadySeconds(); ended || now > totalsAt_ + often) {
+      totals_ = master_->totals();
+      workers_ = master_->workers();
+      totalsAt_ = now;
+    }
+  }
+  if (log_)
+    for (const auto& work : works) {
+      const RayCounters counters = work->counters();
+      counters.faults.report(log_, logUser_, counters.camera);
+    }
+  if (ended) changed_.notify_all();
+}
 
 } // namespace
 
