@@ -26,16 +26,6 @@ const OptionInfo* optionCalled(std::string_view word) {
 
 namespace {
 
-// If several jobs are asked for, the first of the table is done.
-constexpr JobInfo jobs[] = {
-    {Job::help, false, false},        {Job::version, false, false},
-    {Job::serve, false, true},        {Job::listKeys, false, false},
-    {Job::listShaders, true, false},  {Job::listEngines, true, false},
-    {Job::listFeatures, true, false}, {Job::listNodes, true, false},
-    {Job::explain, true, true},       {Job::listViewpoints, true, true},
-    {Job::info, true, true},
-};
-
 std::string longName(const OptionInfo& option) {
   std::string_view names = option.names;
   return std::string(
@@ -102,12 +92,12 @@ constexpr int previewSamples = 4, measureSamples = 4096;
 
 // Counts the inspections that are asked for.
 int inspectionsOf(const Options& o) {
-  return int(std::count_if(std::begin(jobs), std::end(jobs),
+  return int(std::count_if(std::begin(jobTable), std::end(jobTable),
                            [&](const JobInfo& info) { return info.inspects && o.has(info.job); }));
 }
 
 const JobInfo* Options::job() const {
-  for (const JobInfo& info : vv::jobs)
+  for (const JobInfo& info : jobTable)
     if (has(info.job)) return &info;
   return nullptr;
 }
@@ -118,13 +108,13 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
-// `vv serve` and `vv merge` are commands without dashes; worlds of these names are ./serve,
-// ./merge.
-bool isCommand(int argc, char** argv, std::string_view name) {
-  return argc > 1 && std::string_view(argv[1]) == name;
+// Returns the job of a command without dashes, `vv serve` or `vv merge`; null for other command
+// lines. Worlds of these names are ./serve, ./merge.
+const JobInfo* commandOf(int argc, char** argv) {
+  for (const JobInfo& info : jobTable)
+    if (info.name[0] != '-' && argc > 1 && std::string_view(argv[1]) == info.name) return &info;
+  return nullptr;
 }
-bool servesPage(int argc, char** argv) { return isCommand(argc, argv, "serve"); }
-bool mergesSums(int argc, char** argv) { return isCommand(argc, argv, "merge"); }
 
 // Tells whether the word after an option is its value.
 bool takesNext(std::string_view word) {
@@ -158,7 +148,7 @@ void readMerge(Options& options, const std::vector<std::string>& files,
 std::vector<std::string> withOptionalArguments(int argc, char** argv,
                                                std::vector<std::string>& files) {
   std::vector<std::string> out;
-  for (int i = servesPage(argc, argv) || mergesSums(argc, argv) ? 2 : 1; i < argc; ++i) {
+  for (int i = commandOf(argc, argv) ? 2 : 1; i < argc; ++i) {
     const bool isValue = !out.empty() && takesNext(out.back());
     if (!isValue && std::string_view(argv[i]) == "--") {
       files.assign(argv + i + 1, argv + argc);
@@ -215,12 +205,13 @@ Options readCommandLine(int argc, char** argv) {
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
   inputs.insert(inputs.end(), files.begin(), files.end());
-  const bool merges = mergesSums(argc, argv);
+  const JobInfo* const command = commandOf(argc, argv);
+  if (command) options.jobs.push_back(command->job);
+  const bool merges = options.has(Job::merge);
   if (inputs.size() > 1 && !merges) throw UsageError(secondFileHint(inputs[0], inputs[1]));
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty() && !merges) options.input = inputs[0];
-  if (servesPage(argc, argv)) options.jobs.push_back(Job::serve);
   std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];

@@ -31,25 +31,41 @@ struct Output {
   const char* option() const { return raw ? "--raw" : "-o"; }
 };
 
-// A job that is done instead of making a picture or opening the window: it prints something, or
-// serves a page.
+// A job that is done instead of making a picture or opening the window: it prints something, adds
+// pictures, or serves a page. If several are asked for, the first of these is done.
 enum class Job : uint8_t {
   help,
   version,
+  merge,
   serve,
   listKeys,
+  info,
+  explain,
+  listNodes,
+  listViewpoints,
   listShaders,
   listEngines,
-  listFeatures,
-  listNodes,
-  explain,
-  listViewpoints,
-  info
+  listFeatures
 };
 struct JobInfo {
   Job job;
-  bool inspects;   // the job prints facts, as JSON with --json; only one such job can be asked for
-  bool needsWorld; // the job needs a FILE
+  const char* name; // the option, or the command without dashes, that asks for the job
+  bool inspects;    // the job prints facts, as JSON with --json; only one such job can be asked for
+  bool needsWorld;  // the job needs a FILE
+};
+inline constexpr JobInfo jobTable[] = {
+    {Job::help, "--help", false, false},
+    {Job::version, "--version", false, false},
+    {Job::merge, "merge", false, false},
+    {Job::serve, "serve", false, true},
+    {Job::listKeys, "--list-keys", false, false},
+    {Job::info, "--info", true, true},
+    {Job::explain, "--explain", true, true},
+    {Job::listNodes, "--list-nodes", true, false},
+    {Job::listViewpoints, "--list-viewpoints", true, true},
+    {Job::listShaders, "--list-shaders", true, false},
+    {Job::listEngines, "--list-engines", true, false},
+    {Job::listFeatures, "--list-features", true, false},
 };
 // Where `vv serve` shows its page.
 struct ServeOptions {
@@ -112,7 +128,7 @@ struct Options {
   double resumeEvery = 60;        // seconds between two writes of that file
   bool sums = false;              // EXR files get the sums of their pictures
   SeedRange seeds;                // the first one is also in render.quality
-  std::vector<std::string> merge; // files whose sums are added (vv merge); empty: none
+  std::vector<std::string> merge; // files whose sums are added (vv merge)
   bool denoise = false;           // files and films of -o hold denoised pictures
   std::string poseFile;           // the file of --pose; empty: none
   bool posed = false;             // view.lookAt is that of --pose
@@ -129,8 +145,8 @@ struct Options {
   bool keepsSums() const { return !resume.empty() || sums || seeds.count() > 1; }
   bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
-    return merge.empty() && !makesPictures() && !check && write.empty() &&
-           (!job() || !job()->inspects) && !has(Job::listKeys) && !has(Job::serve);
+    return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
+           !has(Job::merge) && !has(Job::serve) && !has(Job::listKeys);
   }
   // Tells whether the world runs and somebody looks at it, in the window or on a page.
   bool showsWorld() const { return opensWindow() || has(Job::serve); }

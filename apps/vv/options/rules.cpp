@@ -32,11 +32,29 @@ bool showsOnePicture(const Options& o) { return !o.severalViews() && !o.isSequen
 // A combination of options that cannot be used, and the message for it.
 struct Rule {
   bool (*broken)(const Options& options);
-  const char* message;
+  std::string message;
 };
 
+// Returns "a, b or c".
+std::string joined(const std::vector<std::string_view>& words, std::string_view last) {
+  std::string all;
+  for (size_t i = 0; i < words.size(); ++i)
+    all += (i == 0                 ? ""
+            : i + 1 < words.size() ? ", "
+                                   : fmt::format(" {} ", last)) +
+           std::string(words[i]);
+  return all;
+}
+
+std::vector<std::string_view> inspections() {
+  std::vector<std::string_view> names;
+  for (const JobInfo& info : jobTable)
+    if (info.inspects) names.emplace_back(info.name);
+  return names;
+}
+
 // The first broken rule is reported.
-constexpr Rule rules[] = {
+const Rule rules[] = {
     {[](const Options& o) { return !o.viewpoint.empty() && (o.view.lookAt || o.view.fit); },
      "--viewpoint cannot be used with --camera, --pose or --fit, which choose another view"},
     {[](const Options& o) { return o.posed && o.view.fit; },
@@ -68,11 +86,9 @@ constexpr Rule rules[] = {
      "only one of --quiet and --verbose can be used"},
     {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
     {[](const Options& o) { return o.json && inspectionsOf(o) == 0; },
-     "--json needs --info, --explain, --list-nodes, --list-viewpoints, --list-shaders, "
-     "--list-engines or --list-features"},
+     "--json needs " + joined(inspections(), "or")},
     {[](const Options& o) { return inspectionsOf(o) > 1; },
-     "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders, "
-     "--list-engines and --list-features can be used"},
+     fmt::format("only one of {} can be used", joined(inspections(), "and"))},
     // sequences of pictures
     {[](const Options& o) { return o.frames && o.time; },
      "only one of --time and --frames can be used"},
@@ -204,7 +220,7 @@ constexpr Rule rules[] = {
      "--from"},
     {[](const Options& o) {
        const JobInfo* job = o.job();
-       return o.input.empty() && o.merge.empty() && !o.opensWindow() && (!job || job->needsWorld);
+       return o.input.empty() && !o.opensWindow() && (!job || job->needsWorld);
      },
      "a world (a .wrl file, or - for standard input) was expected; vv --help tells more"},
 };
