@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include "habits.h"
 #include "libpicture/denoiser.h"
 #include "nearest.h"
+#include "option_info.h"
 #include "presets.h"
 #include "rules.h"
 
@@ -24,13 +26,13 @@ const OptionInfo* optionCalled(std::string_view word) {
   return nullptr;
 }
 
-namespace {
-
 std::string longName(const OptionInfo& option) {
   std::string_view names = option.names;
   return std::string(
       names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
 }
+
+namespace {
 
 // Returns the name that all messages use: -o, -D, --size.
 std::string shownName(const OptionInfo& option) {
@@ -40,13 +42,12 @@ std::string shownName(const OptionInfo& option) {
 
 void apply(const Setting& setting, Options& options) {
   const OptionInfo& option = *setting.option;
+  options.given.push_back(&option);
   try {
     if (!setting.where.empty())
       applyConfined(setting, options);
-    else if (option.apply)
-      option.apply(options, setting.value);
     else
-      options.render.quality.set(option.quality, readQuality(option.quality, setting.value));
+      applyValue(option, setting.value, options);
   } catch (const UsageError& error) {
     throw UsageError(setting.where.empty() ? fmt::format("{}: {}", shownName(option), error.what())
                                            : fmt::format("{}: {}: {}", setting.where,
@@ -94,6 +95,18 @@ constexpr int previewSamples = 4, measureSamples = 4096;
 int inspectionsOf(const Options& o) {
   return int(std::count_if(std::begin(jobTable), std::end(jobTable),
                            [&](const JobInfo& info) { return info.inspects && o.has(info.job); }));
+}
+
+bool Options::isGiven(std::string_view name) const {
+  const OptionInfo* const option = optionCalled(name);
+  if (!option) throw std::logic_error(fmt::format("there is no option {}", name));
+  return std::find(given.begin(), given.end(), option) != given.end();
+}
+
+void applyValue(const OptionInfo& option, const std::string& value, Options& options) {
+  if (option.apply) return option.apply(options, value);
+  if (option.quality)
+    options.render.quality.set(option.quality, readQuality(option.quality, value));
 }
 
 const JobInfo* Options::job() const {
@@ -218,7 +231,7 @@ Options readCommandLine(int argc, char** argv) {
     if (added[i]->count() == 0) continue;
     if (!*option.argument) given.push_back({&option, "", {}, {}, false});
     // If an option holds one value, the last one counts.
-    const size_t first = option.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
+    const size_t first = option.traits.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
     for (size_t k = first; k < values[i].size(); ++k)
       given.push_back({&option,
                        option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k],

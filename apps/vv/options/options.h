@@ -21,6 +21,7 @@
 namespace vv {
 
 struct InputScript;
+struct OptionInfo;
 
 struct Output {
   std::string path;                        // "-": standard output
@@ -73,7 +74,6 @@ struct ServeOptions {
   std::string address; // IP address; empty: this machine alone
   // A text, @FILE, or "new" for random characters; empty: as the environment says, or none.
   std::string token;
-  bool given = false; // one of these was given
 };
 
 // Says which seeds a picture is made of.
@@ -134,7 +134,10 @@ struct Options {
   bool posed = false;             // view.lookAt is that of --pose
   bool fitExposure = false;       // render.view.exposure is chosen by the first picture
   std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
+  std::vector<const OptionInfo*> given; // options that the command line or a preset sets
 
+  // Tells whether the command line or a preset sets the option with this name.
+  bool isGiven(std::string_view name) const;
   bool allViewpoints() const { return viewpoint == "all"; }
   // Tells whether each moment has several pictures, whose names say which.
   bool severalViews() const { return allViewpoints() || from.size() > 1; }
@@ -163,24 +166,6 @@ struct Options {
                        [](const Output& output) { return output.film != picture::FilmKind::none; });
   }
 };
-
-// A row of the table. `argument` is empty for a switch, and in brackets if it is optional; a
-// missing optional argument gives the value "". `apply` throws UsageError; if it is null, the value
-// is that of a quality setting.
-struct OptionInfo {
-  const char* names; // "-o,--output"
-  const char* argument;
-  const char* group;
-  std::string text;
-  void (*apply)(Options& options, const std::string& value);
-  bool repeatable = false;
-  RTenum quality = 0; // RT_*; only used without `apply`
-};
-std::span<const OptionInfo> optionTable();
-// Returns the option with this name, such as "-o" or "--size", or null.
-const OptionInfo* optionCalled(std::string_view word);
-std::span<const OptionInfo> qualityOptions(); // the rows of quality settings, group Quality
-std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 
 // Counts the inspections (--info, --list-nodes ...) that are asked for.
 int inspectionsOf(const Options& options);
