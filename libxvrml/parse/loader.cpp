@@ -10,12 +10,9 @@
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 #include "parse/builder.h"
-#include "parse/mesh/mesh_file.h"
+#include "parse/encodings.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
-#include "parse/vrml1/vrml1.h"
-#include "parse/x3d_json.h"
-#include "parse/x3d_xml.h"
 
 namespace xvrml {
 namespace {
@@ -75,44 +72,9 @@ void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
-  const Limits& limits = state_.options.limits;
-  const Encoding encoding = file.head.version.encoding;
-  const bool mayBeBinary =
-      encoding == Encoding::stl || encoding == Encoding::ply || encoding == Encoding::gltf;
-  const std::string_view bytes = mayBeBinary ? source.text() : withoutDosEnd(source.text());
-  switch (encoding) {
-  case Encoding::x3dXml: {
-    const XmlText text(bytes, *name, budget_);
-    Locator locator(text.text(), name, state_.diagnostics);
-    Builder builder(locator, state_, file);
-    X3dElements elements(locator, limits, builder, budget_.get());
-    readX3dXml(text, locator, elements);
-    return builder.finish();
-  }
-  case Encoding::x3dJson: {
-    Locator locator(bytes, name, state_.diagnostics);
-    Builder builder(locator, state_, file);
-    X3dElements elements(locator, limits, builder, budget_.get());
-    readX3dJson(locator, budget_, elements);
-    return builder.finish();
-  }
-  case Encoding::vrml1: {
-    Locator locator(bytes, name, state_.diagnostics);
-    composed_ = true; // its nodes are counted when the world is complete
-    return readVrml1(locator, state_, file, Parser::maximumNesting);
-  }
-  default: break;
-  }
-  Locator locator(bytes, name, state_.diagnostics);
-  std::deque<std::string> names; // DEF names that a reader makes; they outlive the builder
-  Builder builder(locator, state_, file);
-  if (const FileVersion& version = file.head.version; isMesh(version.encoding)) {
-    readMesh(version.encoding, {bytes, *name, locator, builder, state_.options, budget_, names});
-  } else {
-    Lexer lexer(locator);
-    Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();
-  }
-  builder.finish();
+  // Nodes of VRML 1.0 are counted when the world is complete.
+  composed_ = composed_ || file.head.version.encoding == Encoding::vrml1;
+  readWorldFile({source.text(), name, state_, file, budget_});
 }
 
 void Loader::complete(ParsedFile& file, uint64_t depth) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <initializer_list>
 #include <new>
 #include <utility>
 
@@ -16,8 +15,9 @@
 #include <zlib.h>
 
 #include "base/lexer.h"
-#include "parse/mesh/mesh_file.h"
+#include "parse/encodings.h"
 #include "parse/other_formats.h"
+#include "parse/suffix.h"
 #include "parse/utf16.h"
 #include "xvrml/comments.h"
 
@@ -281,44 +281,8 @@ FileVersion x3dVersion(std::string_view line, std::string& complaint) {
   return version;
 }
 
-// Nodes made from a mesh follow X3D 4.0, which has physical materials.
-FileVersion meshVersion(Encoding encoding) { return {encoding, 4, 0}; }
-
-bool endsWithOneOf(std::string_view file, std::initializer_list<std::string_view> suffixes) {
-  return std::any_of(suffixes.begin(), suffixes.end(),
-                     [&](std::string_view suffix) { return file.ends_with(suffix); });
-}
-
 bool namesX3dClassic(std::string_view file) {
   return endsWithOneOf(file, {".x3dv", ".x3dvz", ".x3dv.gz"});
-}
-
-// Returns whether a text is X3D in XML: it begins with an element, and an X3D follows. Texts in
-// UTF-16 have a zero beside each of these characters. The suffix decides where a long comment comes
-// first.
-bool isX3dXml(std::string_view text, std::string_view file) {
-  std::string ascii;
-  for (const char c : text.substr(0, 8192))
-    if (c > 0) ascii += c;
-  const size_t first = ascii.find_first_not_of(" \t\r\n");
-  if (first == ascii.npos || ascii[first] != '<') return false;
-  std::string begin = ascii.substr(first, 14);
-  for (char& c : begin)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  // A page may hold a scene, but it is not well-formed XML.
-  if (begin.starts_with("<html") || begin.starts_with("<!doctype html")) return false;
-  constexpr std::string_view marks[] = {"<X3D", "<x3d", ":X3D", "<!DOCTYPE X3D"};
-  return std::any_of(std::begin(marks), std::end(marks),
-                     [&](std::string_view mark) { return ascii.find(mark) != ascii.npos; }) ||
-         endsWithOneOf(file, {".x3d", ".x3dz", ".x3d.gz"});
-}
-
-// Returns whether a text is X3D in JSON: an object with an X3D in it.
-bool isX3dJson(std::string_view text, std::string_view file) {
-  const size_t first = text.find_first_not_of(" \t\r\n");
-  return first != text.npos && text[first] == '{' &&
-         (text.substr(first, 4096).find("\"X3D\"") != text.npos ||
-          endsWithOneOf(file, {".x3dj", ".x3djz", ".x3dj.gz"}));
 }
 
 } // namespace
@@ -336,15 +300,14 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
   };
   if (!damage_.empty()) diagnostics.warn({file, 0, 0}, damage_);
-  Encoding mesh{};
-  if (!text_.starts_with(exact) && findMeshEncoding(text_, mesh)) return meshVersion(mesh);
+  const EncodingInfo* found = text_.starts_with(exact) ? nullptr : recogniseEncoding(text_, *file);
+  if (found && found->readMesh) return found->version();
   const auto warn = [&](std::string message) {
     diagnostics.warn({file, 1, 1}, std::move(message));
   };
   if (utf16_) warn("this file is in UTF-16; it was read, but its standard asks for UTF-8");
   // XML says that it may begin with a byte-order mark. The version stands in the X3D element.
-  if (isX3dXml(text_, *file)) return {Encoding::x3dXml, 3, 3};
-  if (isX3dJson(text_, *file)) return {Encoding::x3dJson, 3, 3};
+  if (found) return found->version();
   if (byteOrderMark_)
     warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return {};
@@ -390,7 +353,7 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
              : fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
     return x3d ? FileVersion{Encoding::x3dClassic, 3, 3} : FileVersion();
   }
-  if (findMeshSuffix(*file, mesh)) return meshVersion(mesh);
+  if (const EncodingInfo* mesh = meshNamedBy(*file)) return mesh->version();
   if (text_.empty()) refuse(*file, fmt::format("this file is empty: expected '{}'", exact));
   refuse(
       *file,

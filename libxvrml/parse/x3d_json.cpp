@@ -1,12 +1,17 @@
-// x3d_json.cpp: hands the objects of a JSON file to X3dElements. The walk has a stack of its own.
-#include "parse/x3d_json.h"
+// x3d_json.cpp: the reader of X3D in JSON (ISO/IEC 19776-5, as X3DJSONLD writes it): "@name" is an
+// attribute, "-name" holds the child nodes of a field, "#sourceCode" the lines of a Script. Members
+// of an object may have any order. Objects go to X3dElements; the walk has a stack of its own.
+#include "parse/encodings.h"
 
 #include <algorithm>
 #include <deque>
 
 #include <fmt/format.h>
 
+#include "parse/builder.h"
 #include "parse/json_index.h"
+#include "parse/suffix.h"
+#include "parse/x3d_elements.h"
 
 namespace xvrml {
 namespace {
@@ -157,10 +162,23 @@ class Walk {
 
 } // namespace
 
-void readX3dJson(Locator& locator, const BudgetPtr& budget, X3dElements& elements) {
-  const JsonIndex index(locator, budget);
+// Returns whether a text is X3D in JSON: an object with an X3D in it.
+bool isX3dJson(std::string_view text, std::string_view file) {
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != text.npos && text[first] == '{' &&
+         (text.substr(first, 4096).find("\"X3D\"") != text.npos ||
+          endsWithOneOf(file, {".x3dj", ".x3djz", ".x3dj.gz"}));
+}
+
+// Text that is not well-formed ends the file: what stands before is kept.
+void readX3dJson(const WorldFile& file) {
+  Locator locator(file.bytes, file.name, file.state.diagnostics);
+  Builder builder(locator, file.state, file.content);
+  X3dElements elements(locator, file.state.options.limits, builder, file.budget.get());
+  const JsonIndex index(locator, file.budget);
   Walk(locator, index, elements).walk();
   elements.finish();
+  builder.finish();
 }
 
 } // namespace xvrml

@@ -1,6 +1,7 @@
-// x3d_xml.cpp: hands the elements that expat finds to X3dElements, with their places. Attributes
-// are taken from the file's own bytes, except where XML decodes them.
-#include "parse/x3d_xml.h"
+// x3d_xml.cpp: the reader of X3D in XML (ISO/IEC 19776-1): hands the elements that expat finds to
+// X3dElements, with their places. Attributes are taken from the file's own bytes, except where XML
+// decodes them.
+#include "parse/encodings.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,6 +10,11 @@
 
 #include <expat.h>
 #include <fmt/format.h>
+
+#include "parse/builder.h"
+#include "parse/suffix.h"
+#include "parse/x3d_elements.h"
+#include "parse/xml_text.h"
 
 namespace xvrml {
 namespace {
@@ -144,10 +150,36 @@ class Reader {
 
 } // namespace
 
-void readX3dXml(const XmlText& text, Locator& locator, X3dElements& elements) {
+// Returns whether a text is X3D in XML: it begins with an element, and an X3D follows. Texts in
+// UTF-16 have a zero beside each of these characters. The suffix decides where a long comment comes
+// first.
+bool isX3dXml(std::string_view text, std::string_view file) {
+  std::string ascii;
+  for (const char c : text.substr(0, 8192))
+    if (c > 0) ascii += c;
+  const size_t first = ascii.find_first_not_of(" \t\r\n");
+  if (first == ascii.npos || ascii[first] != '<') return false;
+  std::string begin = ascii.substr(first, 14);
+  for (char& c : begin)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  // A page may hold a scene, but it is not well-formed XML.
+  if (begin.starts_with("<html") || begin.starts_with("<!doctype html")) return false;
+  constexpr std::string_view marks[] = {"<X3D", "<x3d", ":X3D", "<!DOCTYPE X3D"};
+  return std::any_of(std::begin(marks), std::end(marks),
+                     [&](std::string_view mark) { return ascii.find(mark) != ascii.npos; }) ||
+         endsWithOneOf(file, {".x3d", ".x3dz", ".x3d.gz"});
+}
+
+// Text that is not well-formed ends the file: what stands before is kept.
+void readX3dXml(const WorldFile& file) {
+  const XmlText text(file.bytes, *file.name, file.budget);
+  Locator locator(text.text(), file.name, file.state.diagnostics);
+  Builder builder(locator, file.state, file.content);
+  X3dElements elements(locator, file.state.options.limits, builder, file.budget.get());
   if (!text.complaint().empty()) locator.warn(text.text().data(), text.complaint());
   Reader(text, locator, elements).read();
   elements.finish();
+  builder.finish();
 }
 
 } // namespace xvrml

@@ -10,7 +10,7 @@
 
 #include "lower_case.h"
 #include "nearest.h"
-#include "options.h"
+#include "option_info.h"
 #include "values.h"
 
 namespace vv {

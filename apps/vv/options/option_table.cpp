@@ -1,7 +1,7 @@
 // option_table.cpp: Defines every option of vv: names, argument, help text and effect. The options
 // of the group Cluster are in cluster_options.cpp, those of quality settings in
 // quality_options.cpp. Longer than 500 lines because it is one table.
-#include "options.h"
+#include "option_info.h"
 
 #include <algorithm>
 #include <chrono>
@@ -148,15 +148,20 @@ void setCompat(Options& o, const std::string& value) {
   }
 }
 
+std::string channelNames(std::string_view separator) {
+  std::string names;
+  for (const picture::Channel& channel : picture::channelTable())
+    names += std::string(names.empty() ? "" : separator) + std::string(channel.name);
+  return names;
+}
+
 void setChannels(Options& o, const std::string& value) {
   uint32_t channels = 0;
-  std::string known;
-  for (const picture::Channel& channel : picture::channelTable())
-    known += (known.empty() ? "" : ",") + std::string(channel.name);
   for (std::string_view name : split(value, ',')) {
     const picture::Channel* channel = picture::findChannel(name);
     if (!channel)
-      throw UsageError(fmt::format("one of the channels {} was expected, not \"{}\"", known, name));
+      throw UsageError(
+          fmt::format("one of the channels {} was expected, not \"{}\"", channelNames(","), name));
     channels |= channel->bit;
   }
   o.render.channels = channels | RT_RGBA;
@@ -219,6 +224,14 @@ void setFrom(Options& o, const std::string& value) {
   }
 }
 
+using enum Trait;
+
+template <Job job> void ask(Options& o, const std::string&) { o.jobs.push_back(job); }
+
+constexpr const char *sequenceNeeds =
+                         "--frames and --turntable need -o (or --check, to test a world)",
+                     *pageNeeds = "--port, --address and --token need {}";
+
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
      "Write the picture to FILE. The suffix selects the format (" + picture::formatSuffixes() +
@@ -227,30 +240,30 @@ const OptionInfo table[] = {
          "OpenEXR file, and so on). In a sequence, {frame:4} in the name is replaced by the frame "
          "number with four digits; the suffix mp4, webm or gif makes a film. May be given several "
          "times.",
-     addOutput, true},
+     addOutput, with(repeatable)},
     {"--size", "WxH", "Picture",
      "Width and height of pictures and of the window, in pixels (default 800x600).",
-     [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
+     [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); },
+     with(inPresets)},
     {"--crop", "X,Y,WxH", "Picture",
      "Make only this part of the picture of --size: W x H pixels, the first X from the left and Y "
      "from the top. They have the same bytes as in the whole picture and take their share of its "
      "time. An EXR file says where the part lies (dataWindow in displayWindow).",
      [](Options& o, const std::string& v) { o.render.crop = readCrop(v); }},
     {"--channels", "LIST", "Picture",
-     "Channels of an EXR file, separated by commas: rgba, z, normal, albedo, position, id, "
-     "samples, variance, error, trust, motion, reflection, cryptomatte (default rgba). error is "
-     "the half-width of the 95 % interval of each colour, trust is 1 where that interval can be "
-     "trusted. With error or trust, other sample positions are used. motion is how far what is "
-     "seen has moved since the picture before. reflection is the part of the light that coats "
-     "reflect: varnish, lacquer, highlights. cryptomatte tells which Shapes cover a pixel, and "
-     "how much of it each.",
-     setChannels},
+     "Channels of an EXR file, separated by commas: " + channelNames(", ") +
+         " (default rgba). error is the half-width of the 95 % interval of each colour, trust is 1 "
+         "where that interval can be trusted. With error or trust, other sample positions are "
+         "used. motion is how far what is seen has moved since the picture before. reflection is "
+         "the part of the light that coats reflect: varnish, lacquer, highlights. cryptomatte "
+         "tells which Shapes cover a pixel, and how much of it each.",
+     setChannels, with(inPresets)},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light is added linearly, and " +
          picture::formatsWith(&picture::Format::appliesCurve) +
          " files get the sRGB curve. vrml97: the standard's lighting equation is applied to the "
          "numbers as written, without any curve.",
-     setColour},
+     setColour, with(inPresets, inViews)},
     {"--false-colour,--false-color", "auto|MAX", "Picture",
      "Show luminance in colours, with isolines and a legend in cd/m2, in the window and in " +
          picture::formatsWith(&picture::Format::appliesCurve) +
@@ -259,34 +272,53 @@ const OptionInfo table[] = {
          "wider than --size by the legend.",
      [](Options& o, const std::string& v) {
        o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
-     }},
+     },
+     with(inPresets)},
     {"--exposure", "EV|auto", "Picture",
      "Brighten " + picture::formatsWith(&picture::Format::appliesCurve) +
          " files and films by EV stops: light is multiplied by 2 to the power of EV (default 0). "
          "auto fits it to the luminances of the first picture of the run, for all its pictures, "
          "and "
          "says what it chose. EXR files keep the light as it is and record the value.",
-     setExposure},
+     setExposure, with(inPresets)},
     {"--view", "standard|filmic|agx", "Picture",
      "How light beyond the range of screens is shown in the same files. standard (default): cut "
      "off at 1. filmic: Hable's curve, dark ends and bright ends of each colour are compressed. "
      "agx: bright colours turn white gradually, as on film, and hues stay.",
-     setView},
+     setView, with(inPresets)},
     {"--background", "none|COLOUR|FILE", "Picture",
      "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
          picture::formatsWith(&picture::Format::keepsAlpha) +
          " files are transparent there. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to "
          "1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
-     setBackground},
+     setBackground, with(inPresets, inViews, Purpose::surroundings)},
     {"--denoise", "", "Picture",
      "Remove the noise of the pictures of -o by Open Image Denoise 2, which must be installed "
      "(--list-features). Such pictures are biased and have no error bars; files and --stats say "
      "so.",
-     setDenoise},
+     setDenoise,
+     with(inPresets,
+          excludes("--error", "--denoise changes colours by an amount that is not known: it cannot "
+                              "be used with {}, which keeps a promise"),
+          excludes("--audit", "{} tests error bars, and denoised pictures have none: it cannot be "
+                              "used with --denoise"),
+          excludes("--compare", "{} needs pictures without bias: it cannot be used with --denoise"),
+          excludes("--measure", "{} needs readings without bias: it cannot be used with --denoise"),
+          excludes("--false-colour",
+                   "{} shows luminance to be read: it cannot be used with --denoise"),
+          excludes("--sums", "{} are those of the samples, and a denoised picture is not their "
+                             "mean: they cannot be used with --denoise"),
+          excludes("--crop", "--denoise looks around each pixel, so that a part would differ from "
+                             "the whole picture: it cannot be used with {}"),
+          excludes("--preview",
+                   "only one of {}, which smooths pictures itself, and --denoise can be used"))},
     {"--raw", "FILE", "Picture",
      "With --denoise: also write the picture as it was rendered, in the formats and with the names "
      "that -o knows. May be given several times.",
-     addRaw, true},
+     addRaw,
+     with(repeatable,
+          needs("--denoise",
+                "--raw needs {}: without it, -o writes the picture as it was rendered"))},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint, given by DEF name, description or number from 0 (default: the "
      "first). all makes a picture from each viewpoint; its name replaces {viewpoint} in the file "
@@ -294,12 +326,16 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "a name, a number or all");
        o.viewpoint = v;
-     }},
+     },
+     with(inPresets, Purpose::view,
+          excludes("--camera,--pose,--fit",
+                   "--viewpoint cannot be used with {}, which choose another view"))},
     {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View",
      "Look from a position at a target. The up vector defaults to the axis of --up, or else to "
      "0,1,0. With --fit only the direction is used: the camera moves back until the whole world is "
      "in the picture.",
-     [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
+     [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); },
+     with(inPresets, Purpose::view)},
     {"--pose", "MATRIX|FILE", "View",
      "Look from a camera with this pose: a 4x4 matrix from camera to world, 16 numbers row by row "
      "with commas, or a file of them. The camera's x points to the right, y down and z forward, as "
@@ -309,41 +345,51 @@ const OptionInfo table[] = {
        if (o.view.lookAt) throw UsageError("only one of --camera and --pose can be used");
        o.view.lookAt = readPose(v, o.poseFile);
        o.posed = true;
-     }},
+     },
+     with(Purpose::view,
+          excludes("--fit", "--pose says where the camera stands: it cannot be used with {}"))},
     {"--intrinsics", "FX,FY,CX,CY", "View",
      "Focal lengths and principal point in pixels of --size, as OpenCV has them (the centre of the "
      "first pixel is at 0,0), instead of an angle of view: a point at x,y,z of an OpenCV camera "
      "appears at FX x/z + CX, FY y/z + CY. The camera stands as --pose, --camera, --viewpoint or "
      "the first Viewpoint says.",
-     [](Options& o, const std::string& v) { o.view.intrinsics = readIntrinsics(v); }},
+     [](Options& o, const std::string& v) { o.view.intrinsics = readIntrinsics(v); },
+     with(Purpose::angle,
+          excludes("--fit,--fov,--camera-shader",
+                   "--intrinsics says what the camera sees: it cannot be used with {}"))},
     {"--fit", "", "View",
      "Place the camera so that the whole world is in the picture. It looks in the direction of "
      "--camera or of the first Viewpoint. A world without Viewpoint is shown in three-quarter "
      "view, and there --fit is the default.",
-     [](Options& o, const std::string&) { o.view.fit = true; }},
+     [](Options& o, const std::string&) { o.view.fit = true; }, with(inPresets, Purpose::view)},
     {"--from", "LIST", "View",
      "Show the whole model from these sides: three-quarter, above, front, back, left, right, top, "
      "bottom. Several, separated by commas, make a picture each; the side replaces {viewpoint} in "
      "the file name, or is added before the suffix. A turntable begins at the first one, and the "
      "others get one picture.",
-     setFrom},
+     setFrom,
+     with(inPresets, Purpose::view,
+          excludes("--viewpoint,--camera,--pose,--fit",
+                   "--from cannot be used with --viewpoint, --camera or --fit, which choose "
+                   "another view"))},
     {"--up", "x|y|z|-x|-y|-z", "View",
      "The axis that points up, for the three-quarter view, --turntable and --camera. Default: y in "
      "a world with a Viewpoint; otherwise it is guessed from the program that wrote the file and "
      "from the shape of the model (--info gives the reason).",
-     [](Options& o, const std::string& v) { o.view.up = readAxis(v); }},
+     [](Options& o, const std::string& v) { o.view.up = readAxis(v); }, with(inPresets)},
     {"--fov", "DEGREES", "View",
      "Angle of view across the shorter side of the picture, instead of the viewpoint's.",
-     [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
+     [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); },
+     with(inPresets, Purpose::angle)},
     {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
      "Use a camera shader at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama "
      "(everything around).",
-     [](Options& o, const std::string& v) { o.cameraShader = v; }},
+     [](Options& o, const std::string& v) { o.cameraShader = v; }, with(inPresets, inViews)},
     {"--headlight", "on|off|auto", "View",
      "Turn the light at the camera on or off. auto (default) follows NavigationInfo; a world "
      "without Viewpoint, NavigationInfo and lights gets three soft lights around the camera "
      "instead.",
-     setHeadlight},
+     setHeadlight, with(inPresets)},
     {"--time", "SECONDS", "Time",
      "Show the world this many seconds after it was loaded (default 0). World time advances in "
      "steps of 1/fps, as in a sequence; the clock of the machine is not used.",
@@ -359,20 +405,31 @@ const OptionInfo table[] = {
      "Make a picture of each frame from A to B. Frame N shows the world at N/fps seconds and is "
      "the same picture in every sequence that contains it. Its number replaces {frame:4} in the "
      "file name, or is added before the suffix.",
-     [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
+     [](Options& o, const std::string& v) { o.frames = readFrames(v); },
+     with(excludes("--time", "only one of {} and --frames can be used"),
+          excludes("--turntable", "only one of --frames and {} can be used"),
+          needs("-o,--check", sequenceNeeds))},
     {"--fps", "F", "Time",
      "Frames per second of sequences, films and the window, and steps per second of the world's "
      "clock (default 30).",
-     [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
+     [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); },
+     with(inPresets)},
     {"--turntable", "N", "Time",
      "Make N pictures, once around the world's centre, beginning at the chosen view. The camera "
      "turns about the axis that points up (--up).",
-     [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
+     [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); },
+     with(inPresets, needs("-o,--check", sequenceNeeds))},
     {"--preview", "", "Time",
      "Rebuild each picture of a sequence from few samples and from the pictures before it, as the "
      "window does while something moves. Such pictures are biased and have no error bars, and "
      "their files say so. They depend on the frame that the sequence begins with.",
-     [](Options& o, const std::string&) { o.render.preview = true; }},
+     [](Options& o, const std::string&) { o.render.preview = true; },
+     with(excludes("--viewpoint all,several sides of --from",
+                   "--preview follows one view: it cannot be used with {}"),
+          excludes("--error,--time-limit", "--preview takes --spp samples of each picture and "
+                                           "knows no errors: it cannot be used with {}"),
+          excludes("--compare",
+                   "{} needs pictures without bias: it cannot be used with --preview"))},
     {"--denoiser", "auto|own|oidn", "Time",
      "What smooths the light of previews: own, the filter that vv always has; oidn, beside it "
      "Open Image Denoise 2, which must be installed; auto (default), in windows and on pages that "
@@ -387,22 +444,26 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.inputScript = v;
-     }},
+     },
+     with(needs("-o,the window"),
+          excludes("--audit,--turntable,--viewpoint all,several sides of --from"))},
     {"--record-input", "FILE", "Time",
      "Write the mouse and keyboard input of the window to FILE, for --input. Its time begins at 0.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.recordInput = v;
-     }},
+     },
+     with(needs("the window", "--record-input needs {} and cannot be used with --input"),
+          excludes("--input", "--record-input needs the window and cannot be used with {}"),
+          excludes("--control", "--record-input holds what the user does, not the commands of "
+                                "programs: it cannot be used with {}"))},
     {"--preset", "studio|product|technical|pcb|NAME", "Change",
      "Use the options of a preset, unless others are given: studio (soft light, grey backdrop), "
      "product (the same before white), technical (the light of the camera, white), pcb (a "
-     "studio for KiCad's boards, with materials by their names), or one of a vv.toml.",
-     [](Options&, const std::string&) {}},
+     "studio for KiCad's boards, with materials by their names), or one of a vv.toml."},
     {"--config", "FILE|none", "Change",
      "Take presets and options from FILE, or from none, instead of the vv.toml beside the world "
-     "(docs/presets.md).",
-     [](Options&, const std::string&) {}},
+     "(docs/presets.md)."},
     {"-D,--define", "DEF.FIELD=VALUE", "Change",
      "Set a field of a node with a DEF name before rendering. The value is written as in a VRML "
      "file (Door.translation='0 0 2', Sign.string='\"open\"'). May be given several times.",
@@ -413,17 +474,17 @@ const OptionInfo table[] = {
          throw UsageError(fmt::format("DEF.FIELD=VALUE was expected, not \"{}\"", v));
        o.definitions.push_back(v);
      },
-     true},
+     with(repeatable)},
     {"--compat", "LIST", "Change",
      "Follow other browsers instead of the standard. LIST is one or both of: scripts (a Script "
      "without directOutput TRUE may change nodes, as in the browsers of 1997), textures (a colour "
      "texture multiplies diffuseColor, as in X3D). --explain says what they change.",
-     setCompat},
+     setCompat, with(inPresets)},
     {"--exact-shapes", "", "Change",
      "Draw Cylinder and Cone without facets, for lenses, pipes and mirrors. Spheres, ORTQuadric "
      "and "
      "ORTAsphere never have facets.",
-     [](Options& o, const std::string&) { o.render.exactShapes = true; }},
+     [](Options& o, const std::string&) { o.render.exactShapes = true; }, with(inPresets)},
     {"--old-world", "", "Change",
      "Show the world as browsers of the nineties did: the same as --compat scripts,textures "
      "--colour vrml97 --shadows off.",
@@ -431,7 +492,8 @@ const OptionInfo table[] = {
        setCompat(o, "scripts,textures");
        o.render.linear = false;
        o.render.quality.set(RT_SHADOWS, 0);
-     }},
+     },
+     with(inPresets)},
     {"--shader", "SELECTOR=CLASS[:PARAM=VALUE...]|@FILE", "Change",
      "Replace the surface shader of shapes: Ball=Glass:index=1.33, material:PIN-*=Metal. SELECTOR "
      "is a DEF name (of a shape, an appearance, a Material or a group), or material:GLOB, "
@@ -441,7 +503,7 @@ const OptionInfo table[] = {
      "class of a plug-in. The VALUE of a texture is a file name; @FILE as VALUE reads a text from "
      "a file. --shader @FILE reads rules, one a line. May be given several times; the last rule "
      "that selects a shape wins.",
-     addShader, true},
+     addShader, with(repeatable, inPresets)},
     {"--studio", "COLOUR", "Change",
      "Light a model as in a studio: soft boxes that stand where the camera stands, a ground that "
      "catches its shadow, and a backdrop of COLOUR (as for --background), instead of the world's "
@@ -456,7 +518,8 @@ const OptionInfo table[] = {
                                       "from 0 to 1) was expected, not \"{}\"",
                                       v));
        }
-     }},
+     },
+     with(inPresets, Purpose::surroundings)},
     {"--environment", "FILE[:INTENSITY]", "Change",
      "Light the world from all around with a picture of radiance (exr, hdr, pfm), instead of its "
      "Background. The picture is a longitude-latitude map with its middle towards -z; INTENSITY "
@@ -468,7 +531,8 @@ const OptionInfo table[] = {
        if (factor)
          o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
        notEmpty(o.render.environment, "a file name");
-     }},
+     },
+     with(inPresets, Purpose::surroundings)},
     {"--threads", "N", "Quality",
      "Number of render threads; 0 (default) is as many as the process may use. The picture does "
      "not depend on it.",
@@ -499,35 +563,35 @@ const OptionInfo table[] = {
     {"--check", "", "Inspect",
      "Read the world and report every problem, without making a picture. The exit code is 4 if "
      "there is any problem.",
-     [](Options& o, const std::string&) { o.check = true; }},
+     [](Options& o, const std::string&) { o.check = true; },
+     with(excludes("-o", "--check makes no picture: it cannot be used with {}"))},
     {"--strict", "", "Inspect",
      "Stop at any problem of the world, with exit code 4, or 5 if a plug-in or a texture is "
      "missing.",
      [](Options& o, const std::string&) { o.strict = true; }},
     {"--info", "", "Inspect", "Describe the world: nodes, bounds, viewpoints, Scripts, problems.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::info); }},
+     ask<Job::info>},
     {"--list-nodes", "", "Inspect",
      "List the node types with their fields; with a FILE also the prototypes it declares.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::listNodes); }},
+     ask<Job::listNodes>},
     {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::listViewpoints); }},
+     ask<Job::listViewpoints>},
     {"--list-shaders", "", "Inspect",
-     "List the classes of all shader plug-ins with their parameters.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::listShaders); }},
+     "List the classes of all shader plug-ins with their parameters.", ask<Job::listShaders>},
     {"--list-engines", "", "Inspect",
      "List the script engines: the programs they run, whether they need --trust, and the library "
      "they come from.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::listEngines); }},
+     ask<Job::listEngines>},
     {"--list-features", "", "Inspect",
      "List what of vv depends on libraries that need not be there: Open Image Denoise, the window, "
      "films, vv serve, script engines and their sandbox; and how to get what is missing.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::listFeatures); }},
+     ask<Job::listFeatures>},
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::listKeys); }},
+     ask<Job::listKeys>},
     {"--explain", "", "Inspect",
      "Print the light transport algorithm and why it was chosen, and the objects that the world is "
      "rendered as: each with the reason, its triangles, bytes and instances.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::explain); }},
+     ask<Job::explain>},
     {"--json", "", "Inspect", "Print --info, --explain and the lists as JSON.",
      [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect",
@@ -539,7 +603,8 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.stats = v;
-     }},
+     },
+     with(needs("-o"))},
     {"--compare", "REF.exr", "Inspect",
      "Compare the picture with another one of the same size and view: RMSE, relMSE, bias with its "
      "interval, largest difference. -o is not needed.",
@@ -557,7 +622,10 @@ const OptionInfo table[] = {
                                       "not \"{}\"",
                                       v));
        o.measure = v;
-     }},
+     },
+     with(excludes("--studio", "--measure reads the light of the world: it cannot be used with {}"),
+          excludes("--audit,--frames,--turntable,--viewpoint all,--watch,--record",
+                   "--measure reads the sensors of one moment: it cannot be used with {}"))},
     {"--audit", "[N]", "Inspect",
      "Test the error bars: render the picture with N seeds (default 20) and once with many more "
      "samples (or read the picture of --compare instead), and print how many of the 95 % intervals "
@@ -565,11 +633,15 @@ const OptionInfo table[] = {
      "intervals.",
      [](Options& o, const std::string& v) {
        o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000));
-     }},
+     },
+     with(excludes("--frames,--turntable", "--audit tests one picture: it cannot be used with {}"),
+          excludes("--time-limit",
+                   "--audit cannot be used with {}, whose pictures differ from run to run"),
+          excludes("--crop", "--audit tests whole pictures: it cannot be used with {}"))},
     {"--watch", "", "Inspect",
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
      "interrupted. In the window, reload the world and keep the view.",
-     [](Options& o, const std::string&) { o.watch = true; }},
+     [](Options& o, const std::string&) { o.watch = true; }, with(needs("-o,the window,vv serve"))},
     {"--write", "FILE", "Write",
      "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, every other "
      "name VRML97. FORMAT:FILE (wrl, x3dv, x3d) selects it for any name; - is standard output.",
@@ -578,29 +650,30 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.render.record = v;
-     }},
+     },
+     with(needs("-o"),
+          excludes("--viewpoint all,--frames,--turntable",
+                   "--record writes the scene of one picture: it cannot be used with {}"))},
     {"--port", "N", "Page",
      "Port of the page of vv serve (default 8097); 0 is any free one. The address is printed.",
-     [](Options& o, const std::string& v) {
-       o.serve.port = int(readInteger(v, 0, 65535));
-       o.serve.given = true;
-     }},
+     [](Options& o, const std::string& v) { o.serve.port = int(readInteger(v, 0, 65535)); },
+     with(needs("vv serve", pageNeeds))},
     {"--address", "ADDRESS", "Page",
      "IP address of this machine at which vv serve can be reached, such as 0.0.0.0 for all. "
      "Without it the page can be opened on this machine alone. Needs --token (docs/serve.md).",
      [](Options& o, const std::string& v) {
        notEmpty(v, "an IP address");
        o.serve.address = v;
-       o.serve.given = true;
-     }},
+     },
+     with(needs("vv serve", pageNeeds))},
     {"--token", "new|@FILE|TOKEN", "Page",
      "Show the page only to those who have a token: new makes one and prints it, @FILE reads it "
      "from a file. $VV_TOKEN is used without this option.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "new, @FILE or a token");
        o.serve.token = v;
-       o.serve.given = true;
-     }},
+     },
+     with(needs("vv serve", pageNeeds))},
     {"--control", "ADDRESS", "Control",
      "Let programs read and change the world, by lines of JSON at this address: 127.0.0.1:PORT, "
      ":PORT, unix:PATH, or with --key FILE also HOST:PORT for other machines; port 0 is any free "
@@ -608,14 +681,18 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "an address");
        o.control = v;
-     }},
+     },
+     with(needs("the window",
+                "--control cannot be used with -o, vv serve, --check, --write or a list"))},
     {"--no-window", "", "Control",
      "With --control: run the world without a window; pictures are rendered when a program asks.",
-     [](Options& o, const std::string&) { o.noWindow = true; }},
+     [](Options& o, const std::string&) { o.noWindow = true; },
+     with(needs("--control", "--no-window needs {} (-o makes a picture without a window)"),
+          excludes("--input,--record-input,--watch"))},
     {"--limit", "NAME=VALUE", "Trust",
      "Raise or lower a limit on the memory and work that a world may need; a wrong NAME prints the "
      "list of limits. May be given several times.",
-     setLimit, true},
+     setLimit, with(repeatable)},
     {"--allow-absolute", "", "Trust", "Follow absolute paths and file: URLs named inside a world.",
      [](Options& o, const std::string&) { o.load.allowAbsolute = true; }},
     {"--shader-path", "DIR[:DIR...]", "Trust", "Folders to search first for shader plug-ins.",
@@ -643,11 +720,11 @@ const OptionInfo table[] = {
        o.nodePath = v;
      }},
     {"-q,--quiet", "", "Talk", "Print errors only.",
-     [](Options& o, const std::string&) { o.quiet = true; }},
+     [](Options& o, const std::string&) { o.quiet = true; },
+     with(excludes("--verbose", "only one of --quiet and {} can be used"))},
     {"-v,--verbose", "", "Talk", "Print every warning, and times.",
      [](Options& o, const std::string&) { o.verbose = true; }},
-    {"--version", "", "Talk", "Print the version.",
-     [](Options& o, const std::string&) { o.jobs.push_back(Job::version); }},
+    {"--version", "", "Talk", "Print the version.", ask<Job::version>},
     {"-h,--help", "[TOPIC]", "Talk",
      "Print a short help; with a topic, an option or all, what there is to say about it.",
      [](Options& o, const std::string& v) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include "habits.h"
 #include "libpicture/denoiser.h"
 #include "nearest.h"
+#include "option_info.h"
 #include "presets.h"
 #include "rules.h"
 
@@ -24,23 +26,13 @@ const OptionInfo* optionCalled(std::string_view word) {
   return nullptr;
 }
 
-namespace {
-
-// If several jobs are asked for, the first of the table is done.
-constexpr JobInfo jobs[] = {
-    {Job::help, false, false},        {Job::version, false, false},
-    {Job::serve, false, true},        {Job::listKeys, false, false},
-    {Job::listShaders, true, false},  {Job::listEngines, true, false},
-    {Job::listFeatures, true, false}, {Job::listNodes, true, false},
-    {Job::explain, true, true},       {Job::listViewpoints, true, true},
-    {Job::info, true, true},
-};
-
 std::string longName(const OptionInfo& option) {
   std::string_view names = option.names;
   return std::string(
       names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
 }
+
+namespace {
 
 // Returns the name that all messages use: -o, -D, --size.
 std::string shownName(const OptionInfo& option) {
@@ -50,13 +42,12 @@ std::string shownName(const OptionInfo& option) {
 
 void apply(const Setting& setting, Options& options) {
   const OptionInfo& option = *setting.option;
+  options.given.push_back(&option);
   try {
     if (!setting.where.empty())
       applyConfined(setting, options);
-    else if (option.apply)
-      option.apply(options, setting.value);
     else
-      options.render.quality.set(option.quality, readQuality(option.quality, setting.value));
+      applyValue(option, setting.value, options);
   } catch (const UsageError& error) {
     throw UsageError(setting.where.empty() ? fmt::format("{}: {}", shownName(option), error.what())
                                            : fmt::format("{}: {}: {}", setting.where,
@@ -102,12 +93,24 @@ constexpr int previewSamples = 4, measureSamples = 4096;
 
 // Counts the inspections that are asked for.
 int inspectionsOf(const Options& o) {
-  return int(std::count_if(std::begin(jobs), std::end(jobs),
+  return int(std::count_if(std::begin(jobTable), std::end(jobTable),
                            [&](const JobInfo& info) { return info.inspects && o.has(info.job); }));
 }
 
+bool Options::isGiven(std::string_view name) const {
+  const OptionInfo* const option = optionCalled(name);
+  if (!option) throw std::logic_error(fmt::format("there is no option {}", name));
+  return std::find(given.begin(), given.end(), option) != given.end();
+}
+
+void applyValue(const OptionInfo& option, const std::string& value, Options& options) {
+  if (option.apply) return option.apply(options, value);
+  if (option.quality)
+    options.render.quality.set(option.quality, readQuality(option.quality, value));
+}
+
 const JobInfo* Options::job() const {
-  for (const JobInfo& info : vv::jobs)
+  for (const JobInfo& info : jobTable)
     if (has(info.job)) return &info;
   return nullptr;
 }
@@ -118,13 +121,13 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
-// `vv serve` and `vv merge` are commands without dashes; worlds of these names are ./serve,
-// ./merge.
-bool isCommand(int argc, char** argv, std::string_view name) {
-  return argc > 1 && std::string_view(argv[1]) == name;
+// Returns the job of a command without dashes, `vv serve` or `vv merge`; null for other command
+// lines. Worlds of these names are ./serve, ./merge.
+const JobInfo* commandOf(int argc, char** argv) {
+  for (const JobInfo& info : jobTable)
+    if (info.name[0] != '-' && argc > 1 && std::string_view(argv[1]) == info.name) return &info;
+  return nullptr;
 }
-bool servesPage(int argc, char** argv) { return isCommand(argc, argv, "serve"); }
-bool mergesSums(int argc, char** argv) { return isCommand(argc, argv, "merge"); }
 
 // Tells whether the word after an option is its value.
 bool takesNext(std::string_view word) {
@@ -158,7 +161,7 @@ void readMerge(Options& options, const std::vector<std::string>& files,
 std::vector<std::string> withOptionalArguments(int argc, char** argv,
                                                std::vector<std::string>& files) {
   std::vector<std::string> out;
-  for (int i = servesPage(argc, argv) || mergesSums(argc, argv) ? 2 : 1; i < argc; ++i) {
+  for (int i = commandOf(argc, argv) ? 2 : 1; i < argc; ++i) {
     const bool isValue = !out.empty() && takesNext(out.back());
     if (!isValue && std::string_view(argv[i]) == "--") {
       files.assign(argv + i + 1, argv + argc);
@@ -215,19 +218,20 @@ Options readCommandLine(int argc, char** argv) {
   for (const std::string& extra : app.remaining())
     if (extra.size() > 1 && extra[0] == '-') throw UsageError(unknownOption(extra));
   inputs.insert(inputs.end(), files.begin(), files.end());
-  const bool merges = mergesSums(argc, argv);
+  const JobInfo* const command = commandOf(argc, argv);
+  if (command) options.jobs.push_back(command->job);
+  const bool merges = options.has(Job::merge);
   if (inputs.size() > 1 && !merges) throw UsageError(secondFileHint(inputs[0], inputs[1]));
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty() && !merges) options.input = inputs[0];
-  if (servesPage(argc, argv)) options.jobs.push_back(Job::serve);
   std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
     if (added[i]->count() == 0) continue;
     if (!*option.argument) given.push_back({&option, "", {}, {}, false});
     // If an option holds one value, the last one counts.
-    const size_t first = option.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
+    const size_t first = option.traits.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
     for (size_t k = first; k < values[i].size(); ++k)
       given.push_back({&option,
                        option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k],

@@ -21,6 +21,7 @@
 namespace vv {
 
 struct InputScript;
+struct OptionInfo;
 
 struct Output {
   std::string path;                        // "-": standard output
@@ -31,25 +32,41 @@ struct Output {
   const char* option() const { return raw ? "--raw" : "-o"; }
 };
 
-// A job that is done instead of making a picture or opening the window: it prints something, or
-// serves a page.
+// A job that is done instead of making a picture or opening the window: it prints something, adds
+// pictures, or serves a page. If several are asked for, the first of these is done.
 enum class Job : uint8_t {
   help,
   version,
+  merge,
   serve,
   listKeys,
+  info,
+  explain,
+  listNodes,
+  listViewpoints,
   listShaders,
   listEngines,
-  listFeatures,
-  listNodes,
-  explain,
-  listViewpoints,
-  info
+  listFeatures
 };
 struct JobInfo {
   Job job;
-  bool inspects;   // the job prints facts, as JSON with --json; only one such job can be asked for
-  bool needsWorld; // the job needs a FILE
+  const char* name; // the option, or the command without dashes, that asks for the job
+  bool inspects;    // the job prints facts, as JSON with --json; only one such job can be asked for
+  bool needsWorld;  // the job needs a FILE
+};
+inline constexpr JobInfo jobTable[] = {
+    {Job::help, "--help", false, false},
+    {Job::version, "--version", false, false},
+    {Job::merge, "merge", false, false},
+    {Job::serve, "serve", false, true},
+    {Job::listKeys, "--list-keys", false, false},
+    {Job::info, "--info", true, true},
+    {Job::explain, "--explain", true, true},
+    {Job::listNodes, "--list-nodes", true, false},
+    {Job::listViewpoints, "--list-viewpoints", true, true},
+    {Job::listShaders, "--list-shaders", true, false},
+    {Job::listEngines, "--list-engines", true, false},
+    {Job::listFeatures, "--list-features", true, false},
 };
 // Where `vv serve` shows its page.
 struct ServeOptions {
@@ -57,7 +74,6 @@ struct ServeOptions {
   std::string address; // IP address; empty: this machine alone
   // A text, @FILE, or "new" for random characters; empty: as the environment says, or none.
   std::string token;
-  bool given = false; // one of these was given
 };
 
 // Says which seeds a picture is made of.
@@ -112,13 +128,16 @@ struct Options {
   double resumeEvery = 60;        // seconds between two writes of that file
   bool sums = false;              // EXR files get the sums of their pictures
   SeedRange seeds;                // the first one is also in render.quality
-  std::vector<std::string> merge; // files whose sums are added (vv merge); empty: none
+  std::vector<std::string> merge; // files whose sums are added (vv merge)
   bool denoise = false;           // files and films of -o hold denoised pictures
   std::string poseFile;           // the file of --pose; empty: none
   bool posed = false;             // view.lookAt is that of --pose
   bool fitExposure = false;       // render.view.exposure is chosen by the first picture
   std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
+  std::vector<const OptionInfo*> given; // options that the command line or a preset sets
 
+  // Tells whether the command line or a preset sets the option with this name.
+  bool isGiven(std::string_view name) const;
   bool allViewpoints() const { return viewpoint == "all"; }
   // Tells whether each moment has several pictures, whose names say which.
   bool severalViews() const { return allViewpoints() || from.size() > 1; }
@@ -129,8 +148,8 @@ struct Options {
   bool keepsSums() const { return !resume.empty() || sums || seeds.count() > 1; }
   bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
-    return merge.empty() && !makesPictures() && !check && write.empty() &&
-           (!job() || !job()->inspects) && !has(Job::listKeys) && !has(Job::serve);
+    return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
+           !has(Job::merge) && !has(Job::serve) && !has(Job::listKeys);
   }
   // Tells whether the world runs and somebody looks at it, in the window or on a page.
   bool showsWorld() const { return opensWindow() || has(Job::serve); }
@@ -147,24 +166,6 @@ struct Options {
                        [](const Output& output) { return output.film != picture::FilmKind::none; });
   }
 };
-
-// A row of the table. `argument` is empty for a switch, and in brackets if it is optional; a
-// missing optional argument gives the value "". `apply` throws UsageError; if it is null, the value
-// is that of a quality setting.
-struct OptionInfo {
-  const char* names; // "-o,--output"
-  const char* argument;
-  const char* group;
-  std::string text;
-  void (*apply)(Options& options, const std::string& value);
-  bool repeatable = false;
-  RTenum quality = 0; // RT_*; only used without `apply`
-};
-std::span<const OptionInfo> optionTable();
-// Returns the option with this name, such as "-o" or "--size", or null.
-const OptionInfo* optionCalled(std::string_view word);
-std::span<const OptionInfo> qualityOptions(); // the rows of quality settings, group Quality
-std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 
 // Counts the inspections (--info, --list-nodes ...) that are asked for.
 int inspectionsOf(const Options& options);

@@ -1,7 +1,6 @@
 #include "options/presets.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,6 +16,7 @@
 #include "libpicture/built_in_presets.h"
 #include "lower_case.h"
 #include "nearest.h"
+#include "options/option_info.h"
 #include "process/messages.h"
 
 namespace vv {
@@ -30,23 +30,6 @@ constexpr int mostPixels = 4096;      // the longest side of a picture
 constexpr int mostSamples = 4096;
 constexpr int mostTurns = 360;     // pictures of a turntable
 constexpr size_t mostPresets = 16; // that build on each other
-
-// The options that a preset may set. A vv.toml may come with a world from somewhere: no option here
-// writes files, reads files elsewhere, runs programs, trusts a world more, or uses the network.
-constexpr std::string_view allowed[] = {
-    "size",       "channels",  "colour",    "color",         "false-colour", "false-color",
-    "background", "viewpoint", "camera",    "from",          "fit",          "up",
-    "fov",        "headlight", "fps",       "camera-shader", "turntable",    "compat",
-    "old-world",  "shader",    "studio",    "exact-shapes",  "environment",  "spp",
-    "error",      "depth",     "transport", "energy-cut",    "clamp",        "shadows",
-    "denoise",    "exposure",  "view"};
-
-// Options for the same purpose: one in a later layer replaces the others of earlier layers.
-constexpr std::array<std::string_view, 5> groups[] = {
-    {"viewpoint", "camera", "from", "fit", "pose"},
-    {"environment", "studio", "background", "", ""},
-    {"spp", "error", "time-limit", "", ""},
-    {"fov", "intrinsics", "", "", ""}};
 
 struct Document {
   std::string name;   // for messages
@@ -91,13 +74,6 @@ Document readFile(const std::string& path) {
   return parse(text, path, folder.empty() ? "." : folder);
 }
 
-// Returns the long name of an option without its dashes, the first one if it has two.
-std::string plainName(const OptionInfo& option) {
-  const std::string_view names = option.names;
-  const size_t begin = names.find("--") + 2;
-  return std::string(names.substr(begin, names.find(',', begin) - begin));
-}
-
 bool hasName(const OptionInfo& option, std::string_view name) {
   for (const std::string_view one : split(option.names, ','))
     if (one.starts_with("--") && one.substr(2) == name) return true;
@@ -107,13 +83,16 @@ bool hasName(const OptionInfo& option, std::string_view name) {
 const OptionInfo& optionNamed(const Document& document, const toml::key& key,
                               const toml::node& node) {
   const std::string_view name = key.str();
-  if (std::find(std::begin(allowed), std::end(allowed), name) != std::end(allowed))
-    for (const OptionInfo& option : optionTable())
-      if (hasName(option, name)) return option;
   std::vector<std::string> known;
   bool exists = false;
-  for (const OptionInfo& option : optionTable()) exists |= hasName(option, name);
-  for (const std::string_view one : allowed) known.emplace_back(one);
+  for (const OptionInfo& option : optionTable()) {
+    const bool isNamed = hasName(option, name);
+    exists |= isNamed;
+    if (!option.traits.inPresets) continue;
+    if (isNamed) return option;
+    for (const std::string_view one : split(option.names, ','))
+      if (one.starts_with("--")) known.emplace_back(one.substr(2));
+  }
   const std::string near = nearest::word(std::string(name), known);
   const toml::source_position at = key.source().begin;
   const std::string where = at.line > 0 ? fmt::format("{}:{}:{}", document.name, at.line, at.column)
@@ -151,7 +130,7 @@ void addOption(const Document& document, const toml::key& key, const toml::node&
   };
   const auto* list = node.as_array();
   if (!list) return add(node);
-  if (!option.repeatable)
+  if (!option.traits.repeatable)
     refuse(document, node, fmt::format("{} has one value, not a list", key.str()));
   for (const toml::node& one : *list) add(one);
 }
@@ -160,21 +139,14 @@ bool isFor(const OptionInfo& option, std::string_view name) { return hasName(opt
 
 // Tells whether an option replaces another one.
 bool replaces(const Setting& later, const Setting& earlier) {
-  if (later.option == earlier.option) return !later.option->repeatable;
-  for (const auto& group : groups) {
-    const auto in = [&](const OptionInfo& option) {
-      return std::any_of(group.begin(), group.end(), [&](std::string_view name) {
-        return !name.empty() && isFor(option, name);
-      });
-    };
-    if (!in(*later.option) || !in(*earlier.option)) continue;
-    // a studio takes its backdrop from a colour of --background
-    if (!isFor(*later.option, "background") || !isFor(*earlier.option, "studio")) return true;
-    try {
-      return picture::readBackground(later.value).kind != picture::Background::Kind::colour;
-    } catch (const std::invalid_argument&) { return true; }
-  }
-  return false;
+  if (later.option == earlier.option) return !later.option->traits.repeatable;
+  const Purpose purpose = later.option->traits.purpose;
+  if (purpose == Purpose::own || purpose != earlier.option->traits.purpose) return false;
+  // a studio takes its backdrop from a colour of --background
+  if (!isFor(*later.option, "background") || !isFor(*earlier.option, "studio")) return true;
+  try {
+    return picture::readBackground(later.value).kind != picture::Background::Kind::colour;
+  } catch (const std::invalid_argument&) { return true; }
 }
 
 // Puts a layer over those below it. A field of view that was chosen for the sides of `from` goes
@@ -372,7 +344,7 @@ std::vector<Setting> withPresets(std::vector<Setting> given, const std::string& 
 
 void applyConfined(const Setting& setting, Options& options) {
   const OptionInfo& option = *setting.option;
-  const std::string name = plainName(option);
+  const std::string name = longName(option).substr(2);
   if (name == "shader" && setting.value.starts_with('@') && !setting.folder.empty())
     option.apply(options, "@" + inside(setting.folder, setting.value.substr(1)));
   const size_t rules = options.shaders.size();
@@ -387,10 +359,7 @@ void applyConfined(const Setting& setting, Options& options) {
     }
     return;
   }
-  if (option.apply)
-    option.apply(options, setting.value);
-  else
-    options.render.quality.set(option.quality, readQuality(option.quality, setting.value));
+  applyValue(option, setting.value, options);
   if (setting.folder.empty()) return;
   if (name == "environment")
     options.render.environment = inside(setting.folder, options.render.environment);

@@ -1,7 +1,7 @@
 // quality_options.cpp: Makes an option of vv from each row of the library's table of quality
-// settings (rtGetQualityInfo), a part of the table of options (options.h). A few options have words
-// or values of their own.
-#include "options.h"
+// settings (rtGetQualityInfo), a part of the table of options (option_info.h). A few options have
+// words or values of their own.
+#include "option_info.h"
 
 #include <algorithm>
 #include <cctype>
@@ -17,6 +17,8 @@ namespace vv {
 
 namespace {
 
+using enum Trait;
+
 // Holds what vv says about a setting instead of what follows from the library's table.
 struct Wording {
   RTenum quality;
@@ -25,6 +27,7 @@ struct Wording {
   const char* text = nullptr;     // null: the setting's text, range and default
   // Null: any value that the library allows is put into RenderSettings::quality.
   void (*apply)(Options& options, const std::string& value) = nullptr;
+  OptionTraits traits = {};
 };
 
 // The order is that of --help. Settings without a row follow.
@@ -34,29 +37,35 @@ const Wording wordings[] = {
      "after the other).",
      [](Options& o, const std::string& v) {
        o.samples = int(readQuality(RT_SAMPLES_PER_PIXEL, v));
-     }},
+     },
+     with(inPresets, Purpose::precision)},
     {RT_TARGET_ERROR, nullptr, "E|E%",
      "Sample each part of the picture until the average error bar is E of the brightness (for "
      "example 2%), with at most --spp samples per pixel (default here 4096).",
-     [](Options& o, const std::string& v) { o.render.error = readShare(RT_TARGET_ERROR, v); }},
+     [](Options& o, const std::string& v) { o.render.error = readShare(RT_TARGET_ERROR, v); },
+     with(inPresets, Purpose::precision)},
     {RT_TIME_LIMIT, nullptr, "SECONDS",
      "Sample the whole picture in rounds for about this time, with at most --spp samples per pixel "
      "(default here 65536). Such a picture depends on the speed of the machine.",
-     [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
+     [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); },
+     with(Purpose::precision)},
     {RT_MAX_DEPTH, nullptr, nullptr,
      "Maximum number of surfaces that a path may pass through or bounce off, 0 to 10000 (default "
-     "25)."},
-    {RT_TRANSPORT},
+     "25).",
+     nullptr, with(inPresets)},
+    {.quality = RT_TRANSPORT, .traits = with(inPresets)},
     {RT_ENERGY_CUT, nullptr, "E",
      "With whitted, end branches of reflection and refraction that carry less than this share of "
      "the camera ray, 0 to 1 (default 1/4096).",
      [](Options& o, const std::string& v) {
        o.render.quality.set(RT_ENERGY_CUT, readShare(RT_ENERGY_CUT, v));
-     }},
+     },
+     with(inPresets)},
     {RT_CLAMP, nullptr, "RADIANCE",
      "Limit the radiance of each sample. This removes fireflies, but also light; --stats says how "
-     "much (default: no limit)."},
-    {RT_SHADOWS},
+     "much (default: no limit).",
+     nullptr, with(inPresets)},
+    {.quality = RT_SHADOWS, .traits = with(inPresets)},
     {RT_SEED, nullptr, "N|A-B",
      "Choose another set of sample positions (default 0). A-B: add the pictures of the seeds from "
      "A "
@@ -128,7 +137,7 @@ OptionInfo optionOf(const Wording& wording) {
           "Quality",
           wording.text ? wording.text : textOf(info),
           wording.apply,
-          false,
+          wording.traits,
           wording.quality};
 }
 
@@ -143,7 +152,7 @@ std::span<const OptionInfo> qualityOptions() {
                                        [&](const Wording& w) { return w.quality == info.quality; });
       const bool isOffered = std::find(std::begin(withoutOption), std::end(withoutOption),
                                        info.quality) == std::end(withoutOption);
-      if (!isThere && isOffered) rows.push_back(optionOf({info.quality}));
+      if (!isThere && isOffered) rows.push_back(optionOf({.quality = info.quality}));
     }
     return rows;
   }();

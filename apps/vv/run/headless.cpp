@@ -7,12 +7,9 @@
 #include "process/messages.h"
 #include "process/signals.h"
 #include "report/describe.h"
-#include "report/engine_list.h"
 #include "report/exit_code.h"
-#include "report/node_list.h"
 #include "report/problems.h"
 #include "report/progress.h"
-#include "report/report.h"
 #include "report/shader_list.h"
 #include "run/inputs.h"
 #include "run/leave_memory.h"
@@ -36,22 +33,14 @@ constexpr int savingSeconds = 5;
 
 class Headless {
  public:
-  Headless(const Options& options, const std::string& commandLine)
-      : options_(options), commandLine_(commandLine) {
+  Headless(const Options& options, const std::string& commandLine, const Inspection& inspection)
+      : options_(options), commandLine_(commandLine), inspection_(inspection) {
     options_.view.shader = readCameraShader(options_);
   }
 
   int run() {
-    if (options_.has(Job::listShaders)) {
-      writeOut(listShaders(options_.render.shaderPath, options_.json));
-      return exitDone;
-    }
-    if (options_.has(Job::listEngines)) {
-      writeOut(listEngines(options_.running.scriptPath, options_.json));
-      return exitDone;
-    }
-    if (options_.has(Job::listNodes) && options_.input.empty()) {
-      writeOut(listNodes(nullptr, options_.json));
+    if (inspection_.ofProgram && (!inspection_.ofWorld || options_.input.empty())) {
+      writeOut(inspection_.ofProgram(options_));
       return exitDone;
     }
     checkOutputs(options_);
@@ -78,7 +67,7 @@ class Headless {
     }
     if (!options_.write.empty()) writeText(options_.write, written(world));
     if (options_.check) return check();
-    if (options_.job()) inspect(options_.job()->job);
+    if (inspection_.ofWorld) inspect();
     int code = exitDone;
     if (options_.makesPictures()) {
       deferInterrupt(true, unsigned(stuckSeconds(options_.render) + savingSeconds));
@@ -104,19 +93,11 @@ class Headless {
                              options_.writeEncoding);
   }
 
-  picture::RenderSettings withoutPicture() const {
-    picture::RenderSettings settings = options_.render;
-    settings.backend = "null";
-    settings.record.clear();
-    settings.cluster.reset();
-    return settings;
-  }
-
   // Also maps the world, because problems of geometry and textures appear only there; nothing is
   // drawn. With --time or --frames, the world runs up to that time.
   int check() {
     {
-      picture::Renderer renderer(*browser_, withoutPicture());
+      picture::Renderer renderer(*browser_, withoutPicture(options_.render));
       WorldClock clock(*browser_, options_.fps);
       const Timeline timeline(options_);
       for (size_t i = 0; i < timeline.size() && clock.advance(timeline[i].time); ++i)
@@ -131,35 +112,14 @@ class Headless {
     return Problems::any(world) ? exitProblems : exitDone;
   }
 
-  void inspect(Job job) {
+  void inspect() {
     WorldClock(*browser_, options_.fps).advance(options_.time.value_or(0));
-    const xvrml::World& world = browser_->world();
-    if (job == Job::listNodes) return writeOut(listNodes(&world, options_.json));
-    if (job == Job::explain) return explain();
-    picture::Renderer renderer(*browser_, withoutPicture());
-    if (job == Job::listViewpoints)
-      return writeOut(listViewpoints(renderer.viewpoints(), options_.json));
-    const picture::Renderer::Place place = renderer.placeOf(options_.view);
-    const std::string up = picture::axisName(place.up);
-    writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), {up, place.reason},
-                           options_.running.scriptPath, options_.json));
-  }
-
-  // Renders a picture of a single pixel, because the engine chooses the transport when it renders.
-  void explain() {
-    picture::RenderSettings settings = options_.render;
-    settings.record.clear();
-    settings.cluster.reset();
-    settings.width = settings.height = settings.samples = 1;
-    settings.channels = RT_RGBA;
-    settings.error = settings.timeLimit = 0;
-    picture::Renderer renderer(*browser_, settings);
-    const picture::RenderResult result = renderer.render(options_.view);
-    writeOut(explainWorld(options_, browser_->world(), result.stats, renderer.explain()));
+    writeOut(inspection_.ofWorld(options_, *browser_));
   }
 
   Options options_;
   const std::string& commandLine_;
+  const Inspection inspection_;
   Problems problems_{options_};
   std::unique_ptr<xvrml::Browser> browser_;
 };
@@ -172,12 +132,13 @@ int runOnce(Headless& job) {
 }
 
 // Repeats the job whenever a file has changed. Errors are printed, and watching continues.
-int runWatching(const Options& options, const std::string& commandLine) {
+int runWatching(const Options& options, const std::string& commandLine,
+                const Inspection& inspection) {
   deferInterrupt(true);
   Watched watched({options.input});
   for (;;) {
     const timespec begin = Watched::now();
-    Headless job(options, commandLine);
+    Headless job(options, commandLine, inspection);
     runOnce(job);
     watched.add(job.files(), begin);
     watched.add(shaderFiles(options.render.shaderPath), begin);
@@ -188,12 +149,13 @@ int runWatching(const Options& options, const std::string& commandLine) {
 
 } // namespace
 
-int runHeadless(const Options& options, const std::string& commandLine) {
+int runHeadless(const Options& options, const std::string& commandLine,
+                const Inspection& inspection) {
   const size_t builtIn = xvrml::nodeTypes().size();
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
   if (xvrml::nodeTypes().size() > builtIn) freeAllMemory();
-  if (options.watch) return runWatching(options, commandLine);
-  auto job = std::make_shared<Headless>(options, commandLine);
+  if (options.watch) return runWatching(options, commandLine, inspection);
+  auto job = std::make_shared<Headless>(options, commandLine, inspection);
   const int code = runOnce(*job);
   if (job->leavesMemory()) leave(std::move(job));
   return code;

@@ -1,12 +1,13 @@
-// headless.h: Runs every job of vv that needs no window: load, check, list, write and render. [main
-// thread]
+// headless.h: Runs what needs no window: load, check, inspect, write and render. [main thread]
 #pragma once
 
 #include "options/options.h"
+#include "run/inspect.h"
 
 namespace vv {
 
 // Returns an exit code; error messages have been printed.
-int runHeadless(const Options& options, const std::string& commandLine);
+int runHeadless(const Options& options, const std::string& commandLine,
+                const Inspection& inspection);
 
 } // namespace vv

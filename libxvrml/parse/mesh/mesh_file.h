@@ -1,12 +1,11 @@
-// mesh_file.h: the readers of meshes (STL, PLY, OBJ, glTF, OFF) and what they share. A reader turns
-// the bytes of a file into calls of a ParseSink, as the parser of VRML97 does, so that names,
-// limits and messages are those of any world. [the thread that loads]
+// mesh_file.h: what the readers of meshes share (STL, PLY, OBJ, glTF, OFF; parse/encodings.h). A
+// reader turns the bytes of a file into calls of a ParseSink, as the parser of VRML97 does, so that
+// names, limits and messages are those of any world. [the thread that loads]
 #pragma once
 
 #include <deque>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "base/budget.h"
 #include "base/locator.h"
@@ -27,7 +26,7 @@ struct MeshFile {
   std::deque<std::string>& names; // DEF names; they live as long as the sink
 };
 
-// The reason why the rest of a file cannot be read. readMesh() reports it.
+// The reason why the rest of a file cannot be read. Readers throw it.
 struct MeshFault {
   const char* at; // null: the file as a whole
   std::string message;
@@ -58,27 +57,5 @@ class FaultCount {
   uint64_t count_ = 0;
   const char* first_ = nullptr;
 };
-
-// Recognises a mesh by its content: the signatures and grammars of the formats.
-bool isBinaryStl(std::string_view bytes);
-bool isAsciiStl(std::string_view bytes);
-bool isPly(std::string_view bytes);
-bool isObj(std::string_view bytes);
-bool isGltf(std::string_view bytes); // also binary (.glb)
-bool isOff(std::string_view bytes);
-// Finds the encoding of a mesh by its content or by the suffix of its name (also before .gz).
-// Return false if it is no mesh's.
-bool findMeshEncoding(std::string_view bytes, Encoding& encoding);
-bool findMeshSuffix(std::string_view path, Encoding& encoding);
-
-// Reads a mesh. Faults of the file are reported through the locator; what could be read is
-// kept.
-void readMesh(Encoding encoding, const MeshFile& file);
-
-void readStl(const MeshFile& file);
-void readPly(const MeshFile& file);
-void readObj(const MeshFile& file);
-void readGltf(const MeshFile& file);
-void readOff(const MeshFile& file);
 
 } // namespace xvrml

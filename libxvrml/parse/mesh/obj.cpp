@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/encodings.h"
 #include "parse/mesh/bare_shape.h"
 #include "parse/mesh/mesh_file.h"
 #include "parse/mesh/mtl.h"
@@ -479,7 +480,7 @@ void ObjReader::writeVertices() {
 
 // The text begins with vertices or a material library; comments, groups and other values may come
 // before.
-bool isObj(std::string_view bytes) {
+bool isObj(std::string_view bytes, std::string_view) {
   constexpr size_t searched = 1 << 16;
   TextCursor text(bytes.substr(0, searched));
   for (; !text.atEnd(); text.nextLine()) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/encodings.h"
 #include "parse/mesh/bare_shape.h"
 #include "parse/mesh/mesh_file.h"
 #include "parse/mesh/text_cursor.h"
@@ -275,7 +276,7 @@ class OffReader {
 } // namespace
 
 // The first word is the keyword, and the counts follow it. Comments may come before and between.
-bool isOff(std::string_view bytes) {
+bool isOff(std::string_view bytes, std::string_view) {
   constexpr size_t searched = 1 << 16;
   TextCursor text(bytes.substr(0, searched));
   OffHead head;

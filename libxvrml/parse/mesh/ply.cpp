@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/encodings.h"
 #include "parse/mesh/bare_shape.h"
 #include "parse/mesh/mesh_file.h"
 #include "parse/mesh/ply_header.h"

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/encodings.h"
 #include "parse/mesh/text_cursor.h"
 
 namespace xvrml {
@@ -217,7 +218,7 @@ uint64_t plyTypeBytes(PlyType type) {
 
 PlyHeader readPlyHeader(const MeshFile& file) { return HeaderReader(file).read(); }
 
-bool isPly(std::string_view bytes) {
+bool isPly(std::string_view bytes, std::string_view) {
   return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/encodings.h"
 #include "parse/mesh/bare_shape.h"
 #include "parse/mesh/mesh_file.h"
 #include "parse/mesh/node_stream.h"
@@ -264,7 +265,7 @@ void readBinary(const MeshFile& file) {
 
 } // namespace
 
-bool isBinaryStl(std::string_view bytes) {
+bool isBinaryStl(std::string_view bytes, std::string_view) {
   if (bytes.size() < headBytes) return false;
   uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, sizeof count);
@@ -305,7 +306,7 @@ std::string_view beginOf(std::string_view bytes) {
 
 } // namespace
 
-bool isAsciiStl(std::string_view bytes) {
+bool isAsciiStl(std::string_view bytes, std::string_view) {
   const std::string_view begin = beginOf(bytes);
   return beginsAsText(begin) && hasFacetOrEnd(begin);
 }

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "options/options.h"
+#include "options/option_info.h"
 
 namespace vv {
 
@@ -20,19 +20,10 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-const OptionInfo* optionOf(std::string_view name) {
-  for (const OptionInfo& option : optionTable())
-    for (std::string_view one : split(option.names, ','))
-      if (one == name) return &option;
-  return nullptr;
-}
-
 // Tells whether a picture of the same view needs this option.
 bool isKept(const OptionInfo& option) {
-  const std::string_view group = option.group, names = option.names;
-  if (names == "--colour,--color" || names == "--camera-shader" || names == "--background")
-    return true;
-  return group == "Change" || group == "Quality" || group == "Trust";
+  const std::string_view group = option.group;
+  return option.traits.inViews || group == "Change" || group == "Quality" || group == "Trust";
 }
 
 // Returns position, target and up vector. 17 digits reproduce the numbers exactly.
@@ -72,7 +63,7 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
     const std::string& word = arguments[i];
     const size_t equals = word.find('=');
     const OptionInfo* option =
-        optionOf(word.substr(0, word.starts_with("--") ? equals : word.npos));
+        optionCalled(word.substr(0, word.starts_with("--") ? equals : word.npos));
     if (!option) continue;
     const bool takesNext = *option->argument && option->argument[0] != '[' &&
                            !(word.starts_with("--") && equals != word.npos);

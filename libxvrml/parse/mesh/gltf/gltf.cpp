@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "parse/encodings.h"
 #include "parse/mesh/gltf/scene.h"
 #include "parse/mesh/gltf/version1.h"
 #include "parse/source.h"
@@ -106,7 +107,7 @@ void writeHead(const MeshFile& file, const Item& root) {
 
 } // namespace
 
-bool isGltf(std::string_view bytes) {
+bool isGltf(std::string_view bytes, std::string_view) {
   if (bytes.starts_with("glTF")) return true;
   // Some programs write the list of accessors before "asset".
   const std::string_view head = bytes.substr(0, 1 << 20);
