@@ -50,7 +50,7 @@ float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
 } // namespace
 
 // Returns whether the hits of a class are described by lobes: as where the light of a frame is
-// computed (TileRenderer::shadeByLobes and shadeByShade), and in frames without light wherever that
+// computed (PathTracer::shadeByLobes and shadeByShade), and in frames without light wherever that
 // is possible, because `shade` would ask for light.
 static bool usesLobes(const RtsClass& shaderClass, const edit::FrameSettingsT& frame) {
   const bool byLobes = traitsOf(frame.transport).shading == Shading::byLobes;
@@ -74,6 +74,21 @@ void FirstHits::begin(const Rays& camera) {
 void FirstHits::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
   intersectWave(context, WaveSource::camera, wave);
   visit(context, wave, found);
+}
+
+void FirstHits::describeBehindMedia(const StageContext& context, const Wave& wave,
+                                    PixelSamples& found) {
+  const bool describes = found.normal[0] || found.albedo[0] || found.position[0] ||
+                         found.motion[0] || found.depth || has(RT_NAME | RT_COVERAGE);
+  const uint32_t n = wave.rays.count;
+  if (describes) {
+    Wave seen;
+    seen.rays = wave.rays;
+    seen.states.allocate(arena_, n);
+    for (uint32_t i = 0; i < n; i++) seen.states.set(i, wave.states[i]);
+    describe(context, seen, found);
+  }
+  std::fill_n(found.first, n, uint8_t(0));
 }
 
 void FirstHits::finish(PixelSamples& found) {

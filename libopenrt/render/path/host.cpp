@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "render/path/illumination.h"
-#include "render/path/tile.h"
+#include "render/path/path_tracer.h"
+#include "render/path/requests.h"
 #include "render/surface/hit_info.h"
 #include "render/wave/batch.h"
 #include "shading/running.h"
@@ -83,19 +84,19 @@ void random(RtsBatch* batch, uint32_t pair, float* const square[2]) {
 }
 
 void trace(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]) {
-  if (batch->tracer && !batch->describes) return batch->tracer->trace(*batch, *rays, rgba);
+  if (batch->tracer && !batch->describes) return traceRequest(*batch, *rays, rgba);
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], rays->count, 0.0f);
 }
 
 void findHit(RtsBatch* batch, const RtsRequest* rays, RtsFound* out) {
-  if (batch->tracer) return batch->tracer->findHit(*batch, *rays, *out);
+  if (batch->tracer) return findRequest(*batch, *rays, *out);
   if (out->distance)
     std::fill_n(out->distance, rays->count, std::numeric_limits<float>::infinity());
 }
 
 void occluded(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]) {
-  if (batch->tracer) return batch->tracer->occluded(*batch, *rays, transmission);
+  if (batch->tracer) return occludeRequest(*batch, *rays, transmission);
   for (int k = 0; k < 3; k++) std::fill_n(transmission[k], rays->count, 1.0f);
 }
 

@@ -7,7 +7,7 @@
 
 #include "render/lights/light_sampler.h"
 #include "render/lights/shadows.h"
-#include "render/path/tile.h"
+#include "render/path/path_tracer.h"
 #include "render/surface/sanitize_output.h"
 #include "render/wave/faults.h"
 #include "shading/running.h"

@@ -9,7 +9,7 @@
 namespace openrt {
 
 struct Ledger;
-class TileRenderer;
+class PathTracer;
 
 struct RayCounters {
   uint64_t camera = 0, shadow = 0, secondary = 0;
@@ -21,8 +21,8 @@ struct StageContext {
   const RenderScene& scene;
   Arena& arena;
   RayCounters& counters;
-  TileRenderer* tracer = nullptr; // as in RtsBatch
-  Ledger* ledger = nullptr;       // as in RtsBatch
+  PathTracer* tracer = nullptr; // as in RtsBatch
+  Ledger* ledger = nullptr;     // as in RtsBatch
 };
 
 } // namespace openrt
@@ -51,9 +51,9 @@ struct RtsBatch {
   bool describes = false;
   // By hit: index of the sampled scene light; null: the same light for all hits.
   uint32_t* chosen = nullptr;
-  // The renderer. Null if shaders are called outside of a frame: nothing is traced then, and random
-  // points are (0.5, 0.5).
-  openrt::TileRenderer* tracer = nullptr;
+  // The path tracer. Null if shaders are called outside of a frame: nothing is traced then, and
+  // random points are (0.5, 0.5).
+  openrt::PathTracer* tracer = nullptr;
   openrt::Ledger* ledger = nullptr; // gets what is cut from shadow rays; null: nobody counts it
   const openrt::PathStates* states = nullptr; // ray states of the wave, by lane
   const uint32_t* order = nullptr;            // lanes of the hits; null: camera rays, in order
@@ -71,6 +71,8 @@ struct RtsBatch {
   // Return the number of hits, and the index into `points` of hit i. For batches with hits.
   uint32_t hitCount() const { return subset ? subsetSize : points->hits.count; }
   uint32_t pointOf(uint32_t i) const { return subset ? subset[i] : i; }
+  // Returns the number of hits or camera rays.
+  uint32_t pointCount() const { return points ? hitCount() : rays; }
   // Returns the number of lanes that the host functions write where the batch has no hits.
   uint32_t lanesWithoutHits() const { return rays ? rays : lanes; }
 };
