@@ -129,8 +129,8 @@ void FirstHits::describeBucket(const StageContext& context, const Points& points
   const auto isLastAt = [&](uint32_t i) { return isLast(states.flagsOf(points.order[i])); };
   bool asks = has(RT_ALBEDO);
   for (uint32_t i = 0; i < n && follows_ && !asks; i++) asks = !isLastAt(i);
-  RtsBatch batch = makeBatch(context, points, states);
-  batch.lightSet = bucket.lightSet;
+  RtsBatch batch(context, points, states);
+  batch.lights.set = bucket.lightSet;
   batch.describes = true;
   float* albedo[3] = {};
   if (usesLobes(shaderClass, scene_.frame)) {
@@ -176,7 +176,7 @@ bool FirstHits::findLead(const RtsBatch& batch, const Boundaries& boundaries, ui
   // medium.
   BsdfSamples samples(hits, i, boundaries.etaAt(i), 0, true);
   float others = 0;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobe& lobe = batch.lobes[l];
     const uint32_t first = samples.count;
     RtsLobe smooth;

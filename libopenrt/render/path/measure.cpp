@@ -59,8 +59,8 @@ void shadeSensors(PathTracer& tracer, const Wave& wave, float* const lampLight[3
   Arena& arena = context.arena;
   ArenaScope scope(arena);
   const Points points = sensorPoints(wave.rays, arena);
-  RtsBatch batch = makeBatch(context, points, wave.states);
-  batch.lightSet = 0; // the lights that shine on everything (flatten.cpp)
+  RtsBatch batch(context, points, wave.states);
+  batch.lights.set = 0; // the lights that shine on everything (flatten.cpp)
   const uint32_t n = points.hits.count;
   const RtsLobe& white = *scene.host.lobe(&batch, RTS_LOBE_DIFFUSE);
   SentLight sent;

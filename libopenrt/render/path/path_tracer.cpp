@@ -78,8 +78,8 @@ void PathTracer::shadeByShade(const Points& points, const Bucket& bucket, const 
     shaded.transmission[k] = arena.takeZero<float>(size);
     if (has(RT_ALBEDO)) shaded.albedo[k] = arena.takeZero<float>(size);
   }
-  RtsBatch batch = makeBatch(context_, points, states);
-  batch.lightSet = bucket.lightSet;
+  RtsBatch batch(context_, points, states);
+  batch.lights.set = bucket.lightSet;
   {
     ArenaScope inner(arena);
     const RunningShader running(*bucket.shaderClass);
@@ -93,7 +93,7 @@ void PathTracer::shadeByShade(const Points& points, const Bucket& bucket, const 
 SentLight PathTracer::sentLight(const RtsBatch& batch, const RtsSurface& surface) const {
   SentLight sent{{surface.emission[0], surface.emission[1], surface.emission[2]}};
   const bool coats = has(RT_REFLECTION) && tracesPaths(scene_.frame.transport) &&
-                     std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
+                     std::any_of(batch.lobes.begin(), batch.lobes.end(),
                                  [](const RtsLobe& lobe) { return lobe.coat != 0; });
   if (coats)
     for (auto& a : sent.coated) a = tile_.arena.takeZero<float>(padded(batch.points->hits.count));
@@ -104,8 +104,8 @@ SentLight PathTracer::sentLight(const RtsBatch& batch, const RtsSurface& surface
 // hit, stage by stage".
 void PathTracer::scatter(const Points& points, const Bucket& bucket, const PathStates& states,
                          PixelSamples& found) {
-  RtsBatch batch = makeBatch(context_, points, states);
-  batch.lightSet = bucket.lightSet;
+  RtsBatch batch(context_, points, states);
+  batch.lights.set = bucket.lightSet;
   const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass, has(RT_ALBEDO));
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);

@@ -18,7 +18,7 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 template <class Wanted>
 Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to, const Wanted& wanted) {
   Rays rays;
-  rays.allocate(*batch.arena, request.count);
+  rays.allocate(batch.arena, request.count);
   uint32_t n = 0;
   for (uint32_t i = 0; i < request.count; i++) {
     const uint32_t hit = request.hit[i];
@@ -47,9 +47,9 @@ void traceRequest(RtsBatch& batch, const RtsRequest& request, float* const rgba[
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
   const PathTracer& outer = *batch.tracer;
-  const uint32_t depth = batch.scene->frame.depth, level = outer.level();
+  const uint32_t depth = batch.scene.frame.depth, level = outer.level();
   if (request.count == 0 || outer.nesting() == maxNesting || level >= depth + mostPassages) return;
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   // The counts are allocated outside of the arena scope, because they live as long as the batch.
   if (!batch.requests) batch.requests = arena.takeZero<uint32_t>(batch.pointCount());
   ArenaScope scope(arena);
@@ -82,7 +82,7 @@ void traceRequest(RtsBatch& batch, const RtsRequest& request, float* const rgba[
     if (batch.points) state.travelled = batch.points->hits.distance[batch.pointOf(hit)];
     wave.states.set(i, state);
   }
-  (batch.points ? batch.counters->secondary : batch.counters->camera) += n;
+  (batch.points ? batch.counters.secondary : batch.counters.camera) += n;
   PathTracer tracer(outer, samples, level + (batch.points ? 1 : 0));
   tracer.trace(wave, found);
   for (uint32_t i = 0; i < n; i++) {
@@ -96,14 +96,14 @@ void traceRequest(RtsBatch& batch, const RtsRequest& request, float* const rgba[
 void findRequest(const RtsBatch& batch, const RtsRequest& request, RtsFound& out) {
   if (out.distance) std::fill_n(out.distance, request.count, infinite);
   if (request.count == 0) return;
-  const RenderScene& scene = *batch.scene;
-  Arena& arena = *batch.arena;
+  const RenderScene& scene = batch.scene;
+  Arena& arena = batch.arena;
   ArenaScope scope(arena);
   auto* to = arena.take<uint32_t>(request.count);
   Wave wave;
   wave.rays = raysOf(batch, request, to);
-  batch.counters->secondary += wave.rays.count;
-  wave.hits = findNearest(contextOf(batch), wave.rays, Coherence::incoherent);
+  batch.counters.secondary += wave.rays.count;
+  wave.hits = findNearest(batch, wave.rays, Coherence::incoherent);
   splitByHit(arena, wave);
   const uint32_t n = uint32_t(wave.met.size());
   if (n == 0) return;
@@ -126,8 +126,8 @@ void occludeRequest(const RtsBatch& batch, const RtsRequest& request,
                     float* const transmission[3]) {
   for (int k = 0; k < 3; k++) std::fill_n(transmission[k], request.count, 1.0f);
   if (request.count == 0) return;
-  ArenaScope scope(*batch.arena);
-  ShadowRays rays = allocateShadowRays(*batch.scene, request.count, *batch.arena);
+  ArenaScope scope(batch.arena);
+  ShadowRays rays = allocateShadowRays(batch.scene, request.count, batch.arena);
   rays.rays = raysOf(batch, request, rays.lane);
   rays.hit = request.hit;
   if (rays.media && batch.order)

@@ -11,7 +11,7 @@ namespace {
 
 // Adds the phase function of a medium to the lobes of a batch.
 void addPhaseLobe(uint16_t medium, RtsBatch& batch) {
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const RtsLobe& lobe = *scene.host.customLobe(&batch, &phaseLobe, 1);
   const uint32_t n = padded(batch.points->hits.count);
   std::fill_n(lobe.data[0], n, scene.shaders->media()[medium - 1].anisotropy);
@@ -36,8 +36,8 @@ void gatherLamps(const PathTracer& tracer, uint16_t medium, const Wave& wave,
       sampleLampPlaces(context, tracer.samples(), tracer.firstPair(), medium, flights, wave);
   if (lamps.places.lanes.empty()) return;
   const Points points = pointsAlong(context, wave, lamps.places);
-  RtsBatch batch = makeBatch(context, points, wave.states);
-  batch.lightSet = set;
+  RtsBatch batch(context, points, wave.states);
+  batch.lights.set = set;
   addPhaseLobe(medium, batch);
   const uint32_t n = points.hits.count;
   const SentLight sent = noLight(n, context.arena);
@@ -55,7 +55,7 @@ void scatterInMedium(PathTracer& tracer, uint16_t medium, const Wave& wave,
   ArenaScope scope(context.arena);
   const Points points = pointsAlong(context, wave, collisions);
   const uint32_t n = points.hits.count;
-  RtsBatch batch = makeBatch(context, points, wave.states);
+  RtsBatch batch(context, points, wave.states);
   addPhaseLobe(medium, batch);
   const SentLight sent = noLight(n, context.arena);
   tracer.continueFromLobes(batch, {}, sent);

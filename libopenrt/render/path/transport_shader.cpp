@@ -21,8 +21,8 @@ void runTransportShader(const StageContext& context, const Rays& rays, PixelSamp
     request.origin[k] = rays.org[k];
     request.direction[k] = rays.dir[k];
   }
-  RtsBatch batch = makeBatch(context);
-  batch.rays = n;
+  RtsBatch batch(context);
+  batch.lanes = {.count = n, .cameraRays = true};
   {
     const RunningShader running(*transport.shaderClass);
     transport.shaderClass->radiance(&context.scene.host, &batch, transport.params, &request, rgba);
