@@ -12,8 +12,8 @@
 
 namespace openrt {
 
-// How a transport shades hits. TileRenderer::shadings (render/path/tile.h) has the functions, in
-// this order.
+// How a transport shades hits. PathTracer::shadings (render/path/path_tracer.h) has the functions,
+// in this order.
 enum class Shading : uint8_t {
   byShade, // by `shade`, and by lobes only if a class has no `shade`
   byLobes, // by lobes, and by `shade` only if a class has no lobes

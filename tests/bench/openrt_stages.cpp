@@ -300,7 +300,7 @@ void nextRays(benchmark::State& state, std::initializer_list<Lobe> lobes, uint32
   for (const Lobe& lobe : lobes) {
     paths.plane.add(batch, lobe.kind, lobe.weight);
     if (lobe.kind == RTS_LOBE_DIELECTRIC)
-      std::fill_n(batch.lobes[batch.lobeCount - 1].parameter[0], count, 1 / 1.5f);
+      std::fill_n(batch.lobes[batch.lobes.size() - 1].parameter[0], count, 1 / 1.5f);
   }
   PathFlags flags;
   for (uint32_t s = 0; s < splits; s++) flags.addSplit();

@@ -35,7 +35,7 @@ struct Random {
 struct Hits {
   PlaneHits plane{count};
   Random random;
-  RtsBatch batch;
+  RtsBatch batch{plane.batch()};
   PathSamples samples;
   Ledger ledger;
 
@@ -62,11 +62,10 @@ struct Hits {
       for (uint32_t s = 0; s < i % 7; s++) flags.addSplit();
       states.flags[i] = flags.bits;
     }
-    batch = plane.batch();
   }
   void add(RtsLobeKind kind, float p0 = 0, float p1 = 0) {
     plane.add(batch, kind, 0);
-    const RtsLobe& lobe = batch.lobes[batch.lobeCount - 1];
+    const RtsLobe& lobe = batch.lobes[batch.lobes.size() - 1];
     for (uint32_t i = 0; i < count; i++) {
       // Every tenth hit lacks the lobe. Weights that are no numbers count as 0.
       if (i % 10) store({random(0, 1), random(0, 1), i % 8 ? random(0, 1) : NAN}, lobe.weight, i);
@@ -106,7 +105,7 @@ struct ScalarRays {
     for (uint32_t i = 0; i < count; i++) {
       const RayState ray = hits.plane.states[i];
       BsdfSamples samples(hits.plane.points.hits, i, boundaries.etaAt(i), ray.flags.channel());
-      for (uint32_t l = 0; l < hits.batch.lobeCount; l++) {
+      for (uint32_t l = 0; l < hits.batch.lobes.size(); l++) {
         samples.add(l, hits.batch.lobes[l], sampling.samples[l]);
         if (sampling.samples[l]) random[i] = 1;
       }
@@ -208,7 +207,7 @@ void expectRaysOfScalarFunctions(Hits& hits, const Boundaries& boundaries = {}) 
   }
   for (uint32_t i = 0; i < count; i++) {
     EXPECT_EQ(hits.samples.random[i] != 0, expected.random[i] != 0) << i;
-    for (uint32_t l = 0; l < hits.batch.lobeCount; l++)
+    for (uint32_t l = 0; l < hits.batch.lobes.size(); l++)
       if (const float* probability = sampling.selectionProbability[l]) {
         EXPECT_EQ(probability[i], expected.selection[l][i]) << i;
       }

@@ -55,7 +55,7 @@ struct Surfaces {
     if (!manyLobes) return;
     for (const RtsLobeKind kind : {RTS_LOBE_TRANSPARENT, RTS_LOBE_REFLECTION}) {
       plane.add(batch, kind, 0);
-      float* const* weight = batch.lobes[batch.lobeCount - 1].weight;
+      float* const* weight = batch.lobes[batch.lobes.size() - 1].weight;
       for (int k = 0; k < 3; k++)
         for (uint32_t i = 0; i < count; i++) weight[k][i] = number(i, uint32_t(20 + kind + k));
       weight[0][7] = std::nanf("");
@@ -87,7 +87,7 @@ void addHit(const Surfaces& at, uint32_t i, PixelSamples& found) {
   const bool visible = at.boundaries.visibleAt(i);
   constexpr Vec3f one{1, 1, 1};
   Vec3f clear = visible ? Vec3f() : one, seen = clear, w;
-  for (uint32_t l = 0; visible && l < at.batch.lobeCount; l++) {
+  for (uint32_t l = 0; visible && l < at.batch.lobes.size(); l++) {
     const RtsLobe& lobe = at.batch.lobes[l];
     if (nonSpecularFunctions(lobe) || !weightAt(lobe, i, w)) continue;
     seen += w;

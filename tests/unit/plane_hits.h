@@ -50,7 +50,7 @@ struct PlaneHits {
   PlaneHits& operator=(const PlaneHits&) = delete;
 
   StageContext context() { return {scene, arena, counters}; }
-  RtsBatch batch() { return makeBatch(context(), points, states); }
+  RtsBatch batch() { return {context(), points, states}; }
   // Adds a grey lobe to the batch.
   void add(RtsBatch& batch, RtsLobeKind kind, float weight) {
     RtsLobe* lobe = scene.host.lobe(&batch, kind);

@@ -281,12 +281,9 @@ PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
     rays.origin[k] = org[k];
     rays.direction[k] = dir[k];
   }
-  RtsBatch batch;
   RayCounters counters;
-  batch.scene = &next;
-  batch.arena = &arena;
-  batch.counters = &counters;
-  batch.rays = lanes;
+  RtsBatch batch({next, arena, counters});
+  batch.lanes = {.count = lanes, .cameraRays = true};
   {
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->generate(&next.host, &batch, camera.params, 2, points, size, &rays);

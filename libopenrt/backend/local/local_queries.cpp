@@ -340,12 +340,10 @@ bool LocalQueries::cameraRay(double x, double y, Vec3f& origin, Vec3f& direction
   std::fill_n(xy[1], lanes, float(y));
   const float* points[2] = {xy[0], xy[1]};
   const float size[2] = {float(at_->snapshot.frame.width), float(at_->snapshot.frame.height)};
-  RtsBatch batch;
   RayCounters counters;
-  batch.scene = &at_->snapshot;
-  batch.arena = &arena;
-  batch.counters = &counters;
-  batch.rays = lanes; // without a tracer, random points are (0.5, 0.5): the middle of the lens
+  RtsBatch batch({at_->snapshot, arena, counters});
+  // Without a tracer, random points are (0.5, 0.5): the middle of the lens.
+  batch.lanes = {.count = lanes, .cameraRays = true};
   {
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->generate(&at_->snapshot.host, &batch, camera.params, 1, points, size,

@@ -59,10 +59,7 @@ RtsSurface evaluateEmission(const RenderScene& scene, uint32_t record, const Pro
   RtsSurface surface{};
   for (auto& e : surface.emission) e = arena.takeZero<float>(padded(n));
   RayCounters counters;
-  RtsBatch batch;
-  batch.scene = &scene;
-  batch.arena = &arena;
-  batch.counters = &counters;
+  RtsBatch batch({scene, arena, counters});
   batch.points = &points;
   const RunningShader running(*(*scene.shaders)[r.shader].shaderClass);
   (*scene.shaders)[r.shader].shaderClass->surface(&scene.host, &batch, &points.hits, &surface);

@@ -19,15 +19,15 @@ LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool two
 bool startsLightPaths(const RtsBatch& batch, uint32_t i) {
   const RayHits& hits = *batch.points->rayHits;
   const uint32_t lane = batch.order[i];
-  return batch.scene->emitters->startsLightPaths(hits.record[lane], hits.primitive[lane],
-                                                 load(batch.points->hits.direction, i));
+  return batch.scene.emitters->startsLightPaths(hits.record[lane], hits.primitive[lane],
+                                                load(batch.points->hits.direction, i));
 }
 
 namespace {
 
 // Returns the number of the emissive shape at hit i, or `none`.
 uint32_t shapeAt(const RtsBatch& batch, uint32_t i) {
-  const EmissiveShapes* shapes = batch.scene->emitters->shapes();
+  const EmissiveShapes* shapes = batch.scene.emitters->shapes();
   const RayHits& hits = *batch.points->rayHits;
   const uint32_t lane = batch.order[i];
   return shapes ? shapes->find(hits.record[lane], hits.primitive[lane]) : EmissiveShapes::none;
@@ -35,14 +35,14 @@ uint32_t shapeAt(const RtsBatch& batch, uint32_t i) {
 
 // Returns whether light tracing contributes the emission of hit i.
 bool isLeftToLightTracing(const RtsBatch& batch, uint32_t i) {
-  return canOnlyReachSky(*batch.scene, batch.states->flagsOf(batch.order[i])) &&
+  return canOnlyReachSky(batch.scene, batch.states->flagsOf(batch.order[i])) &&
          startsLightPaths(batch, i);
 }
 
 // Returns the MIS weights of the emission that rays have found at some hits.
 float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, const uint32_t* hit,
                           uint32_t n) {
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const PathStates& states = *batch.states;
   auto *weight = arena.take<float>(n), *bsdfPdf = arena.take<float>(n),
        *lightPdf = arena.take<float>(padded(n));
@@ -64,7 +64,7 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
     bsdfPdf[f] = states.pdf[lane];
     place[f] = j;
   }
-  batch.scene->emitters->pdf(found, lightPdf);
+  batch.scene.emitters->pdf(found, lightPdf);
   for (uint32_t f = 0; f < found.count; f++)
     weight[place[f]] = std::isfinite(lightPdf[f]) ? bsdfPdf[f] / (bsdfPdf[f] + lightPdf[f]) : 0.0f;
   return weight;
@@ -74,7 +74,7 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
 
 void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, UnsampledLights& unsampled,
                     float* const emission[3]) {
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   ArenaScope scope(arena);
   const uint32_t count = batch.points->hits.count;
   auto* hit = arena.take<uint32_t>(padded(count));
@@ -102,7 +102,7 @@ const float* mostFollowed(const RtsBatch& batch, const LobeSampling& sampling) {
     if (!most) {
       most = followed;
     } else if (followed) {
-      auto* both = batch.arena->take<float>(padded(n));
+      auto* both = batch.arena.take<float>(padded(n));
       for (uint32_t i = 0; i < n; i++) both[i] = std::max(most[i], followed[i]);
       most = both;
     }
@@ -113,7 +113,7 @@ const float* mostFollowed(const RtsBatch& batch, const LobeSampling& sampling) {
 } // namespace
 
 LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampling) {
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
   LightSamples out{};
@@ -135,13 +135,13 @@ LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampl
                                 wanted};
   SampledLights sampled;
   sampled.allocate(arena, hits.count);
-  batch.scene->emitters->choose(lightPoints, pick[1], arena, sampled);
+  batch.scene.emitters->choose(lightPoints, pick[1], arena, sampled);
   startShadowRays(lightPoints, sampled, out);
   Rays& rays = out.rays;
   for (uint32_t r = 0; r < rays.count; r++)
     if (rays.tfar[r] < 0)
       rays.tfar[r] =
-          shadowRayEnd(*batch.scene, out[r], lightSampleContext(points, out.hit[r], false).position,
+          shadowRayEnd(batch.scene, out[r], lightSampleContext(points, out.hit[r], false).position,
                        load(rays.org, r));
   return out;
 }
@@ -150,10 +150,10 @@ void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling,
                         LightSamples& samples) {
   const Rays& rays = samples.rays;
   if (rays.count == 0) return;
-  ArenaScope scope(*batch.arena);
-  LobeValues values(*batch.arena, rays.count, &batch);
+  ArenaScope scope(batch.arena);
+  LobeValues values(batch.arena, rays.count, &batch);
   bool more = false;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const float* followed = sampling.selectionProbability[l];
     if (!followed) continue;
     values.evaluate(batch.lobes[l], batch.points->hits, rays.count, samples.hit, rays.dir);
@@ -213,7 +213,7 @@ template <class Add> void shadeSampledPoints(const StageContext& context,
     const RtsClass& shaderClass = *scene.buckets[range.bucket].shaderClass;
     const uint32_t m = range.end - range.begin;
     const Points points = makePoints(scene, rays, seen, sorted + range.begin, m, travelled, arena);
-    RtsBatch inner = makeBatch(context);
+    RtsBatch inner(context);
     // A null tracer turns off random decisions of the shader, because the emission must be the one
     // that the sampling tables were built from.
     inner.tracer = nullptr;
@@ -231,7 +231,7 @@ struct SeenThrough {
 
 SeenThrough traceThrough(const RtsBatch& batch, const LightSamples& samples,
                          const Boundaries& boundaries, uint8_t* blocked) {
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const uint32_t n = samples.rays.count;
   SeenThrough seen;
   for (int k = 0; k < 3; k++) {
@@ -241,15 +241,15 @@ SeenThrough traceThrough(const RtsBatch& batch, const LightSamples& samples,
     std::copy_n(samples.rays.org[k], n, seen.origin[k]);
   }
   ArenaScope scope(arena);
-  ShadowRays shadows = allocateShadowRays(*batch.scene, n, arena, true);
+  ShadowRays shadows = allocateShadowRays(batch.scene, n, arena, true);
   shadows.hit = samples.hit;
   shadows.lastOrigin = seen.origin;
   // Without media, most rays meet nothing, which one search tells.
   auto* lanes = arena.takeNumbers(n);
   uint32_t count = n;
   if (!shadows.media) {
-    findBlocked(*batch.scene, samples.rays, blocked);
-    batch.counters->shadow += n;
+    findBlocked(batch.scene, samples.rays, blocked);
+    batch.counters.shadow += n;
     count = 0;
     for (uint32_t r = 0; r < n; r++)
       if (blocked[r]) lanes[count++] = r;
@@ -287,7 +287,7 @@ void addSeen(const TracedSamples& traced, const float* const response[3],
              float* const radiance[3]) {
   const LightSamples& samples = traced.samples;
   const RtsBatch& batch = traced.batch;
-  const StageContext context = contextOf(batch);
+  const StageContext& context = batch;
   const RenderScene& scene = context.scene;
   const EmissiveShapes& shapes = *scene.emitters->shapes();
   const Rays& rays = samples.rays;
@@ -339,7 +339,7 @@ void addSeen(const TracedSamples& traced, const float* const response[3],
 
 void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
                     const Boundaries& boundaries, const SentLight& sent) {
-  const StageContext context = contextOf(batch);
+  const StageContext& context = batch;
   const RenderScene& scene = context.scene;
   Arena& arena = context.arena;
   ArenaScope scope(arena);

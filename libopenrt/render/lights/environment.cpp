@@ -22,9 +22,9 @@ SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const ui
     store(direction * (1 / length(direction)), sky.direction, i);
   }
   const ShaderSlot& shader = environment.shader;
-  RtsBatch batch = makeBatch(context);
-  batch.lanes = n;
-  batch.straight = straight;
+  RtsBatch batch(context);
+  batch.lanes.count = n;
+  batch.lanes.straight = straight;
   {
     const RunningShader running(*shader.shaderClass);
     shader.shaderClass->miss(&context.scene.host, &batch, shader.params, n, sky.direction,
@@ -92,8 +92,8 @@ Fog fogAt(const StageContext& context, const Points& points, const PathStates& s
   }
   for (auto& a : fog.airlight) a = context.arena.takeZero<float>(size);
   fog.transmittance = context.arena.takeZero<float>(size);
-  RtsBatch batch = makeBatch(context);
-  batch.lanes = n;
+  RtsBatch batch(context);
+  batch.lanes.count = n;
   const RunningShader running(*shader.shaderClass);
   shader.shaderClass->attenuate(&context.scene.host, &batch, shader.params, n, fromEye,
                                 fog.airlight, fog.transmittance);

@@ -11,11 +11,11 @@ namespace openrt {
 // A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so the
 // irradiance is pi times the colour.
 void addLamps(RtsBatch& batch, const SentLight& sent) {
-  const RtsHost& host = batch.scene->host;
+  const RtsHost& host = batch.scene.host;
   const RtsHits& hits = batch.points->hits;
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   uint32_t scattering = 0;
-  for (uint32_t l = 0; l < batch.lobeCount; l++)
+  for (uint32_t l = 0; l < batch.lobes.size(); l++)
     scattering += nonSpecularFunctions(batch.lobes[l]) != nullptr;
   const uint32_t lights = scattering ? host.lights(&batch) : 0, n = hits.count;
   if (lights == 0) return;
@@ -36,7 +36,7 @@ void addLamps(RtsBatch& batch, const SentLight& sent) {
     for (auto* a : coated)
       if (a) std::fill_n(a, n, 0.0f);
     std::fill_n(wanted, n, uint8_t(0));
-    for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    for (uint32_t l = 0; l < batch.lobes.size(); l++) {
       const RtsLobe& lobe = batch.lobes[l];
       if (!nonSpecularFunctions(lobe)) continue;
       lobeValues.evaluate(lobe, hits, n, all, from.toLight);

@@ -70,11 +70,8 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
   }
   const float* const places[3] = {local[0], local[1], local[2]};
   RayCounters counters;
-  RtsBatch batch;
-  batch.scene = &scene;
-  batch.arena = &arena;
-  batch.counters = &counters;
-  batch.lanes = 2;
+  RtsBatch batch({scene, arena, counters});
+  batch.lanes.count = 2;
   {
     const RunningShader running(*slot.shader.shaderClass);
     slot.shader.shaderClass->illuminate(&scene.host, &batch, slot.shader.params, 2, places, &light);

@@ -19,10 +19,10 @@ namespace {
 // Makes a shadow ray for every wanted lane that the light can reach.
 ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIllumination& light) {
   const RtsHits& hits = batch.points->hits;
-  ShadowRays s = allocateShadowRays(*batch.scene, hits.count, *batch.arena);
+  ShadowRays s = allocateShadowRays(batch.scene, hits.count, batch.arena);
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
-    if (!wanted[i] || !(batch.directional || batch.reach[i] > 0)) continue;
+    if (!wanted[i] || !(batch.lights.directional || batch.lights.reach[i] > 0)) continue;
     if (load(light.color, i) == Vec3f()) continue;
     const Vec3f toLight = load(light.toLight, i);
     Vec3f g = load(hits.geometric, i), p = load(hits.position, i);
@@ -30,12 +30,12 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     // smooth surface, or behind the facet if the surface is flat. Light that is transmitted through
     // the surface (2) arrives from behind.
     const bool away = dot(g, toLight) < 0;
-    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) g = -g;
+    if (away && (wanted[i] == 2 || !liftToSmooth(batch.scene, *batch.points, i, p))) g = -g;
     store(offsetPoint(p, g, batch.points->error[i]), s.rays.org, n);
     store(toLight, s.rays.dir, n);
     s.rays.tnear[n] = 0;
-    s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity()
-                                       : batch.reach[i] * (1 - 0x1p-20f);
+    s.rays.tfar[n] = batch.lights.directional ? std::numeric_limits<float>::infinity()
+                                              : batch.lights.reach[i] * (1 - 0x1p-20f);
     if (s.media && batch.order)
       s.media[n] = mediaTowards(*batch.points, i, toLight, batch.crossing,
                                 batch.states->media[batch.order[i]]);
@@ -84,9 +84,9 @@ Boundaries crossWithMedia(const RtsBatch& batch, const ShadowRays& s, const Poin
                           const RtsClass& shaderClass, float* const color[3]) {
   PathStates states{};
   states.media = s.media;
-  states.flags = batch.arena->takeZero<uint32_t>(s.rays.count);
+  states.flags = batch.arena.takeZero<uint32_t>(s.rays.count);
   for (auto& colour : states.throughput) {
-    colour = batch.arena->take<float>(s.rays.count);
+    colour = batch.arena.take<float>(s.rays.count);
     std::fill_n(colour, s.rays.count, 1.0f);
   }
   RtsBatch inner = batch;
@@ -94,7 +94,7 @@ Boundaries crossWithMedia(const RtsBatch& batch, const ShadowRays& s, const Poin
   inner.points = &points;
   inner.states = &states;
   inner.order = points.order;
-  inner.lobeCount = 0;
+  inner.lobes.clear();
   const Boundaries boundaries = crossBoundaries(inner, shaderClass);
   for (uint32_t i = 0; i < points.hits.count; i++) // bodies that were left but never entered
     scaleColor(color, s.lane[points.order[i]], load(states.throughput, points.order[i]));
@@ -113,31 +113,30 @@ void intersectTransparent(const RenderScene& scene, const ShadowRays& s, RayHits
 // of glass (`transmit`) although its lobes bend light, so light samples ask for its lobes.
 void transmitAt(const RtsBatch& batch, const ShadowRays& s, const RtsClass& shaderClass,
                 const Points& points, float* const through[3]) {
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const uint32_t n = points.hits.count;
-  RtsBatch inner = batch;
-  inner.tracer = nullptr;
-  inner.points = &points;
   if (s.toEmitters) {
     if (shaderClass.medium) return;
     const bool specular = std::any_of(points.record, points.record + n, [&](uint32_t record) {
       return ((*scene.shaders)[scene.records[record].shader].traits & RTS_SPECULAR) != 0;
     });
     if (shaderClass.surface && specular) {
-      inner = makeBatch(contextOf(batch));
-      inner.tracer = nullptr;
-      inner.points = &points;
-      runSurfaceShader(inner, shaderClass);
-      for (uint32_t l = 0; l < inner.lobeCount; l++)
-        for (uint32_t i = 0; i < n && inner.lobes[l].kind == RTS_LOBE_TRANSPARENT; i++)
-          if (Vec3f weight; weightAt(inner.lobes[l], i, weight))
-            store(load(through, i) + weight, through, i);
+      RtsBatch surfaces{static_cast<const StageContext&>(batch)};
+      surfaces.tracer = nullptr;
+      surfaces.points = &points;
+      runSurfaceShader(surfaces, shaderClass);
+      for (const RtsLobe& lobe : surfaces.lobes)
+        for (uint32_t i = 0; i < n && lobe.kind == RTS_LOBE_TRANSPARENT; i++)
+          if (Vec3f weight; weightAt(lobe, i, weight)) store(load(through, i) + weight, through, i);
       return;
     }
   } else if (scene.lightSources && shaderClass.surface && shaderClass.medium) {
     return; // light tracing follows the refracted light
   }
   if (!shaderClass.transmit) return;
+  RtsBatch inner = batch;
+  inner.tracer = nullptr;
+  inner.points = &points;
   const RunningShader running(shaderClass);
   shaderClass.transmit(&scene.host, &inner, &points.hits, through);
 }
@@ -145,8 +144,8 @@ void transmitAt(const RtsBatch& batch, const ShadowRays& s, const RtsClass& shad
 // Advances every ray by one transparent surface; rays that hit none are done.
 void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done,
                              float* const color[3]) {
-  const RenderScene& scene = *batch.scene;
-  Arena& arena = *batch.arena;
+  const RenderScene& scene = batch.scene;
+  Arena& arena = batch.arena;
   ArenaScope scope(arena);
   intersectTransparent(scene, s, found);
   if (s.media) attenuate(scene, s, found, color);
@@ -240,10 +239,10 @@ void cutRest(const RtsBatch& batch, const ShadowRays& s, const float* const befo
 
 void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
   if (s.rays.count == 0) return;
-  ArenaScope scope(*batch.arena);
-  const RenderScene& scene = *batch.scene;
-  batch.counters->shadow += s.rays.count;
-  auto* blocked = batch.arena->take<uint8_t>(s.rays.count);
+  ArenaScope scope(batch.arena);
+  const RenderScene& scene = batch.scene;
+  batch.counters.shadow += s.rays.count;
+  auto* blocked = batch.arena.take<uint8_t>(s.rays.count);
   if (s.toEmitters && scene.kernel->cullsBacks())
     scene.kernel->occludedByFronts(s.rays, maskOpaque, blocked);
   else
@@ -254,10 +253,10 @@ void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color
   compact(s, blocked);
   if (s.rays.count == 0) return;
   RayHits found;
-  found.allocate(*batch.arena, s.rays.count);
+  found.allocate(batch.arena, s.rays.count);
   float* before[3]; // by lane
   for (int k = 0; k < 3; k++) {
-    before[k] = batch.arena->take<float>(s.lane[s.rays.count - 1] + 1);
+    before[k] = batch.arena.take<float>(s.lane[s.rays.count - 1] + 1);
     for (uint32_t i = 0; i < s.rays.count; i++) before[k][s.lane[i]] = color[k][s.lane[i]];
   }
   // The last pass finds that a ray meets no further surface.
@@ -269,7 +268,7 @@ void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color
 }
 
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {
-  ArenaScope scope(*batch.arena);
+  ArenaScope scope(batch.arena);
   ShadowRays s = makeRays(batch, wanted, light);
   traceTransmittance(batch, s, light.color);
 }

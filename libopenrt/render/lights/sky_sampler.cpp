@@ -66,11 +66,8 @@ double SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) 
   double brightest = 0;
   for (uint32_t row = 0; row < rows_; row++) {
     ArenaScope scope(arena);
-    RtsBatch batch;
-    batch.scene = &scene;
-    batch.arena = &arena;
-    batch.counters = &counters;
-    batch.lanes = n;
+    RtsBatch batch({scene, arena, counters});
+    batch.lanes.count = n;
     const double theta[2] = {M_PI * (row + 0.25) / rows_, M_PI * (row + 0.75) / rows_};
     const double sine[2] = {std::sin(theta[0]), std::sin(theta[1])},
                  cosine[2] = {std::cos(theta[0]), std::cos(theta[1])};

@@ -48,7 +48,7 @@ float roundingAlong(const RenderScene& scene, const Wave& wave, uint32_t lane);
 // Samples for each flight whether the ray collides, and where. Removes the rays that collide from
 // wave.met and returns them. Multiplies the throughputs by their weights: the transmittance for
 // rays that reach the surface, transmittance times coefficient of scattering for rays that collide,
-// each over the pdf. Marks the paths as random. pair: TileRenderer::firstPair().
+// each over the pdf. Marks the paths as random. pair: PathTracer::firstPair().
 //
 // One colour is selected and the distance is sampled for its extinction. The pdf is that of all
 // colours together (balance heuristic), so no colour has a large weight: A. Wilkie et al., "Hero

@@ -17,7 +17,7 @@ struct LampPlaces {
 // the growth of the irradiance towards the lamp is cancelled (C. Kulla, M. Fajardo, "Importance
 // Sampling Techniques for Path Tracing in Participating Media", EGSR 2012); the weight is that of
 // both together (balance heuristic). Called before sampleFlights(). pair:
-// TileRenderer::firstPair().
+// PathTracer::firstPair().
 LampPlaces sampleLampPlaces(const StageContext& context, const PathSamples& samples, uint32_t pair,
                             uint16_t medium, std::span<const uint32_t> flights, const Wave& wave);
 

@@ -22,7 +22,7 @@ struct Shown {
 Shown shownAt(const RtsBatch& batch, const uint32_t* hidden, uint32_t i) {
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   Shown shown{{zero, zero, zero}, {zero, zero, zero}};
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (nonSpecularFunctions(lobe)) continue;
     const LaneVec w = checked(load(lobe.weight, i));
@@ -88,7 +88,7 @@ namespace {
 const uint32_t* hiddenHits(const RtsBatch& batch, const Boundaries& boundaries) {
   if (!boundaries.crossing) return nullptr;
   const uint32_t n = batch.points->hits.count;
-  auto* hidden = batch.arena->take<uint32_t>(padded(n));
+  auto* hidden = batch.arena.take<uint32_t>(padded(n));
   for (uint32_t i = 0; i < padded(n); i++) hidden[i] = !boundaries.visibleAt(std::min(i, n - 1));
   return hidden;
 }
@@ -124,7 +124,7 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
     if (found.first[ray.path]) {
       found.first[ray.path] = 0;
       if (!found.firstHits || !found.firstHits->takeShading(batch, i, transmission))
-        found.storeFirst(*batch.scene, *batch.points, i, ray.path, shaded.albedo);
+        found.storeFirst(batch.scene, *batch.points, i, ray.path, shaded.albedo);
     }
     if (through <= 1e-6f)
       paths.ledger.cutByEnergy += double(through);
@@ -137,11 +137,11 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
 // Several hits may belong to one path, so what the vector lanes have computed is added hit by hit.
 void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLight& sent,
                 const Boundaries& boundaries, const Fog& fog, PixelSamples& found) {
-  ArenaScope scope(*batch.arena);
+  ArenaScope scope(batch.arena);
   const PathStates& states = *batch.states;
   const uint32_t n = batch.points->hits.count;
-  float *radiance[3], *alpha = batch.arena->take<float>(padded(n));
-  for (auto& a : radiance) a = batch.arena->take<float>(padded(n));
+  float *radiance[3], *alpha = batch.arena.take<float>(padded(n));
+  for (auto& a : radiance) a = batch.arena.take<float>(padded(n));
   HWY_DYNAMIC_DISPATCH(lightOfHits)
   (batch, sent, fog, hiddenHits(batch, boundaries), radiance, alpha);
   for (uint32_t i = 0; i < n; i++) {
@@ -154,7 +154,7 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLigh
     if (found.first[path] && boundaries.visibleAt(i)) {
       found.first[path] = 0;
       if (!found.firstHits || !found.firstHits->takeSurface(batch, boundaries, i))
-        found.storeFirst(*batch.scene, *batch.points, i, path, surface.albedo);
+        found.storeFirst(batch.scene, *batch.points, i, path, surface.albedo);
     }
   }
 }

@@ -12,9 +12,9 @@ namespace openrt {
 
 CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, uint32_t n,
                                   const float* const lens[2]) {
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const RoleSlot& camera = scene.camera;
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const uint32_t size = padded(n);
   CameraConnections to{.count = n, .hit = hit};
   float *local[3], *square[2];
@@ -38,7 +38,7 @@ CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, ui
   const float extent[2] = {float(scene.frame.width), float(scene.frame.height)};
   RtsBatch places = batch;
   places.points = nullptr; // the camera gets n places, not the hits
-  places.lanes = n;
+  places.lanes.count = n;
   {
     const RtsClass& shaderClass = *camera.shader.shaderClass;
     const RunningShader running(shaderClass);
@@ -60,8 +60,8 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to,
                      float* const scattered[3]) {
   const RtsHits& hits = batch.points->hits;
   for (int k = 0; k < 3; k++) std::fill_n(scattered[k], to.count, 0.0f);
-  LobeValues lobeValues(*batch.arena, to.count, &batch);
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  LobeValues lobeValues(batch.arena, to.count, &batch);
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (!nonSpecularFunctions(lobe)) continue;
     lobeValues.evaluate(lobe, hits, to.count, to.hit, to.direction);
@@ -78,7 +78,7 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to,
 }
 
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]) {
-  ShadowRays rays = allocateShadowRays(*batch.scene, to.count, *batch.arena);
+  ShadowRays rays = allocateShadowRays(batch.scene, to.count, batch.arena);
   uint32_t n = 0;
   for (uint32_t i = 0; i < to.count; i++) {
     if (!(to.weight[i] > 0) || !(colour[0][i] > 0 || colour[1][i] > 0 || colour[2][i] > 0))

@@ -74,8 +74,8 @@ void makeCameraRays(const StageContext& context, const float* const xy[2], Rays&
     local.direction[k] = context.arena.takeZero<float>(size);
   }
   const float extent[2] = {float(scene.frame.width), float(scene.frame.height)};
-  RtsBatch batch = makeBatch(context);
-  batch.rays = n;
+  RtsBatch batch(context);
+  batch.lanes = {.count = n, .cameraRays = true};
   const ShaderSlot& camera = scene.camera.shader;
   {
     const RunningShader running(*camera.shaderClass);

@@ -50,7 +50,7 @@ float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
 } // namespace
 
 // Returns whether the hits of a class are described by lobes: as where the light of a frame is
-// computed (TileRenderer::shadeByLobes and shadeByShade), and in frames without light wherever that
+// computed (PathTracer::shadeByLobes and shadeByShade), and in frames without light wherever that
 // is possible, because `shade` would ask for light.
 static bool usesLobes(const RtsClass& shaderClass, const edit::FrameSettingsT& frame) {
   const bool byLobes = traitsOf(frame.transport).shading == Shading::byLobes;
@@ -74,6 +74,21 @@ void FirstHits::begin(const Rays& camera) {
 void FirstHits::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
   intersectWave(context, WaveSource::camera, wave);
   visit(context, wave, found);
+}
+
+void FirstHits::describeBehindMedia(const StageContext& context, const Wave& wave,
+                                    PixelSamples& found) {
+  const bool describes = found.normal[0] || found.albedo[0] || found.position[0] ||
+                         found.motion[0] || found.depth || has(RT_NAME | RT_COVERAGE);
+  const uint32_t n = wave.rays.count;
+  if (describes) {
+    Wave seen;
+    seen.rays = wave.rays;
+    seen.states.allocate(arena_, n);
+    for (uint32_t i = 0; i < n; i++) seen.states.set(i, wave.states[i]);
+    describe(context, seen, found);
+  }
+  std::fill_n(found.first, n, uint8_t(0));
 }
 
 void FirstHits::finish(PixelSamples& found) {
@@ -114,8 +129,8 @@ void FirstHits::describeBucket(const StageContext& context, const Points& points
   const auto isLastAt = [&](uint32_t i) { return isLast(states.flagsOf(points.order[i])); };
   bool asks = has(RT_ALBEDO);
   for (uint32_t i = 0; i < n && follows_ && !asks; i++) asks = !isLastAt(i);
-  RtsBatch batch = makeBatch(context, points, states);
-  batch.lightSet = bucket.lightSet;
+  RtsBatch batch(context, points, states);
+  batch.lights.set = bucket.lightSet;
   batch.describes = true;
   float* albedo[3] = {};
   if (usesLobes(shaderClass, scene_.frame)) {
@@ -161,7 +176,7 @@ bool FirstHits::findLead(const RtsBatch& batch, const Boundaries& boundaries, ui
   // medium.
   BsdfSamples samples(hits, i, boundaries.etaAt(i), 0, true);
   float others = 0;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobe& lobe = batch.lobes[l];
     const uint32_t first = samples.count;
     RtsLobe smooth;

@@ -30,6 +30,10 @@ class FirstHits {
   // the renderer, because shaders may request something from it. The wave lists the rays that
   // missed until the arena is released.
   void describe(const StageContext& context, Wave& wave, PixelSamples& found);
+  // Does the same for camera rays in a scene with media that scatter. The channels of first
+  // surfaces show what is behind the medium, whether the light of the sample comes from there or
+  // from the medium.
+  void describeBehindMedia(const StageContext& context, const Wave& wave, PixelSamples& found);
   // Take over the first hit of a path if an image is to be followed there; else return false.
   // transmission: what `shade` has returned.
   bool takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i);

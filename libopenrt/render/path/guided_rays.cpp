@@ -27,9 +27,9 @@ struct Guided {
 };
 
 Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const Points& points = *batch.points;
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const uint32_t n = points.hits.count;
   Guided out;
   out.hit = arena.take<uint32_t>(padded(n));
@@ -74,13 +74,13 @@ struct Response {
 };
 
 Response* responses(const RtsBatch& batch, const LobeSampling& sampling, const Guided& rays) {
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   auto* response = arena.take<Response>(rays.count);
   std::fill_n(response, rays.count, Response());
   ArenaScope scope(arena);
   const RtsHits& hits = batch.points->hits;
   LobeValues values(arena, rays.count, &batch);
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const float* followed = sampling.selectionProbability[l];
     if (!followed) continue;
     const RtsLobe& lobe = batch.lobes[l];
@@ -116,11 +116,11 @@ uint32_t guideCellAt(const RenderScene& scene, PathFlags path, const Vec3f& posi
 }
 
 void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries) {
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const PathStates& states = *batch.states;
   if (!scene.photonGuide) return;
   const bool goesOn = boundaries.crossing ||
-                      std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
+                      std::any_of(batch.lobes.begin(), batch.lobes.end(),
                                   [](const RtsLobe& lobe) { return !nonSpecularFunctions(lobe); });
   if (!goesOn) return;
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
@@ -138,7 +138,7 @@ void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries) {
 void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
                        const Boundaries& boundaries) {
   const RtsBatch& batch = paths.batch;
-  ArenaScope scope(*batch.arena);
+  ArenaScope scope(batch.arena);
   const Guided rays = sampleGuide(batch, sampling);
   if (rays.count == 0) return;
   const Response* response = responses(batch, sampling, rays);
@@ -158,7 +158,7 @@ void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
     state.flags.set(PathFlags::specularSinceDiffuseBit | PathFlags::passedUnsampledBit, false);
     state.flags.set(PathFlags::scatteredBit, true);
     state.flags.set(PathFlags::deflectedBit, true);
-    if (trial_) trial_->send(batch.scene->photonGuide->find(rays.position[r]));
+    if (trial_) trial_->send(batch.scene.photonGuide->find(rays.position[r]));
     queueRay(*batch.points, i, direction, state, next_);
   }
 }
@@ -189,8 +189,8 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
   // The light that `shade` lets through is not told here: BSDF sampling finds light behind such
   // surfaces.
   if (!bucket.shaderClass->surface) return;
-  RtsBatch batch = makeBatch(context_, points, states);
-  batch.lightSet = bucket.lightSet;
+  RtsBatch batch(context_, points, states);
+  batch.lights.set = bucket.lightSet;
   const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass);
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
@@ -261,7 +261,7 @@ void GuidedRays::spawnRay(const RtsBatch& batch, uint32_t i, float choice,
   const Points& points = *batch.points;
   RayState state = (*batch.states)[batch.order[i]];
   BsdfSamples samples(points.hits, i, boundaries.etaAt(i), state.flags.channel());
-  for (uint32_t l = 0; l < batch.lobeCount; l++)
+  for (uint32_t l = 0; l < batch.lobes.size(); l++)
     if (!nonSpecularFunctions(batch.lobes[l])) samples.add(l, batch.lobes[l], nullptr);
   const BsdfChoice choices(samples, state.throughput);
   if (!(choices.sum > 0)) return;

@@ -3,7 +3,7 @@
 // cannot connect such surfaces to the light, and BSDF sampling finds small lamps with a low
 // probability. Each hit near photons sends one more ray, which follows specular surfaces only and
 // counts the emission alone. It is combined with BSDF sampling by MIS (E. Veach, L. Guibas,
-// SIGGRAPH 1995, balance heuristic). One instance per render thread.
+// SIGGRAPH 1995, balance heuristic). One instance per path tracer.
 #pragma once
 
 #include "render/lights/photon_guide.h"
@@ -27,11 +27,12 @@ void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries);
 
 class GuidedRays {
  public:
-  // context: as that of the renderer.
+  // context: as that of the path tracer.
   explicit GuidedRays(const StageContext& context) : context_(context) {}
 
   // Tells a trial about all rays from now on.
   void observe(GuideTrial* trial) { trial_ = trial; }
+  GuideTrial* trial() const { return trial_; }
   // Queues a ray for each hit near photons that has a non-specular lobe.
   void start(const CameraPaths& paths, const LobeSampling& sampling, const Boundaries& boundaries);
   bool empty() const { return next_.empty(); }
@@ -39,11 +40,6 @@ class GuidedRays {
   // adds the light that they find there.
   // level: number of surfaces that the paths have hit before.
   void follow(const PathSamples& samples, uint32_t level, PixelSamples& found);
-  // Exchanges the rays with those of another one.
-  void swap(GuidedRays& other) {
-    std::swap(queue_, other.queue_);
-    std::swap(next_, other.next_);
-  }
 
  private:
   struct Stage { // what the hits of a wave need

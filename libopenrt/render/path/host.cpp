@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "render/path/illumination.h"
-#include "render/path/tile.h"
+#include "render/path/path_tracer.h"
+#include "render/path/requests.h"
 #include "render/surface/hit_info.h"
 #include "render/wave/batch.h"
 #include "shading/running.h"
@@ -13,11 +14,12 @@
 namespace openrt {
 
 void allocateLightArrays(RtsBatch& batch, uint32_t n) {
-  if (batch.reach) return;
+  if (batch.lights.reach) return;
   const uint32_t size = padded(n);
-  for (auto* group : {batch.local, batch.toLight, batch.color, batch.ambient})
-    for (int k = 0; k < 3; k++) group[k] = batch.arena->take<float>(size);
-  batch.reach = batch.arena->take<float>(size);
+  for (auto* group :
+       {batch.lights.local, batch.lights.toLight, batch.lights.color, batch.lights.ambient})
+    for (int k = 0; k < 3; k++) group[k] = batch.arena.take<float>(size);
+  batch.lights.reach = batch.arena.take<float>(size);
 }
 
 namespace {
@@ -33,7 +35,7 @@ void shadow(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wan
 
 void sample(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2],
             float* const rgba[4]) {
-  const auto& textures = *batch->scene->textures;
+  const auto& textures = *batch->scene.textures;
   textures[texture < textures.size() ? texture : 0].sample(padded(n), uv, rgba);
 }
 
@@ -42,22 +44,22 @@ uint32_t components(const RtsHost* host, RtsTexture texture) {
   return textures && texture && texture < textures->size() ? (*textures)[texture].components() : 0;
 }
 
-float* scratch(RtsBatch* batch, uint32_t n) { return batch->arena->take<float>(padded(n)); }
+float* scratch(RtsBatch* batch, uint32_t n) { return batch->arena.take<float>(padded(n)); }
 
 RtsLobe* lobe(RtsBatch* batch, RtsLobeKind kind) {
-  if (batch->lobeCount == RTS_MAX_LOBES || kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_CUSTOM)
-    return nullptr;
+  if (kind < RTS_LOBE_DIFFUSE || kind >= RTS_LOBE_CUSTOM) return nullptr;
+  RtsLobe* added = batch->lobes.add();
+  if (!added) return nullptr;
   const RtsHits& hits = batch->points->hits;
   const uint32_t size = padded(hits.count);
-  RtsLobe& lobe = batch->lobes[batch->lobeCount++];
-  lobe = {};
+  RtsLobe& lobe = *added;
   lobe.kind = kind;
   for (int k = 0; k < 3; k++) {
-    lobe.weight[k] = batch->arena->takeZero<float>(size);
-    lobe.normal[k] = batch->arena->take<float>(size);
+    lobe.weight[k] = batch->arena.takeZero<float>(size);
+    lobe.normal[k] = batch->arena.take<float>(size);
     std::copy_n(hits.normal[k], size, lobe.normal[k]);
   }
-  for (auto& p : lobe.parameter) p = batch->arena->takeZero<float>(size);
+  for (auto& p : lobe.parameter) p = batch->arena.takeZero<float>(size);
   lobe.functions = nullptr;
   return &lobe;
 }
@@ -71,31 +73,31 @@ RtsLobe* customLobe(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t
   made->kind = RTS_LOBE_CUSTOM;
   made->functions = functions;
   for (uint32_t i = 0; i < floats; i++)
-    made->data[i] = batch->arena->takeZero<float>(padded(batch->points->hits.count));
+    made->data[i] = batch->arena.takeZero<float>(padded(batch->points->hits.count));
   return made;
 }
 
 void random(RtsBatch* batch, uint32_t pair, float* const square[2]) {
-  if (batch->tracer && (batch->points || batch->rays))
+  if (batch->tracer && (batch->points || batch->lanes.cameraRays))
     return batch->tracer->randomPoints(*batch, pair, square);
-  const uint32_t n = batch->points ? batch->hitCount() : batch->lanesWithoutHits();
+  const uint32_t n = batch->points ? batch->hitCount() : batch->lanes.count;
   for (int k = 0; k < 2; k++) std::fill_n(square[k], n, 0.5f);
 }
 
 void trace(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]) {
-  if (batch->tracer && !batch->describes) return batch->tracer->trace(*batch, *rays, rgba);
+  if (batch->tracer && !batch->describes) return traceRequest(*batch, *rays, rgba);
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], rays->count, 0.0f);
 }
 
 void findHit(RtsBatch* batch, const RtsRequest* rays, RtsFound* out) {
-  if (batch->tracer) return batch->tracer->findHit(*batch, *rays, *out);
+  if (batch->tracer) return findRequest(*batch, *rays, *out);
   if (out->distance)
     std::fill_n(out->distance, rays->count, std::numeric_limits<float>::infinity());
 }
 
 void occluded(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]) {
-  if (batch->tracer) return batch->tracer->occluded(*batch, *rays, transmission);
+  if (batch->tracer) return occludeRequest(*batch, *rays, transmission);
   for (int k = 0; k < 3; k++) std::fill_n(transmission[k], rays->count, 1.0f);
 }
 
@@ -112,13 +114,13 @@ void path(RtsBatch* batch, uint32_t* depth, float* const throughput[3]) {
   pathsOf(*batch, batch->tracer ? batch->tracer->level() : 0, depth, throughput);
 }
 void error(RtsBatch* batch, float* out) {
-  if (!batch->points) return void(std::fill_n(out, batch->lanesWithoutHits(), 0.0f));
+  if (!batch->points) return void(std::fill_n(out, batch->lanes.count, 0.0f));
   for (uint32_t i = 0; i < batch->hitCount(); i++) out[i] = batch->points->error[batch->pointOf(i)];
 }
 
 void backdrop(RtsBatch* batch, uint32_t* seen) {
-  const uint32_t lanes = batch->lanesWithoutHits();
-  for (uint32_t i = 0; i < lanes; i++) seen[i] = batch->straight ? batch->straight[i] : 0;
+  const uint32_t* straight = batch->lanes.straight;
+  for (uint32_t i = 0; i < batch->lanes.count; i++) seen[i] = straight ? straight[i] : 0;
 }
 
 void log(const RtsHost* host, int level, const char* text) {

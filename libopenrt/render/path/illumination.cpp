@@ -7,7 +7,7 @@
 
 #include "render/lights/light_sampler.h"
 #include "render/lights/shadows.h"
-#include "render/path/tile.h"
+#include "render/path/path_tracer.h"
 #include "render/surface/sanitize_output.h"
 #include "render/wave/faults.h"
 #include "shading/running.h"
@@ -21,15 +21,15 @@ constexpr uint32_t none = ~0u;
 
 // Returns the light sampler of the batch; null if it evaluates every light of its set.
 const LightSampler* lightSamplerOf(const RtsBatch& batch) {
-  if (!batch.tracer || !batch.scene->lightSamplers) return nullptr;
-  const LightSampler& sampler = (*batch.scene->lightSamplers)[batch.lightSet];
+  if (!batch.tracer || !batch.scene.lightSamplers) return nullptr;
+  const LightSampler& sampler = (*batch.scene.lightSamplers)[batch.lights.set];
   return sampler.chooses() ? &sampler : nullptr;
 }
 
 const LightSlot& lightOf(const RtsBatch& batch, uint32_t i) {
   const LightSampler* sampler = lightSamplerOf(batch);
   return batch.scene
-      ->lights[sampler ? sampler->always()[i] : batch.scene->lightSets[batch.lightSet][i]];
+      .lights[sampler ? sampler->always()[i] : batch.scene.lightSets[batch.lights.set][i]];
 }
 
 void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* const out[3]) {
@@ -70,7 +70,7 @@ bool evaluateLight(RtsBatch& batch, const LightSlot& light, uint32_t count,
   const float* places[3] = {local[0], local[1], local[2]};
   {
     const RunningShader running(*light.shader.shaderClass);
-    light.shader.shaderClass->illuminate(&batch.scene->host, &batch, light.shader.params, n, places,
+    light.shader.shaderClass->illuminate(&batch.scene.host, &batch, light.shader.params, n, places,
                                          &out);
   }
   sanitizeOutput(*light.shader.shaderClass, batch, count,
@@ -83,9 +83,9 @@ bool evaluateLight(RtsBatch& batch, const LightSlot& light, uint32_t count,
 // Samples a light for each hit; the hits of each light are evaluated together.
 void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const RtsHits& hits,
                           RtsIllumination& out) {
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const uint32_t n = hits.count;
-  batch.chosen = arena.take<uint32_t>(padded(n));
+  batch.lights.chosen = arena.take<uint32_t>(padded(n));
   ArenaScope scope(arena);
   float* square[2] = {arena.take<float>(padded(n)), arena.take<float>(padded(n))};
   batch.tracer->randomPoints(batch, lightPair, square);
@@ -94,21 +94,23 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
   uint32_t lit = 0;
   for (int k = 0; k < 3; k++)
     for (float* a : {out.toLight[k], out.color[k], out.ambient[k]}) std::fill_n(a, padded(n), 0.0f);
-  std::fill_n(batch.reach, padded(n), 0.0f);
+  std::fill_n(batch.lights.reach, padded(n), 0.0f);
   for (uint32_t i = 0; i < n; i++) {
     const LightSampler::Choice c =
         sampler.choose(load(hits.position, i), load(hits.normal, i),
                        double(square[0][i]) + double(square[1][i]) * 0x1p-24);
-    batch.chosen[i] = c.probability > 0 ? c.light : none;
+    batch.lights.chosen[i] = c.probability > 0 ? c.light : none;
     probability[i] = c.probability;
     if (c.probability > 0) order[lit++] = i;
   }
   std::sort(order, order + lit, [&](uint32_t a, uint32_t b) {
-    return batch.chosen[a] != batch.chosen[b] ? batch.chosen[a] < batch.chosen[b] : a < b;
+    return batch.lights.chosen[a] != batch.lights.chosen[b]
+               ? batch.lights.chosen[a] < batch.lights.chosen[b]
+               : a < b;
   });
   for (uint32_t begin = 0, end; begin < lit; begin = end) {
-    const uint32_t light = batch.chosen[order[begin]];
-    for (end = begin + 1; end < lit && batch.chosen[order[end]] == light;) end++;
+    const uint32_t light = batch.lights.chosen[order[begin]];
+    for (end = begin + 1; end < lit && batch.lights.chosen[order[end]] == light;) end++;
     const uint32_t m = end - begin, size = padded(m);
     ArenaScope inner(arena);
     RtsIllumination part{};
@@ -127,17 +129,16 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
     // The light's own batch: the host's functions write a value for each of its hits, not for each
     // hit of the surface.
     RtsBatch own = batch;
-    own.subset = order + begin;
-    own.subsetSize = m;
+    own.subset = {order + begin, m};
     own.requests = nullptr;
-    own.rays = m;
+    own.lanes = {.count = m, .cameraRays = true};
     if (batch.order) {
       auto* lanesOfHits = arena.take<uint32_t>(m);
       for (uint32_t i = 0; i < m; i++) lanesOfHits[i] = batch.order[order[begin + i]];
       own.order = lanesOfHits;
     }
     const bool parallel =
-        evaluateLight(own, batch.scene->lights[light], m, places, local, part, reach);
+        evaluateLight(own, batch.scene.lights[light], m, places, local, part, reach);
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t to = order[begin + i];
       for (int k = 0; k < 3; k++) {
@@ -145,7 +146,7 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
         out.color[k][to] = part.color[k][i] / probability[to];
         out.ambient[k][to] = part.ambient[k][i] / probability[to];
       }
-      batch.reach[to] = parallel ? std::numeric_limits<float>::infinity() : reach[i];
+      batch.lights.reach[to] = parallel ? std::numeric_limits<float>::infinity() : reach[i];
     }
   }
 }
@@ -158,41 +159,42 @@ uint32_t lightCount(RtsBatch& batch) {
   if (batch.points) allocateLightArrays(batch, batch.points->hits.count);
   const LightSampler* sampler = lightSamplerOf(batch);
   return uint32_t(sampler ? sampler->always().size() + 1
-                          : batch.scene->lightSets[batch.lightSet].size());
+                          : batch.scene.lightSets[batch.lights.set].size());
 }
 
 void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumination& out) {
   allocateLightArrays(batch, hits.count);
   for (int k = 0; k < 3; k++) {
-    out.toLight[k] = batch.toLight[k];
-    out.color[k] = batch.color[k];
-    out.ambient[k] = batch.ambient[k];
+    out.toLight[k] = batch.lights.toLight[k];
+    out.color[k] = batch.lights.color[k];
+    out.ambient[k] = batch.lights.ambient[k];
   }
-  batch.current = i;
-  batch.chosen = nullptr;
+  batch.lights.current = i;
+  batch.lights.chosen = nullptr;
   if (const LightSampler* sampler = lightSamplerOf(batch);
       sampler && i == sampler->always().size()) {
     evaluateChosenLights(batch, *sampler, hits, out);
     out.directional = 0;
-    batch.directional = false;
+    batch.lights.directional = false;
     return;
   }
-  batch.directional = evaluateLight(batch, lightOf(batch, i), hits.count, hits.position,
-                                    batch.local, out, batch.reach);
+  batch.lights.directional = evaluateLight(batch, lightOf(batch, i), hits.count, hits.position,
+                                           batch.lights.local, out, batch.lights.reach);
 }
 
 void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted,
                 RtsIllumination& light) {
-  if (!batch.scene->frame.shadows || batch.current != i || &hits != &batch.points->hits) return;
-  if (!batch.chosen) {
+  if (!batch.scene.frame.shadows || batch.lights.current != i || &hits != &batch.points->hits)
+    return;
+  if (!batch.lights.chosen) {
     if (!(lightOf(batch, i).shader.traits & RTS_NO_SHADOW)) castShadows(batch, wanted, light);
     return;
   }
-  ArenaScope scope(*batch.arena);
-  auto* casts = batch.arena->take<uint8_t>(padded(hits.count));
+  ArenaScope scope(batch.arena);
+  auto* casts = batch.arena.take<uint8_t>(padded(hits.count));
   for (uint32_t h = 0; h < hits.count; h++)
-    casts[h] = batch.chosen[h] == none ||
-                       (batch.scene->lights[batch.chosen[h]].shader.traits & RTS_NO_SHADOW)
+    casts[h] = batch.lights.chosen[h] == none ||
+                       (batch.scene.lights[batch.lights.chosen[h]].shader.traits & RTS_NO_SHADOW)
                    ? 0
                    : wanted[h];
   castShadows(batch, casts, light);

@@ -74,8 +74,8 @@ Vec3f LightDepartures::lampFlux(const LightSources::LightRay& start, const Vec3f
     out.color[k] = arena.takeZero<float>(lanes);
     out.ambient[k] = arena.takeZero<float>(lanes);
   }
-  RtsBatch batch = makeBatch(context_);
-  batch.lanes = 1;
+  RtsBatch batch(context_);
+  batch.lanes.count = 1;
   {
     const RunningShader running(*light.shader.shaderClass);
     light.shader.shaderClass->illuminate(&scene.host, &batch, light.shader.params, 1, local, &out);

@@ -32,7 +32,7 @@ float densityAt(const RtsBatch& batch, const RayState& state, uint32_t i,
 // directions which they have sampled.
 Vec3f responseAt(const RtsBatch& batch, const LobeSampling& sampling, uint32_t i) {
   Vec3f sum;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const LobeSamples* samples = sampling.samples[l];
     Vec3f weight;
     if (!samples || !(samples->pdf[i] > 0) || !weightAt(batch.lobes[l], i, weight)) continue;
@@ -76,12 +76,12 @@ TileFootprint footprintOf(const StageContext& context, const Tile& tile) {
 void addLightPathBound(const CameraPaths& paths, const LobeSampling& sampling,
                        const TileFootprint& footprint) {
   const RtsBatch& batch = paths.batch;
-  const double flux = concentration * batch.scene->lightPathFlux;
-  const Emitters& emitters = *batch.scene->emitters;
+  const double flux = concentration * batch.scene.lightPathFlux;
+  const Emitters& emitters = *batch.scene.emitters;
   const bool shapes = emitters.brightestShape() > 0, sun = emitters.hasSun();
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const RayState state = (*batch.states)[batch.order[i]];
-    if (!isGuided(*batch.scene, state.flags)) continue;
+    if (!isGuided(batch.scene, state.flags)) continue;
     const double radiance = double(largest(state.throughput * responseAt(batch, sampling, i))) *
                             double(densityAt(batch, state, i, footprint)) * flux;
     if (!std::isfinite(radiance)) continue;

@@ -108,7 +108,7 @@ void LightTracer::selectMet(Wave& wave) {
 void LightTracer::transmitRays(const Points& points, const PathStates& states,
                                const RtsClass& shaderClass) {
   const uint32_t n = points.hits.count;
-  RtsBatch batch = makeBatch(context_);
+  RtsBatch batch(context_);
   batch.points = &points;
   float* through[3];
   for (auto& a : through) a = arena_.takeZero<float>(padded(n));
@@ -151,14 +151,14 @@ void LightTracer::countNeverEntered(const Points& points, const Rays& rays,
 void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass& shaderClass) {
   const PathStates& states = wave.states;
   const uint32_t n = points.hits.count;
-  RtsBatch batch = makeBatch(context_, points, states);
+  RtsBatch batch(context_, points, states);
   runSurfaceShader(batch, shaderClass);
   const Boundaries boundaries = crossBoundaries(batch, shaderClass);
   if (boundaries.crossing) countNeverEntered(points, wave.rays, boundaries, shaderClass);
   const RandomNumbers random = randomNumbersAt(
       samples_, states, points.order, n, pairAtLevel(uint32_t(LightPair::count), level_), arena_);
   bool scatters = false;
-  for (uint32_t l = 0; l < batch.lobeCount; l++)
+  for (uint32_t l = 0; l < batch.lobes.size(); l++)
     scatters |= nonSpecularFunctions(batch.lobes[l]) != nullptr;
   auto* deflected = arena_.take<uint32_t>(n); // hits of paths that have hit a mirror or boundary
   uint32_t count = 0;
@@ -209,7 +209,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling
   RayState state = (*batch.states)[batch.order[i]];
   const bool first = state.flags.pathClass() == PathClass::undeflected;
   BsdfSamples bsdfSamples(points.hits, i, boundaries.etaAt(i), state.flags.channel(), true);
-  for (uint32_t l = 0; l < batch.lobeCount; l++)
+  for (uint32_t l = 0; l < batch.lobes.size(); l++)
     if (!first || !nonSpecularFunctions(batch.lobes[l]))
       bsdfSamples.add(l, batch.lobes[l], first ? nullptr : sampling.samples[l]);
   // The flux of the path is not known before the first surface has been shaded.

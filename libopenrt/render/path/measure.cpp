@@ -1,4 +1,3 @@
-// measure.cpp: the first vertex of the paths that measure illuminance.
 #include "render/path/measure.h"
 
 #include <algorithm>
@@ -6,10 +5,13 @@
 
 #include "render/lights/emitters.h"
 #include "render/lights/lamps.h"
-#include "render/path/tile.h"
 
 namespace openrt {
+namespace {
 
+// Makes shading points at the origins of rays, whose normals are the directions of the rays. They
+// belong to no record of the scene.
+//
 // Shadow rays and spawned rays start at the sensor itself: its position is given, so it has no
 // rounding error that could lift them off a surface.
 Points sensorPoints(const Rays& rays, Arena& arena) {
@@ -48,51 +50,69 @@ Points sensorPoints(const Rays& rays, Arena& arena) {
   return points;
 }
 
+// Shades the white matt surfaces of the sensors. Writes what lamps without extent give, by path, to
+// `lampLight`.
+void shadeSensors(PathTracer& tracer, const Wave& wave, float* const lampLight[3],
+                  PixelSamples& found) {
+  const StageContext& context = tracer.context();
+  const RenderScene& scene = context.scene;
+  Arena& arena = context.arena;
+  ArenaScope scope(arena);
+  const Points points = sensorPoints(wave.rays, arena);
+  RtsBatch batch(context, points, wave.states);
+  batch.lights.set = 0; // the lights that shine on everything (flatten.cpp)
+  const uint32_t n = points.hits.count;
+  const RtsLobe& white = *scene.host.lobe(&batch, RTS_LOBE_DIFFUSE);
+  SentLight sent;
+  for (int k = 0; k < 3; k++) {
+    std::fill_n(white.weight[k], padded(n), 1.0f);
+    sent.radiance[k] = arena.takeZero<float>(padded(n));
+  }
+  // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is
+  // exact and needs no random path.
+  addLamps(batch, sent);
+  for (uint32_t i = 0; i < n; i++) store(load(sent.radiance, i), lampLight, wave.states.path[i]);
+  if (!scene.records.empty() || scene.skyShines) tracer.continueFromLobes(batch, {}, sent);
+  // Under a sky of one radiance and nothing else every path finds the same light.
+  const SkySampler* sky = scene.emitters->sky();
+  const bool even = scene.records.empty() && sky && !sky->black() && !sky->usable();
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t path = wave.states.path[i];
+    store(load(found.radiance, path) + load(sent.radiance, i), found.radiance, path);
+    found.alpha[path] = 1;
+    found.first[path] = 0;
+    if (even) tracer.samples().random[path] = 0;
+  }
+}
+
+// Notes which random paths of sensors have found light beside that of the lamps without extent. If
+// all have, and the same amount, no light is missing by chance (error.cpp).
+void noteFoundLight(uint32_t n, const PixelSamples& found, const float* const lampLight[3],
+                    const PathSamples& samples) {
+  for (uint32_t i = 0; i < n; i++) {
+    const Vec3f light = load(found.radiance, i), lamps = load(lampLight, i);
+    if (light.x > lamps.x || light.y > lamps.y || light.z > lamps.z)
+      samples.random[i] &= uint8_t(~RandomPath::inVain);
+  }
+}
+
+} // namespace
+
+void measureIlluminance(PathTracer& tracer, Wave& wave, PixelSamples& found) {
+  const uint32_t n = wave.rays.count; // follow() uses the wave again
+  float* lampLight[3];
+  for (auto& lamps : lampLight) lamps = tracer.context().arena.takeZero<float>(n);
+  shadeSensors(tracer, wave, lampLight, found);
+  tracer.follow(wave, found);
+  noteFoundLight(n, found, lampLight, tracer.samples());
+}
+
 // The radiance of a white matt surface is its illuminance over pi (J. H. Lambert, "Photometria",
 // 1760).
 float readingOf(const edit::FrameSettingsT& frame, const Vec3f& radiance) {
   const float luminance = 0.2126f * radiance.x + 0.7152f * radiance.y + 0.0722f * radiance.z;
   return frame.measure == RT_MEASURE_ILLUMINANCE ? std::numbers::pi_v<float> * luminance
                                                  : luminance;
-}
-
-void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
-  ArenaScope scope(arena_);
-  const Points points = sensorPoints(wave.rays, arena_);
-  RtsBatch batch = makeBatch(context_, points, wave.states);
-  batch.lightSet = 0; // the lights that shine on everything (flatten.cpp)
-  const uint32_t n = points.hits.count;
-  const RtsLobe& white = *scene_.host.lobe(&batch, RTS_LOBE_DIFFUSE);
-  SentLight sent;
-  for (int k = 0; k < 3; k++) {
-    std::fill_n(white.weight[k], padded(n), 1.0f);
-    sent.radiance[k] = arena_.takeZero<float>(padded(n));
-  }
-  // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is
-  // exact and needs no random path.
-  addLamps(batch, sent);
-  for (uint32_t i = 0; i < n; i++) store(load(sent.radiance, i), lampLight_, wave.states.path[i]);
-  if (!scene_.records.empty() || scene_.skyShines) continueFromLobes(batch, {}, sent);
-  // Under a sky of one radiance and nothing else every path finds the same light.
-  const SkySampler* sky = scene_.emitters->sky();
-  const bool even = scene_.records.empty() && sky && !sky->black() && !sky->usable();
-  for (uint32_t i = 0; i < n; i++) {
-    const uint32_t path = wave.states.path[i];
-    store(load(found.radiance, path) + load(sent.radiance, i), found.radiance, path);
-    found.alpha[path] = 1;
-    found.first[path] = 0;
-    if (even) samples_.random[path] = 0;
-  }
-}
-
-// Notes which random paths of sensors have found light beside that of the lamps without extent. If
-// all have, and the same amount, no light is missing by chance (error.cpp).
-void TileRenderer::noteFoundLight(uint32_t n, const PixelSamples& found) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Vec3f light = load(found.radiance, i), lamps = load(lampLight_, i);
-    if (light.x > lamps.x || light.y > lamps.y || light.z > lamps.z)
-      samples_.random[i] &= uint8_t(~RandomPath::inVain);
-  }
 }
 
 } // namespace openrt

@@ -4,14 +4,13 @@
 // [render]
 #pragma once
 
-#include "render/wave/points.h"
-#include "scene/scene.h"
+#include "render/path/path_tracer.h"
 
 namespace openrt {
 
-// Makes shading points at the origins of rays, whose normals are the directions of the rays. They
-// belong to no record of the scene.
-Points sensorPoints(const Rays& rays, Arena& arena);
+// Traces the paths of illuminance sensors, which are at the origins of the rays of a wave and face
+// along them.
+void measureIlluminance(PathTracer& tracer, Wave& wave, PixelSamples& found);
 
 // Returns the reading of a sensor whose path has found this radiance, in cd/m2 or lux (frame.h).
 float readingOf(const edit::FrameSettingsT& frame, const Vec3f& radiance);

@@ -50,7 +50,7 @@ void countUnsampled(const CameraPaths& paths, size_t begin) {
 // they pass everywhere.
 const uint32_t* findUnsampled(const RtsBatch& batch) {
   const uint32_t n = batch.points->hits.count;
-  auto* unsampled = batch.arena->take<uint32_t>(padded(n));
+  auto* unsampled = batch.arena.take<uint32_t>(padded(n));
   bool any = false;
   for (uint32_t i = 0; i < n; i++) any |= (unsampled[i] = !passesStraight(shaderAt(batch, i))) != 0;
   return any ? unsampled : nullptr;
@@ -60,24 +60,23 @@ const uint32_t* findUnsampled(const RtsBatch& batch) {
 void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
                    const Boundaries& boundaries, const BsdfSampleArrays& samples) {
   const RtsBatch& batch = paths.batch;
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   const uint32_t n = batch.points->hits.count;
-  const bool path = tracesPaths(batch.scene->frame.transport),
+  const bool path = tracesPaths(batch.scene.frame.transport),
              straight = std::any_of(samples.begin(), samples.end(),
                                     [](const SampleArrays&sample) { return !sample.deflected; });
-  const Continuation from{.points = batch.points,
-                          .states = batch.states,
-                          .level = paths.level,
-                          .choice = sampling.choices[0],
-                          .survival = sampling.choices[1],
-                          .energyCut = batch.scene->frame.energyCut,
-                          .crossing = boundaries.crossing,
-                          .twoSided = path ? transmitsByHit(batch) : nullptr,
-                          .unsampled = straight && path && batch.scene->emitters->any()
-                                           ? findUnsampled(batch)
-                                           : nullptr,
-                          .count = arena.take<uint32_t>(padded(n)),
-                          .random = arena.take<uint32_t>(padded(n))};
+  const Continuation from{
+      .points = batch.points,
+      .states = batch.states,
+      .level = paths.level,
+      .choice = sampling.choices[0],
+      .survival = sampling.choices[1],
+      .energyCut = batch.scene.frame.energyCut,
+      .crossing = boundaries.crossing,
+      .twoSided = path ? transmitsByHit(batch) : nullptr,
+      .unsampled = straight && path && batch.scene.emitters->any() ? findUnsampled(batch) : nullptr,
+      .count = arena.take<uint32_t>(padded(n)),
+      .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);
   if (path)
     markRandom(paths, samples, boundaries, from.random);
@@ -93,7 +92,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
 
 // Spawns a ray through a boundary that has no effect.
 void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
-  const RenderScene& scene = *paths.batch.scene;
+  const RenderScene& scene = paths.batch.scene;
   const bool sampled = !scene.emitters->any() ||
                        (scene.samplesPass && (shaderAt(paths.batch, i).traits & RTS_TRANSPARENT));
   spawnStraightRay(paths, i, {1, 1, 1}, behind, {.guided = true, .sampled = sampled});
@@ -102,7 +101,7 @@ void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind
 } // namespace
 
 const ShaderSlot& shaderAt(const RtsBatch& batch, uint32_t i) {
-  return (*batch.scene->shaders)[batch.scene->records[batch.points->record[i]].shader];
+  return (*batch.scene.shaders)[batch.scene.records[batch.points->record[i]].shader];
 }
 
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
@@ -125,10 +124,10 @@ void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
 void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries) {
   const RtsBatch& batch = paths.batch;
-  ArenaScope scope(*batch.arena);
+  ArenaScope scope(batch.arena);
   weightUnguided(batch, boundaries);
   const BsdfSampleArrays samples(batch, sampling, boundaries,
-                                 !followsImages(batch.scene->frame.transport));
+                                 !followsImages(batch.scene.frame.transport));
   if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);
   if (!boundaries.crossing) return;
   for (uint32_t i = 0; i < batch.points->hits.count; i++)

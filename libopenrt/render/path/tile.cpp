@@ -1,21 +1,16 @@
-// tile.cpp: the wave loop of TileRenderer. Every sum has a fixed order, so the pixels of a tile do
-// not depend on who renders it.
+// tile.cpp: the samples of a tile, wave by wave. Every sum has a fixed order, so the pixels of a
+// tile do not depend on who renders it.
 #include "render/path/tile.h"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
-#include "render/lights/emitted.h"
 #include "render/lights/environment.h"
-#include "render/lights/lamps.h"
-#include "render/path/accumulate.h"
+#include "render/medium/containing_media.h"
 #include "render/path/camera_rays.h"
 #include "render/path/measure.h"
-#include "render/surface/sanitize_output.h"
-#include "render/surface/surface_shader.h"
-#include "render/wave/light_stride.h"
-#include "shading/running.h"
+#include "render/path/transport_shader.h"
 
 namespace openrt {
 
@@ -30,7 +25,7 @@ void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
   tile_ = tile;
   listPixels(tile);
-  if (scene_.lightPathFlux > 0) footprint_ = footprintOf(context_, tile);
+  if (scene_.lightPathFlux > 0) paths_.footprint = footprintOf(tracer_.context(), tile);
 }
 
 // Lists the pixels of a tile in blocks of 4 x 4, those with light first.
@@ -57,15 +52,15 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
                           uint32_t first, uint32_t samples, std::span<PixelSums> sums,
                           const std::atomic<bool>& stop, HitCounts* hits) {
   begin(tile);
-  ledger_ = {};
+  paths_.ledger = {};
+  paths_.centred = centred;
+  paths_.stop = &stop;
   replicates_ = replicates;
-  centred_ = centred;
   leaf_ = first;
   sums_ = sums;
   hits_ = required_.names ? hits : nullptr;
   if (hits_) hits_->clear();
-  stop_ = &stop;
-  ledger_.samples += samples;
+  paths_.ledger.samples += samples;
   const auto all = uint32_t(pixels_.size());
   // A pixel without light has its first sample only, so that what it sees and the light of the
   // environment there belong together.
@@ -88,193 +83,63 @@ bool TileRenderer::renderPixels(const PixelRange& range, uint32_t first, uint32_
 }
 
 void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uint32_t samples) {
-  ArenaScope scope(arena_);
+  Arena& arena = paths_.arena;
+  ArenaScope scope(arena);
   const auto pixels = std::span<const uint32_t>(pixels_).subspan(range.begin, range.count());
-  const bool centred = centred_ || scene_.frame.measure != RT_MEASURE_NOTHING;
+  const bool centred = paths_.centred || scene_.frame.measure != RT_MEASURE_NOTHING;
   const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred};
   const uint32_t n = film.count();
   PixelSamples found;
-  found.allocate(arena_, n);
-  found.allocateFirst(arena_, n, scene_.frame.channels);
-  samples_.allocate(arena_, n);
-  samples_.random = arena_.takeZero<uint8_t>(n);
-  startSamples(film, samples_);
+  found.allocate(arena, n);
+  found.allocateFirst(arena, n, scene_.frame.channels);
+  PathSamples paths;
+  paths.allocate(arena, n);
+  paths.random = arena.takeZero<uint8_t>(n);
+  startSamples(film, paths);
+  tracer_.begin(paths);
   Wave wave;
-  wave.rays.allocate(arena_, n);
-  wave.states.allocate(arena_, n);
+  wave.rays.allocate(arena, n);
+  wave.states.allocate(arena, n);
   for (uint32_t i = 0; i < n; i++) wave.states.set(i, RayState{.path = i});
-  level_ = 0;
   float* xy[2];
-  sampleFilm(film, samples_, arena_, xy);
-  makeCameraRays(context_, xy, wave.rays);
-  if (scattersInMedia()) startInMedia(wave);
+  sampleFilm(film, paths, arena, xy);
+  makeCameraRays(tracer_.context(), xy, wave.rays);
+  if (!scene_.mediumLights.empty()) {
+    ArenaScope inner(arena);
+    findContainingMedia(tracer_.context(), wave.rays, wave.states.media);
+  }
   if (scene_.transport.shaderClass) {
-    runTransportShader(wave.rays, found);
+    runTransportShader(tracer_.context(), wave.rays, found);
   } else {
-    counters_.camera += n;
+    paths_.counters.camera += n;
     renderPaths(range.light, wave, found);
   }
-  addToPixels(range, found, firstSample, samples);
+  addToPixels(range, film, found);
 }
 
 void TileRenderer::renderPaths(bool light, Wave& wave, PixelSamples& found) {
-  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE) {
-    const uint32_t n = wave.rays.count; // follow() uses the wave again
-    for (float*& lamps : lampLight_) lamps = arena_.takeZero<float>(n);
-    follow(wave, found);
-    return noteFoundLight(n, found);
-  }
+  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE)
+    return measureIlluminance(tracer_, wave, found);
   firstHits_.begin(wave.rays);
   if (showsNoLight_) {
-    firstHits_.describe(context_, wave, found);
+    firstHits_.describe(tracer_.context(), wave, found);
   } else if (!light) {
     describe(wave, found);
   } else {
     if (scene_.frame.followImages) found.firstHits = &firstHits_;
-    if (scattersInMedia()) describeBehindMedia(wave, found);
-    follow(wave, found);
+    if (!scene_.mediumLights.empty())
+      firstHits_.describeBehindMedia(tracer_.context(), wave, found);
+    tracer_.trace(wave, found);
   }
   firstHits_.finish(found);
 }
 
 // Finds what pixels without light see, and the light of the environment where they see it.
 void TileRenderer::describe(Wave& wave, PixelSamples& found) {
-  firstHits_.describe(context_, wave, found);
-  addEnvironment(context_, wave, unsampled_, found);
-  found.complete = arena_.takeZero<uint8_t>(wave.rays.count);
+  firstHits_.describe(tracer_.context(), wave, found);
+  addEnvironment(tracer_.context(), wave, paths_.unsampled, found);
+  found.complete = paths_.arena.takeZero<uint8_t>(wave.rays.count);
   for (const uint32_t lane : wave.missed) found.complete[wave.states.path[lane]] = 1;
-}
-
-// Traces the rays of a wave, then the rays that they spawn, bounce by bounce. Rays are processed in
-// portions of at most the size of the wave in a fixed order, so that the sums of a path have one
-// order.
-void TileRenderer::follow(Wave& wave, PixelSamples& found) {
-  const uint32_t most = wave.rays.count;
-  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE && nesting_ == 0)
-    measureIlluminance(wave, found);
-  else
-    traceWave(wave, found);
-  for (level_++; !next_.empty() || !guided_.empty(); level_++) {
-    std::swap(queue_, next_);
-    next_.clear();
-    queue_.cut(level_, scene_.frame.depth, ledger_.cutByDepth);
-    counters_.secondary += queue_.size();
-    for (size_t begin = 0; begin < queue_.size() && !stopped(); begin += most) {
-      loadWave(queue_, begin, uint32_t(std::min<size_t>(most, queue_.size() - begin)), wave);
-      traceWave(wave, found);
-    }
-    guided_.follow(samples_, level_, found);
-  }
-}
-
-void TileRenderer::traceWave(Wave& wave, PixelSamples& found) {
-  ArenaScope scope(arena_);
-  intersectWave(context_, level_ == 0 ? WaveSource::camera : WaveSource::surfaces, wave);
-  if (scattersInMedia()) scatterInMedia(wave, found);
-  addEnvironment(context_, wave, unsampled_, found);
-  const auto shade = shadings[size_t(traitsOf(scene_.frame.transport).shading)];
-  forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
-    (this->*shade)(points, bucket, wave.states, found);
-  });
-}
-
-void TileRenderer::shadeByLobes(const Points& points, const Bucket& bucket,
-                                const PathStates& states, PixelSamples& found) {
-  if (bucket.shaderClass->surface)
-    scatter(points, bucket, states, found);
-  else
-    shadeByShade(points, bucket, states, found);
-}
-
-void TileRenderer::shadeByShade(const Points& points, const Bucket& bucket,
-                                const PathStates& states, PixelSamples& found) {
-  if (!bucket.shaderClass->shade) return scatter(points, bucket, states, found);
-  const uint32_t size = padded(points.hits.count);
-  RtsShading shaded{};
-  for (int k = 0; k < 3; k++) {
-    shaded.radiance[k] = arena_.takeZero<float>(size);
-    shaded.transmission[k] = arena_.takeZero<float>(size);
-    if (has(RT_ALBEDO)) shaded.albedo[k] = arena_.takeZero<float>(size);
-  }
-  RtsBatch batch = makeBatch(context_, points, states);
-  batch.lightSet = bucket.lightSet;
-  {
-    ArenaScope inner(arena_);
-    const RunningShader running(*bucket.shaderClass);
-    bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
-    sanitizeOutput(*bucket.shaderClass, batch, shaded);
-  }
-  addShading(pathsOf(batch), shaded, fogAt(context_, points, states), found);
-}
-
-// Returns where the light that surfaces send back is collected: their emission is the first part.
-SentLight TileRenderer::sentLight(const RtsBatch& batch, const RtsSurface& surface) {
-  SentLight sent{{surface.emission[0], surface.emission[1], surface.emission[2]}};
-  const bool coats = has(RT_REFLECTION) && tracesPaths(scene_.frame.transport) &&
-                     std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
-                                 [](const RtsLobe& lobe) { return lobe.coat != 0; });
-  if (coats)
-    for (auto& a : sent.coated) a = arena_.takeZero<float>(padded(batch.points->hits.count));
-  return sent;
-}
-
-// Shades surfaces that are described by lobes. The stages are those of docs/architecture.md, "One
-// hit, stage by stage".
-void TileRenderer::scatter(const Points& points, const Bucket& bucket, const PathStates& states,
-                           PixelSamples& found) {
-  RtsBatch batch = makeBatch(context_, points, states);
-  batch.lightSet = bucket.lightSet;
-  const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass, has(RT_ALBEDO));
-  sanitizeOutput(*bucket.shaderClass, batch, surface);
-  const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
-  batch.crossing = boundaries.crossing;
-  weightEmission(batch, boundaries, unsampled_, surface.emission);
-  const SentLight sent = sentLight(batch, surface);
-  gatherLight(batch, boundaries, sent);
-  addSurface(batch, surface, sent, boundaries, fogAt(context_, points, states), found);
-}
-
-// Adds the light of lamps and emitters that the lobes of a batch send back, and spawns the rays
-// that find the rest.
-void TileRenderer::gatherLight(RtsBatch& batch, const Boundaries& boundaries,
-                               const SentLight& sent) {
-  addLamps(batch, sent);
-  continueFromLobes(batch, boundaries, sent);
-}
-
-// Returns whether the depth limit leaves room for one more surface on the path of hit i.
-bool TileRenderer::goesOn(const RtsBatch& batch, uint32_t i) const {
-  return isWithinDepth(batch.states->flagsOf(batch.order[i]), level_ + 1, scene_.frame.depth);
-}
-
-bool TileRenderer::samplesEmitters(const RtsBatch& batch) const {
-  if (!scene_.emitters->any()) return false;
-  if (level_ < scene_.frame.depth) return true;
-  for (uint32_t i = 0; i < batch.points->hits.count; i++)
-    if (goesOn(batch, i)) return true;
-  return false;
-}
-
-// Does the same without the lamps.
-void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundaries,
-                                     const SentLight& sent) {
-  LobeSampling sampling;
-  const bool path = tracesPaths(scene_.frame.transport);
-  const bool emitters = path && samplesEmitters(batch);
-  if (path) {
-    sampling = drawChoices(batch, randomNumbersAt(samples_, *batch.states, batch.order,
-                                                  batch.points->hits.count, firstPair(), arena_));
-    sampleLobes(batch, sampling);
-    if (emitters) allocateSelection(batch, sampling);
-  }
-  spawnRays(pathsOf(batch), sampling, boundaries);
-  if (emitters && level_ >= scene_.frame.depth)
-    for (float* followed : sampling.selectionProbability)
-      for (uint32_t i = 0; followed && i < batch.points->hits.count; i++)
-        if (!goesOn(batch, i)) followed[i] = 0;
-  if (emitters) sampleEmitters(batch, sampling, boundaries, sent);
-  if (emitters && scene_.lightPathFlux > 0) addLightPathBound(pathsOf(batch), sampling, footprint_);
-  if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
 }
 
 namespace {
@@ -294,16 +159,16 @@ float clampRadiance(float radiance, float limit, double& clipped) {
 
 } // namespace
 
-void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& found,
-                               uint32_t firstSample, uint32_t samples) {
+void TileRenderer::addToPixels(const PixelRange& range, const FilmSamples& film,
+                               const PixelSamples& found) {
   const float clamp = scene_.frame.clamp,
               limit = clamp > 0 ? std::min(clamp, brightest) : brightest;
   for (uint32_t pixel = 0; pixel < range.count(); pixel++) {
     const uint32_t place = places_[range.begin + pixel];
     PixelSums& sums = sums_[place];
-    for (uint32_t s = 0; s < samples; s++) {
-      const uint32_t i = pixel * samples + s;
-      const bool first = firstSample + s == 0;
+    for (uint32_t s = 0; s < film.perPixel; s++) {
+      const uint32_t i = pixel * film.perPixel + s;
+      const bool first = film.first + s == 0;
       if (hits_) {
         const std::vector<uint32_t>& united = scene_.frame.unitedNames;
         const uint32_t name = found.name[i];
@@ -316,16 +181,16 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
       float radiance[3] = {found.radiance[0][i], found.radiance[1][i], found.radiance[2][i]};
       if (scene_.frame.measure)
         std::fill_n(radiance, 3, readingOf(scene_.frame, load(found.radiance, i)));
-      for (float& r : radiance) r = clampRadiance(r, limit, ledger_.clipped);
+      for (float& r : radiance) r = clampRadiance(r, limit, paths_.ledger.clipped);
       if (required_.spread)
         sums.add(radiance, found.alpha[i]);
       else
         sums.addColor(radiance, found.alpha[i]);
       if (required_.error) {
         sums.addTails(radiance);
-        sums.random |= samples_.random[i];
+        sums.random |= tracer_.samples().random[i];
         // Replicates larger than the leaf are closed where leaves are merged.
-        const uint32_t next = firstSample + s + 1;
+        const uint32_t next = film.first + s + 1;
         if (replicates_.many() && replicates_.indexOf(next) == 0 &&
             next - leaf_ >= replicates_.size())
           sums.closeReplicate();
@@ -338,7 +203,7 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
   }
 }
 
-void TileRenderer::addSurfaces(const PixelSamples& found, uint32_t path, PixelSums& sums) {
+void TileRenderer::addSurfaces(const PixelSamples& found, uint32_t path, PixelSums& sums) const {
   for (int k = 0; k < 3; k++) {
     if (found.normal[k]) sums.normal[k] += found.normal[k][path];
     if (found.albedo[k]) sums.albedo[k] += found.albedo[k][path];
@@ -346,14 +211,14 @@ void TileRenderer::addSurfaces(const PixelSamples& found, uint32_t path, PixelSu
   }
 }
 
-void TileRenderer::addFirst(const PixelSamples& found, uint32_t path, PixelSums& sums) {
+void TileRenderer::addFirst(const PixelSamples& found, uint32_t path, PixelSums& sums) const {
   addSurfaces(found, path, sums);
   if (found.depth) sums.depth = found.depth[path];
   if (found.position[0])
     for (int k = 0; k < 3; k++) sums.position[k] = found.position[k][path];
   if (found.motion[0])
     for (int k = 0; k < 3; k++) sums.motion[k] = found.motion[k][path];
-  sums.name = has(RT_NAME) ? float(found.name[path]) : 0.0f;
+  sums.name = scene_.frame.channels & RT_NAME ? float(found.name[path]) : 0.0f;
 }
 
 } // namespace openrt

@@ -12,14 +12,14 @@ namespace {
 
 // Fills three arrays of a batch without hits; `arrays` may be null.
 void fillVectors(const RtsBatch& batch, float* const arrays[3], float value) {
-  for (int k = 0; arrays && k < 3; k++) std::fill_n(arrays[k], batch.lanesWithoutHits(), value);
+  for (int k = 0; arrays && k < 3; k++) std::fill_n(arrays[k], batch.lanes.count, value);
 }
 void fillNumbers(const RtsBatch& batch, uint32_t* array, uint32_t value) {
-  if (array) std::fill_n(array, batch.lanesWithoutHits(), value);
+  if (array) std::fill_n(array, batch.lanes.count, value);
 }
 
 const Record& recordAt(const RtsBatch& batch, uint32_t i) {
-  return batch.scene->records[batch.points->record[batch.pointOf(i)]];
+  return batch.scene.records[batch.points->record[batch.pointOf(i)]];
 }
 uint32_t primitiveAt(const RtsBatch& batch, uint32_t i) {
   return batch.points->rayHits->primitive[batch.points->order[batch.pointOf(i)]];

@@ -272,7 +272,7 @@ bool weightAt(const RtsLobe& lobe, uint32_t hit, Vec3f& out) {
 
 bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
   Vec3f ignored;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobeFunctions* functions = nonSpecularFunctions(batch.lobes[l]);
     if (functions && functions->transmits && weightAt(batch.lobes[l], hit, ignored)) return true;
   }
@@ -284,9 +284,9 @@ const uint32_t* transmitsByHit(const RtsBatch& batch) {
     const RtsLobeFunctions* functions = nonSpecularFunctions(lobe);
     return functions && functions->transmits;
   };
-  if (std::none_of(batch.lobes, batch.lobes + batch.lobeCount, transmits)) return nullptr;
+  if (std::none_of(batch.lobes.begin(), batch.lobes.end(), transmits)) return nullptr;
   const uint32_t n = batch.points->hits.count;
-  auto* transmitting = batch.arena->take<uint32_t>(padded(n));
+  auto* transmitting = batch.arena.take<uint32_t>(padded(n));
   for (uint32_t i = 0; i < n; i++) transmitting[i] = transmitsAt(batch, i);
   return transmitting;
 }
@@ -296,8 +296,7 @@ namespace {
 // Returns the class that added the lobes of a batch; null if it is not known.
 const RtsClass* classOf(const RtsBatch* batch) {
   if (!batch || !batch->points || batch->points->record[0] == noHit) return nullptr;
-  return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader]
-      .shaderClass;
+  return (*batch->scene.shaders)[batch->scene.records[batch->points->record[0]].shader].shaderClass;
 }
 
 // Calls a function of a plug-in's lobe; crashes are attributed to its class.
@@ -323,7 +322,7 @@ void checkCustom(const RtsBatch* batch, const RtsLobe& lobe, const uint32_t* hit
       a[i] = checked(a[i]);
     }
   const RtsClass* shaderClass = bad ? classOf(batch) : nullptr;
-  if (shaderClass) batch->counters->faults.add(*shaderClass, Fault::notFinite, bad);
+  if (shaderClass) batch->counters.faults.add(*shaderClass, Fault::notFinite, bad);
 }
 
 } // namespace

@@ -124,8 +124,8 @@ void expectGlossy(const RtsHits& hits, const RtsLobe& lobe, float* share) {
 
 BsdfSampleArrays::BsdfSampleArrays(const RtsBatch& batch, const LobeSampling& sampling,
                                    const Boundaries& boundaries, bool onlyStraight)
-    : batch_(batch), list_(batch.arena->take<SampleArrays>(mostOfLobe * batch.lobeCount)) {
-  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    : batch_(batch), list_(batch.arena.take<SampleArrays>(mostOfLobe * batch.lobes.size())) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++)
     if (!onlyStraight || batch.lobes[l].kind == RTS_LOBE_TRANSPARENT)
       addLobe(l, sampling, boundaries);
 }

@@ -56,7 +56,7 @@ class BsdfSampleArrays {
   void addDispersion(const RtsLobe& lobe, const Boundaries& boundaries);
   BoundarySamples sampleBoundary(const RtsLobe& lobe, const float* eta) const;
   SampleArrays& add(const RtsLobe& lobe, const float* const direction[3], const float* share);
-  template <class T> T* take() const { return batch_.arena->take<T>(padded(hitCount())); }
+  template <class T> T* take() const { return batch_.arena.take<T>(padded(hitCount())); }
   uint32_t hitCount() const { return batch_.points->hits.count; }
 
   // A boundary has a reflection, a refraction of all colours, and one of each colour where it

@@ -10,8 +10,8 @@ namespace openrt {
 namespace {
 
 uint32_t traitsAt(const RtsBatch& batch, uint32_t i) {
-  const Record& record = batch.scene->records[batch.points->record[i]];
-  return (*batch.scene->shaders)[record.shader].traits;
+  const Record& record = batch.scene.records[batch.points->record[i]];
+  return (*batch.scene.shaders)[record.shader].traits;
 }
 
 // Counts the hits with values above 0 that the class's traits do not declare.
@@ -20,7 +20,7 @@ template <class Above> void demandTrait(const RtsClass& c, RtsBatch& batch, uint
   uint64_t hits = 0;
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
     hits += !(traitsAt(batch, i) & trait) && above(i);
-  if (hits) batch.counters->faults.add(c, fault, hits);
+  if (hits) batch.counters.faults.add(c, fault, hits);
 }
 
 bool anyAbove(float* const group[3], uint32_t i) {
@@ -34,8 +34,8 @@ template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uin
   uint64_t hits = 0;
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
     hits += (traitsAt(batch, i) & trait) &&
-            !batch.scene->records[batch.points->record[i]].parameterCount && above(i);
-  if (hits) batch.counters->faults.add(c, fault, hits);
+            !batch.scene.records[batch.points->record[i]].parameterCount && above(i);
+  if (hits) batch.counters.faults.add(c, fault, hits);
 }
 
 // Counts the hits whose emission differs from that of the hit before on the same side of the same
@@ -46,21 +46,21 @@ void demandUniformEmission(const RtsClass& c, RtsBatch& batch, const RtsSurface&
   for (uint32_t i = 1; i < points.hits.count; i++) {
     if (!(traitsAt(batch, i) & RTS_UNIFORM_EMISSION) || points.record[i] != points.record[i - 1] ||
         ((points.hits.flags[i] ^ points.hits.flags[i - 1]) & RTS_HIT_BACK) ||
-        batch.scene->records[points.record[i]].parameterCount)
+        batch.scene.records[points.record[i]].parameterCount)
       continue;
     bool varies = false;
     for (const auto* e : out.emission)
       varies |= std::fabs(e[i] - e[i - 1]) > 1e-3f * std::fabs(e[i]);
     hits += varies;
   }
-  if (hits) batch.counters->faults.add(c, Fault::varyingEmission, hits);
+  if (hits) batch.counters.faults.add(c, Fault::varyingEmission, hits);
 }
 
 void diagnose(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
   demandUniformEmission(c, batch, out);
   demandTrait(c, batch, RTS_EMISSIVE, Fault::undeclaredEmission,
               [&](uint32_t i) { return anyAbove(out.emission, i); });
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (lobe.kind == RTS_LOBE_TRANSPARENT)
       demandTrait(c, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency,
@@ -98,7 +98,7 @@ void checkLobe(RtsLobe& lobe, const RtsHits& hits, uint8_t* bad) {
 
 void countBad(const RtsClass& c, RtsBatch& batch, const uint8_t* bad, uint32_t n) {
   const auto hits = uint64_t(std::count(bad, bad + n, uint8_t(1)));
-  if (hits) batch.counters->faults.add(c, Fault::notFinite, hits);
+  if (hits) batch.counters.faults.add(c, Fault::notFinite, hits);
 }
 
 void clear(std::initializer_list<float*> arrays, uint32_t n, uint8_t* bad) {
@@ -116,22 +116,22 @@ void clear(std::initializer_list<float*> arrays, uint32_t n, uint8_t* bad) {
 
 void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n,
                     std::initializer_list<float*> arrays) {
-  ArenaScope scope(*batch.arena);
-  auto* bad = batch.arena->takeZero<uint8_t>(n);
+  ArenaScope scope(batch.arena);
+  auto* bad = batch.arena.takeZero<uint8_t>(n);
   clear(arrays, n, bad);
   countBad(shaderClass, batch, bad, n);
 }
 
 void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface& out) {
-  ArenaScope scope(*batch.arena);
+  ArenaScope scope(batch.arena);
   const RtsHits& hits = batch.points->hits;
-  auto* bad = batch.arena->takeZero<uint8_t>(hits.count);
+  auto* bad = batch.arena.takeZero<uint8_t>(hits.count);
   clear({out.emission[0], out.emission[1], out.emission[2], out.albedo[0], out.albedo[1],
          out.albedo[2]},
         hits.count, bad);
-  for (uint32_t l = 0; l < batch.lobeCount; l++) checkLobe(batch.lobes[l], hits, bad);
+  for (uint32_t l = 0; l < batch.lobes.size(); l++) checkLobe(batch.lobes[l], hits, bad);
   countBad(shaderClass, batch, bad, hits.count);
-  if (batch.scene->host.diagnose) diagnose(shaderClass, batch, out);
+  if (batch.scene.host.diagnose) diagnose(shaderClass, batch, out);
 }
 
 void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, const RtsShading& out) {
@@ -140,7 +140,7 @@ void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, const RtsShadi
                  {out.radiance[0], out.radiance[1], out.radiance[2], out.transmission[0],
                   out.transmission[1], out.transmission[2], out.albedo[0], out.albedo[1],
                   out.albedo[2]});
-  if (batch.scene->host.diagnose)
+  if (batch.scene.host.diagnose)
     demandTrait(shaderClass, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency,
                 [&](uint32_t i) { return anyAbove(out.transmission, i); });
 }

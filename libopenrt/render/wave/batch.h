@@ -2,6 +2,8 @@
 // [render]
 #pragma once
 
+#include <span>
+
 #include "render/wave/faults.h"
 #include "render/wave/path_states.h"
 #include "render/wave/points.h"
@@ -9,7 +11,7 @@
 namespace openrt {
 
 struct Ledger;
-class TileRenderer;
+class PathTracer;
 
 struct RayCounters {
   uint64_t camera = 0, shadow = 0, secondary = 0;
@@ -21,85 +23,90 @@ struct StageContext {
   const RenderScene& scene;
   Arena& arena;
   RayCounters& counters;
-  TileRenderer* tracer = nullptr; // as in RtsBatch
-  Ledger* ledger = nullptr;       // as in RtsBatch
+  // The path tracer. Null if shaders are called outside of a frame: nothing is traced then, and
+  // random points are (0.5, 0.5).
+  PathTracer* tracer = nullptr;
+  Ledger* ledger = nullptr; // gets what is cut from shadow rays; null: nobody counts it
 };
 
-} // namespace openrt
+// Lanes of a batch without hits: camera rays, or directions and places that an environment or a
+// light is asked about.
+struct BatchLanes {
+  uint32_t count = 0;
+  bool cameraRays = false; // the camera rays of all paths, in order
+  // By lane of an environment's batch: 1 where the camera looks straight; null: nowhere.
+  const uint32_t* straight = nullptr;
+};
 
-struct RtsBatch {
-  const openrt::RenderScene* scene = nullptr;
-  openrt::Arena* arena = nullptr;
-  openrt::RayCounters* counters = nullptr;
-  const openrt::Points* points = nullptr;
-  // Batch of a sampled light: indices into `points` of the hits that have sampled the light. Null:
-  // the batch has all points.
-  const uint32_t* subset = nullptr;
-  uint32_t subsetSize = 0;
-  uint32_t lightSet = 0;
-  // The light that is being evaluated (illuminate). The host allocates these arrays with the first
-  // light.
+// The lights of a batch, and the one that is being evaluated (RtsHost.illuminate). The host
+// allocates the arrays, by hit, with the first light.
+struct BatchLights {
+  uint32_t set = 0;       // index into RenderScene::lightSets
+  uint32_t current = ~0u; // the light; index into the batch's lights
+  bool directional = false;
   float* local[3] = {};
   float* toLight[3] = {};
   float* color[3] = {};
   float* ambient[3] = {};
   float* reach = nullptr; // distance to the light; 0 if there is no direction
-  uint32_t current = ~0u; // index into the batch's lights
-  bool directional = false;
-  // The shader is asked what surfaces are, not what light they send: it gets no lights, and rays
-  // that it traces are black.
-  bool describes = false;
-  // By hit: index of the sampled scene light; null: the same light for all hits.
+  // Index of the sampled scene light; null: the same light for all hits.
   uint32_t* chosen = nullptr;
-  // The renderer. Null if shaders are called outside of a frame: nothing is traced then, and random
-  // points are (0.5, 0.5).
-  openrt::TileRenderer* tracer = nullptr;
-  openrt::Ledger* ledger = nullptr; // gets what is cut from shadow rays; null: nobody counts it
+};
+
+// The lobes that a shader has added (`surface`).
+class BatchLobes {
+ public:
+  const RtsLobe* begin() const { return list_; }
+  const RtsLobe* end() const { return list_ + count_; }
+  const RtsLobe& operator[](uint32_t i) const { return list_[i]; }
+  RtsLobe& operator[](uint32_t i) { return list_[i]; }
+  uint32_t size() const { return count_; }
+  // Adds a lobe without numbers. Returns null if there is no room for it.
+  RtsLobe* add() {
+    if (count_ == RTS_MAX_LOBES) return nullptr;
+    return &(list_[count_++] = {});
+  }
+  void clear() { count_ = 0; }
+
+ private:
+  RtsLobe list_[RTS_MAX_LOBES]; // uninitialised from count_ on: most batches have one or two
+  uint32_t count_ = 0;
+};
+
+} // namespace openrt
+
+// A batch has hits (`points`) or lanes without hits.
+struct RtsBatch : openrt::StageContext {
+  explicit RtsBatch(const openrt::StageContext& context) : StageContext(context) {}
+  // Makes a batch of hits of the rays that have the given states.
+  RtsBatch(const openrt::StageContext& context, const openrt::Points& hits,
+           const openrt::PathStates& rayStates)
+      : StageContext(context), points(&hits), states(&rayStates), order(hits.order) {}
+
+  const openrt::Points* points = nullptr;
   const openrt::PathStates* states = nullptr; // ray states of the wave, by lane
   const uint32_t* order = nullptr;            // lanes of the hits; null: camera rays, in order
-  uint32_t rays = 0;                          // number of camera rays
-  uint32_t lanes = 0; // number of lanes of a batch that has neither hits nor camera rays
-  // By lane of an environment's batch: 1 where the camera looks straight; null: nowhere.
-  const uint32_t* straight = nullptr;
+  // Batch of a sampled light: indices into `points` of the hits that have sampled the light. Empty:
+  // the batch has all points.
+  std::span<const uint32_t> subset;
   const openrt::Crossing* crossing = nullptr; // boundaries of media by hit; null: there are none
   // By hit: number of rays it has traced; allocated with the first request.
   uint32_t* requests = nullptr;
-  // Lobes that the shader has added (`surface`).
-  RtsLobe lobes[RTS_MAX_LOBES];
-  uint32_t lobeCount = 0;
+  // The shader is asked what surfaces are, not what light they send: it gets no lights, and rays
+  // that it traces are black.
+  bool describes = false;
+  openrt::BatchLanes lanes;
+  openrt::BatchLights lights;
+  openrt::BatchLobes lobes;
 
   // Return the number of hits, and the index into `points` of hit i. For batches with hits.
-  uint32_t hitCount() const { return subset ? subsetSize : points->hits.count; }
-  uint32_t pointOf(uint32_t i) const { return subset ? subset[i] : i; }
-  // Returns the number of lanes that the host functions write where the batch has no hits.
-  uint32_t lanesWithoutHits() const { return rays ? rays : lanes; }
+  uint32_t hitCount() const {
+    return subset.empty() ? points->hits.count : uint32_t(subset.size());
+  }
+  uint32_t pointOf(uint32_t i) const { return subset.empty() ? i : subset[i]; }
+  // Returns the number of hits or camera rays.
+  uint32_t pointCount() const {
+    if (points) return hitCount();
+    return lanes.cameraRays ? lanes.count : 0;
+  }
 };
-
-namespace openrt {
-
-// Returns a batch without hits.
-inline RtsBatch makeBatch(const StageContext& context) {
-  RtsBatch batch;
-  batch.scene = &context.scene;
-  batch.arena = &context.arena;
-  batch.counters = &context.counters;
-  batch.tracer = context.tracer;
-  batch.ledger = context.ledger;
-  return batch;
-}
-
-// Returns a batch of hits of the rays that have the given states.
-inline RtsBatch makeBatch(const StageContext& context, const Points& points,
-                          const PathStates& states) {
-  RtsBatch batch = makeBatch(context);
-  batch.points = &points;
-  batch.states = &states;
-  batch.order = points.order;
-  return batch;
-}
-
-inline StageContext contextOf(const RtsBatch& batch) {
-  return {*batch.scene, *batch.arena, *batch.counters, batch.tracer, batch.ledger};
-}
-
-} // namespace openrt

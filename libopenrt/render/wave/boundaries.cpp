@@ -13,10 +13,10 @@ uint16_t mediumAt(const RenderScene& scene, uint32_t record) {
 // continues beyond the other, so both are crossed at once. A short ray searches for the other face
 // within the error bounds.
 void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
-  Arena& arena = *batch.arena;
+  Arena& arena = batch.arena;
   ArenaScope scope(arena);
   Rays rays;
   rays.allocate(arena, hits.count);
@@ -69,13 +69,13 @@ void absorbAt(uint16_t medium, float length, std::span<const RtsMedium> media,
 Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
   Boundaries out;
   if (!shaderClass.medium) return out;
-  const RenderScene& scene = *batch.scene;
+  const RenderScene& scene = batch.scene;
   const PathStates& states = *batch.states;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
   const std::span<const RtsMedium> media = scene.shaders->media();
-  out.crossing = batch.arena->take<Crossing>(hits.count);
-  out.eta = batch.arena->take<float[3]>(hits.count);
+  out.crossing = batch.arena.take<Crossing>(hits.count);
+  out.eta = batch.arena.take<float[3]>(hits.count);
   for (uint32_t i = 0; i < hits.count; i++) {
     const uint16_t medium = mediumAt(scene, points.record[i]);
     const MediaStack& stack = states.media[batch.order[i]];
@@ -83,7 +83,7 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     if (medium) c = cross(stack, medium, hits.flags[i] & RTS_HIT_BACK, media);
   }
   if (scene.shaders->severalBodies()) crossSharedFaces(batch, out.crossing);
-  auto* disperses = batch.arena->take<uint32_t>(padded(hits.count));
+  auto* disperses = batch.arena.take<uint32_t>(padded(hits.count));
   bool any = false;
   uint64_t left = 0; // bodies that were never entered
   for (uint32_t i = 0; i < hits.count; i++) {
@@ -104,7 +104,7 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
         ((*scene.shaders)[scene.records[points.record[i]].shader].traits & RTS_MEDIUM_ONLY))
       out.crossing[i].visible = false;
     any |= disperses[i] != 0;
-    for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    for (uint32_t l = 0; l < batch.lobes.size(); l++) {
       if (!c.visible)
         for (auto* weight : batch.lobes[l].weight) weight[i] = 0;
       // A rough boundary does not disperse light: it has the index of green.
@@ -116,7 +116,7 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
   }
   if (any) out.disperses = disperses;
   // Only camera paths tell here: paths from lamps may start in a body (light_tracer.cpp).
-  if (left && batch.tracer) batch.counters->faults.add(shaderClass, Fault::neverEntered, left);
+  if (left && batch.tracer) batch.counters.faults.add(shaderClass, Fault::neverEntered, left);
   return out;
 }
 

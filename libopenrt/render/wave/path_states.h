@@ -157,8 +157,8 @@ struct PathStates {
   }
 };
 
-// Rays that wait for the next wave. The tile renderer keeps its queues from tile to tile to reuse
-// their memory.
+// Rays that wait for the next wave. The path tracer of a tile keeps its queues from tile to tile to
+// reuse their memory.
 class RayQueue {
  public:
   bool empty() const { return size_ == 0; }
