@@ -43,6 +43,8 @@ from conftest import HEADER, SMALL
     (["box.wrl", "-o", "x.png", "--camera", "1,2:3,4"], "px,py,pz"),
     (["box.wrl", "-o", "x.png", "--camera", "1,2,3:1,2,3"], "same point"),
     (["box.wrl", "-o", "x.png", "--viewpoint", "0", "--fit"], "--viewpoint"),
+    (["box.wrl", "-o", "x.png", "--ortho", "2", "--fov", "9"], "--ortho says what"),
+    (["box.wrl", "-o", "x.png", "--ortho", "0"], "between 0 and"),
     (["box.wrl", "-o", "x.png", "--environment", "a.hdr", "--background", "white"], "only one of"),
     (["box.wrl", "-o", "x.png", "--channels", "rgba,depth"], "rgba,z,normal"),
     (["box.wrl", "-o", "x.png", "--limit", "nestin=5"], "did you mean nesting?"),

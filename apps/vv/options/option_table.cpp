@@ -335,6 +335,10 @@ const OptionInfo table[] = {
     {"--fov", "DEGREES", "View",
      "Angle of view across the shorter side of the picture, instead of the viewpoint's.",
      [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
+    {"--ortho", "HEIGHT", "View",
+     "Show a parallel view, as an OrthoViewpoint does: HEIGHT units of the world between the lower "
+     "and the upper edge of the picture.",
+     [](Options& o, const std::string& v) { o.view.ortho = readNumber(v, 0, 1e30); }},
     {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
      "Use a camera shader at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama "
      "(everything around).",

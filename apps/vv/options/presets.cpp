@@ -39,14 +39,14 @@ constexpr std::string_view allowed[] = {
     "fov",        "headlight", "fps",       "camera-shader", "turntable",    "compat",
     "old-world",  "shader",    "studio",    "exact-shapes",  "environment",  "spp",
     "error",      "depth",     "transport", "energy-cut",    "clamp",        "shadows",
-    "denoise",    "exposure",  "view"};
+    "denoise",    "exposure",  "view",      "ortho"};
 
 // Options for the same purpose: one in a later layer replaces the others of earlier layers.
 constexpr std::array<std::string_view, 5> groups[] = {
     {"viewpoint", "camera", "from", "fit", "pose"},
     {"environment", "studio", "background", "", ""},
     {"spp", "error", "time-limit", "", ""},
-    {"fov", "intrinsics", "", "", ""}};
+    {"fov", "intrinsics", "ortho", "", ""}};
 
 struct Document {
   std::string name;   // for messages

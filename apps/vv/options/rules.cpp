@@ -46,6 +46,10 @@ constexpr Rule rules[] = {
      },
      "--intrinsics says what the camera sees: it cannot be used with --fit, --fov or "
      "--camera-shader"},
+    {[](const Options& o) {
+       return o.view.ortho && (o.view.fit || o.view.fov || o.view.intrinsics);
+     },
+     "--ortho says what the camera sees: it cannot be used with --fit, --fov or --intrinsics"},
     {[](const Options& o) { return o.view.intrinsics && (!o.makesPictures() || o.render.preview); },
      "--intrinsics needs -o without --preview"},
     {[](const Options& o) {

@@ -218,7 +218,7 @@ class Pictures {
   // which a view of the whole world needs.
   void beginScript(const picture::RenderSettings& settings) {
     makeRenderer(settings);
-    pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
+    pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view);
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
     if (options_.render.linear && !options_.denoise)
       pilot_->allowFalseColours(options_.falseColour);

@@ -49,7 +49,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
     : options_(forWindow(options, calls, script || !options.recordInput.empty())),
       problems_(problems), callbacks_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
-      pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov),
+      pilot_(*browser_, options.time && !script ? *options.time : 0, options.view),
       shared_(*browser_, options_.render), pictures_(shared_, options_, 0),
       channels_(options.render.channels),
       clock_(script || !options.recordInput.empty() ? SessionClock::Mode::stepped
