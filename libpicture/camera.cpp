@@ -224,7 +224,7 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
   constexpr double radians = std::numbers::pi / 180;
   // the default of Viewpoint.fieldOfView
   const double smaller = view.fov ? *view.fov * radians : std::numbers::pi / 4;
-  const double fovy = verticalAngle(smaller, aspect);
+  const double fovy = view.ortho ? 0 : verticalAngle(smaller, aspect);
   xvrml::CameraSettings camera;
   if (view.pinhole) {
     std::copy_n(view.pinhole->matrix, 16, camera.matrix);
@@ -253,6 +253,10 @@ xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View
     camera = mapper.fitCamera(fovy);
   } else {
     camera = modelCamera(mapper, view, fovy, aspect);
+  }
+  if (view.ortho) {
+    camera.fovy = 0;
+    camera.height = *view.ortho;
   }
   if (view.turn != 0) turn(camera, mapper.bounds(), upOf(mapper, view), view.turn);
   if (view.shader) camera.shader = view.shader.get();

@@ -79,6 +79,9 @@ struct View {
   xvrml::NodeRef shader;
   // Degrees, for the smaller of the two angles of view, as in Viewpoint.fieldOfView.
   std::optional<double> fov;
+  // The height of a parallel view in world units. It replaces what the other members say about the
+  // projection.
+  std::optional<double> ortho;
 };
 
 // Returns the camera of a pose: a 4x4 matrix from camera to world, by rows, for a camera that looks

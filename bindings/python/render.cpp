@@ -389,14 +389,15 @@ void defineRender(py::object worldClass) {
       parameterList(parameter("exposure", &A::exposure), parameter("view", &A::view),
                     parameter("crop", &A::crop), qualityParameter<std::string>(RT_DEPTH_ALONG),
                     parameter("preset", &A::preset), parameter("studio", &A::studio),
-                    parameter("from_", &A::from)),
+                    parameter("from_", &A::from), parameter("ortho", &A::ortho)),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
       "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "
       "2147483647, as in vv. channels: "
       "default rgba and z, with error also error and trust. camera: a Pinhole, a 4x4 matrix from "
       "camera to world (looking along -z, +y up), (position, target) or (position, target, up). "
-      "fit: keeps only the direction of the camera and shows everything. up: the axis that points "
+      "fit: keeps only the direction of the camera and shows everything. ortho: shows a parallel "
+      "view of this height, in units of the world. up: the axis that points "
       "up ('z', '-y' ...) in a world without a Viewpoint. background: 'none', a colour or a file. "
       "isa: instruction set of the ray kernels ('avx2', ...); machines give the same bytes with "
       "the same one. "

@@ -242,6 +242,14 @@ void setFov(const char*, const Given& given, RenderRequest& request) {
   request.view.fov = given.fov;
 }
 
+void setOrtho(const char*, const Given& given, RenderRequest& request) {
+  if (given.ortho && (given.fit || given.fov || isPinhole(given)))
+    throw py::value_error("ortho: not with fit, fov or a Pinhole, which say what the camera sees");
+  if (given.ortho && !(*given.ortho > 0 && *given.ortho < 1e30))
+    throw py::value_error("ortho: the height of a parallel view, above 0, expected");
+  request.view.ortho = given.ortho;
+}
+
 void setCamera(const char*, const Given& given, RenderRequest& request) {
   if (isPinhole(given))
     request.view.pinhole = pinholeOf(given.camera, request.settings.width, request.settings.height);
@@ -326,6 +334,7 @@ constexpr Rule rules[] = {
     {"viewpoint", checkViewpoint},
     {"fit", setFit},
     {"fov", setFov},
+    {"ortho", setOrtho},
     {"camera", setCamera},
     {"up", setUp},
     {"from_", setFrom},

@@ -19,7 +19,7 @@ struct RenderArguments {
   py::object viewpoint = py::none();
   py::object camera = py::none();
   bool fit = false;
-  std::optional<double> fov;
+  std::optional<double> fov, ortho;
   long long threads = 0;
   std::string colour = "linear";
   py::object headlight = py::str("auto");

@@ -13,6 +13,7 @@
 #include "backend/backend.h"
 #include "backend/record/reader.h"
 #include "enough_stack.h"
+#include "option_words.h"
 #include "output_written.h"
 #include "printable.h"
 #include "shading/registry.h"
@@ -109,7 +110,7 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
                  "FILE.bin), render nothing");
   app.add_flag("--stats", options.stats, "print counts and times as JSON");
   try {
-    app.parse(argc, argv);
+    app.parse(optionWords(argc, argv, app));
   } catch (const CLI::ParseError& e) {
     exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
     return std::nullopt;

@@ -21,6 +21,7 @@
 #include "enough_stack.h"
 #include "nearest.h"
 #include "openrt/openrt.h"
+#include "option_words.h"
 #include "output_written.h"
 #include "printable.h"
 #include "shading/registry.h"
@@ -112,11 +113,7 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
                                         std::to_string(OPENRT_VERSION_PATCH));
   app.allow_extras(); // an unknown option gets a message with a suggestion
   try {
-    app.parse(argc, argv);
-    if (const std::vector<std::string> unknown = app.remaining(); !unknown.empty()) {
-      exitCode = reportError(Usage, unknownArgument(app, unknown[0]));
-      return std::nullopt;
-    }
+    app.parse(optionWords(argc, argv, app));
     // An empty value, perhaps of a variable that is not set, must not mean that there is none.
     for (const auto& [name, value] :
          {std::pair<const char*, const std::string*>{"--connect", &o.connect},
@@ -125,6 +122,10 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
           {"--new-key", &o.newKey}})
       if (app.count(name) > 0 && value->empty())
         throw CLI::ValidationError(name, "a value was expected, not \"\"");
+    if (const std::vector<std::string> unknown = app.remaining(); !unknown.empty()) {
+      exitCode = reportError(Usage, unknownArgument(app, unknown[0]));
+      return std::nullopt;
+    }
     if (!o.allow.empty() && o.key.empty()) throw CLI::ValidationError("--allow", "needs --key");
   } catch (const CLI::ParseError& e) {
     exitCode =

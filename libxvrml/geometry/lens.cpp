@@ -49,4 +49,25 @@ void setLens(CameraSettings& camera, const std::optional<ViewpointFields>& viewp
   if (viewpoint) camera.shader = renderedNode(viewpoint->shader);
 }
 
+std::optional<SphereView> viewOfAll(const ViewpointFields& viewpoint, const Vector& low,
+                                    const Vector& high) {
+  if (!viewpoint.viewAll || !*viewpoint.viewAll) return {};
+  SphereView view{(low + high) / 2};
+  const double radius = (high - low).length() / 2;
+  if (!(radius < 1e30)) return {};
+  // The box of a single point is as large as its rounding: any distance will do.
+  if (radius <= 1e-7 * view.middle.length() + 1e-20) return view;
+  if (viewpoint.fieldOfView) {
+    view.distance = radius / std::sin(std::clamp(double(*viewpoint.fieldOfView), 1e-3, 3.0) / 2);
+  } else {
+    view.distance = 2 * radius;
+    view.radius = radius;
+  }
+  return view;
+}
+
+void showSphere(CameraSettings& camera, double radius, double aspect) {
+  camera.height = 2 * radius * std::max(1.0, aspect > 0 ? 1 / aspect : 1);
+}
+
 } // namespace xvrml

@@ -12,7 +12,7 @@ struct Step { // an item that is being measured
   ItemId item;
   int32_t place;
   Matrix matrix;
-  size_t next = 0;    // child to visit
+  size_t next = 0;    // number of children that were visited
   int32_t cut = none; // the nearest place at or above it that ClipPlanes cut
   Matrix toCut;       // matrix to the coordinates of that place's object
 };
@@ -33,8 +33,8 @@ class Measure {
   Bounds all() { return below({Graph::root, 0, Matrix()}); }
 
   // Returns the points that lie farthest out. Call measureShared() before.
-  std::vector<Vector> outermost() {
-    Outermost outermost;
+  std::vector<Vector> outermost(const Outermost::Directions& directions) {
+    Outermost outermost(directions);
     outermost_ = &outermost;
     below({Graph::root, 0, Matrix()});
     return outermost.points();
@@ -63,13 +63,12 @@ class Measure {
       Step& step = open.back();
       const Item& item = graph_.items[step.item];
       if (item.kind == Kind::shape) measureShape(bounds, item, step);
-      const size_t count =
-          item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
-      if (step.next >= count) {
+      const Range children = childrenOf(item, step.place);
+      if (step.next >= children.end - children.begin) {
         open.pop_back();
         continue;
       }
-      const size_t c = step.next++;
+      const size_t c = children.begin + step.next++;
       const ItemId child = item.children[c];
       if (!graph_.items[child].draws) continue;
       const int32_t at = step.place == none
@@ -93,6 +92,18 @@ class Measure {
       open.push_back(below);
     }
     return bounds;
+  }
+
+  // Returns the children of an item to measure. An LOD has one, except for a sphere.
+  struct Range {
+    size_t begin, end;
+  };
+  Range childrenOf(const Item& item, int32_t place) const {
+    const size_t count = item.children.size();
+    if (item.kind != Kind::lod || center_ || count == 0) return {0, count};
+    const int32_t chosen = place == none ? none : places_.all[size_t(place)].chosen;
+    const size_t level = outermost_ && chosen != none ? size_t(chosen) : 0;
+    return {level, level + 1};
   }
 
   void measureShape(Bounds& bounds, const Item& shape, const Step& step) {
@@ -154,10 +165,11 @@ BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds
   return sphere;
 }
 
-std::vector<Vector> outermostPoints(Graph& graph, const Places& places) {
+std::vector<Vector> outermostPoints(Graph& graph, const Places& places,
+                                    const Outermost::Directions& directions) {
   Measure measure(graph, places);
   measure.measureShared();
-  return measure.outermost();
+  return measure.outermost(directions);
 }
 
 } // namespace xvrml::mapper

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/lens.h"
 #include "mapper/extent.h"
 #include "mapper/mapper_impl.h"
 #include "mapper/model.h"
@@ -101,9 +102,49 @@ const BoundingSphere& OpenRTMapper::Impl::sphere() {
 
 const std::vector<Vector>& OpenRTMapper::Impl::outermost() {
   bounds();
-  if (outermostStale) outermost_ = outermostPoints(graph, places);
+  if (outermostStale) outermost_ = outermostPoints(graph, places, Outermost::even());
   outermostStale = false;
   return outermost_;
+}
+
+bool OpenRTMapper::Impl::followsCamera() const {
+  return std::any_of(places.all.begin(), places.all.end(), [&](const Place& place) {
+    const Kind kind = graph.items[place.item].kind;
+    return kind == Kind::billboard || kind == Kind::lod;
+  });
+}
+
+std::vector<Vector>
+OpenRTMapper::Impl::outermostFor(const CameraSettings& seen,
+                                 const std::optional<Outermost::Directions>& more) {
+  places.updateForFrame(graph, seen);
+  std::vector<Vector> points = outermostPoints(graph, places, Outermost::even());
+  if (!more) return points;
+  const std::vector<Vector> across = outermostPoints(graph, places, *more);
+  points.insert(points.end(), across.begin(), across.end());
+  return points;
+}
+
+// Billboards and LODs follow the camera that is being placed. So the camera is placed again for
+// what the one before sees, until that stays as it is. If the levels of an LOD alternate, the
+// camera sees both.
+CameraSettings OpenRTMapper::Impl::fit(const double view[16], double fovy, double aspect) {
+  constexpr int rounds = 4;
+  const auto more = directionsAcross(view, fovy, aspect);
+  const bool follows = followsCamera();
+  if (!more && !follows) return mapper::cameraAround(outermost(), view, fovy, aspect);
+  std::vector<Vector> before = outermostFor(camera, more), points = before;
+  CameraSettings fitted = mapper::cameraAround(points, view, fovy, aspect);
+  for (int round = 1; follows && round < rounds; ++round) {
+    std::vector<Vector> now = outermostFor(fitted, more);
+    if (now == before) break;
+    if (round == 1) points.clear();
+    points.insert(points.end(), now.begin(), now.end());
+    before = std::move(now);
+    fitted = mapper::cameraAround(points, view, fovy, aspect);
+  }
+  places.updateForFrame(graph, camera);
+  return fitted;
 }
 
 bool OpenRTMapper::Impl::lightsModel() {
@@ -133,16 +174,20 @@ std::vector<SensorInfo> OpenRTMapper::sensors() const {
 
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const std::vector<int32_t>& places = impl_->viewpointPlaces();
-  const CameraSettings camera = impl_->cameraAt(index < places.size() ? places[index] : none);
+  CameraSettings camera = impl_->cameraAt(index < places.size() ? places[index] : none);
   if (index >= places.size()) return camera;
-  // viewAll of X3D: back until everything is seen
+  // viewAll of X3D, as Viewer::seeAll has it
   const Place& place = impl_->places.all[size_t(places[index])];
   const auto fields = viewpointFields(impl_->graph.items[place.item].node.get());
   if (!fields || !fields->viewAll || !*fields->viewAll || impl_->bounds().empty) return camera;
-  CameraSettings all =
-      xvrml::cameraAround(impl_->bounds(), camera.matrix, camera.fovy, impl_->options.aspect);
-  all.shader = camera.shader;
-  return all;
+  const Bounds& box = impl_->bounds();
+  const auto view = viewOfAll(*fields, Vector(box.minimum[0], box.minimum[1], box.minimum[2]),
+                              Vector(box.maximum[0], box.maximum[1], box.maximum[2]));
+  if (!view) return camera;
+  for (int i = 0; i < 3; ++i)
+    camera.matrix[12 + i] = view->middle[i] + camera.matrix[8 + i] * view->distance;
+  if (view->radius > 0) showSphere(camera, view->radius, impl_->options.aspect);
+  return camera;
 }
 
 CameraSettings OpenRTMapper::fitCamera(double fovy) const {
@@ -151,11 +196,14 @@ CameraSettings OpenRTMapper::fitCamera(double fovy) const {
 }
 
 CameraSettings OpenRTMapper::cameraAround(const double view[16], double fovy, double aspect) const {
-  return mapper::cameraAround(impl_->outermost(), view, fovy, aspect);
+  return impl_->fit(view, fovy, aspect);
 }
 
 bool OpenRTMapper::seesAll(const CameraSettings& camera, double aspect) const {
-  return mapper::seesAll(impl_->outermost(), camera, aspect);
+  if (!impl_->followsCamera()) return mapper::seesAll(impl_->outermost(), camera, aspect);
+  const std::vector<Vector> points = impl_->outermostFor(camera, {});
+  impl_->places.updateForFrame(impl_->graph, impl_->camera);
+  return mapper::seesAll(points, camera, aspect);
 }
 
 void OpenRTMapper::setExactShapes(bool exact) { impl_->graph.meshes.setExactShapes(exact); }

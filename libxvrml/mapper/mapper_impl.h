@@ -48,6 +48,12 @@ struct OpenRTMapper::Impl {
   const Bounds& bounds();
   const BoundingSphere& sphere();
   const std::vector<Vector>& outermost();
+  // Places the Billboards and LODs for a camera, and returns the outermost points in even
+  // directions and in `more`.
+  std::vector<Vector> outermostFor(const CameraSettings& camera,
+                                   const std::optional<mapper::Outermost::Directions>& more);
+  CameraSettings fit(const double view[16], double fovy, double aspect);
+  bool followsCamera() const; // something is drawn as the camera says
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
   bool sphereStale = true, outermostStale = true, lightStale = true;
   bool farCameraTold = false;

@@ -6,16 +6,24 @@
 
 namespace xvrml::mapper {
 
-// The directions are those of a spiral that covers a half sphere evenly. None of them is along an
-// axis, so that of the corners of a box each is found.
-Outermost::Outermost() {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+// The directions are those of a spiral.
+Outermost::Directions Outermost::even() {
+  Directions directions;
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   for (size_t i = 0; i < count; ++i) {
-    z_[i] = (double(i) + 0.5) / double(count);
-    const double radius = std::sqrt(1 - z_[i] * z_[i]);
-    x_[i] = radius * std::cos(golden * double(i));
-    y_[i] = radius * std::sin(golden * double(i));
+    const double z = (double(i) + 0.5) / double(count), radius = std::sqrt(1 - z * z);
+    directions[i] = {radius * std::cos(golden * double(i)), radius * std::sin(golden * double(i)),
+                     z};
+  }
+  return directions;
+}
+
+Outermost::Outermost(const Directions& directions) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < count; ++i) {
+    x_[i] = directions[i].x;
+    y_[i] = directions[i].y;
+    z_[i] = directions[i].z;
   }
   least_.fill(infinity);
   most_.fill(-infinity);

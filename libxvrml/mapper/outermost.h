@@ -12,17 +12,22 @@ namespace xvrml::mapper {
 
 class Outermost {
  public:
-  Outermost();
+  static constexpr size_t count = 64; // directions; their opposites are looked at as well
+  using Directions = std::array<Vector, count>;
+  // Returns directions that cover a half sphere evenly. None of them is along an axis, so that of
+  // the corners of a box each is found.
+  static Directions even();
+
+  explicit Outermost(const Directions& directions);
   // Takes a point into account; one that is not finite is left out.
   void add(const Vector& point);
   // Takes a sphere about 0 into account, transformed by `matrix`.
   void addSphere(const Matrix& matrix, double radius);
-  // Returns the points that lie farthest out; empty if nothing was added. Parts outside of
-  // their hull reach at most a few hundredths of its size beyond it.
+  // Returns the points that lie farthest out; empty if nothing was added. With even directions,
+  // parts outside of their hull reach at most a few hundredths of its size beyond it.
   std::vector<Vector> points() const;
 
  private:
-  static constexpr size_t count = 64;   // directions; their opposites are looked at as well
   std::array<double, count> x_, y_, z_; // the directions
   std::array<double, count> least_, most_;
   std::array<Vector, count> first_, last_; // the points there

@@ -171,10 +171,29 @@ Fit fitPoints(std::span<const Vector> points, double tanX, double tanY, double c
     return fit;
   }
   fit.distance = std::max({fit.front + clearance, across.half / tanX, upwards.half / tanY});
-  fit.right = middleFrom(points, 0, tanX, fit.distance);
-  fit.above = middleFrom(points, 1, tanY, fit.distance);
+  // The middle follows from points between those that touch the edges of the picture: only these
+  // say for certain what is seen.
+  const auto middle = [&](int axis, double most, const Reach& reach) {
+    const double slack = std::max(0.0, most * fit.distance - reach.half);
+    return std::clamp(middleFrom(points, axis, most, fit.distance), reach.middle - slack,
+                      reach.middle + slack);
+  };
+  fit.right = middle(0, tanX, across);
+  fit.above = middle(1, tanY, upwards);
   return fit;
 }
+
+// A fitted picture has a margin, which its angles of view do not count.
+constexpr double margin = 1.1;
+
+struct Tangents { // those of half the angles of view, within the margin
+  double x, y;
+};
+Tangents tangentsOf(double fovy, double aspect) {
+  const double y = std::tan(fovy / 2) / margin;
+  return {y * (aspect > 0 ? aspect : 1), y};
+}
+bool isAngle(double fovy) { return fovy >= 0 && fovy < 3.14; } // a parallel view has none
 
 } // namespace
 
@@ -183,11 +202,30 @@ bool hasHeadlight(const Bound& bound) {
   return !info || info->headlight;
 }
 
+std::optional<Outermost::Directions> directionsAcross(const double view[16], double fovy,
+                                                      double aspect) {
+  const Tangents most = tangentsOf(fovy, aspect);
+  if (!isAngle(fovy) || !(std::max(most.x, most.y) > 1 / margin)) return {};
+  const Matrix axes = rotationOnly(fromArray(view));
+  Outermost::Directions directions;
+  directions.fill(transformDirection(axes, Vector(0, 0, 1)));
+  // Across the edges of the picture, and of smaller ones, which find its middle.
+  constexpr size_t slopes = Outermost::count / 4 - 1;
+  for (size_t i = 0; i < slopes; ++i)
+    for (const double side : {-1.0, 1.0}) {
+      const double part = double(i + 1) / slopes;
+      const size_t at = 4 * i + (side > 0 ? 2 : 0);
+      directions[at] = transformDirection(axes, Vector(side, 0, most.x * part));
+      directions[at + 1] = transformDirection(axes, Vector(0, side, most.y * part));
+    }
+  return directions;
+}
+
 CameraSettings cameraAround(std::span<const Vector> points, const double view[16], double fovy,
                             double aspect) {
   CameraSettings camera = cameraOf(nullptr, Matrix(), aspect);
-  camera.fovy = fovy >= 0 && fovy < 3.14 ? fovy : camera.fovy;
-  const double margin = 1.1, ratio = aspect > 0 ? aspect : 1;
+  camera.fovy = isAngle(fovy) ? fovy : camera.fovy;
+  const double ratio = aspect > 0 ? aspect : 1;
   const Matrix axes = rotationOnly(fromArray(view));
   if (points.empty()) {
     if (camera.fovy == 0) camera.height = 10;
@@ -203,10 +241,11 @@ CameraSettings cameraAround(std::span<const Vector> points, const double view[16
   std::vector<Vector> seen;
   seen.reserve(points.size());
   for (const Vector& p : points) seen.push_back(along(axes, p - center));
-  const double tanY = std::tan(camera.fovy / 2) / margin, size = (high - low).length();
+  const Tangents most = tangentsOf(camera.fovy, aspect);
+  const double size = (high - low).length();
   // A spire that is seen from its tip fits at any distance from the tip.
   constexpr double leastClearance = .05;
-  const Fit fit = fitPoints(seen, tanY * ratio, tanY, leastClearance * size);
+  const Fit fit = fitPoints(seen, most.x, most.y, leastClearance * size);
   double distance = fit.distance;
   if (camera.fovy == 0) {
     camera.height = 2 * margin * std::max(fit.halfHeight, fit.halfWidth / ratio);

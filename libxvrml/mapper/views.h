@@ -2,10 +2,12 @@
 // thread]
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "mapper/graph/places.h"
+#include "mapper/outermost.h"
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
@@ -37,6 +39,12 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
 // Returns the camera of a Viewpoint; for null that of the standard's default Viewpoint. parent:
 // world matrix of the node's parent.
 CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspect);
+// Returns the directions, across the lines of sight, in which a world's outermost points make such
+// a camera exact: cameraAround() sees all of the world if it has these points. Returns nullopt if
+// its margin makes good for the error of even directions, which it does in pictures of up to 90
+// degrees.
+std::optional<Outermost::Directions> directionsAcross(const double view[16], double fovy,
+                                                      double aspect);
 // Returns a camera that looks along the view's -z and has all of these points in the picture.
 CameraSettings cameraAround(std::span<const Vector> points, const double view[16], double fovy,
                             double aspect);

@@ -11,6 +11,7 @@
 
 #include "base/lexer.h"
 #include "nodegen/writers.h"
+#include "option_words.h"
 #include "output_written.h"
 
 namespace {
@@ -161,10 +162,10 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app;
+  CLI::App app("", "nodegen");
   describe(app, options);
   try {
-    app.parse(argc, argv);
+    app.parse(optionWords(argc, argv, app));
     return run(options);
   } catch (const CLI::ParseError& error) {
     if (app.exit(error) != 0) return usage;

@@ -178,6 +178,22 @@ DEF O ORTViewpoint { position 0 0 20 }
     assert world.viewpoints[0].matrix[:3, 3] == pytest.approx([7, 0, 0])
 
 
+def test_a_parallel_view_is_that_of_an_orthoviewpoint():
+    """A picture that is wider than the extent shows more at its sides; its height is the extent's."""
+    shapes = SCENE[SCENE.index("Shape"):]
+    for aside in ("0 0 9", "1 .5 9"):
+        given = xvrml.loads("#X3D V3.2 utf8\nPROFILE Interchange\nOrthoViewpoint { position " + aside +
+                            " fieldOfView [ -2 -3 2 3 ] } " + shapes)
+        asked = xvrml.loads("#VRML V2.0 utf8\nViewpoint { position " + aside + " } " + shapes)
+        images = [
+            w.render(size=(40, 30), spp=1, channels="rgba,z", **more)
+            for w, more in ((given, {}), (asked, {"ortho": 6}))
+        ]
+        assert np.isfinite(images[0]["z"]).any()
+        assert np.array_equal(images[0]["z"], images[1]["z"])
+        assert np.array_equal(images[0].array, images[1].array)
+
+
 def test_pinholes(world):
     camera = CAMERAS["skewed"]
     back = xvrml.Pinhole.from_pose(camera.K, camera.pose)
@@ -201,6 +217,11 @@ K = [[70, 0, 39.5], [0, 70, 29.5], [0, 0, 1]]
     lambda w: xvrml.Pinhole(K, np.full((4, 4), np.nan)),
     lambda w: w.render(camera=xvrml.Pinhole(K), fov=30),
     lambda w: w.render(camera=xvrml.Pinhole(K), fit=True),
+    lambda w: w.render(camera=xvrml.Pinhole(K), ortho=3),
+    lambda w: w.render(fov=30, ortho=3),
+    lambda w: w.render(fit=True, ortho=3),
+    lambda w: w.render(ortho=0),
+    lambda w: w.render(ortho=float("nan")),
     lambda w: w.render(camera=2 * np.eye(4)),
     lambda w: w.render(camera=np.diag([1, 1, -1, 1])),
     lambda w: w.render(camera=np.eye(5)),

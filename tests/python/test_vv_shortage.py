@@ -69,7 +69,7 @@ def test_a_server_without_file_descriptors_is_a_message(vv, number):
 
 @pytest.mark.parametrize("option", ["--connect", "--key", "--allow", "--new-key"])
 def test_a_worker_refuses_empty_values(vv, option):
-    for words in ([option, ""], [option + "="]):
+    for words in ([option, ""], [option + "="], [option + "=", "k"]):
         done = limited(vv, 256, *words, program=worker())
         assert done.returncode == 2, (done.returncode, done.stdout, done.stderr)
         assert option in done.stderr

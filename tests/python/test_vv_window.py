@@ -73,22 +73,62 @@ def test_viewpoint_keys(window):
     w.wait(lambda: w.camera() == front, "back")
 
 
+def pictures_differ(one, other):
+    """Returns the number of pixels that differ by more than the rounding of the camera."""
+    assert (one.width, one.height) == (other.width, other.height)
+    return sum(
+        max(abs(p - q)
+            for p, q in zip(a, b)) > 2
+        for r, s in zip(one.rows, other.rows)
+        for a, b in zip(r, s))
+
+
+def check_the_printed_command(w, vv):
+    """Returns the printed command, whose picture must be the one that the S key saves."""
+    shot = w.still()
+    command = w.command()
+    assert command[0] == "vv"
+    done = vv(*command[1:-2], "-o", "again.png")
+    assert done.returncode == 0, done.talk
+    assert pictures_differ(shot, Shot(vv.folder / "again.png")) < SIZE[0] * SIZE[1] / 200, command
+    return command
+
+
 def test_the_printed_command_gives_the_same_view(window, vv):
     w = window(SENSORS, "--shadows", "off")
     w.drag(0, 0.8, 0.3, 0.5)
     w.key("h")
-    shot = w.still()
-    command = w.command()
-    assert command[0] == "vv" and "off" in command
-    done = vv(*command[1:-2], "-o", "again.png")
-    assert done.returncode == 0, done.talk
-    again = Shot(vv.folder / "again.png")
-    far = sum(
-        max(abs(p - q)
-            for p, q in zip(a, b)) > 2
-        for r, s in zip(shot.rows, again.rows)
-        for a, b in zip(r, s))
-    assert (again.width, again.height) == SIZE and far < SIZE[0] * SIZE[1] / 200
+    assert "off" in check_the_printed_command(w, vv)
+
+
+BALLS = """
+NavigationInfo { type [ "EXAMINE" "ANY" ] }
+Transform { translation -1 0 3 children DEF Ball Shape {
+  appearance Appearance { material Material { diffuseColor 1 0 0 } } geometry Sphere {} } }
+Transform { translation 1 .5 -3 children USE Ball }
+"""
+
+
+@pytest.mark.parametrize(
+    "world, arguments, named",
+    [("OrthoViewpoint { position 0 0 10 fieldOfView [ -2 -3 5 4 ] }", (), "--ortho"),
+     ("OrthoViewpoint { position 0 0 10 fieldOfView [ -1 -1 1 1 ] }", ("--fit", ), "--ortho"),
+     ("OrthoViewpoint { position 0 0 10 }", ("--fov", 50), "--fov"),
+     ("Viewpoint { position 0 0 10 }", ("--ortho", 7), "--ortho"),
+     ("Viewpoint { position 0 0 10 }", ("--from", "top", "--ortho", 9), "--ortho")])
+def test_the_printed_command_has_the_projection(window, vv, world, arguments, named):
+    vv.write("balls.x3dv", "#X3D V3.2 utf8\nPROFILE Interchange\n" + world + BALLS)
+    w = window("balls.x3dv", *arguments)
+    w.drag(0, 0.8, 0.2, 0.7)
+    assert named in check_the_printed_command(w, vv)
+
+
+def test_the_printed_command_has_the_shader_of_the_viewpoint(window, vv):
+    w = window(HEADER + BALLS + """ORTViewpoint { position 0 0 10 shader ORTShader {
+      name "ThinLens" options [ "1f radius .5" "1f focus 7" "1i blades 5" ] } }""")
+    w.drag(0, 0.8, 0.2, 0.7)
+    command = check_the_printed_command(w, vv)
+    assert command[command.index("--camera-shader") + 1] == "ThinLens:radius=.5:focus=7:blades=5"
 
 
 def test_examine_turns_moves_and_zooms(window):

@@ -136,69 +136,6 @@ TEST_F(MapWorld, BoundsAreThoseOfTheShapes) {
   EXPECT_NEAR(b.maximum[2], 3, 1e-6);
 }
 
-TEST_F(MapWorld, AFittedCameraSeesEveryCorner) {
-  for (const double aspect : {0.4, 1.0, 3.0}) {
-    OpenRTMapper& mapper =
-        load("Viewpoint { position 3 4 9 orientation 1 2 0.5 0.7 }\n"
-             "Transform { translation 100 -20 3 children Shape { geometry Box { size 8 1 30 } } }",
-             aspect);
-    const CameraSettings c = mapper.fitCamera(0.6);
-    EXPECT_EQ(c.fovy, 0.6);
-    const Bounds b = mapper.bounds();
-    double widest = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      double v[3], local[3];
-      for (int i = 0; i < 3; ++i)
-        v[i] = (corner & (1 << i) ? b.maximum[i] : b.minimum[i]) - c.matrix[12 + i];
-      for (int i = 0; i < 3; ++i)
-        local[i] = v[0] * c.matrix[4 * i] + v[1] * c.matrix[4 * i + 1] + v[2] * c.matrix[4 * i + 2];
-      ASSERT_LT(local[2], 0) << "in front of the camera";
-      const double y = std::abs(local[1]) / -local[2] / std::tan(0.3),
-                   x = std::abs(local[0]) / -local[2] / std::tan(0.3) / aspect;
-      EXPECT_LT(std::max(x, y), 1);
-      widest = std::max({widest, x, y});
-    }
-    EXPECT_GT(widest, 0.85) << "and no farther away than it must";
-  }
-}
-
-// The lines of sight touch a sphere at its outline; the corners of its box are farther out.
-TEST_F(MapWorld, AFittedCameraIsAsNearAsTheShapesAllow) {
-  constexpr double view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  const double slope = std::tan(0.4) / 1.1, expected = 2 * std::sqrt(1 + 1 / (slope * slope));
-  const std::string place = "Transform { translation 100 -20 3 ";
-  for (const std::string& shapes :
-       {place + "children Shape { geometry Sphere { radius 2 } } }",
-        place + "scale 2 .5 1 children Transform { scale .5 2 1 children Shape { geometry Sphere { "
-                "radius 2 } } } }"}) {
-    OpenRTMapper& mapper = load(shapes, 1);
-    CameraSettings c = mapper.cameraAround(view, 0.8, 1);
-    EXPECT_NEAR(c.matrix[12], 100, 0.02);
-    EXPECT_NEAR(c.matrix[13], -20, 0.02);
-    EXPECT_NEAR(c.matrix[14], 3 + expected, 0.05 * expected);
-    EXPECT_LT(c.matrix[14], 3 + 2 + 2 / slope) << "the camera that sees the box";
-    EXPECT_TRUE(mapper.seesAll(c, 1));
-    EXPECT_TRUE(mapper.seesAll(c, 2));
-    EXPECT_FALSE(mapper.seesAll(c, 0.5));
-    c.matrix[14] -= 0.2 * expected;
-    EXPECT_FALSE(mapper.seesAll(c, 1));
-    c.matrix[14] = 3 - expected;
-    EXPECT_FALSE(mapper.seesAll(c, 1)) << "it looks away";
-  }
-}
-
-TEST_F(MapWorld, AParallelCameraIsFittedToo) {
-  constexpr double view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  OpenRTMapper& mapper = load("Transform { rotation 0 0 1 0.78539816 children Shape { geometry "
-                              "Cylinder { radius 1 height 4 } } }");
-  CameraSettings c = mapper.cameraAround(view, 0, 1);
-  EXPECT_NEAR(c.height, 1.1 * 6 / std::sqrt(2.0), 0.01);
-  EXPECT_TRUE(mapper.seesAll(c, 1));
-  c.height *= 0.8;
-  EXPECT_FALSE(mapper.seesAll(c, 1));
-  EXPECT_TRUE(std::isfinite(load("").cameraAround(view, 0.8, 1).matrix[14])) << "nothing is drawn";
-}
-
 TEST_F(MapWorld, NamesComeFromTheNearestGroup) {
   OpenRTMapper& mapper = load("DEF Car Group { children [ Shape { geometry Box {} } DEF Wheel "
                               "Shape { geometry Sphere {} } ] }\n"

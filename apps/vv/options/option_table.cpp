@@ -381,6 +381,13 @@ const OptionInfo table[] = {
      "Angle of view across the shorter side of the picture, instead of the viewpoint's.",
      [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); },
      with(inPresets, Purpose::angle)},
+    {"--ortho", "HEIGHT", "View",
+     "Show a parallel view, as an OrthoViewpoint does: HEIGHT units of the world between the lower "
+     "and the upper edge of the picture.",
+     [](Options& o, const std::string& v) { o.view.ortho = readNumber(v, 0, 1e30); },
+     with(inPresets, Purpose::angle,
+          excludes("--fit,--fov,--intrinsics",
+                   "--ortho says what the camera sees: it cannot be used with {}"))},
     {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
      "Use a camera shader at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama "
      "(everything around).",

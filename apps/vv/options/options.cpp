@@ -14,6 +14,7 @@
 #include "libpicture/denoiser.h"
 #include "nearest.h"
 #include "option_info.h"
+#include "option_words.h"
 #include "presets.h"
 #include "rules.h"
 
@@ -78,12 +79,11 @@ std::string unknownOption(std::string option) {
   return fmt::format("there is no option {}; did you mean {}?", option, near);
 }
 
-// Describes a missing option value; this can happen only at the end of the command line.
-std::string missingValue(std::string_view last) {
-  for (const OptionInfo& option : optionTable())
-    for (std::string_view name : split(option.names, ','))
-      if (name == last) return fmt::format("{}: a value was expected: {}", last, option.argument);
-  return fmt::format("{}: a value was expected", last);
+// Describes a missing value of an option.
+std::string missingValue(std::string_view name) {
+  if (const OptionInfo* const option = optionCalled(name))
+    return fmt::format("{}: a value was expected: {}", name, option->argument);
+  return fmt::format("{}: a value was expected", name);
 }
 
 // --spp of --preview and of --measure without -o where it is not given
@@ -155,6 +155,20 @@ void readMerge(Options& options, const std::vector<std::string>& files,
   checkTogether(options);
 }
 
+// Refuses --NAME=VALUE of an option without a value, and --NAME= of one whose value is optional.
+void refuseUselessEquals(std::string_view word) {
+  const size_t equals = word.find('=');
+  const OptionInfo* const option = word.starts_with("--") && equals != word.npos
+                                       ? optionCalled(word.substr(0, equals))
+                                       : nullptr;
+  if (!option) return;
+  if (!*option->argument)
+    throw UsageError(fmt::format("{} takes no value: {} was not expected", word.substr(0, equals),
+                                 word.substr(equals)));
+  if (option->argument[0] == '[' && equals + 1 == word.size())
+    throw UsageError(missingValue(word.substr(0, equals)));
+}
+
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
 // its argument only if it is a whole number, or may be a topic of --help. The words after "--" are
 // files: they go to `files`.
@@ -167,8 +181,12 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv,
       files.assign(argv + i + 1, argv + argc);
       break;
     }
-    out.emplace_back(argv[i]);
-    if (isValue) continue;
+    if (isValue) {
+      out.emplace_back(argv[i]);
+      continue;
+    }
+    refuseUselessEquals(argv[i]);
+    appendOptionWord(out, argv[i], takesNext);
     const OptionInfo* const option = optionCalled(argv[i]);
     if (!option || option->argument[0] != '[') continue;
     out.back() = longName(*option);
@@ -221,7 +239,6 @@ Options readCommandLine(int argc, char** argv) {
   const JobInfo* const command = commandOf(argc, argv);
   if (command) options.jobs.push_back(command->job);
   const bool merges = options.has(Job::merge);
-  if (inputs.size() > 1 && !merges) throw UsageError(secondFileHint(inputs[0], inputs[1]));
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty() && !merges) options.input = inputs[0];
@@ -238,6 +255,13 @@ Options readCommandLine(int argc, char** argv) {
                        {},
                        {},
                        false});
+  }
+  if (inputs.size() > 1 && !merges) {
+    // The second file may stand behind an option with an empty value: --spp= 64.
+    Options unused;
+    for (const Setting& setting : given)
+      if (setting.value.empty() && *setting.option->argument) apply(setting, unused);
+    throw UsageError(secondFileHint(inputs[0], inputs[1]));
   }
   if (merges) {
     std::vector<std::string> names;

@@ -8,7 +8,7 @@ namespace vv {
 
 ScriptedView::ScriptedView(const Options& options, xvrml::Browser& browser,
                            picture::Renderer& renderer, const picture::View& view)
-    : options_(options), renderer_(renderer), view_(view), pilot_(browser, 0, options.view.fov),
+    : options_(options), renderer_(renderer), view_(view), pilot_(browser, 0, options.view),
       replay_(pilot_, *options.script, [this](const InputEvent&, Action action) {
         if (action == Action::frameAll) frameAll();
         if (action == Action::beginAgain) present();

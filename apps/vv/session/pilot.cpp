@@ -46,11 +46,11 @@ double speedOf(double way) {
 
 } // namespace
 
-Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov)
+Pilot::Pilot(xvrml::Browser& browser, double start, const picture::View& view)
     : browser_(browser), viewer_(makeWorldViewer(browser)), time_(start),
       pointer_(
           browser, [this] { return eye(); }, makeSharedPointer()),
-      fov_(fov) {
+      fov_(view.fov), ortho_(view.ortho) {
   const xvrml::BoundNodes bound = browser_.bound();
   // A world without Viewpoint and NavigationInfo is probably a model: start with EXAMINE.
   if (!bound.viewpoint && !bound.navigationInfo) viewer_->setNavigation(Navigation::examine);
@@ -60,7 +60,8 @@ Pilot::Pilot(const Pilot& leader, xvrml::Browser& browser)
     : browser_(browser), viewer_(makeGuestViewer(browser)), time_(0),
       pointer_(
           browser, [this] { return eye(); }, leader.pointer_.shared()),
-      fov_(leader.fov_), headlight_(leader.headlight_), exposure_(leader.exposure_) {}
+      fov_(leader.fov_), ortho_(leader.ortho_), headlight_(leader.headlight_),
+      exposure_(leader.exposure_) {}
 
 void Pilot::setAspect(double aspect) {
   aspect_ = aspect;
@@ -70,6 +71,10 @@ void Pilot::setAspect(double aspect) {
 xvrml::CameraSettings Pilot::camera(double aspect) const {
   xvrml::CameraSettings camera = viewer_->camera(aspect);
   if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect);
+  if (ortho_) {
+    camera.fovy = 0;
+    camera.height = *ortho_;
+  }
   if (fitted_ && fitted_->viewpoint == viewer_->viewpoint() &&
       (camera.fovy == 0 || fitted_->fovy == 0)) {
     camera.fovy = fitted_->fovy;
@@ -202,7 +207,7 @@ std::optional<picture::View> Pilot::initialView(const picture::View& view) const
   picture::View wanted = view;
   if (decides) return wanted;
   wanted.fit = true;
-  if (!wanted.fov && viewer_->viewpoint()) { // keep the Viewpoint's field of view
+  if (!wanted.fov && !wanted.ortho && viewer_->viewpoint()) { // keep the Viewpoint's field of view
     const double vertical = camera().fovy;
     const double smaller =
         aspect_ >= 1 ? vertical : 2 * std::atan(std::tan(vertical / 2) * aspect_);

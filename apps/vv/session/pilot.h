@@ -25,8 +25,9 @@ const char* navigationName(xvrml::Navigation type);
 // Wide because every way to move the viewer, by keys, pointer or programs, is a function here.
 class Pilot {
  public:
-  // start: the world's time at session time 0. fov: in degrees; replaces the viewpoints' angle.
-  Pilot(xvrml::Browser& browser, double start, std::optional<double> fov);
+  // start: the world's time at session time 0. The projection of `view` (fov, ortho) replaces that
+  // of the Viewpoints.
+  Pilot(xvrml::Browser& browser, double start, const picture::View& view);
   // Makes the pilot of a guest, who begins where the viewer of `leader` is and shares the world's
   // pointer and time with it.
   explicit Pilot(const Pilot& leader, xvrml::Browser& browser);
@@ -110,7 +111,7 @@ class Pilot {
   std::unique_ptr<Viewer> viewer_;
   WorldTime time_;
   Pointer pointer_;
-  std::optional<double> fov_;
+  std::optional<double> fov_, ortho_;
   // The projection of a view that shows all, and the Viewpoint that the viewer had then. It
   // replaces that of the Viewpoint if one of them is parallel.
   struct Fitted {

@@ -60,7 +60,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
       problems_(problems), callbacks_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
       shared_(*browser_, options_.render),
-      viewers_(*browser_, options.time && !script ? *options.time : 0, options.view.fov, shared_,
+      viewers_(*browser_, options.time && !script ? *options.time : 0, options.view, shared_,
                options_),
       channels_(options.render.channels), saver_(own_, options_, channels_, script != nullptr,
                                                  [this] {

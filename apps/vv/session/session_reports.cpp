@@ -17,7 +17,9 @@ std::string Session::command(const std::vector<std::string>& arguments, uint32_t
   std::optional<picture::ViewTransform> transform;
   if (options_.render.linear && (options_.viewGiven || pilot.exposure() != 0))
     transform = pictures.transformOf(pilot);
-  return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
+  xvrml::CameraSettings camera = pilot.camera();
+  if (options_.view.shader) camera.shader = nullptr; // that of the arguments
+  return viewCommand({browser_->world().path, camera, pictures.width(), pictures.height(),
                       browser_->now(), options_.epoch, headlight, transform, pilot.falseColour()},
                      arguments);
 }

@@ -27,10 +27,10 @@ void SessionViewer::resize(int width, int height) {
   pilot.setAspect(double(pictures.width()) / pictures.height());
 }
 
-SessionViewers::SessionViewers(xvrml::Browser& browser, double time, std::optional<double> fov,
+SessionViewers::SessionViewers(xvrml::Browser& browser, double time, const picture::View& view,
                                SharedRenderer& shared, const Options& options)
     : browser_(browser), shared_(shared), options_(options) {
-  viewers_[0] = std::make_unique<SessionViewer>(browser, time, fov, shared, options);
+  viewers_[0] = std::make_unique<SessionViewer>(browser, time, view, shared, options);
 }
 
 SessionViewer* SessionViewers::find(uint32_t number) {

@@ -8,7 +8,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "session/fit.h"
 #include "session/picture_loop.h"
@@ -17,10 +16,10 @@
 namespace vv {
 
 struct SessionViewer {
-  // Makes the viewer that the world knows. time: that of the world's clock.
-  SessionViewer(xvrml::Browser& browser, double time, std::optional<double> fov,
+  // Makes the viewer that the world knows. time, view: as for Pilot.
+  SessionViewer(xvrml::Browser& browser, double time, const picture::View& view,
                 SharedRenderer& shared, const Options& options)
-      : pilot(browser, time, fov), pictures(shared, options, 0) {}
+      : pilot(browser, time, view), pictures(shared, options, 0) {}
   // Makes a guest at the place of `leader`.
   SessionViewer(const Pilot& leader, xvrml::Browser& browser, SharedRenderer& shared,
                 const Options& options, uint32_t number)
@@ -45,7 +44,7 @@ struct SessionViewer {
 class SessionViewers {
  public:
   // The arguments are those of SessionViewer, and must live as long.
-  SessionViewers(xvrml::Browser& browser, double time, std::optional<double> fov,
+  SessionViewers(xvrml::Browser& browser, double time, const picture::View& view,
                  SharedRenderer& shared, const Options& options);
 
   // The viewer that the world knows.

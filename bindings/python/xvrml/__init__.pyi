@@ -590,6 +590,7 @@ class World:
         preset: Optional[str] = ...,
         studio: Union[None, bool, str, Sequence[float]] = ...,
         from_: Optional[str] = ...,
+        ortho: Optional[float] = ...,
     ) -> Picture:
         ...
 

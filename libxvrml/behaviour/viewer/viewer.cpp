@@ -83,7 +83,7 @@ CameraSettings Viewer::camera(double aspect) const {
   setLens(camera, fields, surroundings(), aspect);
   if (shownRadius_ > 0 && fields && fields->extent) {
     toArray(view(), camera.matrix); // an extent beside the middle does not count
-    camera.height = 2 * shownRadius_ * std::max(1.0, aspect > 0 ? 1 / aspect : 1);
+    showSphere(camera, shownRadius_, aspect);
   }
   return camera;
 }
@@ -96,26 +96,17 @@ void Viewer::keep(const Matrix& view, const Node* viewpoint) {
   hasLast_ = false;
 }
 
-// Looks at the middle of the sphere around the world's bounds, so that it fits into a picture of
-// any shape.
 bool Viewer::seeAll(const Node* viewpoint) {
   shownRadius_ = 0;
   const auto fields = viewpointFields(viewpoint);
   Interaction& interaction = interactionOf(engine_);
   if (!fields || !fields->viewAll || !*fields->viewAll || !interaction.scope) return false;
   const PickBox box = interaction.picker.bounds(interaction.scope->roots);
-  const Vector middle = (box.low + box.high) / 2;
-  const double radius = (box.high - box.low).length() / 2;
-  if (box.empty() || !(radius < 1e30)) return false;
-  double distance = 2 * radius;
-  if (radius <= 1e-7 * middle.length() + 1e-20)
-    distance = 1; // a single point, whose box is as large as its rounding: any distance will do
-  else if (fields->fieldOfView)
-    distance = radius / std::sin(std::clamp(double(*fields->fieldOfView), 1e-3, 3.0) / 2);
-  else
-    shownRadius_ = radius;
+  const auto all = box.empty() ? std::nullopt : viewOfAll(*fields, box.low, box.high);
+  if (!all) return false;
+  shownRadius_ = all->radius;
   Matrix view = rigid(placeOf(viewpoint));
-  const Vector eye = middle + Vector(view.x[2][0], view.x[2][1], view.x[2][2]) * distance;
+  const Vector eye = all->middle + Vector(view.x[2][0], view.x[2][1], view.x[2][2]) * all->distance;
   view.x[3][0] = eye.x;
   view.x[3][1] = eye.y;
   view.x[3][2] = eye.z;

@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "options/option_info.h"
+#include "xvrml/nodes.h"
 
 namespace vv {
 
@@ -39,6 +41,21 @@ std::string placeOf(const xvrml::CameraSettings& camera) {
          ":" + triple(m[4], m[5], m[6]);
 }
 
+// Returns the shader of an ORTViewpoint as a value of --camera-shader. Pictures and other files,
+// which no camera of the project has, are left out.
+std::string textOf(const xvrml::nodes::ORTShader& shader) {
+  std::string text = shader.file.empty() ? shader.name : shader.file + "/" + shader.name;
+  for (const std::string& option : shader.options) {
+    std::istringstream words(option);
+    std::string type, name, word, values;
+    words >> type >> name;
+    if (type == "texture" || type == "file") continue;
+    while (words >> word) values += (values.empty() ? "" : ",") + word;
+    if (!values.empty()) text += ":" + name + "=" + values;
+  }
+  return text;
+}
+
 } // namespace
 
 std::string viewCommand(const ShownView& view, const std::vector<std::string>& arguments) {
@@ -49,7 +66,11 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
     const double smaller =
         aspect >= 1 ? view.camera.fovy : 2 * std::atan(std::tan(view.camera.fovy / 2) * aspect);
     line += fmt::format(" --fov {}", smaller * 180 / std::numbers::pi);
+  } else {
+    line += fmt::format(" --ortho {}", view.camera.height);
   }
+  if (const auto* shader = xvrml::nodeCast<xvrml::nodes::ORTShader>(view.camera.shader))
+    line += " --camera-shader " + quoted(textOf(*shader));
   if (view.headlight) line += *view.headlight ? " --headlight on" : " --headlight off";
   if (view.falseColour)
     line += *view.falseColour > 0 ? fmt::format(" --false-colour {}", *view.falseColour)
@@ -58,7 +79,7 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
     line += fmt::format(" --exposure={} --view {}", view.transform->exposure,
                         picture::curveName(view.transform->curve));
   if (view.epoch) line += fmt::format(" --epoch {}", *view.epoch);
-  if (view.time > 0) line += fmt::format(" --time {:.3f}", view.time);
+  if (view.time > 0) line += fmt::format(" --time {}", view.time);
   for (size_t i = 0; i < arguments.size(); ++i) {
     const std::string& word = arguments[i];
     const size_t equals = word.find('=');
