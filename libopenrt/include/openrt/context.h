@@ -91,6 +91,7 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *   shaderpath=DIR[:DIR...]
  *                          folders of shader libraries, searched before $OPENRT_SHADER_PATH and the
  *                          installed folder
+ *   lightsamples=on|off    off, for checks: paths find shapes and the sky by hitting them alone
  * With backend=cluster, openrt-workers on other machines render, too. Pictures have the same bytes
  * however many workers there are, and while workers join, are slow or are lost. Further keys:
  *   workers=HOST[:PORT],...
