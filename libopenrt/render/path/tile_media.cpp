@@ -7,6 +7,7 @@
 #include "render/medium/lamp_places.h"
 #include "render/medium/phase_function.h"
 #include "render/path/tile.h"
+#include "scene/channels.h"
 
 namespace openrt {
 
@@ -18,10 +19,8 @@ void TileRenderer::startInMedia(const Wave& wave) {
 // The channels of first surfaces show what is behind the medium, whether the light of the sample
 // comes from there or from the medium.
 void TileRenderer::describeBehindMedia(const Wave& wave, PixelSamples& found) {
-  const bool describes = found.normal[0] || found.albedo[0] || found.position[0] ||
-                         found.motion[0] || found.depth || has(RT_NAME | RT_COVERAGE);
   const uint32_t n = wave.rays.count;
-  if (describes) {
+  if (has(firstHitChannels)) {
     Wave seen;
     seen.rays = wave.rays;
     seen.states.allocate(arena_, n);
