@@ -34,20 +34,17 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* li
   if (has(RT_RGBA))
     for (int k = 0; k < 4; k++)
       plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (light && k < 3 ? light->mean[k] : 0));
-  for (int k = 0; k < 3; k++) {
-    if (has(RT_NORMAL)) plane(RT_NORMAL)[3 * pixel + k] = float(s.normal[k] / n);
-    if (has(RT_ALBEDO)) plane(RT_ALBEDO)[3 * pixel + k] = float(s.albedo[k] / n);
-    if (has(RT_POSITION)) plane(RT_POSITION)[3 * pixel + k] = s.position[k];
-    if (has(RT_REFLECTION)) plane(RT_REFLECTION)[3 * pixel + k] = float(s.reflection[k] / n);
-    if (has(RT_MOTION)) plane(RT_MOTION)[3 * pixel + k] = s.motion[k];
-    if (has(RT_VARIANCE)) {
-      const double sum2 = s.delta2[k] - s.delta[k] * s.delta[k] / n;
-      plane(RT_VARIANCE)[3 * pixel + k] =
-          s.samples > 1 ? float(std::max(sum2, 0.0) / (n - 1)) : 0.0f;
-    }
+  for (const ChannelSum& sum : channelSums) {
+    if (!has(sum.channel)) continue;
+    float* const out = &plane(sum.channel)[channelComponents(sum.channel) * pixel];
+    if (sum.number) *out = s.*sum.number;
+    for (int k = 0; k < 3 && sum.vector; k++) out[k] = (s.*sum.vector)[k];
+    for (int k = 0; k < 3 && sum.mean; k++) out[k] = float((s.*sum.mean)[k] / n);
   }
-  if (has(RT_DEPTH)) plane(RT_DEPTH)[pixel] = s.depth;
-  if (has(RT_NAME)) plane(RT_NAME)[pixel] = s.name;
+  for (int k = 0; k < 3 && has(RT_VARIANCE); k++) {
+    const double sum2 = s.delta2[k] - s.delta[k] * s.delta[k] / n;
+    plane(RT_VARIANCE)[3 * pixel + k] = s.samples > 1 ? float(std::max(sum2, 0.0) / (n - 1)) : 0.0f;
+  }
   if (has(RT_ERROR))
     for (int k = 0; k < 3; k++)
       plane(RT_ERROR)[3 * pixel + k] =

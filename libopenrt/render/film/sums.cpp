@@ -54,7 +54,8 @@ RequiredSums requiredSums(const edit::FrameSettingsT& frame) {
   RequiredSums g;
   g.error = wantsError(frame);
   g.spread = g.error || (frame.channels & RT_VARIANCE);
-  g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO | RT_REFLECTION);
+  for (const ChannelSum& sum : channelSums)
+    if (sum.mean && (frame.channels & sum.channel)) g.surface = true;
   g.motion = frame.channels & RT_MOTION;
   g.names = frame.channels & RT_COVERAGE;
   return g;
@@ -79,11 +80,9 @@ void PixelSums::closeReplicate() {
 
 void PixelSums::merge(const PixelSums& l, const RequiredSums& required, const Replicates& parts) {
   for (int k = 0; k < 4; k++) rgba[k] += l.rgba[k];
-  for (int k = 0; k < 3 && required.surface; k++) {
-    normal[k] += l.normal[k];
-    albedo[k] += l.albedo[k];
-    reflection[k] += l.reflection[k];
-  }
+  for (const ChannelSum& sum : channelSums)
+    for (int k = 0; k < 3 && sum.mean && required.surface; k++)
+      (this->*sum.mean)[k] += (l.*sum.mean)[k];
   if (required.spread) {
     const double n = l.samples;
     double c[3]; // change of the differences

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "openrt/openrt.h"
 #include "render/film/hit_counts.h"
 #include "render/film/ledger.h"
 #include "render/wave/sampler.h"
@@ -19,7 +20,7 @@ namespace openrt {
 // Tells which sums the channels of a frame need; the other fields of PixelSums are undefined.
 struct RequiredSums {
   bool spread = false;  // true if first, delta and delta2 are needed
-  bool surface = false; // true if normal, albedo and reflection are needed
+  bool surface = false; // true if the means of channelSums are needed
   bool error = false;   // true if all sums are needed
   bool motion = false;  // true if motion is needed
   bool names = false;   // true if the names of hits are counted
@@ -76,6 +77,23 @@ struct PixelSums {
   void closeReplicate();
   // Merges the sums of the samples that follow these; closes a replicate that they complete.
   void merge(const PixelSums& later, const RequiredSums& required, const Replicates& replicates);
+};
+
+// Where the floats of a channel come from that is the mean of the samples, or the value of sample
+// 0. One of the members is not null.
+struct ChannelSum {
+  uint32_t channel;
+  double (PixelSums::*mean)[3];                                          // the sum over the samples
+  float (PixelSums::*vector)[3] = nullptr, PixelSums::*number = nullptr; // values of sample 0
+};
+inline constexpr ChannelSum channelSums[] = {
+    {RT_DEPTH, nullptr, nullptr, &PixelSums::depth},
+    {RT_POSITION, nullptr, &PixelSums::position},
+    {RT_NAME, nullptr, nullptr, &PixelSums::name},
+    {RT_MOTION, nullptr, &PixelSums::motion},
+    {RT_NORMAL, &PixelSums::normal},
+    {RT_ALBEDO, &PixelSums::albedo},
+    {RT_REFLECTION, &PixelSums::reflection},
 };
 
 // Clears the sums of the given number of pixels.

@@ -26,17 +26,28 @@ template <class T> T* elements(T PixelSums::*);
 template <class T, size_t n> constexpr size_t countOf(T (PixelSums::*)[n]) { return n; }
 template <class T> constexpr size_t countOf(T PixelSums::*) { return 1; }
 
+template <class T> size_t offsetOf(T PixelSums::*member) {
+  static const PixelSums any;
+  return size_t(reinterpret_cast<const std::byte*>(&(any.*member)) -
+                reinterpret_cast<const std::byte*>(&any));
+}
+
+Field fieldOf(const ChannelSum& sum) {
+  if (sum.mean) return {offsetOf(sum.mean), sizeof(double), countOf(sum.mean)};
+  if (sum.vector) return {offsetOf(sum.vector), sizeof(float), countOf(sum.vector)};
+  return {offsetOf(sum.number), sizeof(float), 1};
+}
+
 std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
   const RequiredSums required = requiredSums(frame);
   std::vector<Field> fields{FIELD(rgba)};
-  if (frame.channels & RT_DEPTH) fields.push_back(FIELD(depth));
-  if (frame.channels & RT_POSITION) fields.push_back(FIELD(position));
-  if (frame.channels & RT_NAME) fields.push_back(FIELD(name));
-  if (frame.channels & RT_MOTION) fields.push_back(FIELD(motion));
+  const auto addSums = [&](bool means) {
+    for (const ChannelSum& sum : channelSums)
+      if ((frame.channels & sum.channel) && bool(sum.mean) == means) fields.push_back(fieldOf(sum));
+  };
+  addSums(false);
   if (required.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
-  if (frame.channels & RT_NORMAL) fields.push_back(FIELD(normal));
-  if (frame.channels & RT_ALBEDO) fields.push_back(FIELD(albedo));
-  if (frame.channels & RT_REFLECTION) fields.push_back(FIELD(reflection));
+  addSums(true);
   if (required.error)
     fields.insert(fields.end(), {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4),
                                  FIELD(grey), FIELD(largest), FIELD(random)});

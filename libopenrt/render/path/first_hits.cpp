@@ -10,6 +10,7 @@
 #include "render/surface/sanitize_output.h"
 #include "render/surface/scatter.h"
 #include "render/surface/surface_shader.h"
+#include "scene/channels.h"
 #include "scene/quality.h"
 #include "scene/transports.h"
 #include "shading/running.h"
@@ -78,10 +79,8 @@ void FirstHits::describe(const StageContext& context, Wave& wave, PixelSamples& 
 
 void FirstHits::describeBehindMedia(const StageContext& context, const Wave& wave,
                                     PixelSamples& found) {
-  const bool describes = found.normal[0] || found.albedo[0] || found.position[0] ||
-                         found.motion[0] || found.depth || has(RT_NAME | RT_COVERAGE);
   const uint32_t n = wave.rays.count;
-  if (describes) {
+  if (has(firstHitChannels)) {
     Wave seen;
     seen.rays = wave.rays;
     seen.states.allocate(arena_, n);
