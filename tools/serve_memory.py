@@ -4,7 +4,7 @@
     tools/serve_memory.py [WORLD] [--pages 1 8] [--seconds 60]
 
 prints for each number of pages the resident megabytes of the process: before the first page, at
-most, and after so many seconds. Options after -- are for vv serve (-- --spp 8).
+most, and after so many seconds. Options after -- are for vv serve (-- --spp 8). Needs pytest and Pillow.
 """
 import argparse
 import pathlib
