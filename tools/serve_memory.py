@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the memory of `vv serve` with pages of 4,096 x 1,024 pixels that have views of their own.
 
-    tools/serve_memory.py [WORLD] [--pages 1 8] [--seconds 60]
+    tools/serve_memory.py [--world WORLD] [--pages 1 8] [--seconds 60]
 
 prints for each number of pages the resident megabytes of the process: before the first page, at
 most, and after so many seconds. Options after -- are for vv serve (-- --spp 8). Needs pytest and Pillow.
@@ -41,7 +41,7 @@ def measure(world, count, seconds, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("world", nargs="?", default=ROOM)
+    parser.add_argument("--world", default=ROOM)
     parser.add_argument("--pages", type=int, nargs="+", default=[1, 8])
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("options", nargs="*", help="for vv serve, after --")
