@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "openrt/openrt.h"
+#include "parallel_for.h"
 
 namespace picture {
 
@@ -85,13 +86,26 @@ class Canvas {
   Picture out_;
 };
 
+// Calls f for each row of a picture, on several threads: the window shows such pictures on its own
+// thread.
+template <typename F> void eachRow(int height, const F& f) {
+  constexpr int rowsOfAPart = 32;
+  parallelFor(tbb::blocked_range<int>(0, height, rowsOfAPart),
+              [&](const tbb::blocked_range<int>& rows) {
+                for (int y = rows.begin(); y < rows.end(); y++) f(y);
+              });
+}
+
 std::vector<float> luminancesOf(const Picture& picture) {
   const std::vector<float>& rgba = rgbaOf(picture);
+  const size_t width = size_t(picture.width);
   std::vector<float> out(rgba.size() / 4);
-  for (size_t i = 0; i < out.size(); i++) {
-    const float y = .2126f * rgba[4 * i] + .7152f * rgba[4 * i + 1] + .0722f * rgba[4 * i + 2];
-    out[i] = std::isfinite(y) ? y : 0;
-  }
+  eachRow(picture.height, [&](int row) {
+    for (size_t i = size_t(row) * width; i < (size_t(row) + 1) * width; i++) {
+      const float y = .2126f * rgba[4 * i] + .7152f * rgba[4 * i + 1] + .0722f * rgba[4 * i + 2];
+      out[i] = std::isfinite(y) ? y : 0;
+    }
+  });
   return out;
 }
 
@@ -105,22 +119,26 @@ double mostOf(std::vector<float> values) {
 // Returns the means over the 5x5 pixels around each, so that noise breaks no isoline.
 std::vector<float> smoothed(const std::vector<float>& values, int width, int height) {
   constexpr int reach = 2;
-  std::vector<float> rows(values.size()), out(values.size());
-  const auto pass = [&](const std::vector<float>& from, std::vector<float>& to, int dx, int dy) {
-    for (int y = 0; y < height; y++)
-      for (int x = 0; x < width; x++) {
-        float sum = 0, count = 0;
-        for (int i = -reach; i <= reach; i++) {
-          const int u = x + i * dx, v = y + i * dy;
-          if (u < 0 || v < 0 || u >= width || v >= height) continue;
-          sum += from[size_t(v) * size_t(width) + size_t(u)];
-          count++;
-        }
-        to[size_t(y) * size_t(width) + size_t(x)] = sum / count;
-      }
-  };
-  pass(values, rows, 1, 0);
-  pass(rows, out, 0, 1);
+  std::vector<float> along(values.size()), out(values.size());
+  eachRow(height, [&](int y) {
+    const float* const from = &values[size_t(y) * size_t(width)];
+    float* const to = &along[size_t(y) * size_t(width)];
+    for (int x = 0; x < width; x++) {
+      const int first = std::max(0, x - reach), end = std::min(width, x + reach + 1);
+      float sum = 0;
+      for (int u = first; u < end; u++) sum += from[u];
+      to[x] = sum / float(end - first);
+    }
+  });
+  eachRow(height, [&](int y) {
+    float* const to = &out[size_t(y) * size_t(width)];
+    const int first = std::max(0, y - reach), end = std::min(height, y + reach + 1);
+    for (int v = first; v < end; v++) {
+      const float* const from = &along[size_t(v) * size_t(width)];
+      for (int x = 0; x < width; x++) to[x] += from[x];
+    }
+    for (int x = 0; x < width; x++) to[x] /= float(end - first);
+  });
   return out;
 }
 
@@ -148,22 +166,23 @@ int legendWidth(const LuminanceScale& scale, const Sizes& sizes) {
 // Draws the colours of the luminances, and isolines over them.
 void drawLuminances(const std::vector<float>& luminance, int width, int height,
                     const LuminanceScale& scale, Canvas& canvas) {
-  for (int y = 0; y < height; y++)
-    for (int x = 0; x < width; x++)
-      canvas.set(x, y, turbo(double(luminance[size_t(y) * size_t(width) + size_t(x)]) / scale.top));
   const std::vector<float> smooth = smoothed(luminance, width, height);
-  const double highest = labelsOf(scale);
-  const auto levelAt = [&](int x, int y) {
-    return std::min(std::floor(double(smooth[size_t(y) * size_t(width) + size_t(x)]) / scale.step),
-                    highest);
-  };
-  const int dot = Sizes(height).dot;
-  for (int y = 0; y + 1 < height; y++)
-    for (int x = 0; x + 1 < width; x++) {
-      const double here = levelAt(x, y);
-      if (here != levelAt(x + 1, y) || here != levelAt(x, y + 1))
-        canvas.fill(x, y, dot, dot, black);
+  const double lowest = -1, highest = labelsOf(scale);
+  std::vector<int> level(smooth.size()); // the isoline below each pixel
+  eachRow(height, [&](int y) {
+    for (int x = 0; x < width; x++) {
+      const size_t at = size_t(y) * size_t(width) + size_t(x);
+      canvas.set(x, y, turbo(double(luminance[at]) / scale.top));
+      // truncated like the positive numbers that light is
+      level[at] = int(std::clamp(double(smooth[at]) / scale.step, lowest, highest) + 1);
     }
+  });
+  const int dot = Sizes(height).dot;
+  for (int y = 0; y + 1 < height; y++) {
+    const int *const row = &level[size_t(y) * size_t(width)], *const next = row + width;
+    for (int x = 0; x + 1 < width; x++)
+      if (row[x] != row[x + 1] || row[x] != next[x]) canvas.fill(x, y, dot, dot, black);
+  }
 }
 
 // Draws the unit, then the bar with a label at each isoline that has room. x: the left side.

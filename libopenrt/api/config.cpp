@@ -70,13 +70,18 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
     record = value;
   else if (key == "shaderpath")
     shaderPath = value;
-  else if (setCluster(key, value))
+  else if (key == "lightsamples") {
+    if (value != "on" && value != "off")
+      fail(RT_INVALID_VALUE, "lightsamples=" + std::string(value) + ": expected on or off");
+    lightSamples = value == "on";
+  } else if (setCluster(key, value))
     clusterKey_ = key;
   else
     fail(RT_INVALID_VALUE,
          "unknown option \"" + std::string(key) +
-             "\"; the options are backend, threads, isa, file, record, shaderpath, and for "
-             "backend=cluster workers, listen, key, allow, local, split, require, tolerant");
+             "\"; the options are backend, threads, isa, file, record, shaderpath, "
+             "lightsamples, and for backend=cluster workers, listen, key, allow, local, split, "
+             "require, tolerant");
 }
 
 bool ContextConfig::setCluster(std::string_view key, std::string_view value) {
@@ -121,6 +126,8 @@ void ContextConfig::check() const {
     fail(RT_INVALID_VALUE, "file=PATH needs backend=record");
   if ((backend == BackendKind::Record || backend == BackendKind::Null) && isa != automaticIsa)
     fail(RT_INVALID_VALUE, "isa=NAME needs a backend that renders");
+  if (backend != BackendKind::Local && !lightSamples)
+    fail(RT_INVALID_VALUE, "lightsamples=off needs backend=local");
   if (backend != BackendKind::Cluster && !clusterKey_.empty())
     fail(RT_INVALID_VALUE, clusterKey_ + "= needs backend=cluster");
   if (backend == BackendKind::Cluster && cluster.workers.empty() && cluster.listen.empty())

@@ -21,6 +21,7 @@ struct ContextConfig {
   std::string file;              // the recording of backend=record
   std::string record;            // a recording that is written while another backend renders
   std::string shaderPath;        // colon-separated folders
+  bool lightSamples = true;      // whether light is sampled at shapes and in the sky
   ClusterOptions cluster;
 
   // Sets one option. Throws ApiError for an unknown key or an invalid value.

@@ -37,6 +37,7 @@ void Context::makeBackend(const ContextConfig& config) {
   BackendOptions options;
   options.threads = config.threads;
   options.isa = config.isa;
+  options.lightSamples = config.lightSamples;
   options.file = config.backend == BackendKind::Record ? config.file : config.record;
   options.shaders = registry_.get();
   options.log = LogSink::forward;

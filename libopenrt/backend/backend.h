@@ -36,6 +36,8 @@ struct BackendOptions {
   RTlogCallback log = nullptr;
   void* logUser = nullptr;
   bool diagnose = false; // detect misuse while rendering; costs time
+  // false: paths find emitting shapes and the sky by hitting them alone
+  bool lightSamples = true;
 };
 
 struct ClusterOptions {

@@ -513,7 +513,7 @@ class Pictures {
   }
 
   int auditOne(const PictureRequest& request) {
-    Audit audit(options_, *renderer_);
+    Audit audit(options_, browser_.world(), *renderer_);
     audit.setProgress([this](const std::string& what) {
       progress_.reset();
       if (!what.empty()) progress_ = std::make_unique<Progress>(what, options_.quiet);

@@ -107,6 +107,10 @@ void LocalBackend::prepareLight() {
 
 // Makes the tables by which the paths of a frame sample light. before: lit_.
 void LocalBackend::sampleLight(RenderScene& next, const RenderScene* before) {
+  if (!options_.lightSamples) {
+    next.lightSamplers = makeLightSamplers(next, before);
+    return;
+  }
   next.emitters->build(next, before, recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next.emitters->shapes() != (before ? before->emitters->shapes() : nullptr)) {

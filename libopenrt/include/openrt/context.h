@@ -80,17 +80,17 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *                          of the API to rtLogCallback.
  *   threads=N              render threads. 0 (default) means as many as the process may use.
  *   isa=auto|avx512|avx2|avx|sse4.2|sse2|neon
- *                          instruction set of the ray kernels. auto (default) is the best one of
- *                          the machine. Machines give the same bytes with the same one, if their
+ *                          instruction set of the ray kernels; auto (default): the best one of the
+ *                          machine. Machines give the same bytes with the same one, if their
  *                          processors are of one maker. One that the machine lacks is an
- *                          RT_INVALID_VALUE, whose message lists those that it has. RTstats.isa is
- *                          the one in use.
+ *                          RT_INVALID_VALUE, which lists the others. RTstats.isa is the one in use.
  *   file=PATH              the recording to write (backend=record)
  *   record=PATH            a recording that is written while another backend renders. openrt-replay
  *                          makes the same bytes of it.
  *   shaderpath=DIR[:DIR...]
  *                          folders of shader libraries, searched before $OPENRT_SHADER_PATH and the
  *                          installed folder
+ *   lightsamples=on|off    off, for checks: paths find shapes and the sky by hitting them alone
  * With backend=cluster, openrt-workers on other machines render, too. Pictures have the same bytes
  * however many workers there are, and while workers join, are slow or are lost. Further keys:
  *   workers=HOST[:PORT],...
