@@ -141,7 +141,8 @@ void Stage::open(const std::function<bool()>& stop) {
     borrowed_ = true;
     context_ = lent;
   } else {
-    context_ = newContext("backend=" + settings.backend + contextConfiguration(settings));
+    context_ = newContext("backend=" + settings.backend + contextConfiguration(settings) +
+                          (lightSamples ? "" : " lightsamples=off"));
     rtLogCallback(listen, this);
   }
   rtErrorCallback(note, this);

@@ -35,6 +35,8 @@ class Stage {
   Stage& operator=(const Stage&) = delete;
 
   RenderSettings settings; // may be changed between frames
+  // false, before open(): lightsamples=off of rtNewContext
+  bool lightSamples = true;
 
   // --- On the browser's thread ---
   //

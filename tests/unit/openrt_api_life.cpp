@@ -19,6 +19,8 @@ TEST(ApiConfig, ReadsPairsAndQuotes) {
   EXPECT_EQ(parseConfig("record=out.ortr backend=local").record, "out.ortr");
   EXPECT_EQ(config.isa, "auto");
   EXPECT_EQ(parseConfig("isa=avx2").isa, "avx2");
+  EXPECT_TRUE(config.lightSamples && parseConfig("lightsamples=on").lightSamples);
+  EXPECT_FALSE(parseConfig("lightsamples=off").lightSamples);
   EXPECT_EQ(parseConfig("").backend, BackendKind::Local);
   const ContextConfig cluster =
       parseConfig("workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k "
@@ -44,6 +46,10 @@ TEST(ApiConfig, RefusesNonsense) {
                            "isa=avx2,sse2",
                            "backend=null isa=sse2",
                            "backend=record file=a isa=sse2",
+                           "lightsamples=",
+                           "lightsamples=0",
+                           "backend=null lightsamples=off",
+                           "backend=cluster workers=a lightsamples=off",
                            "nonsense=1",
                            "backend",
                            "=1",

@@ -637,7 +637,7 @@ const OptionInfo table[] = {
      "Test the error bars: render the picture with N seeds (default 20) and once with many more "
      "samples (or read the picture of --compare instead), and print how many of the 95 % intervals "
      "contain the true value. The exit code is 4 if these are not 93 to 97 % of the trusted "
-     "intervals.",
+     "intervals, or if pictures whose paths find emitters by hitting them alone have more light.",
      [](Options& o, const std::string& v) {
        o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000));
      },

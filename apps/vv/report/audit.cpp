@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/hit_pictures.h"
 #include "process/messages.h"
+#include "process/signals.h"
 
 namespace vv {
 
@@ -14,6 +16,7 @@ namespace {
 constexpr int tileEdge = 16;           // edge of the tiles in pixels; the worst tiles are reported
 constexpr int referenceWorth = 16;     // samples of the reference divided by those of a picture
 constexpr int referenceSeed = 1000003; // a seed outside the range of the series
+constexpr int hitSeed = 2000003;       // the first seed of the pictures without light samples
 
 picture::Picture readReference(const std::string& path, int width, int height) {
   picture::Picture picture;
@@ -61,6 +64,21 @@ picture::RenderResult Audit::render(const picture::View& view, const std::string
   return renderer_.render(view);
 }
 
+bool Audit::hitEmitters(picture::View view, const picture::RenderResult& made) {
+  if (!made.hasCameraShader && !view.viewer) view.viewer = made.camera;
+  picture::RenderSettings settings;
+  renderer_.change([&](const picture::RenderSettings& s) { settings = s; });
+  settings.samples = int(std::clamp(samples_, 1.0, 65536.0));
+  picture::HitPictures pictures(world_, settings);
+  for (int i = 0; i < referenceWorth; i++) {
+    if (interrupted()) return false;
+    if (progress_) progress_(fmt::format("without light samples, {} of {}", i + 1, referenceWorth));
+    const int seed = options_.render.quality.whole(RT_SEED) + hitSeed + i;
+    hits_.push_back(pictures.render(view, seed & 0x7fffffff));
+  }
+  return !interrupted();
+}
+
 bool Audit::run(const picture::View& view) {
   const int width = options_.render.width, height = options_.render.height;
   const int seed = options_.render.quality.whole(RT_SEED);
@@ -102,14 +120,24 @@ bool Audit::run(const picture::View& view) {
     reference.colours = coloursOf(result.picture);
     reference.worth = most / samples_;
     reference_ = fmt::format("a picture of {} samples and the other pictures of the series", most);
+    // Other transports leave light out, and say so.
+    const RTenum transport = result.stats.transport.chosen;
+    if ((transport == RT_TRANSPORT_PATH || transport == RT_TRANSPORT_LIGHT) &&
+        !hitEmitters(view, result))
+      return false;
   }
   if (progress_) progress_("");
   coverage_ = picture::countCoverage(shots, reference, width, height, tileEdge);
+  if (hits_.empty()) return true;
+  std::vector<std::vector<float>> sampled;
+  for (picture::Shot& shot : shots) sampled.push_back(std::move(shot.rgba));
+  missing_ = picture::findMissingLight(sampled, hits_, width, height, tileEdge);
   return true;
 }
 
 std::string Audit::whatIsWrong() const {
   const picture::Coverage& c = coverage_;
+  if (missing_.any()) return "light samples miss light";
   if (c.trusted * 20 < c.pixels) return "too few pixels are trusted to say anything";
   if (c.intervals() > 0 &&
       (c.share() + c.shareInterval() < .93 || c.share() - c.shareInterval() > .97))
@@ -149,6 +177,10 @@ std::string Audit::text() const {
   if (c.cost > 0)
     text += fmt::format("variance    {:.3g} times that of the same number of independent samples\n",
                         c.cost);
+  if (!hits_.empty())
+    text += fmt::format("all light   {:+.2g} +- {:.2g} of the picture's mean more without light "
+                        "samples; more in {} of {} tiles\n",
+                        missing_.more, missing_.interval, missing_.inTiles, missing_.tiles);
   const std::string wrong = whatIsWrong();
   return text +
          (wrong.empty() ? "the error bars hold\n" : "the error bars do not hold: " + wrong + "\n");

@@ -398,7 +398,7 @@ int Pictures::measure() {
 }
 
 int Pictures::auditOne(const PictureRequest& request) {
-  Audit audit(options_, *renderer_);
+  Audit audit(options_, browser_.world(), *renderer_);
   audit.setProgress([this](const std::string& what) {
     progress_.reset();
     if (!what.empty()) progress_ = std::make_unique<Progress>(what, options_.quiet);

@@ -53,6 +53,11 @@ static void emission(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, 
   for (uint32_t i = 0; i < hits->count; i++) out->emission[0][i] = 1;
 }
 
+static uint32_t isTransparent(const RtsHost* host, const void* params) {
+  (void)host;
+  (void)params;
+  return RTS_TRANSPARENT;
+}
 static uint32_t emitsUniformly(const RtsHost* host, const void* params) {
   (void)host;
   (void)params;
@@ -134,11 +139,15 @@ static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emissio
 static const RtsClass unevens = {SURFACE, .name = "UnevenLamp", .traits = emitsUniformly,
                                  .surface = uneven};
 static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
+/* Lets paths pass straight on, and says so, but has no `transmit` for light samples. */
+static const RtsClass blindVeils = {SURFACE, .name = "BlindVeil", .traits = isTransparent,
+                                    .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
 static const RtsClass scatters = {SURFACE, .name = "SilentScatter", .traits = nothingScatters,
                                   .surface = scatter};
 static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
-static const RtsClass* const classes[] = {&crashes, &hangs,   &nans,     &nanLobes, &lamps,
-                                          &veils,   &glosses, &badLobes, &scatters, &unevens};
+static const RtsClass* const classes[] = {&crashes,  &hangs,   &nans,      &nanLobes,
+                                          &lamps,    &veils,   &glosses,   &badLobes,
+                                          &scatters, &unevens, &blindVeils};
 RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
-                                        10,        classes};
+                                        11,        classes};
