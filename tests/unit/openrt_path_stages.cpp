@@ -9,8 +9,7 @@
 #include "render/lights/environment.h"
 #include "render/path/camera_rays.h"
 #include "render/path/spawn_rays.h"
-#include "render/surface/bsdf_choice.h"
-#include "render/surface/sample_lobes.h"
+#include "render/surface/continue_paths.h"
 #include "render/wave/wave.h"
 #include "unit/plane_hits.h"
 
@@ -159,17 +158,22 @@ TEST(PathStages, ASampleIsSelectedInProportionToWhatItCarries) {
   RtsBatch batch = plane.batch();
   plane.add(batch, RTS_LOBE_REFLECTION, 0.25f);
   plane.add(batch, RTS_LOBE_TRANSPARENT, 0.75f);
-  BsdfSamples samples(plane.points.hits, 0, nullptr, 0);
-  for (uint32_t l = 0; l < 2; l++) samples.add(l, batch.lobes[l], nullptr);
-  const BsdfChoice choice(samples, {0.5f, 0.25f, 0});
-  EXPECT_EQ(choice.sum, 0.5f);
-  EXPECT_EQ(choice.probability(0), 0.25f);
-  EXPECT_EQ(choice.probability(1), 0.75f);
-  EXPECT_EQ(choice.select(0.24f), 0u);
-  EXPECT_EQ(choice.select(0.26f), 1u);
-  EXPECT_EQ(choice.select(0.99f), 1u);
-  EXPECT_EQ(survivalProbability(0.125f), 0.125f);
-  EXPECT_EQ(survivalProbability(8), 1);
+  store({0.5f, 0.25f, 0}, plane.states.throughput, 0);
+  const BsdfSampleArrays samples(batch, {}, {}, TransportMode::radiance);
+  for (const float u : {0.24f, 0.26f, 0.99f}) {
+    auto* choice = plane.arena.takeZero<float>(padded(1));
+    choice[0] = u;
+    Selection selection{.points = &plane.points,
+                        .choice = choice,
+                        .survival = nullptr,
+                        .throughput = plane.states.throughput,
+                        .onlySpecular = nullptr};
+    selection.allocate(plane.arena);
+    selectSamples(selection, samples);
+    EXPECT_EQ(selection.survivalProbability[0], 1);
+    EXPECT_EQ(selection.number[0], u < 0.25f ? 0u : 1u);
+    EXPECT_EQ(selection.probability[0], u < 0.25f ? 0.25f : 0.75f);
+  }
 }
 
 TEST(PathStages, LobesAreSampledAboveTheSurface) {

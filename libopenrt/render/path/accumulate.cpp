@@ -144,6 +144,7 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLigh
   for (auto& a : radiance) a = batch.arena.take<float>(padded(n));
   HWY_DYNAMIC_DISPATCH(lightOfHits)
   (batch, sent, fog, hiddenHits(batch, boundaries), radiance, alpha);
+  const ImageLead* leads = nullptr;
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order[i], path = states.path[lane];
     found.add(path, states.flagsOf(lane), load(radiance, i));
@@ -153,7 +154,8 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLigh
     if (!states.flagsOf(lane).deflected()) found.alpha[path] += alpha[i];
     if (found.first[path] && boundaries.visibleAt(i)) {
       found.first[path] = 0;
-      if (!found.firstHits || !found.firstHits->takeSurface(batch, boundaries, i))
+      if (found.firstHits && !leads) leads = findImageLeads(batch, boundaries);
+      if (!leads || !found.firstHits->takeSurface(batch, boundaries, i, leads[i]))
         found.storeFirst(batch.scene, *batch.points, i, path, surface.albedo);
     }
   }

@@ -6,9 +6,7 @@
 
 #include "render/film/error.h"
 #include "render/motion.h"
-#include "render/surface/bsdf_samples.h"
 #include "render/surface/sanitize_output.h"
-#include "render/surface/scatter.h"
 #include "render/surface/surface_shader.h"
 #include "scene/channels.h"
 #include "scene/quality.h"
@@ -27,25 +25,6 @@ Matrix4d reflectionAt(const Vec3d& point, const Vec3d& normal) {
     for (size_t row = 0; row < 3; row++) m.m[4 * column + row] -= 2 * normal[row] * normal[column];
   m.translate(normal * (2 * dot(normal, point)));
   return m;
-}
-
-// Returns the smooth lobe that a narrow rough lobe is taken for.
-bool smoothLobe(const RtsLobe& rough, uint32_t i, RtsLobe& smooth) {
-  const bool glossy = rough.kind == RTS_LOBE_GLOSSY;
-  if (!glossy && rough.kind != RTS_LOBE_ROUGH_DIELECTRIC) return false;
-  if (!(rough.parameter[glossy ? 0 : 1][i] <= FirstHits::nearlySmooth)) return false;
-  smooth = rough;
-  smooth.kind = glossy ? RTS_LOBE_REFLECTION : RTS_LOBE_DIELECTRIC;
-  return true;
-}
-
-// Returns the Fresnel reflectance that a glossy lobe has in the direction of its mirror image.
-float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
-  const float eta = glossy.parameter[1][i];
-  if (!(eta > 0)) return 1;
-  double behind;
-  const double cosine = -double(dot(load(hits.direction, i), load(glossy.normal, i)));
-  return float(fresnel(std::clamp(cosine, 0.0, 1.0), eta, behind));
 }
 
 } // namespace
@@ -139,12 +118,13 @@ void FirstHits::describeBucket(const StageContext& context, const Points& points
       std::copy_n(surface.albedo, 3, albedo);
     }
     const Boundaries boundaries = crossBoundaries(batch, shaderClass);
+    const ImageLead* leads = follows_ ? findImageLeads(batch, boundaries) : nullptr;
     for (uint32_t i = 0; i < n; i++) {
       const bool last = isLastAt(i);
       if (!last && !boundaries.visibleAt(i))
         queue(batch, i, {.direction = load(points.hits.direction, i), .straight = true},
               boundaries.crossing[i].behind, Step::pass);
-      else if (last || !takeSurface(batch, boundaries, i))
+      else if (last || !leads || !takeSurface(batch, boundaries, i, leads[i]))
         store(batch, i, albedo, found);
     }
     return;
@@ -165,53 +145,9 @@ void FirstHits::describeBucket(const StageContext& context, const Points& points
       store(batch, i, shaded.albedo, found);
 }
 
-// Finds the direction in which the image at a hit is seen. Returns false if none is.
-bool FirstHits::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i,
-                         Lead& lead) const {
-  const RtsHits& hits = batch.points->hits;
-  const Vec3f g = load(hits.geometric, i);
-  const bool follows = followsImages(scene_.frame.transport);
-  // The weights are those of a path from a lamp, which do not change where light enters a denser
-  // medium.
-  BsdfSamples samples(hits, i, boundaries.etaAt(i), 0, true);
-  float others = 0;
-  for (uint32_t l = 0; l < batch.lobes.size(); l++) {
-    const RtsLobe& lobe = batch.lobes[l];
-    const uint32_t first = samples.count;
-    RtsLobe smooth;
-    Vec3f weight;
-    if (!weightAt(lobe, i, weight)) continue;
-    if (lobe.kind == RTS_LOBE_TRANSPARENT || (follows && !nonSpecularFunctions(lobe)))
-      samples.add(l, lobe, nullptr);
-    else if (follows && smoothLobe(lobe, i, smooth))
-      samples.add(l, smooth, nullptr);
-    else
-      others += mean(weight);
-    if (lobe.kind == RTS_LOBE_GLOSSY && samples.count > first)
-      samples.list[first].weight *= reflectanceOf(lobe, hits, i);
-  }
-  Vec3f sum[2]; // the sums of transmission and reflection
-  const BsdfSample* heaviest[2] = {};
-  for (uint32_t s = 0; s < samples.count; s++) {
-    const BsdfSample& sample = samples.list[s];
-    const bool reflected = sample.deflected && dot(sample.direction, g) > 0;
-    sum[reflected] += sample.weight;
-    if (!heaviest[reflected] || mean(sample.weight) > mean(heaviest[reflected]->weight))
-      heaviest[reflected] = &sample;
-  }
-  lead.reflected = mean(sum[1]) > mean(sum[0]);
-  const float images = mean(sum[0]) + mean(sum[1]),
-              least = lead.reflected ? leastReflection : leastTransmission;
-  if (!(images > 0 && images >= least * (images + others))) return false;
-  lead.tint = sum[lead.reflected];
-  lead.direction = heaviest[lead.reflected]->direction;
-  lead.straight = !heaviest[lead.reflected]->deflected;
-  return isFinite(lead.direction) && isFinite(lead.tint);
-}
-
-bool FirstHits::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i) {
-  Lead lead;
-  if (!follows_ || !findLead(batch, boundaries, i, lead)) return false;
+bool FirstHits::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i,
+                            const ImageLead& lead) {
+  if (!lead.found) return false;
   const MediaStack& media = (*batch.states).media[batch.order[i]];
   queue(batch, i, lead, mediaTowards(*batch.points, i, lead.direction, boundaries, media),
         Step::image);
@@ -221,7 +157,7 @@ bool FirstHits::takeSurface(const RtsBatch& batch, const Boundaries& boundaries,
 bool FirstHits::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission) {
   constexpr Vec3f one{1, 1, 1};
   const Vec3f tint = min(max(Vec3f(), transmission), one); // NaN: opaque
-  if (!follows_ || !(mean(tint) >= leastTransmission)) return false;
+  if (!follows_ || !(mean(tint) >= ImageLead::leastTransmission)) return false;
   queue(batch, i,
         {.direction = load(batch.points->hits.direction, i), .tint = tint, .straight = true},
         (*batch.states).media[batch.order[i]], Step::image);
@@ -229,8 +165,8 @@ bool FirstHits::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& tran
 }
 
 // Queues the first-hit ray that leaves hit i.
-void FirstHits::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
-                      Step step) {
+void FirstHits::queue(const RtsBatch& batch, uint32_t i, const ImageLead& lead,
+                      const MediaStack& media, Step step) {
   const RayState from = (*batch.states)[batch.order[i]];
   RayState to{.throughput = from.throughput * lead.tint,
               .travelled = batch.points->hits.distance[i],

@@ -2,8 +2,7 @@
 // RT_POSITION, RT_NAME, RT_MOTION), apart from the light that is followed. [render]
 //
 // With RT_FOLLOW_IMAGES they describe what is seen in smooth mirrors and through smooth glass.
-// Where the specular lobes of a hit clearly carry more than its other lobes, a first-hit ray
-// follows the heavier one of reflection and transmission, without random numbers, up to
+// Where the lobes of a hit show an image (image_leads.h), a first-hit ray follows it, up to
 // `mostSurfaces` times. The image that is seen lies on the ray of the camera, as far away as the
 // light has travelled. Its normal and its motion are those of the surface, taken back through the
 // mirrors.
@@ -14,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/path/image_leads.h"
 #include "render/wave/boundaries.h"
 #include "render/wave/pixel_samples.h"
 #include "render/wave/wave.h"
@@ -36,18 +36,14 @@ class FirstHits {
   void describeBehindMedia(const StageContext& context, const Wave& wave, PixelSamples& found);
   // Take over the first hit of a path if an image is to be followed there; else return false.
   // transmission: what `shade` has returned.
-  bool takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i);
+  bool takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i,
+                   const ImageLead& lead);
   bool takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission);
   // Follows the paths that were taken over, and records what they see.
   void finish(PixelSamples& found);
 
   // Surfaces that a path passes straight on do not count.
   static constexpr uint32_t mostSurfaces = 8;
-  // Least share of images in what the lobes of a hit carry. Where less is reflected, as by
-  // varnished wood at a low angle, the grain of the surface matters more than the image in it.
-  static constexpr float leastTransmission = 0.7f, leastReflection = 0.95f;
-  // Rough lobes narrower than this (alpha) show images.
-  static constexpr float nearlySmooth = 0.05f;
 
  private:
   // How the space beyond the mirrors of a path appears in front of them, in render space.
@@ -56,10 +52,6 @@ class FirstHits {
     bool mirrorMoved = false; // before differs from now
     bool mirrorNew = false;   // the image was not there in the frame before
   };
-  struct Lead { // where an image is seen from a hit
-    Vec3f direction, tint{1, 1, 1};
-    bool reflected = false, straight = false;
-  };
   // Says what a first-hit ray does at a hit: it passes a boundary that has no effect, or follows an
   // image.
   enum class Step : uint8_t { pass, image };
@@ -67,8 +59,7 @@ class FirstHits {
   void describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
                       const PathStates& states, PixelSamples& found);
   bool isLast(PathFlags path) const;
-  bool findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i, Lead& lead) const;
-  void queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
+  void queue(const RtsBatch& batch, uint32_t i, const ImageLead& lead, const MediaStack& media,
              Step step);
   void reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const;
   void store(const RtsBatch& batch, uint32_t i, float* const albedo[3], PixelSamples& found) const;

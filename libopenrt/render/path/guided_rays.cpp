@@ -5,7 +5,7 @@
 
 #include "render/lights/emitted.h"
 #include "render/lights/environment.h"
-#include "render/surface/bsdf_choice.h"
+#include "render/surface/continue_paths.h"
 #include "render/surface/sanitize_output.h"
 #include "render/surface/surface_shader.h"
 
@@ -200,9 +200,19 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
                       pairAtLevel(1, stage.level), context_.arena);
   float* choice[2];
   random.draw(Decision::choice, context_.arena, choice);
+  // The lobes are not sampled, so only specular samples exist.
+  const BsdfSampleArrays samples(batch, {}, boundaries, TransportMode::radiance);
+  Selection selection{.points = &points,
+                      .choice = choice[0],
+                      .survival = nullptr,
+                      .throughput = states.throughput,
+                      .onlySpecular = nullptr};
+  selection.allocate(context_.arena);
+  selectSamples(selection, samples);
   for (uint32_t i = 0; i < points.hits.count; i++) {
     if (boundaries.visibleAt(i)) {
-      spawnRay(batch, i, choice[0][i], boundaries);
+      if (selection.number[i] != SampleArrays::lacking)
+        spawnRay(batch, i, samples[selection.number[i]], selection.probability[i], boundaries);
       continue;
     }
     RayState passed = states[points.order[i]];
@@ -255,30 +265,23 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
   }
 }
 
-// Continues a path along one specular sample, selected in proportion to what it carries.
-void GuidedRays::spawnRay(const RtsBatch& batch, uint32_t i, float choice,
-                          const Boundaries& boundaries) {
+// Continues a path along one specular sample. probability: of its selection.
+void GuidedRays::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays& sample,
+                          float probability, const Boundaries& boundaries) {
   const Points& points = *batch.points;
+  const Vec3f direction = load(sample.direction, i);
   RayState state = (*batch.states)[batch.order[i]];
-  BsdfSamples samples(points.hits, i, boundaries.etaAt(i), state.flags.channel());
-  for (uint32_t l = 0; l < batch.lobes.size(); l++)
-    if (!nonSpecularFunctions(batch.lobes[l])) samples.add(l, batch.lobes[l], nullptr);
-  const BsdfChoice choices(samples, state.throughput);
-  if (!(choices.sum > 0)) return;
-  const uint32_t chosen = choices.select(choice);
-  if (!(choices.carried[chosen] > 0)) return;
-  const BsdfSample& sample = samples.list[chosen];
-  state.throughput *= sample.weight / choices.probability(chosen);
+  state.throughput *= sample.weightAt(i) / probability;
   if (!std::isfinite(largest(state.throughput))) return;
-  state.flags.setChannel(sample.channel);
+  if (sample.colour) state.flags.setChannel(uint8_t(sample.colour));
   if (sample.deflected)
     state.flags.set(PathFlags::specularSinceDiffuseBit, true);
   else
     state.flags.addPassage();
   state.travelled = points.hits.distance[i];
-  state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
+  state.media = mediaTowards(points, i, direction, boundaries, state.media);
   if (trial_) trial_->send(context_.scene.photonGuide->find(state.previous.position));
-  queueRay(points, i, sample.direction, state, next_);
+  queueRay(points, i, direction, state, next_);
 }
 
 } // namespace openrt

@@ -14,6 +14,8 @@
 
 namespace openrt {
 
+struct SampleArrays;
+
 // Returns whether a path may send guided rays from a surface that scatters. Light tracing has the
 // light of paths whose first surface scatters.
 bool isGuided(const RenderScene& scene, PathFlags path);
@@ -53,7 +55,8 @@ class GuidedRays {
   void addLight(const Stage& stage, const RayState& state, const Vec3f& radiance);
   void addEmission(const Stage& stage, const RtsBatch& batch, const RtsSurface& surface,
                    const Boundaries& boundaries);
-  void spawnRay(const RtsBatch& batch, uint32_t i, float choice, const Boundaries& boundaries);
+  void spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays& sample, float probability,
+                const Boundaries& boundaries);
 
   const StageContext context_;
   GuideTrial* trial_ = nullptr;

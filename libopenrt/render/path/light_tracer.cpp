@@ -7,7 +7,7 @@
 #include "render/medium/containing_media.h"
 #include "render/path/camera_connections.h"
 #include "render/surface/adjoint.h"
-#include "render/surface/bsdf_choice.h"
+#include "render/surface/continue_paths.h"
 #include "render/surface/surface_shader.h"
 #include "shading/running.h"
 
@@ -176,16 +176,7 @@ void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass
       sampleLobes(batch, sampling);
     }
   }
-  for (uint32_t i = 0; i < n; i++) {
-    if (boundaries.visibleAt(i)) {
-      spawnRay(batch, i, sampling, boundaries);
-      continue;
-    }
-    RayState passed = states[points.order[i]];
-    passed.media = boundaries.crossing[i].behind;
-    passed.flags.addPassage();
-    push(points, i, passed, load(points.hits.direction, i));
-  }
+  spawnRays(batch, sampling, boundaries);
 }
 
 void LightTracer::leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
@@ -201,44 +192,65 @@ void LightTracer::leavePhotons(const Points& points, const PathStates& states, c
   }
 }
 
-// Spawns one ray, selected in proportion to the weight it would carry. At the first surface only
-// specular reflection and refraction count.
-void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
-                           const Boundaries& boundaries) {
+// Spawns one ray from each hit. Its sample is selected without the flux of the path, which is not
+// known before the first surface has been shaded. At the first surface only specular reflection and
+// refraction count.
+void LightTracer::spawnRays(const RtsBatch& batch, const LobeSampling& sampling,
+                            const Boundaries& boundaries) {
   const Points& points = *batch.points;
-  RayState state = (*batch.states)[batch.order[i]];
-  const bool first = state.flags.pathClass() == PathClass::undeflected;
-  BsdfSamples bsdfSamples(points.hits, i, boundaries.etaAt(i), state.flags.channel(), true);
-  for (uint32_t l = 0; l < batch.lobes.size(); l++)
-    if (!first || !nonSpecularFunctions(batch.lobes[l]))
-      bsdfSamples.add(l, batch.lobes[l], first ? nullptr : sampling.samples[l]);
-  // The flux of the path is not known before the first surface has been shaded.
-  const BsdfChoice choice(bsdfSamples, {1, 1, 1});
-  if (!(choice.sum > 0)) return;
-  const uint32_t chosen = choice.select(sampling.choices[0][i]);
-  const BsdfSample& sample = bsdfSamples.list[chosen];
-  if (!(choice.carried[chosen] > 0) || sample.rejected) return;
-  double kept = choice.probability(chosen);
-  if (level_ >= rouletteFrom) {
-    const float survival = survivalProbability(choice.sum);
-    if (sampling.choices[1][i] >= survival) return;
-    kept *= survival;
+  const PathStates& states = *batch.states;
+  const uint32_t n = points.hits.count;
+  auto* first = arena_.takeZero<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < n; i++)
+    first[i] = states.flagsOf(points.order[i]).pathClass() == PathClass::undeflected;
+  const BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::importance);
+  Selection selection{.points = &points,
+                      .choice = sampling.choices[0],
+                      .survival = level_ >= rouletteFrom ? sampling.choices[1] : nullptr,
+                      .throughput = nullptr,
+                      .onlySpecular = first};
+  selection.allocate(arena_);
+  selectSamples(selection, samples);
+  for (uint32_t i = 0; i < n; i++) {
+    if (!boundaries.visibleAt(i)) {
+      RayState passed = states[points.order[i]];
+      passed.media = boundaries.crossing[i].behind;
+      passed.flags.addPassage();
+      push(points, i, passed, load(points.hits.direction, i));
+    } else if (selection.number[i] != SampleArrays::lacking) {
+      spawnRay(batch, i, samples[selection.number[i]],
+               double(selection.probability[i]) * double(selection.survivalProbability[i]),
+               boundaries);
+    }
   }
-  const RtsLobe& lobe = batch.lobes[sample.lobe];
-  if (nonSpecularFunctions(lobe)) departures_.applyAttenuation(state);
+}
+
+// kept: probability that the sample is followed.
+void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays& sample,
+                           double kept, const Boundaries& boundaries) {
+  const Points& points = *batch.points;
+  if (!sample.isConsistentAt(points.hits, i)) return;
+  RayState state = (*batch.states)[batch.order[i]];
+  const RtsLobe& lobe = *sample.lobe;
+  const Vec3f direction = load(sample.direction, i);
+  Vec3f weight = sample.weightAt(i);
+  if (sample.pdf) {
+    departures_.applyAttenuation(state);
+    weight = weight / radianceScale(lobe, i, direction);
+  }
   const float correction =
-      sample.deflected ? adjointCorrection(lobe, points.hits, i, sample.direction) : 1.0f;
-  state.throughput *= Vec3f(Vec3d(sample.weight * correction) / kept);
-  state.flags.setChannel(sample.channel);
-  state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
+      sample.deflected ? adjointCorrection(lobe, points.hits, i, direction) : 1.0f;
+  state.throughput *= Vec3f(Vec3d(weight * correction) / kept);
+  if (sample.colour) state.flags.setChannel(uint8_t(sample.colour));
+  state.media = mediaTowards(points, i, direction, boundaries, state.media);
   if (!sample.deflected) state.flags.addPassage();
-  if (first && sample.deflected) {
+  if (sample.deflected && state.flags.pathClass() == PathClass::undeflected) {
     if (!departures_.applyEmission(points, i, state)) return;
     state.flags.setClass(PathClass::specularFirst);
     const Vec3f& flux = state.throughput;
     largestFlux_ = std::max(largestFlux_, double(flux.x) + double(flux.y) + double(flux.z));
   }
-  push(points, i, state, sample.direction);
+  push(points, i, state, direction);
 }
 
 void LightTracer::push(const Points& points, uint32_t i, const RayState& state,

@@ -18,7 +18,7 @@
 #include "render/lights/photon_guide.h"
 #include "render/path/light_departures.h"
 #include "render/path/sensor_plane.h"
-#include "render/surface/sample_lobes.h"
+#include "render/surface/sample_arrays.h"
 #include "render/wave/boundaries.h"
 #include "render/wave/wave.h"
 
@@ -51,7 +51,8 @@ class LightTracer {
                     uint32_t n);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
-  void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
+  void spawnRays(const RtsBatch& batch, const LobeSampling& sampling, const Boundaries& boundaries);
+  void spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays& sample, double kept,
                 const Boundaries& boundaries);
   void push(const Points& points, uint32_t i, const RayState& state, const Vec3f& direction);
   void findCrossings(const Wave& wave);

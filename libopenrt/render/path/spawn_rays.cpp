@@ -126,7 +126,7 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
   const RtsBatch& batch = paths.batch;
   ArenaScope scope(batch.arena);
   weightUnguided(batch, boundaries);
-  const BsdfSampleArrays samples(batch, sampling, boundaries,
+  const BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::radiance,
                                  !followsImages(batch.scene.frame.transport));
   if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);
   if (!boundaries.crossing) return;

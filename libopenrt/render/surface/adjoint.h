@@ -17,4 +17,11 @@ inline float adjointCorrection(const RtsLobe& lobe, const RtsHits& hits, uint32_
   return std::isfinite(t) ? std::fabs(t) : 0.0f;
 }
 
+// Returns the factor by which a rough boundary has scaled the weight of a sample that it refracts,
+// because it scales radiance by eta squared; 1 for other samples.
+inline float radianceScale(const RtsLobe& lobe, uint32_t i, const Vec3f& out) {
+  if (lobe.kind != RTS_LOBE_ROUGH_DIELECTRIC || !(dot(out, load(lobe.normal, i)) < 0)) return 1;
+  return lobe.parameter[0][i] * lobe.parameter[0][i];
+}
+
 } // namespace openrt

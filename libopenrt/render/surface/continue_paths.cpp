@@ -1,6 +1,5 @@
 #include "render/surface/continue_paths.h"
 
-#include "render/surface/bsdf_choice.h"
 #include "render/wave/sampler.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -81,7 +80,83 @@ Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
                         bitsOfClass(PathClass::caustic));
 }
 
+// The samples of a vector of hits: how many there are, and the throughput that they are expected to
+// carry together.
+struct Expected {
+  Bits count;
+  Lanes sum;
+};
+
+// Writes to the samples of the hits from i on what each is expected to carry (`kept`), and its
+// number. onlySpecular: where non-specular samples do not count.
+Expected expectSamples(const BsdfSampleArrays& samples, uint32_t i, Mask present, Mask onlySpecular,
+                       const LaneVec& throughput) {
+  Expected all{bitsOf(0), lanesOf(0)};
+  for (const SampleArrays& sample : samples) {
+    const LaneVec weight = weightAt(sample, i);
+    const Lanes share = loadOrOne(sample.share, i);
+    Mask exists = hn::And(present, largest(weight) > lanesOf(0));
+    exists = sample.pdf ? hn::AndNot(onlySpecular, exists) : hn::And(exists, share > lanesOf(0));
+    const Lanes carried = whereOrZero(exists, largest(weight * share * throughput));
+    store(carried, sample.kept + i);
+    store(hn::IfThenElse(maskOf(exists), all.count, bitsOf(SampleArrays::lacking)),
+          sample.number + i);
+    all.count = all.count + bitsWhere(exists, 1);
+    all.sum = all.sum + carried;
+  }
+  return all;
+}
+
+// Selects one of the samples of each hit, which are visited one after the other.
+struct Selector {
+  Mask open; // where a sample is still to be selected
+  Lanes at;  // random number times the sum of what the samples carry, less what was visited
+
+  // Returns where this sample is selected. last: where no sample follows it.
+  Mask visit(Lanes carried, Mask exists, Mask last) {
+    const Mask selected = hn::And(hn::And(open, exists), hn::Or(at < carried, last));
+    open = hn::AndNot(selected, open);
+    at = at - carried;
+    return selected;
+  }
+};
+
+Mask isLast(Bits number, Bits count) { return maskOf(hn::Eq(number + bitsOf(1), count)); }
+
 } // namespace
+
+void selectOne(const Selection& selection, const BsdfSampleArrays& samples) {
+  const Points& points = *selection.points;
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
+  for (uint32_t i = 0; i < points.hits.count; i += width()) {
+    LaneVec throughput{one, one, one};
+    if (selection.throughput)
+      throughput = gather(selection.throughput, indicesFrom(points.order, i, points.hits.count));
+    const Mask onlySpecular =
+        selection.onlySpecular ? loadMask(selection.onlySpecular + i) : noLanes();
+    const Expected all =
+        expectSamples(samples, i, presentFrom(i, points.hits.count), onlySpecular, throughput);
+    const Mask some = all.sum > zero;
+    Selector selector{some, load(selection.choice + i) * all.sum};
+    const Lanes survival = selection.survival ? min(one, all.sum) : one;
+    const Mask survives = selection.survival ? load(selection.survival + i) < survival : some;
+    Bits number = bitsOf(SampleArrays::lacking);
+    Lanes probability = zero;
+    uint32_t index = 0;
+    for (const SampleArrays& sample : samples) {
+      const Lanes carried = load(sample.kept + i);
+      const Bits before = load(sample.number + i);
+      const Mask exists = hn::And(some, maskOf(hn::Ne(before, bitsOf(SampleArrays::lacking))));
+      const Mask selected = selector.visit(carried, exists, isLast(before, all.count));
+      const Mask follows = hn::And(hn::And(selected, survives), carried > zero);
+      number = hn::IfThenElse(maskOf(follows), bitsOf(index++), number);
+      probability = select(follows, carried / all.sum, probability);
+    }
+    store(number, selection.number + i);
+    store(probability, selection.probability + i);
+    store(survival, selection.survivalProbability + i);
+  }
+}
 
 void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
   const uint32_t n = paths.points->hits.count;
@@ -91,26 +166,13 @@ void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
     const Mask present = presentFrom(i, n);
     const Indices lane = indicesFrom(paths.points->order, i, n);
     const LaneVec throughput = gather(paths.states->throughput, lane);
-    Lanes sum = zero;
-    Bits count = bitsOf(0);
-    for (const SampleArrays& sample : samples) {
-      const LaneVec weight = weightAt(sample, i);
-      const Lanes share = loadOrOne(sample.share, i);
-      Mask exists = hn::And(present, largest(weight) > zero);
-      if (!sample.pdf) exists = hn::And(exists, share > zero);
-      const Lanes carried = whereOrZero(exists, largest(weight * share * throughput));
-      store(carried, sample.kept + i);
-      store(hn::IfThenElse(maskOf(exists), count, lacking), sample.number + i);
-      count = count + bitsWhere(exists, 1);
-      sum = sum + carried;
-    }
+    const auto [count, sum] = expectSamples(samples, i, present, noLanes(), throughput);
     store(count, paths.count + i);
     const Mask single = maskOf(hn::Eq(count, bitsOf(1)));
     const Mask some = sum > zero;
     const Mask selects = paths.choice ? hn::And(some, selectsOne(paths, count, lane)) : noLanes();
     const bool anySelects = !hn::AllFalse(LanesTag(), selects);
-    Mask open = selects; // where a sample is still to be selected
-    Lanes at = anySelects ? load(paths.choice + i) * sum : zero;
+    Selector selector{selects, anySelects ? load(paths.choice + i) * sum : zero};
     Mask random = selects;
     for (const SampleArrays& sample : samples) {
       const Lanes carried = load(sample.kept + i);
@@ -120,10 +182,7 @@ void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
       Lanes probability = one;
       if (anySelects) {
         probability = select(selects, carried / sum, one);
-        const Mask last = maskOf(hn::Eq(number + bitsOf(1), count));
-        const Mask selected = hn::And(hn::And(open, exists), hn::Or(at < carried, last));
-        open = hn::AndNot(selected, open);
-        at = at - carried;
+        const Mask selected = selector.visit(carried, exists, isLast(number, count));
         follows = hn::And(follows, hn::Or(hn::Not(selects), selected));
       }
       if (sample.probability) store(probability, sample.probability + i);
@@ -222,8 +281,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace openrt {
 
+HWY_EXPORT(selectOne);
 HWY_EXPORT(choose);
 HWY_EXPORT(appendRays);
+
+void Selection::allocate(Arena& arena) {
+  const uint32_t n = padded(points->hits.count);
+  number = arena.take<uint32_t>(n);
+  probability = arena.take<float>(n);
+  survivalProbability = arena.take<float>(n);
+}
+
+void selectSamples(const Selection& selection, const BsdfSampleArrays& samples) {
+  HWY_DYNAMIC_DISPATCH(selectOne)(selection, samples);
+}
 
 void chooseSamples(const Continuation& paths, const BsdfSampleArrays& samples) {
   HWY_DYNAMIC_DISPATCH(choose)(paths, samples);

@@ -1,13 +1,40 @@
-// continue_paths.h: continues the camera paths at all hits of a batch with vector lanes: selects
-// BSDF samples, applies Russian roulette or the energy cut, and queues the next rays. spawnRays()
-// (render/path/spawn_rays.h) calls it. [render]
+// continue_paths.h: continues the paths at all hits of a batch with vector lanes: selects BSDF
+// samples; for camera paths applies Russian roulette or the energy cut, and queues the next rays.
+// Called by spawnRays() (render/path/spawn_rays.h), and by the tracers of light paths and of guided
+// rays, which follow one sample of each hit. [render]
 #pragma once
 
 #include "render/surface/sample_arrays.h"
 
 namespace openrt {
 
-// The paths at the hits of a batch.
+// A camera path that carries at least this throughput always survives Russian roulette. It has the
+// effect that a path that splits at glass spends few rays on what is hardly seen, and that the rays
+// of a path which carries energy are no more than 8 at a time, on the mean (decision 47).
+constexpr float certainThroughput = 0.125f;
+// A camera path follows all BSDF samples of a surface unless it has split this often before.
+constexpr uint32_t mostSplits = 4;
+
+// The selection of one sample of each hit, in proportion to the throughput that the samples are
+// expected to carry.
+struct Selection {
+  const Points* points;
+  // By hit: random numbers in [0, 1), to select a sample and for Russian roulette. survival null:
+  // every path survives.
+  const float *choice, *survival;
+  float* const* throughput;     // throughputs of the paths, by lane; null: not known yet
+  const uint32_t* onlySpecular; // by hit: 1 where non-specular samples do not count; null: nowhere
+  // Written by selectSamples(), by hit.
+  uint32_t* number; // index of the sample; SampleArrays::lacking where none is followed
+  // Probabilities of the selection and of surviving Russian roulette.
+  float *probability, *survivalProbability;
+
+  // Allocates what is written.
+  void allocate(Arena& arena);
+};
+void selectSamples(const Selection& selection, const BsdfSampleArrays& samples);
+
+// The camera paths at the hits of a batch.
 struct Continuation {
   const Points* points;
   const PathStates* states;

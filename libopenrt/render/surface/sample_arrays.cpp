@@ -63,7 +63,9 @@ void mirrorLanes(const RtsHits& hits, const RtsLobe& lobe, float* const directio
           direction, i);
 }
 
-void boundaryLanes(const RtsHits& hits, const RtsLobe& lobe, const float* etas,
+// Radiance is scaled by the squared relative index where it enters a denser medium (R. Siegel, J.
+// Howell, "Thermal Radiation Heat Transfer", on n^2). So a refracted ray has the weight eta^2.
+void boundaryLanes(const RtsHits& hits, const RtsLobe& lobe, const float* etas, TransportMode mode,
                    const BoundarySamples& out) {
   forEachGroup(hits.count, [&](uint32_t i) {
     const Floats zero = constant<Floats>(0), one = constant<Floats>(1);
@@ -76,7 +78,8 @@ void boundaryLanes(const RtsHits& hits, const RtsLobe& lobe, const float* etas,
     Doubles behind;
     const Doubles r = fresnel(cosine, eta, behind), all = constant<Doubles>(1);
     const FloatsVec refracted = demote(refractAt(promote(d), promote(n), eta, cosine, behind));
-    const Floats refractedShare = demote((all - r) * eta * eta);
+    const Floats refractedShare =
+        demote(mode == TransportMode::radiance ? (all - r) * eta * eta : all - r);
     storeFloats(mirrored(d, n, g), out.reflected, i);
     storeFloats(demote(r), out.reflectedShare + i);
     storeFloats(refracted, out.refracted, i);
@@ -113,18 +116,39 @@ void sampleMirror(const RtsHits& hits, const RtsLobe& lobe, float* const directi
   HWY_DYNAMIC_DISPATCH(mirrorLanes)(hits, lobe, direction);
 }
 
-void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta,
+void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta, TransportMode mode,
                     const BoundarySamples& out) {
-  HWY_DYNAMIC_DISPATCH(boundaryLanes)(hits, lobe, eta, out);
+  HWY_DYNAMIC_DISPATCH(boundaryLanes)(hits, lobe, eta, mode, out);
 }
 
 void expectGlossy(const RtsHits& hits, const RtsLobe& lobe, float* share) {
   HWY_DYNAMIC_DISPATCH(glossyLanes)(hits, lobe, share);
 }
 
+Vec3f SampleArrays::weightAt(uint32_t i) const {
+  Vec3f weight;
+  openrt::weightAt(*lobe, i, weight);
+  for (uint32_t k = 0; k < 3; k++) {
+    if (colour && colour != k + 1)
+      weight[k] = 0;
+    else if (const float* factor = valueOf(k))
+      weight[k] *= factor[i];
+  }
+  return weight;
+}
+
+bool SampleArrays::isConsistentAt(const RtsHits& hits, uint32_t i) const {
+  if (!pdf) return true;
+  const Vec3f out = load(direction, i), g = load(hits.geometric, i);
+  if (!(pdf[i] > 0)) return false;
+  return dot(out, load(lobe->normal, i)) > 0 ? dot(out, g) > 0 : transmits && dot(out, g) < 0;
+}
+
 BsdfSampleArrays::BsdfSampleArrays(const RtsBatch& batch, const LobeSampling& sampling,
-                                   const Boundaries& boundaries, bool onlyStraight)
-    : batch_(batch), list_(batch.arena.take<SampleArrays>(mostOfLobe * batch.lobes.size())) {
+                                   const Boundaries& boundaries, TransportMode mode,
+                                   bool onlyStraight)
+    : batch_(batch), mode_(mode),
+      list_(batch.arena.take<SampleArrays>(mostOfLobe * batch.lobes.size())) {
   for (uint32_t l = 0; l < batch.lobes.size(); l++)
     if (!onlyStraight || batch.lobes[l].kind == RTS_LOBE_TRANSPARENT)
       addLobe(l, sampling, boundaries);
@@ -197,7 +221,7 @@ BoundarySamples BsdfSampleArrays::sampleBoundary(const RtsLobe& lobe, const floa
     for (int k = 0; k < 3; k++) group[k] = take<float>();
   out.reflectedShare = take<float>();
   out.refractedShare = take<float>();
-  openrt::sampleBoundary(batch_.points->hits, lobe, eta, out);
+  openrt::sampleBoundary(batch_.points->hits, lobe, eta, mode_, out);
   return out;
 }
 

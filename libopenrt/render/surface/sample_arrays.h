@@ -1,12 +1,16 @@
-// sample_arrays.h: the BSDF samples of camera paths at all hits of a batch, as arrays: every lobe
-// has one sample at each hit, a smooth boundary two. The directions of specular lobes are computed
-// with vector lanes, with the numbers of BsdfSamples (bsdf_samples.h). [render]
+// sample_arrays.h: the BSDF samples at all hits of a batch, as arrays: every lobe has one sample at
+// each hit, a smooth boundary two. The directions of specular lobes are computed with vector lanes.
+// Paths from the camera and from lamps, guided rays and first hits use the same samples. [render]
 #pragma once
 
 #include "render/surface/sample_lobes.h"
 #include "render/wave/boundaries.h"
 
 namespace openrt {
+
+// Says what paths carry from surface to surface: radiance, if they start at the camera, or flux, if
+// they start at a lamp. A smooth boundary scales radiance by eta squared, and not flux.
+enum class TransportMode : uint8_t { radiance, importance };
 
 // One sample at each hit. A hit lacks it where its lobe has no weight.
 struct SampleArrays {
@@ -24,14 +28,21 @@ struct SampleArrays {
   // By hit: gets the probability that the sample is followed if it survives. Null: nobody asks.
   float* selectionProbability = nullptr;
 
-  // Written by chooseSamples() (continue_paths.h), by hit.
-  uint32_t* number = nullptr;   // number of samples of the hit before this one; or `lacking`
-  float* kept = nullptr;        // probability that the ray is spawned; 0: it is not
+  // Written by chooseSamples() and selectSamples() (continue_paths.h), by hit.
+  uint32_t* number = nullptr; // number of samples of the hit before this one; or `lacking`
+  // Probability that the ray is spawned; 0: it is not. After selectSamples() the throughput that
+  // the sample is expected to carry.
+  float* kept = nullptr;
   float* probability = nullptr; // the same without Russian roulette; null: specular
 
   static constexpr uint32_t lacking = ~0u;
   // Factors of the lobe's weight.
-  const float* valueOf(int k) const { return value[k] ? value[k] : share; }
+  const float* valueOf(uint32_t k) const { return value[k] ? value[k] : share; }
+  // Returns the factor of the throughput of a path that follows the sample at hit i.
+  Vec3f weightAt(uint32_t i) const;
+  // Returns whether the direction at hit i, if it was sampled from a non-specular lobe, is on the
+  // same side of the facet as of the lobe's normal.
+  bool isConsistentAt(const RtsHits& hits, uint32_t i) const;
 };
 
 // Reflection and refraction at a smooth boundary, by hit; share: of the lobe's weight.
@@ -45,9 +56,10 @@ class BsdfSampleArrays {
  public:
   // onlyStraight: leaves out everything but straight transmission.
   BsdfSampleArrays(const RtsBatch& batch, const LobeSampling& sampling,
-                   const Boundaries& boundaries, bool onlyStraight);
+                   const Boundaries& boundaries, TransportMode mode, bool onlyStraight = false);
   const SampleArrays* begin() const { return list_; }
   const SampleArrays* end() const { return list_ + count_; }
+  const SampleArrays& operator[](uint32_t number) const { return list_[number]; }
   bool empty() const { return count_ == 0; }
 
  private:
@@ -63,12 +75,13 @@ class BsdfSampleArrays {
   // disperses light.
   static constexpr uint32_t mostOfLobe = 5;
   const RtsBatch& batch_;
+  const TransportMode mode_;
   SampleArrays* list_;
   uint32_t count_ = 0;
 };
 
 // Computes the samples at a smooth boundary. eta: relative index of refraction, by hit.
-void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta,
+void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta, TransportMode mode,
                     const BoundarySamples& out);
 // Computes the directions of a mirror.
 void sampleMirror(const RtsHits& hits, const RtsLobe& lobe, float* const direction[3]);
