@@ -186,7 +186,7 @@ def test_a_parallel_view_is_that_of_an_orthoviewpoint():
                             " fieldOfView [ -2 -3 2 3 ] } " + shapes)
         asked = xvrml.loads("#VRML V2.0 utf8\nViewpoint { position " + aside + " } " + shapes)
         images = [
-            w.render(size=(40, 30), spp=1, channels="rgba,z", **more)
+            w.render(size=(40, 30), spp=1, channels=("rgba", "z"), **more)
             for w, more in ((given, {}), (asked, {"ortho": 6}))
         ]
         assert np.isfinite(images[0]["z"]).any()
