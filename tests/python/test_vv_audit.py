@@ -53,7 +53,7 @@ NavigationInfo { headlight FALSE }
 Shape { appearance Appearance { material Material { diffuseColor .8 .6 .6 } }
   geometry Box { size 8 .1 8 } }
 Transform { translation 0 3 0 children Shape {
-  appearance Appearance { material Material { diffuseColor 0 0 0 emissiveColor 4 4 4 } }
+  appearance Appearance { material Material { diffuseColor 0 0 0 emissiveColor 1 1 1 } }
   geometry Box { size 3 .1 3 } } }
 Transform { translation 0 2 0 children Shape { %s geometry Box { size 9 .02 9 } } }
 """
@@ -63,7 +63,8 @@ BLIND = 'appearance ORTAppearance { shader ORTShader { name "BlindVeil" file "fa
 
 def audit_of(vv, sheet, *arguments):
     vv.write("room.wrl", ROOM % sheet)
-    done = vv("room.wrl", "--audit", "6", "--size", "24x16", "--spp", "64", "-q", *arguments)
+    done = vv("room.wrl", "--audit", "6", "--transport", "path", "--size", "24x16", "--spp", "64", "-q",
+              *arguments)
     assert done.returncode in (0, 4), done.talk
     found = re.search(r"^all light +(\S+) \+- (\S+) .* more in (\d+) of (\d+) tiles", done.text,
                       re.MULTILINE)
