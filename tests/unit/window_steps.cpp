@@ -36,7 +36,7 @@ struct Player {
 
   explicit Player(const std::string& text, const std::string& world = examined)
       : browser(std::make_unique<xvrml::Browser>(xvrml::loadWorldFromMemory(world, "w.wrl"))),
-        pilot(std::make_unique<vv::Pilot>(*browser, 0, std::nullopt)),
+        pilot(std::make_unique<vv::Pilot>(*browser, 0, picture::View{})),
         script(vv::parseInputScript(text, "in.txt")) {
     pilot->begin({}, "");
     replay = std::make_unique<vv::Replay>(
