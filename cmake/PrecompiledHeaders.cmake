@@ -1,13 +1,7 @@
-# openrt_precompile(TARGET HEADER...): lets the compiler read the headers of the standard library that
-# most files include, and those given, once for the target instead of once for each file. A first build
-# takes a quarter less time with it. A compiler cache gives more to the builds that follow and cannot
-# reuse such headers, so where there is one, this is off.
-if(CCACHE)
-  set(without_cache OFF)
-else()
-  set(without_cache ON)
-endif()
-option(OPENRT_PRECOMPILED_HEADERS "Read common headers once for each target" ${without_cache})
+# openrt_precompile(TARGET HEADER...): with OPENRT_PRECOMPILED_HEADERS=ON, lets the compiler read the
+# headers of the standard library that most files include, and those given, once for the target instead
+# of once for each file. A compiler cache gives more and cannot reuse such headers: set -DCCACHE= with it.
+option(OPENRT_PRECOMPILED_HEADERS "Read common headers once for each target" OFF)
 
 set(standard_headers
     algorithm array atomic bit charconv chrono cmath condition_variable cstddef cstdint cstdio cstdlib cstring deque

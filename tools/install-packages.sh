@@ -6,7 +6,7 @@
 set -euo pipefail
 
 build=(
-  g++ make cmake ninja-build pkg-config git ca-certificates
+  g++ make cmake ninja-build ccache pkg-config git ca-certificates
   libembree-dev libtbb-dev libhwy-dev                           # ray kernels, threads, vectors
   libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
@@ -23,7 +23,7 @@ build=(
   libwebsockets-dev                                    # the page of vv serve
 )
 tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy chromium chromium-driver)
-dev=(ccache clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
+dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 
 # `--list` only prints the packages for building (tools/cross-aarch64.sh).
