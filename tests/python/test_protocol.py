@@ -193,7 +193,7 @@ def test_a_caller_that_beats_is_told_hello(worker):
 
 def test_the_names_of_all_statistics_are_documented():
     table = (ROOT / "libopenrt/backend/cluster/messages/statistics.h").read_text()
-    names = re.findall(r'^  f\("(\w+)", s\.(\w+)\);$', table, re.M)
+    names = re.findall(r'^  f\("([\w.]+)", s\.([\w.]+)\);$', table, re.M)
     assert len(names) > 40
     assert all(name == member for name, member in names)
     page = (ROOT / "docs/protocol.md").read_text()
