@@ -1,15 +1,15 @@
 """Tests vv and shader plug-ins: a crash names the shader; a changed library is reloaded under
 --watch."""
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
 import time
 
 import pytest
+from conftest import find_vv
 
-VV = pathlib.Path(os.environ.get("OPENRT_VV", "vv"))
+VV = find_vv()
 PLUGINS = VV.parent.parent / "tests/plugins"
 pytestmark = pytest.mark.skipif(not (PLUGINS / "faulty.so").exists(),
                                 reason="the test plug-ins were not built")
