@@ -30,6 +30,21 @@ RThitd nothing() {
   return hit;
 }
 
+// Returns the answer for a place on a surface; its place along the ray and on the primitive is
+// left.
+RThitd answerAt(const Record& record, uint32_t primitive, const DoublePlace& place,
+                const Vec3d& normal) {
+  RThitd hit{};
+  store(place.point, hit.position);
+  store(normal, hit.normal);
+  hit.positionError = place.error;
+  hit.userData = record.userData;
+  hit.instance = record.instance;
+  hit.name = record.name;
+  hit.primitive = primitive;
+  return hit;
+}
+
 } // namespace
 
 const DoubleScene& LocalQueries::doubleScene() {
@@ -68,21 +83,13 @@ LocalQueries::forEachDouble(std::span<const RTrayd> rays, const Use& use, const 
 }
 
 RThitd LocalQueries::hitOf(const DoubleScene::Hit& found, const DoubleRay& ray) const {
-  const Record& r = at_->accel.records[found.record];
-  RThitd hit{};
+  RThitd hit = answerAt(at_->accel.records[found.record], found.primitive,
+                        double_->place(found, ray), double_->normal(found, ray));
   hit.t = found.at.t;
   hit.u = found.at.u;
   hit.v = found.at.v;
-  const DoublePlace place = double_->place(found, ray);
-  store(place.point, hit.position);
-  store(double_->normal(found, ray), hit.normal);
   hit.tError = found.at.tError;
   hit.uvError = found.at.uvError;
-  hit.positionError = place.error;
-  hit.userData = r.userData;
-  hit.instance = r.instance;
-  hit.name = r.name;
-  hit.primitive = found.primitive;
   return hit;
 }
 
@@ -147,19 +154,13 @@ void LocalQueries::closestDouble(std::span<const double> points, double radius,
         if (!isFinite(point) || largest(abs(point)) > farthest ||
             !scene.closest(point, radius, found))
           continue;
-        const Record& r = at_->accel.records[found.record];
+        hit =
+            answerAt(at_->accel.records[found.record], found.primitive, found.place, found.normal);
         hit.t = found.at.distance;
         hit.u = found.at.u;
         hit.v = found.at.v;
-        store(found.place.point, hit.position);
-        store(found.normal, hit.normal);
         hit.tError = found.at.distanceError;
         hit.uvError = found.at.uvError;
-        hit.positionError = found.place.error;
-        hit.userData = r.userData;
-        hit.instance = r.instance;
-        hit.name = r.name;
-        hit.primitive = found.primitive;
       }
     });
   });
