@@ -32,7 +32,6 @@ static_assert(sizeof(Limits) == table.size() * sizeof(uint64_t), "every limit ha
 std::span<const LimitInfo> limitTable() { return table; }
 
 bool setLimit(Limits& limits, std::string_view name, uint64_t value) {
-  if (name == "copyBytes") name = "worldBytes"; // the name in scripts written for the first version
   for (const LimitInfo& info : table) {
     if (info.name != name) continue;
     limits.*info.value = value;

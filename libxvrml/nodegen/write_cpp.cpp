@@ -19,9 +19,10 @@ std::string clauseSentence(const TypeSpec& type) {
   return clause.empty() ? clause : ' ' + clause + '.';
 }
 
-// Returns the clause as NodeRow has it.
-std::string clauseInRow(const TypeSpec& type) {
-  return type.ofX3d ? "X3D " + type.clause : type.clause;
+// Returns NodeRow::standard.
+std::string_view standardInRow(const TypeSpec& type) {
+  if (type.ofX3d) return "Standard::x3d";
+  return type.clause.empty() ? "Standard::none" : "Standard::vrml97";
 }
 
 // Returns FieldRow::words.
@@ -101,9 +102,10 @@ std::string writeTable(const TypeSpec& type) {
     rows += "};\n";
   }
   rows += fmt::format(
-      "constexpr NodeRow rowOf{0} = {{{1}, {2}, {3}, {4}, {5}, {6}, createNode<{0}>}};\n\n",
+      "constexpr NodeRow rowOf{0} = {{{1}, {2}, {3}, {4}, {5}, {6}, {7}, createNode<{0}>}};\n\n",
       type.name, cppString(type.name), cppString(fmt::format("{}", fmt::join(type.roles, " "))),
-      cppString(type.component), cppString(clauseInRow(type)), cppString(type.text), fields);
+      cppString(type.component), standardInRow(type), cppString(type.clause), cppString(type.text),
+      fields);
   return rows;
 }
 

@@ -51,13 +51,6 @@ std::string whyRefused(const NodePlugin& plugin) {
   return "";
 }
 
-// Returns whether a field of a plug-in without the word `urls` (before minor 1) holds URLs: its
-// name decides.
-bool namedForUrls(const FieldInfo& field) {
-  return field.type == FieldType::MFString && holdsValue(field) &&
-         (field.name == "url" || field.name.ends_with("Url"));
-}
-
 // Registers a plug-in's node types, which live for ever. Returns false if two have the same name.
 bool registerNodes(const NodePlugin& plugin) {
   std::vector<const NodeType*> types;
@@ -65,9 +58,6 @@ bool registerNodes(const NodePlugin& plugin) {
     const NodePluginRow& one = plugin.rows[i];
     auto* type = new NodeType(makeNodeType(*one.row, int(nodeTypes().size() + i)));
     if (one.implementation) type->expand = one.implementation->expand;
-    if (plugin.minor < 1)
-      for (FieldInfo& field : type->fields)
-        field.holdsUrls = field.holdsUrls || namedForUrls(field);
     types.push_back(type);
   }
   if (!addNodeTypes(types)) return false;

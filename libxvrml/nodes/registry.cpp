@@ -67,20 +67,9 @@ std::vector<std::string> splitWords(std::string_view words) {
 
 } // namespace
 
-// The words must not move the members after them: plug-ins are refused only for another size.
-static_assert(offsetof(FieldRow, words) == offsetof(FieldRow, change) + sizeof(Change) &&
-              offsetof(FieldRow, offset) == sizeof(const char*) + sizeof(uint32_t));
-
 NodeType makeNodeType(const NodeRow& row, int index) {
-  constexpr std::string_view x3d = "X3D "; // begins the clause of a node of X3D
-  std::string_view clause = row.clause;
-  Standard standard = clause.empty() ? Standard::none : Standard::vrml97;
-  if (clause.starts_with(x3d)) {
-    clause.remove_prefix(x3d.size());
-    standard = Standard::x3d;
-  }
-  NodeType type{row.name, index, standard,   splitWords(row.roles), row.component,
-                row.text, {},    row.create, std::string(clause)};
+  NodeType type{row.name, index,      row.standard, splitWords(row.roles), row.component, row.text,
+                {},       row.create, row.clause};
   type.fields.reserve(row.fields.size());
   for (const FieldRow& field : row.fields) {
     type.fields.push_back({field.name,

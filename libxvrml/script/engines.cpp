@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 // The engines of each file. They are loaded once per process and kept for ever.
 struct Libraries {
   std::mutex mutex;
-  std::map<std::string, ScriptLibrary, std::less<>> byPath;
+  std::map<std::string, std::vector<XsEngine>, std::less<>> byPath; // the engines of each file
 };
 Libraries& libraries() {
   static auto& all = *new Libraries();
@@ -30,7 +30,7 @@ const std::vector<XsEngine>& libraryEngines(const std::string& path) {
   const std::scoped_lock lock(all.mutex);
   const auto known = all.byPath.find(path);
   if (known != all.byPath.end()) return known->second.engines;
-  return all.byPath.emplace(path, loadScriptLibrary(path)).first->second.engines;
+  return all.byPath.emplace(path, loadScriptLibrary(path)).first->second;
 }
 
 } // namespace
@@ -88,31 +88,14 @@ std::vector<const XsEngine*> ScriptEngines::all() {
   return list;
 }
 
-namespace {
-
-// Calls use(path, library) for the library of an engine.
-template <class Use> void withLibraryOf(const XsEngine& engine, const Use& use) {
+std::string libraryOf(const XsEngine& engine) {
   Libraries& all = libraries();
   const std::scoped_lock lock(all.mutex);
-  for (const auto& [path, library] : all.byPath) {
-    const XsEngine* first = library.engines.data();
-    if (&engine >= first && &engine < first + library.engines.size()) use(path, library);
+  for (const auto& [path, engines] : all.byPath) {
+    const XsEngine* first = engines.data();
+    if (&engine >= first && &engine < first + engines.size()) return path;
   }
-}
-
-} // namespace
-
-std::string libraryOf(const XsEngine& engine) {
-  std::string file;
-  withLibraryOf(engine, [&](const std::string& path, const ScriptLibrary&) { file = path; });
-  return file;
-}
-
-uint32_t abiMinorOf(const XsEngine& engine) {
-  uint32_t minor = XS_ABI_MINOR;
-  withLibraryOf(engine,
-                [&](const std::string&, const ScriptLibrary& library) { minor = library.minor; });
-  return minor;
+  return "";
 }
 
 const XsEngine* ScriptEngines::byScheme(std::string_view scheme) {

@@ -46,8 +46,6 @@ class ScriptEngines {
 // Returns the library file of an engine that these functions have returned; "" for any other
 // engine.
 std::string libraryOf(const XsEngine& engine);
-// Returns the minor version of the script ABI that the engine was built against.
-uint32_t abiMinorOf(const XsEngine& engine);
 
 // Returns the search folders of the process: the configured ones (colon-separated),
 // $XVRML_SCRIPT_PATH, and the folder next to the library (../lib/xvrml/scripts).

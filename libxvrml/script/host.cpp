@@ -194,8 +194,7 @@ void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) 
 }
 
 void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value) {
-  if (!script.ready() || !script.engine->event || !script.knows(in.type)) return;
-  if (script.accessFor(in) == Access::field) return;
+  if (!script.ready() || !script.engine->event) return;
   const auto named = std::find_if(script.fields.begin(), script.fields.end(),
                                   [&](const XsField& f) { return f.name == in.name; });
   const auto index = uint32_t(named - script.fields.begin());

@@ -39,14 +39,6 @@ struct Script {
     return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate" &&
            !(field.name == "metadata" && field.ofX3d);
   }
-  // Returns whether the engine has the type in its table. Before minor version 2 of the ABI there
-  // were the types of VRML97 alone.
-  bool knows(FieldType type) const { return abiMinor >= 2 || isVrml97Type(type); }
-  // Returns the access that the engine is told. Before minor version 2 a Script had no
-  // exposedFields: the engine sees a field, and gets no events for it.
-  Access accessFor(const FieldInfo& field) const {
-    return abiMinor < 2 && field.access == Access::exposedField ? Access::field : field.access;
-  }
   bool flag(uint32_t bit) const { return info.flags & bit; }
   // Returns whether a call is running in its process, for this Script or another one. Events wait
   // meanwhile.
@@ -60,7 +52,6 @@ struct Script {
   NodeRef heldUntilStop; // the node in the world while all Scripts end
   const XsNode self;
   const XsEngine* engine = nullptr; // null: no runnable program
-  uint32_t abiMinor = XS_ABI_MINOR; // minor version of the engine's ABI
   XsInterpreter interpreter = 0;
   SourcePosition start; // position of the program text
   std::string scheme, origin, text;

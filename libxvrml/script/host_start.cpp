@@ -159,20 +159,9 @@ void ScriptHost::describe(Script& script, ScriptProgram program) {
   script.text = std::move(program.text);
   script.origin = script.start.file ? *script.start.file : world_.path;
   script.fields.clear();
-  script.abiMinor = abiMinorOf(*script.engine);
-  for (const FieldInfo& field : script.node->type().fields) {
-    if (!Script::isOwn(field)) continue;
-    if (script.knows(field.type))
-      script.fields.push_back(
-          {field.name.c_str(), xsType(field.type), xsAccess(script.accessFor(field))});
-    else
-      log(script, 2, 0,
-          fmt::format(
-              "the engine {} was built for script ABI {}.{}, which has no {}: it does not see "
-              "{}",
-              script.engine->name, XS_ABI_MAJOR, script.abiMinor, fieldTypeName(field.type),
-              field.name));
-  }
+  for (const FieldInfo& field : script.node->type().fields)
+    if (Script::isOwn(field))
+      script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
   XsScriptInfo& info = script.info;
   info.size = sizeof(XsScriptInfo);
   info.flags =

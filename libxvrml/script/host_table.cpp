@@ -141,7 +141,7 @@ struct HostTable {
     const Node& node = *script.node;
     const FieldInfo* field = node.type().find(name);
     if (!field) field = node.type().findEventOut(name);
-    if (!field || field->access == Access::eventIn || !script.knows(field->type))
+    if (!field || field->access == Access::eventIn)
       return noField(script, node, "field or eventOut", name);
     Value value = holdsValue(*field) ? node.get(*field) : host.engine_.lastSent(node, *field);
     for (const Script::Output& output : script.outputs)
@@ -156,8 +156,7 @@ struct HostTable {
         if (!name || !out) return noField(script, node, "field", name);
         if (&node == script.node) return readOwn(host, script, name, out);
         const FieldInfo* field = node.type().findEventOut(name);
-        if (!field || !script.knows(field->type))
-          return noField(script, node, "exposedField or eventOut", name);
+        if (!field) return noField(script, node, "exposedField or eventOut", name);
         *out = script.lent.lend(host.engine_.lastSent(node, *field), script.handles);
         return XS_OK;
       });
@@ -206,8 +205,7 @@ struct HostTable {
 
   static XsResult giveField(Script& script, const Node& node, const FieldInfo* field,
                             const char* name, XsField* out) {
-    if (!field || !out || !script.knows(field->type))
-      return noField(script, node, "field or event", name);
+    if (!field || !out) return noField(script, node, "field or event", name);
     *out = {field->name.c_str(), xsType(field->type), xsAccess(field->access)};
     return XS_OK;
   }

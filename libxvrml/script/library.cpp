@@ -11,15 +11,14 @@
 
 namespace xvrml {
 
-ScriptLibrary loadScriptLibrary(const std::string& path) {
+std::vector<XsEngine> loadScriptLibrary(const std::string& path) {
   void* const handle = plugin_files::openLibrary(path, "script library");
   try {
     void* symbol = dlsym(handle, XS_ENTRY_NAME);
     if (!symbol)
       throw std::runtime_error("script library " + path +
                                ": exports no " XS_ENTRY_NAME ", so it is not a script plug-in");
-    const auto* plugin = static_cast<const XsPlugin*>(symbol);
-    return {checkScriptPlugin(plugin, os::exportedBytes(symbol), path), plugin->minor};
+    return checkScriptPlugin(static_cast<const XsPlugin*>(symbol), os::exportedBytes(symbol), path);
   } catch (...) {
     dlclose(handle);
     throw;

@@ -6,8 +6,10 @@ using namespace xvrml;
 
 namespace {
 
-constexpr NodeRow row = {
-    "Box", "geometry", "bad", "", "A name that is taken.", {}, createNode<nodes::Box>};
+constexpr NodeRow row = {"Box", "geometry",
+                         "bad", Standard::none,
+                         "",    "A name that is taken.",
+                         {},    createNode<nodes::Box>};
 void registered(const NodeType&) {}
 const NodePluginRow rows[] = {{&row, nullptr, registered}};
 

@@ -85,7 +85,7 @@ TEST(Budget, TheDefaultIsOfTheMachine) {
   EXPECT_GE(budget.limit(), 256u << 20);
   EXPECT_EQ(budgetOf(*parse("Shape { }"))->limit(), defaultWorldBytes());
   LoadOptions options;
-  EXPECT_TRUE(setLimit(options.limits, "copyBytes", 1'000'000)); // the previous name of the limit
+  EXPECT_TRUE(setLimit(options.limits, "worldBytes", 1'000'000));
   EXPECT_EQ(budgetOf(*parse("Shape { }", options))->limit(), 1'000'000u);
 }
 

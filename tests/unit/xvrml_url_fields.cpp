@@ -256,8 +256,8 @@ constexpr FieldRow described(bool holdsUrls) {
 TEST(UrlFields, APluginsFieldIsOneOnlyIfItsStanzaSaysSo) {
   for (const bool holdsUrls : {false, true}) {
     const FieldRow fields[] = {described(holdsUrls)};
-    const NodeRow row = {"Described",          "child", "mine", "", "A node.", fields,
-                         createNode<Described>};
+    const NodeRow row = {"Described", "child",   "mine", Standard::none,
+                         "",          "A node.", fields, createNode<Described>};
     const NodeType type = makeNodeType(row, int(nodeTypes().size()));
     EXPECT_EQ(type.find("url")->holdsUrls, holdsUrls);
     World world;

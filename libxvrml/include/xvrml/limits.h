@@ -13,12 +13,9 @@ struct Limits {
   uint64_t protoDepth = 64;            // prototypes instantiating prototypes
   uint64_t inlineDepth = 32;           // files within files
   uint64_t expandedNodes = 10'000'000; // nodes after all prototypes and USEs are expanded
-  // worldBytes: memory of everything made from a world's files (estimated); 0 means an eighth of
-  // the machine's memory. copyBytes is its former name, from when it limited only copies.
-  union {
-    uint64_t worldBytes = 0;
-    uint64_t copyBytes;
-  };
+  // Memory of everything made from a world's files (estimated); 0: an eighth of the machine's
+  // memory.
+  uint64_t worldBytes = 0;
   uint64_t interfaceFields = 10'000; // declarations in one PROTO, EXTERNPROTO or Script
   uint64_t stringBytes = 64ull << 20;
   uint64_t arrayElements = 400'000'000; // numbers in one MF field

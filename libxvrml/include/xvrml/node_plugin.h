@@ -36,9 +36,8 @@ struct NodePluginRow {
 // ASCII "XVNP".
 inline constexpr uint32_t nodePluginMagic = 0x58564e50;
 // A host accepts plug-ins of its own major version and a minor version that is not greater than its
-// own. Minor 1 has the word `urls` (fieldHoldsUrls). In older plug-ins an MFString called `url` or
-// `...Url` holds URLs. Minor 2 has `standard X3D` and the word `x3d` (fieldOfX3d).
-inline constexpr uint32_t nodePluginMajor = 1, nodePluginMinor = 2;
+// own.
+inline constexpr uint32_t nodePluginMajor = 1, nodePluginMinor = 0;
 
 // The C++ library that determines the layout of values, and the sizes of the types that both sides
 // share.

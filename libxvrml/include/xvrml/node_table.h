@@ -11,8 +11,8 @@ namespace xvrml {
 
 // These are the words of FieldRow::words, joined by |. The bits never change: plug-ins have them
 // compiled in.
-inline constexpr uint8_t fieldHoldsUrls = 1; // `urls`; plug-ins before minor 1 never say it
-inline constexpr uint8_t fieldOfX3d = 2;     // `x3d`; plug-ins before minor 2 never say it
+inline constexpr uint8_t fieldHoldsUrls = 1; // `urls`
+inline constexpr uint8_t fieldOfX3d = 2;     // `x3d`
 
 // FieldInfo as a constant. The default is left out: a new node holds it.
 struct FieldRow {
@@ -20,19 +20,19 @@ struct FieldRow {
   FieldType type;
   Access access;
   Change change;
-  uint8_t words; // stands in a byte that was padding
+  uint8_t words;
   uint32_t offset;
   FieldRange range;
   const char* nodeTypes;
   const char* text;
 };
 
-// NodeType as a constant. `roles` are separated by blanks. The clause of a node of X3D begins with
-// "X3D ", because a member for the standard would make plug-ins of minor 1 unusable.
+// NodeType as a constant. `roles` are separated by blanks.
 struct NodeRow {
   const char* name;
   const char* roles;
   const char* component;
+  Standard standard;
   const char* clause;
   const char* text;
   std::span<const FieldRow> fields;

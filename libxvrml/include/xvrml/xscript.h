@@ -23,7 +23,7 @@
 #define XS_MAGIC 0x50435358u /* "XSCP" */
 #define XS_ABI_MAJOR 1       /* a host refuses another major number */
 /* grows with everything that is appended; a host accepts minors up to its own */
-#define XS_ABI_MINOR 2
+#define XS_ABI_MINOR 0
 
 #ifdef __cplusplus
 extern "C" {
@@ -63,7 +63,7 @@ typedef enum XsType {
   XS_MFTIME,
   XS_MFVEC2F,
   XS_MFVEC3F,
-  XS_MFBOOL,      /* since minor version 2, as all that follow */
+  XS_MFBOOL,      /* the types that X3D adds follow */
   XS_SFCOLORRGBA, /* float[4], rgba */
   XS_MFCOLORRGBA,
   XS_SFDOUBLE, /* double */
@@ -170,9 +170,8 @@ typedef struct XsScriptInfo {
   XsString text; /* the program: the text after the scheme, or the file's bytes */
   uint32_t fieldCount;
   /* The fields and events that the Script declares, in order, without url, directOutput and
-   * mustEvaluate. Since minor version 2 there are exposedFields, too (inputOutput in X3D). */
+   * mustEvaluate. In X3D there are exposedFields, too (inputOutput). */
   const XsField* fields;
-  /* --- 1.1 --- */
   /* Bytes that the program may use, if the engine can tell; beyond them it fails as if out of
    * memory. 0: no limit. */
   uint64_t memory;
@@ -231,7 +230,6 @@ typedef struct XsEngine {
    * event sources of their own, such as windows or another process. Events sent here have this
    * time. */
   XsResult (*tick)(XsInterpreter interpreter, double time);
-  /* --- 1.1 --- */
   /* Called before the first `create` in a process for programs that are not trusted. Afterwards no
    * file can be opened, no thread or process started and no socket made, and memory is limited. The
    * engine does here whatever its language needs of these. Optional. */

@@ -137,7 +137,7 @@ void serve(Channel& channel) {
     const auto seconds = in.take<double>();
     if (!in.complete() || !library || !name)
       throw std::runtime_error("did not understand the library");
-    static const std::vector<XsEngine> engines = loadScriptLibrary(library).engines;
+    static const std::vector<XsEngine> engines = loadScriptLibrary(library);
     const XsEngine& engine = engineNamed(engines, name, library);
     if (engine.prepare && engine.prepare() != XS_OK)
       throw std::runtime_error(std::string("engine ") + engine.name + " cannot be prepared");

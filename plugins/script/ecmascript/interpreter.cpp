@@ -248,7 +248,7 @@ Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsR
   self->host = host;
   self->info = info;
   self->self = info->self;
-  if (info->size >= offsetof(XsScriptInfo, memory) + sizeof info->memory) self->most = info->memory;
+  self->most = info->memory;
   if (setjmp(self->fatal)) {
     freeHeap(*self); // only partly constructed
     delete self;

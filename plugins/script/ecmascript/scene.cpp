@@ -14,10 +14,7 @@ Interpreter& begin(duk_context* ctx) {
   return self;
 }
 
-bool hasScene(const Interpreter& self) {
-  return self.host->size >= offsetof(XsHost, rootNodes) + sizeof self.host->rootNodes &&
-         self.host->namedNode && self.host->rootNodes;
-}
+bool hasScene(const Interpreter& self) { return self.host->namedNode && self.host->rootNodes; }
 
 // A name that the scene does not have is an error, as in X3D.
 duk_ret_t getNamedNode(duk_context* ctx) {

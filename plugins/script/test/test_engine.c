@@ -405,8 +405,5 @@ static const XsEngine trusted = {
     destroyInterpreter, initialize,     event,     processed,
     shutdown,           NULL,           NULL};
 static const XsEngine* const engines[] = {&engine, &trusted};
-#ifndef TEST_ABI_MINOR
-#define TEST_ABI_MINOR XS_ABI_MINOR
-#endif
-XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, TEST_ABI_MINOR, sizeof(XsPlugin),
+XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
                                      2,        engines};
