@@ -109,6 +109,37 @@ std::vector<float> luminancesOf(const Picture& picture) {
   return out;
 }
 
+// Interpolates linearly between the centres of pixels.
+std::vector<float> scaled(const std::vector<float>& values, int width, int height, int newWidth,
+                          int newHeight) {
+  if (width == newWidth && height == newHeight) return values;
+  struct Place {
+    size_t first, second;
+    float weight; // that of the second
+  };
+  const auto placeOf = [](int i, int from, int to) {
+    const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, double(from - 1));
+    const size_t first = size_t(at);
+    return Place{first, std::min(first + 1, size_t(from) - 1), float(at - double(first))};
+  };
+  std::vector<Place> columns;
+  for (int x = 0; x < newWidth; x++) columns.push_back(placeOf(x, width, newWidth));
+  std::vector<float> out(size_t(newWidth) * size_t(newHeight));
+  eachRow(newHeight, [&](int y) {
+    const Place row = placeOf(y, height, newHeight);
+    const float *const above = &values[row.first * size_t(width)],
+                       *const below = &values[row.second * size_t(width)];
+    float* const to = &out[size_t(y) * size_t(newWidth)];
+    for (size_t x = 0; x < columns.size(); x++) {
+      const Place& c = columns[x];
+      const float upper = above[c.first] + c.weight * (above[c.second] - above[c.first]),
+                  lower = below[c.first] + c.weight * (below[c.second] - below[c.first]);
+      to[x] = upper + row.weight * (lower - upper);
+    }
+  });
+  return out;
+}
+
 double mostOf(std::vector<float> values) {
   const auto at = values.begin() + std::ptrdiff_t(double(values.size() - 1) * .995);
   std::nth_element(values.begin(), at, values.end());
@@ -221,10 +252,15 @@ LuminanceScale luminanceScale(double most) {
 
 double mostLuminance(const Picture& picture) { return mostOf(luminancesOf(picture)); }
 
-Picture falseColours(const Picture& picture, std::optional<double> most, Legend legend) {
-  const int width = picture.width, height = picture.height;
-  const std::vector<float> luminance = luminancesOf(picture);
-  const LuminanceScale scale = luminanceScale(most ? *most : mostOf(luminance));
+Picture falseColours(const Picture& picture, std::optional<double> most, Legend legend, int width,
+                     int height) {
+  if (width <= 0 || height <= 0) {
+    width = picture.width;
+    height = picture.height;
+  }
+  const std::vector<float> own = luminancesOf(picture);
+  const LuminanceScale scale = luminanceScale(most ? *most : mostOf(own));
+  const std::vector<float> luminance = scaled(own, picture.width, picture.height, width, height);
   const bool beside = legend == Legend::beside;
   Canvas canvas(width + (beside ? legendWidth(scale, Sizes(height)) : 0), height);
   drawLuminances(luminance, width, height, scale, canvas);

@@ -26,9 +26,10 @@ enum class Legend : uint8_t {
 
 // Returns a picture in display colours (Picture::linear is false). The given picture holds linear
 // radiance, where 1 is 1 cd/m2. most: the luminance at the end of the scale; none: mostLuminance()
-// of the picture.
+// of the picture. width, height: the size of the result without a legend, for which luminances are
+// interpolated, so that isolines are as fine as its pixels; 0: that of the picture.
 Picture falseColours(const Picture& picture, std::optional<double> most,
-                     Legend legend = Legend::beside);
+                     Legend legend = Legend::beside, int width = 0, int height = 0);
 
 // Returns the legend of such a picture of this height by itself, in display colours.
 Picture falseColourLegend(double most, int height);

@@ -140,6 +140,7 @@ struct LiveRenderer::Impl {
 
   // Used by the browser's thread only.
   live::ShownFrame current; // the frame that was started last
+  bool again = false;       // look() returns the last still frame once more
   Clock::time_point started;
   float progress = 0;         // progress of the frame in flight at the last poll
   Clock::time_point nextPoll; // earliest time of the next poll of a frame in flight
@@ -210,6 +211,7 @@ struct LiveRenderer::Impl {
   void show(const Picture& picture, const live::ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
   bool look(LivePicture& out);
+  bool recolour(uint64_t number, std::optional<double> falseColour);
 
   // Returns the frame in flight, if it has new samples.
   bool pollInFlight(LivePicture& out);
@@ -397,8 +399,9 @@ bool LiveRenderer::Impl::alone() const {
 uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
   if (now() != State::idle && now() != State::ready) throw std::logic_error("a frame is in flight");
   stage.reportMessages();
-  current = {current.number + 1, frame.purpose,     frame.viewer,
-             frame.samples,      frame.lightStride, frame.falseColour};
+  current = {current.number + 1, frame.purpose,     frame.viewer,     frame.samples,
+             frame.lightStride,  frame.falseColour, frame.shownWidth, frame.shownHeight};
+  again = false;
   stage.settings = settingsOf(given, frame);
   if (frame.purpose != Purpose::still)
     makePreview(stage.settings, frame.purpose, frame.lightStride, current.number);
@@ -462,19 +465,30 @@ void LiveRenderer::Impl::show(const Picture& picture, const live::ShownFrame& fr
 
 bool LiveRenderer::Impl::look(LivePicture& out) {
   if (now() != State::mapping) stage.reportMessages(); // the mapper adds messages, too
-  const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
+  std::shared_ptr<const EndedFrame> finished = nextUnpolled();
+  if (!finished && std::exchange(again, false)) finished = still();
   if (!finished) return alone() && pollInFlight(out);
   scratch = {}; // the next frame may be long in coming
-  show(finished->picture, finished->facts, finished->whole, finished->seconds, out);
+  live::ShownFrame facts = finished->facts;
+  if (facts.number == current.number) facts.falseColour = current.falseColour;
+  show(finished->picture, facts, finished->whole, finished->seconds, out);
   out.alone = finished->alone;
   out.ended = true;
   out.rebuilding = finished->rebuilding;
   out.denoisedBy = finished->denoisedBy;
-  out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
-                                   finished->result.stats.time.render);
+  out.overhead =
+      std::max(0.0, finished->seconds - finished->rebuilding - finished->result.stats.time.render);
   out.map = finished->result.map;
   out.stats = finished->result.stats;
   return true;
+}
+
+bool LiveRenderer::Impl::recolour(uint64_t number, std::optional<double> falseColour) {
+  const std::shared_ptr<const EndedFrame> finished = still();
+  if (number != current.number || !finished || finished->facts.number != number || !finished->whole)
+    return false;
+  current.falseColour = falseColour;
+  return again = true;
 }
 
 bool LiveRenderer::Impl::pollInFlight(LivePicture& out) {
@@ -526,6 +540,10 @@ void LiveRenderer::cancel() {
 }
 
 bool LiveRenderer::look(LivePicture& picture) { return impl_->look(picture); }
+
+bool LiveRenderer::recolour(uint64_t number, std::optional<double> falseColour) {
+  return impl_->recolour(number, falseColour);
+}
 
 bool LiveRenderer::copy(Picture& picture, uint64_t* number) { return impl_->copy(picture, number); }
 

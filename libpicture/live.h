@@ -43,6 +43,9 @@ struct LiveFrame {
   // How the picture is shown: none: in its own colours; otherwise its luminance in false colours,
   // up to this end of the scale in cd/m2, or to one that fits the picture (0).
   std::optional<double> falseColour;
+  // The size that previews in false colours are shown in, so that isolines are as fine as the
+  // pixels of the screen; 0: that of the frame.
+  int shownWidth = 0, shownHeight = 0;
 };
 
 // The state of a frame when it was polled.
@@ -51,6 +54,7 @@ struct LivePicture {
   // Display bytes, first row at the top. Pixels without a sample yet show the viewer's previous
   // picture. A still picture with few samples is mixed with the preview before it.
   std::vector<uint8_t> rgb;
+  int shownWidth = 0, shownHeight = 0;                    // the size of `rgb`
   uint64_t number = 0;                                    // what start() returned for the frame
   LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // as in the frame
   int lightStride = 1;                                    // as in the frame
@@ -98,6 +102,9 @@ class LiveRenderer {
   // Returns each ended frame once, in order. Otherwise returns the frame in flight, if it is the
   // only one, is not a preview and has new samples since the last call. Never waits.
   bool look(LivePicture& picture);
+  // Shows the finished still picture of a frame with another LiveFrame::falseColour: look() returns
+  // it once more. Returns false if another frame has been started, or the picture is not finished.
+  bool recolour(uint64_t number, std::optional<double> falseColour);
   // Copies a still picture with all channels of the settings, for a file: that of the frame in
   // flight if it is a still one and every pixel has a sample, otherwise that of the last still
   // frame that ended. So while something moves it is not the picture that is shown: start a still

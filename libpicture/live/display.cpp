@@ -105,8 +105,20 @@ void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, 
   out.height = picture.height;
   Viewer& viewer = viewers_.of(frame.viewer);
   out.scaleEnd = scaleEndOf(picture, frame, whole, viewer);
-  out.rgb = frame.falseColour ? displayBytes(falseColours(picture, out.scaleEnd, Legend::apart))
-                              : displayBytes(picture);
+  out.shownWidth = picture.width;
+  out.shownHeight = picture.height;
+  if (frame.falseColour) {
+    const bool enlarges = whole && frame.purpose != LiveFrame::Purpose::still &&
+                          frame.shownWidth > 0 && frame.shownHeight > 0;
+    if (enlarges) {
+      out.shownWidth = frame.shownWidth;
+      out.shownHeight = frame.shownHeight;
+    }
+    out.rgb = displayBytes(
+        falseColours(picture, out.scaleEnd, Legend::apart, out.shownWidth, out.shownHeight));
+  } else {
+    out.rgb = displayBytes(picture);
+  }
   count(samples, out);
   out.preview = frame.purpose == LiveFrame::Purpose::preview;
 
@@ -127,7 +139,7 @@ void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, 
       out.preview = viewer.below.preview;
     }
   }
-  viewer.last = {out.width, out.height, out.rgb, out.preview};
+  viewer.last = {out.shownWidth, out.shownHeight, out.rgb, out.preview};
   if (whole) viewer.below = {};
 }
 

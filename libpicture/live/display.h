@@ -17,9 +17,11 @@ struct ShownFrame {
   uint64_t number = 0; // counts the frames that were started
   LiveFrame::Purpose purpose = LiveFrame::Purpose::still;
   uint32_t viewer = 0;
-  int samples = 1;                   // samples per pixel that the frame was started with
-  int lightStride = 1;               // RT_LIGHT_STRIDE
-  std::optional<double> falseColour; // the end of the scale of the LiveFrame
+  int samples = 1;     // samples per pixel that the frame was started with
+  int lightStride = 1; // RT_LIGHT_STRIDE
+  // as in LiveFrame
+  std::optional<double> falseColour;
+  int shownWidth = 0, shownHeight = 0;
 };
 
 // Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the
@@ -33,8 +35,8 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
 
 class Display {
  public:
-  // Fills size, rgb, scaleEnd, covered, samples and preview of `out`. picture: the finished part of
-  // the frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
+  // Fills sizes, rgb, scaleEnd, covered, samples and preview of `out`. picture: the finished part
+  // of the frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
   void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
   // Frees what a viewer was shown last.

@@ -95,6 +95,18 @@ TEST(FalseColour, TheLegendCanBeDrawnByItself) {
   EXPECT_EQ(different, 0);
 }
 
+// Previews are smaller than the window.
+TEST(FalseColour, IsolinesOfAnEnlargedPictureAreAsFineAsItsPixels) {
+  const Picture p = falseColours(ramp(100, 16, 100), 100, Legend::apart, 400, 64);
+  ASSERT_EQ(p.width, 400);
+  ASSERT_EQ(p.height, 64);
+  for (int level = 1; level < 10; level++) {
+    int lines = 0;
+    for (int x = 40 * level - 8; x < 40 * level + 8; x++) lines += at(p, x, 32) == black;
+    EXPECT_EQ(lines, 1) << level;
+  }
+}
+
 TEST(FalseColour, OddPicturesAreShown) {
   Picture tiny = ramp(1, 1, 0);
   EXPECT_EQ(falseColours(tiny, {}).height, 1);

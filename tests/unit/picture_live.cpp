@@ -104,6 +104,28 @@ TEST(Live, finishedPictureHasTheBytesOfTheStillOne) {
   }
 }
 
+TEST(Live, aFinishedPictureIsShownInOtherColoursWithoutAnotherFrame) {
+  const auto browser = browserOf();
+  LiveRenderer live(*browser, settingsOf());
+  EXPECT_FALSE(live.recolour(1, 0)) << "there is no picture";
+  LiveFrame inFalseColours = frameOf();
+  inFalseColours.falseColour = 0;
+  const LivePicture expected = finish(live, inFalseColours), own = finish(live, frameOf());
+  EXPECT_FALSE(live.recolour(own.number - 1, 0)) << "another frame has been started";
+  ASSERT_TRUE(live.recolour(own.number, 0));
+  LivePicture shown;
+  ASSERT_TRUE(live.look(shown));
+  EXPECT_EQ(shown.number, own.number);
+  EXPECT_TRUE(shown.finished);
+  EXPECT_EQ(shown.rgb, expected.rgb);
+  EXPECT_EQ(shown.scaleEnd, expected.scaleEnd);
+  EXPECT_FALSE(live.look(shown)) << "once";
+  ASSERT_TRUE(live.recolour(own.number, {}));
+  ASSERT_TRUE(live.look(shown));
+  EXPECT_EQ(shown.rgb, own.rgb);
+  EXPECT_EQ(live.state(), State::idle);
+}
+
 TEST(Live, nothingIsThereBeforeTheFirstFrame) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, settingsOf());

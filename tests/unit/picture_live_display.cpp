@@ -220,4 +220,14 @@ TEST(LiveDisplay, falseColoursKeepTheirScaleInMotion) {
   EXPECT_EQ(own.rgb[0], own.rgb[1]);
   EXPECT_EQ(shown.rgb, displayBytes(falseColours(uniform(128), 1, Legend::apart)));
   EXPECT_EQ(shown.width, own.width) << "without the legend";
+
+  // Previews have the isolines of the size that they are shown in; a still picture has that size.
+  ShownFrame larger = inFalseColours(preview(11), 1);
+  larger.shownWidth = 2 * own.width;
+  larger.shownHeight = 3 * own.height;
+  const LivePicture enlarged = show(display, uniform(128), larger, true);
+  EXPECT_EQ(enlarged.width, own.width) << "the frame keeps its size";
+  EXPECT_EQ(enlarged.shownWidth, 2 * own.width);
+  EXPECT_EQ(enlarged.shownHeight, 3 * own.height);
+  EXPECT_EQ(enlarged.rgb.size(), 6 * own.rgb.size());
 }

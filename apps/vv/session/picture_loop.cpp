@@ -89,6 +89,10 @@ void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
   if (width_ <= 0) return;
   if (taker_.isBusy()) return advanceStill(pilot, fit);
   if (!watched_ && hasShown()) return;
+  // The values of a finished picture are there: other colours of them need no frame.
+  if (pilot.falseColour() != falseColour_ && isFinished(pilot) &&
+      renderer_.recolour(number_, pilot.falseColour()))
+    falseColour_ = pilot.falseColour();
   switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
   case Decision::cancel:
@@ -209,6 +213,8 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
                                                : Purpose::rawPreview;
   frame.viewer = viewer_;
   frame.falseColour = falseColour_ = pilot.falseColour();
+  frame.shownWidth = width_;
+  frame.shownHeight = height_;
   still_ = Progress::none;
   isStillLost_ = false;
   cancelled_ = false;

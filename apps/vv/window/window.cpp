@@ -200,7 +200,7 @@ void Window::passOn() {
 }
 
 void Window::show() {
-  screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
+  screen_.setPicture(picture_.shownWidth, picture_.shownHeight, picture_.rgb);
   showLegend();
   if (std::exchange(first_, false) && options_.verbose)
     say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
