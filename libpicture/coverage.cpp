@@ -9,6 +9,9 @@ namespace picture {
 
 namespace {
 
+// Of fewer intervals of a tile a tenth misses by chance too often.
+constexpr uint64_t fewestOfTile = 100;
+
 double colour(const std::vector<float>& rgba, size_t k) { return double(rgba[k / 3 * 4 + k % 3]); }
 
 class Count {
@@ -30,7 +33,7 @@ class Count {
     bias();
     std::vector<double> shares;
     for (const auto& [held, all] : tiles_)
-      if (all > 0) shares.push_back(double(held) / double(all));
+      if (all >= fewestOfTile) shares.push_back(double(held) / double(all));
     std::sort(shares.begin(), shares.end());
     if (!shares.empty()) c_.worstTiles = shares[(shares.size() - 1) / 20];
     return c_;
@@ -68,6 +71,13 @@ class Count {
     c_.promisedInterval += shot.promisedInterval / count;
   }
 
+  // Returns whether the samples of a pixel are all equal.
+  static bool isConstant(const Shot& shot, size_t i) {
+    if (shot.variance.empty()) return false;
+    const float* const v = &shot.variance[3 * i];
+    return v[0] == 0 && v[1] == 0 && v[2] == 0;
+  }
+
   void one(const Shot& shot, size_t i, double off, double wider, double truth) {
     double half = double(shot.half[3 * i]) * wider;
     if (!reference_.half.empty()) half = std::hypot(half, double(reference_.half[3 * i]));
@@ -80,6 +90,11 @@ class Count {
     if (half == 0) {
       c_.exact++;
       c_.exactHeld += held;
+      return;
+    }
+    if (isConstant(shot, i)) {
+      c_.bounds++;
+      c_.boundsHeld += held;
       return;
     }
     c_.heldTrusted += held;

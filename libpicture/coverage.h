@@ -19,21 +19,24 @@ struct Shot {
 
 struct Coverage {
   uint64_t pixels = 0, trusted = 0; // sums over all pictures
-  // trusted intervals of zero width, and how many of them hold; the share leaves them out
-  uint64_t exact = 0, exactHeld = 0;
+  // The share leaves out two kinds of trusted intervals, which are counted here: those of zero
+  // width, and upper bounds, which pixels without any variation have beside others. Bounds hold
+  // more often than in 95 % of all cases.
+  uint64_t exact = 0, exactHeld = 0, bounds = 0, boundsHeld = 0;
   uint64_t held = 0, heldTrusted = 0;
-  double halfWidth = 0; // mean half-width of the trusted pixels
+  double halfWidth = 0; // mean half-width of the intervals of the share
   // Mean errors of whole pictures: measured, predicted, and the interval of the prediction.
   double meanError = 0, promised = 0, promisedInterval = 0;
   // pictures; measured error inside the prediction's interval; below it
   uint64_t shots = 0, promiseHeld = 0, promiseBelow = 0;
   double bias = 0, biasInterval = 0; // mean of the pictures minus the reference, relative
-  double worstTiles = 1;             // 5th percentile of the coverage over the tiles
+  // 5th percentile of the coverage over the tiles with at least 100 intervals; 1 without such tiles
+  double worstTiles = 1;
   // Mean square error divided by that of the same number of independent samples. Plain Monte Carlo
   // has 1; less is better.
   double cost = 0;
 
-  uint64_t intervals() const { return trusted - exact; }
+  uint64_t intervals() const { return trusted - exact - bounds; }
   // Returns the share of the trusted intervals that contain the reference, and the half-width of
   // its own 95 % interval (E. B. Wilson's score).
   double share() const;

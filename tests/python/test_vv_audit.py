@@ -47,6 +47,28 @@ def test_an_audit_says_whether_the_error_bars_hold(vv):
     assert "ref.exr with its own error bars" in done.text
 
 
+# The light itself is exact there: what varies is which surface a sample meets.
+CORNER = """#VRML V2.0 utf8
+Viewpoint { position 0 1.5 4 }
+NavigationInfo { headlight FALSE }
+DirectionalLight { direction .3 -1 -.5 }
+DEF WHITE Shape { appearance Appearance { material Material { diffuseColor .8 .8 .8 } }
+  geometry Box { size 8 .1 8 } }
+Transform { translation 0 .6 0 rotation 0 1 0 .5 children Shape {
+  appearance Appearance { material Material { diffuseColor .3 .3 .3 } } geometry Box { } } }
+Transform { translation 0 2 -4 rotation 1 0 0 1.5707963 children USE WHITE }
+"""
+
+
+def test_an_audit_of_direct_light_holds(vv):
+    vv.write("corner.wrl", CORNER)
+    done = vv("corner.wrl", "--audit", "8", "--transport", "direct", "--colour", "vrml97", "--size", "48x48",
+              "--spp", "64", "-q")
+    assert done.returncode == 0, done.talk
+    assert value(done.text, "bounds") > .99, done.text
+    assert .92 < value(done.text, "coverage") < .98, done.text
+
+
 ROOM = """#VRML V2.0 utf8
 Viewpoint { position 0 1.5 6 orientation 1 0 0 -.15 }
 NavigationInfo { headlight FALSE }

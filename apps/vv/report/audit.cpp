@@ -145,6 +145,9 @@ std::string Audit::whatIsWrong() const {
   if (c.intervals() > 0 && c.worstTiles < .90)
     return "the coverage of the worst tiles is not what was promised";
   if (c.exact - c.exactHeld > c.exact / 100) return "exact pixels are not exact";
+  const double bounds = double(c.bounds), wrongBounds = double(c.bounds - c.boundsHeld);
+  if (wrongBounds > .05 * bounds + 3 * std::sqrt(.05 * .95 * bounds))
+    return "upper bounds are not bounds";
   // Fewer than nine in ten pictures agree with the prediction, by more than three standard errors.
   const double shots = double(c.shots);
   if (c.promiseShare() + 3 * std::sqrt(.09 / shots) < .9)
@@ -164,11 +167,17 @@ std::string Audit::text() const {
       c.exact - c.exactHeld == 1 ? "is" : "are");
   if (c.intervals())
     text += fmt::format("coverage    {:.4f} +- {:.4f} of the trusted 95 % intervals (wanted: 0.93 "
-                        "to 0.97); of all pixels {:.4f}\n"
-                        "tiles       5 % of the tiles of {}x{} pixels have a coverage below {:.3f} "
+                        "to 0.97); of all pixels {:.4f}\n",
+                        c.share(), c.shareInterval(), double(c.held) / double(c.pixels));
+  if (c.worstTiles < 1)
+    text += fmt::format("tiles       5 % of the tiles of {}x{} pixels have a coverage below {:.3f} "
                         "(wanted: at least 0.90)\n",
-                        c.share(), c.shareInterval(), double(c.held) / double(c.pixels), tileEdge,
-                        tileEdge, c.worstTiles);
+                        tileEdge, tileEdge, c.worstTiles);
+  if (c.bounds)
+    text += fmt::format("bounds      {:.4f} of the upper bounds hold, which {:.1f} % of the pixels "
+                        "have (wanted: at least 0.95)\n",
+                        double(c.boundsHeld) / double(c.bounds),
+                        100 * double(c.bounds) / double(c.pixels));
   text += fmt::format(
       "mean error  predicted {:.5g} +- {:.2g}, measured {:.5g}; both agree in {} of {} pictures\n",
       c.promised, c.promisedInterval, c.meanError, c.promiseHeld, c.shots);
