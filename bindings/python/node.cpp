@@ -100,6 +100,11 @@ void setAttribute(const NodeObject& self, const std::string& name, const py::han
     if (now != world) also = now->lock(); // a loose node has joined a world, which may be running
     browser = now->browser();
   }
+  if (now->openSteps > 0) {
+    if (nodes)
+      throw EditError("within a step, nodes are inserted, moved and removed by World.edit");
+    return now->change([&] { now->editor->set(*self.node, field->name, std::move(fresh)); });
+  }
   if (browser)
     now->change([&] { browser->set(*self.node, field->name, std::move(fresh)); });
   else

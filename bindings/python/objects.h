@@ -16,6 +16,7 @@
 #include "libpicture/live.h"
 #include "libpicture/renderer.h"
 #include "xvrml/browser.h"
+#include "xvrml/edit.h"
 #include "xvrml/world.h"
 
 namespace py = pybind11;
@@ -52,6 +53,8 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   int rank = 0; // longest chain of joins that leads here, for loose nodes
   // Fields that are sent as events when the world begins to run.
   std::vector<std::pair<xvrml::NodeRef, std::string>> initialEvents;
+  std::shared_ptr<xvrml::Editor> editor; // edits the world's file; null: it has not been edited
+  int openSteps = 0;                     // steps of the editor that are open
   LocksPtr locks = std::make_shared<WorldLocks>();
   std::shared_ptr<Viewers> viewers; // the open views of the world (viewer.h); null: none
   uint64_t edits = 0;               // grows whenever Python may have changed the world
@@ -215,6 +218,7 @@ void defineScripts(py::module_& module);
 void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
 void defineRender(py::object worldClass);
+void defineEditor(py::module_& module, py::object worldClass);
 // Gives shapes a surface shader, and returns how many. mayMatchNothing: no warning if it is none.
 size_t setShader(const WorldPtr& world, const std::string& selector, const std::string& shader,
                  bool mayMatchNothing);

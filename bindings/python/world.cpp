@@ -405,4 +405,5 @@ void defineWorld(py::module_& module) {
       .def("__repr__",
            [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
   defineRender(world);
+  defineEditor(module, world);
 }

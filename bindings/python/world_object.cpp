@@ -48,6 +48,7 @@ WorldObject::~WorldObject() {
   const Browser* ending = running.get();
   if (locks->callbacks == this) locks->callbacks = nullptr;
   dropped_.clear();
+  editor.reset();
   if (ending) locks->live.reset();
   renderer_.reset();
   running.reset(); // shuts down the Scripts
@@ -75,6 +76,7 @@ void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options
   locks->callbacks = this;
   change([&] {
     running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start, more);
+    if (editor) editor->run(*running);
     for (const auto& [node, field] : std::exchange(initialEvents, {}))
       running->set(*node, field, running->get(*node, field));
   });

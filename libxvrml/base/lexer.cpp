@@ -125,6 +125,7 @@ const char* Lexer::lexString(const char* p, bool& valid) const {
 
 void Lexer::lex() {
   comment_ = {};
+  consumed_ = position_;
   const char* p = skipSpace(position_);
   const char* start = p;
   bool valid = true;

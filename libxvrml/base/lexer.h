@@ -97,8 +97,11 @@ class Lexer {
     return comment_;
   }
 
-  // Raw access for loops over big arrays. Returns the first byte not yet consumed.
+  // Raw access for loops over big arrays. Returns the first byte not yet consumed; behind a token
+  // that has been peeked at, the white space before it is passed.
   const char* cursor() const { return peeked_ ? token_.at() : position_; }
+  // Returns the end of what has been consumed.
+  const char* consumed() const { return peeked_ ? consumed_ : position_; }
   const char* end() const { return end_; }
   void seek(const char* position) {
     position_ = position;
@@ -126,6 +129,7 @@ class Lexer {
   Locator& locator_;
   const char* end_;
   const char* position_;
+  const char* consumed_ = nullptr; // while a token is peeked at: the end of the one before it
   bool comments_ = true;
   Token token_;
   bool peeked_ = false;

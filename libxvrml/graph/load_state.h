@@ -15,6 +15,8 @@ namespace xvrml {
 inline constexpr uint64_t bytesOfRoute = 250, bytesOfName = 120, bytesOfDeclaration = 400,
                           bytesOfPrototype = 1000, bytesOfConnection = 120;
 
+struct TextLayout;
+
 struct LoadState {
   World& world;
   const LoadOptions& options;
@@ -26,6 +28,8 @@ struct LoadState {
   // For createVrmlFromString: roots of any type are accepted, because they may be added to any
   // field.
   bool anyRoots = false;
+  // Not null: the reader of the world's own file records there where everything stands.
+  TextLayout* layout = nullptr;
   bool full = false; // the budget has refused a node; reported once
   // Counts so far. Inlines can share a file that has neither routes nor Scripts.
   uint64_t routes = 0, scripts = 0;

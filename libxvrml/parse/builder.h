@@ -18,6 +18,11 @@ class Builder : public ParseSink {
  public:
   Builder(Locator& locator, LoadState& state, ParsedFile& file);
   void finish(); // called at the end of the file
+  // Return the innermost node that is open, and its field that is. There must be one.
+  const Node& innermostNode() const { return *nodes_.back().node; }
+  const FieldInfo& innermostField() const { return *nodes_.back().field; }
+  // Returns the node that a USE of this name refers to here; null if there is none.
+  const Node* named(std::string_view name) const;
   bool openNode(const Name& type, const Name* def) override;
   void closeNode(bool good) override;
   SourcePosition openNodePlace() const override;

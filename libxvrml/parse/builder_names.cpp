@@ -118,6 +118,12 @@ bool Builder::isOpen(const Node* node) const {
                      [&](const NodeFrame& frame) { return frame.node.get() == node; });
 }
 
+const Node* Builder::named(std::string_view name) const {
+  const auto& names = scopes_.back().scope->names;
+  const auto found = names.find(name);
+  return found == names.end() ? nullptr : found->second.get();
+}
+
 // Returns the node that a name refers to here, or null after a message.
 NodeRef Builder::findName(const Name& name) {
   const auto& names = scope().scope->names;

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <deque>
 #include <iterator>
+#include <optional>
 
 #include "lower_case.h"
 #include "parse/builder.h"
 #include "parse/parser.h"
 #include "parse/source.h"
+#include "parse/text_layout.h"
 #include "parse/vrml1/vrml1.h"
 
 namespace xvrml {
@@ -58,7 +60,10 @@ void readVrml(const WorldFile& file) {
   Locator locator(file.bytes, file.name, file.state.diagnostics);
   Builder builder(locator, file.state, file.content);
   Lexer lexer(locator);
-  Parser(lexer, file.state.options.limits, builder, file.budget.get(),
+  std::optional<LayoutRecorder> recorder;
+  if (file.state.layout) recorder.emplace(builder, locator, *file.state.layout);
+  ParseSink& sink = recorder ? static_cast<ParseSink&>(*recorder) : builder;
+  Parser(lexer, file.state.options.limits, sink, file.budget.get(),
          file.content.head.version.isX3d())
       .vrmlScene();
   builder.finish();

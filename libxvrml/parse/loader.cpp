@@ -42,7 +42,7 @@ Loader::Loader(World& world, const LoadOptions& options, uint64_t depth)
                 [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
 
 void Loader::load(const Source& source, const std::string& name,
-                  const std::optional<FileVersion>& fragment) {
+                  const std::optional<FileVersion>& fragment, TextLayout* layout) {
   const auto start = std::chrono::steady_clock::now();
   ParsedFile file;
   const auto sharedName = source.nameWithComments(name, depth_);
@@ -51,7 +51,9 @@ void Loader::load(const Source& source, const std::string& name,
   else
     source.identify(sharedName, state_.diagnostics);
   state_.anyRoots = fragment.has_value();
+  state_.layout = layout;
   parse(source, sharedName, file);
+  state_.layout = nullptr;
   state_.anyRoots = false;
   world_.times.parse = secondsSince(start);
   const std::string key = canonical(name);
@@ -334,11 +336,10 @@ namespace {
 // build uses 0.6 kB per level.
 constexpr size_t deepestStack = size_t(6) << 20;
 
-template <class MakeSource>
-std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
-                                MakeSource makeSource,
-                                const std::optional<FileVersion>& fragment = {},
-                                const BudgetPtr& budget = nullptr, uint64_t depth = 0) {
+template <class MakeSource> std::unique_ptr<World>
+loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource,
+         const std::optional<FileVersion>& fragment = {}, const BudgetPtr& budget = nullptr,
+         uint64_t depth = 0, TextLayout* layout = nullptr) {
   // One level more than Inlines have: an Inline of the text reports the limit by itself.
   if (depth > 0 && depth - 1 > options.limits.inlineDepth)
     throw LoadError{{Severity::error,
@@ -356,7 +357,7 @@ std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& opti
     if (budget) setBudget(*world, budget);
     const Source source = makeSource(budgetOf(*world));
     return onStackOf(deepestStack, [&] {
-      Loader(*world, world->options, depth).load(source, name, fragment);
+      Loader(*world, world->options, depth).load(source, name, fragment, layout);
       return std::move(world);
     });
   } catch (const std::bad_alloc&) {
@@ -377,6 +378,15 @@ std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::st
   return loadFrom(name, options, [&](const BudgetPtr& budget) {
     return Source::fromMemory(bytes, name, options.limits, budget);
   });
+}
+
+std::unique_ptr<World> loadWithLayout(std::string_view text, const std::string& name,
+                                      const LoadOptions& options, TextLayout& layout,
+                                      const std::optional<FileVersion>& fragment) {
+  return loadFrom(
+      name, options,
+      [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); },
+      fragment, nullptr, 0, &layout);
 }
 
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,

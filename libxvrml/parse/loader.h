@@ -18,8 +18,9 @@ class Loader {
   Loader(World& world, const LoadOptions& options, uint64_t depth = 0);
   // Loads the world's own file. Throws LoadError if nothing of it can be used.
   // fragment: the version that a text without a header follows; empty: the file has a header.
+  // layout: gets where everything stands in the text; null: nowhere.
   void load(const Source& source, const std::string& name,
-            const std::optional<FileVersion>& fragment = {});
+            const std::optional<FileVersion>& fragment = {}, TextLayout* layout = nullptr);
   // Loads the content of an Inline of a world that has already been loaded. enclosing: the files
   // around the Inline, innermost last, one for each enclosing Inline and one for itself.
   // node.content stays null if nothing could be loaded.
@@ -74,6 +75,11 @@ class Loader {
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
                                     const LoadOptions& options, const BudgetPtr& budget,
                                     uint64_t depth, const FileVersion& version);
+// Does the same as loadWorldFromMemory(), or as loadFragment() with a version, and fills the layout.
+// The layout stays empty for encodings other than VRML97 and X3D ClassicVRML.
+std::unique_ptr<World> loadWithLayout(std::string_view text, const std::string& name,
+                                      const LoadOptions& options, TextLayout& layout,
+                                      const std::optional<FileVersion>& fragment = {});
 // Does the same as loadWorld() for a world that becomes part of another one.
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
                                      const LoadOptions& options, uint64_t depth);

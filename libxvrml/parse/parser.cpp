@@ -101,10 +101,12 @@ bool Parser::node(const Name* def) {
 void Parser::openBody(const Token& type) {
   ++depth_;
   open_.push_back(type);
+  const char* const begin = lexer_.consumed();
   nodeBody(type);
   open_.pop_back();
   if (open_.size() <= keep_) keep_ = SIZE_MAX;
   --depth_;
+  sink_.placed(begin, lexer_.consumed());
   sink_.closeNode(true);
 }
 
@@ -173,6 +175,7 @@ bool Parser::field() {
   // kept.
   if (!good && listOfValues)
     good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
+  sink_.placed(from, lexer_.consumed());
   sink_.closeField(good);
   if (!good && listOfValues) skipRestOfList();
   const bool nodes = target.type == FieldType::SFNode || target.type == FieldType::MFNode;

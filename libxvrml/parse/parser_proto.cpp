@@ -179,7 +179,9 @@ bool Parser::scriptBodyElement() {
       (access == Access::field || access == Access::exposedField) && !isConnection;
   const FieldTarget target = sink_.openDeclaration(access, type, id, hasValue);
   const bool list = isMultiple(type) && lexer_.peek().is(TokenKind::bracketOpen);
+  const char* const from = lexer_.peek().at();
   const bool good = !hasValue || fieldValue(target);
+  sink_.placed(from, lexer_.consumed());
   sink_.closeDeclaration(good);
   if (!good && list && type != FieldType::MFNode) skipRestOfList();
   if (good && isConnection) {

@@ -27,6 +27,11 @@ class ParseSink {
  public:
   virtual ~ParseSink() = default;
 
+  // Says where the value of the open field, or the body of the open node, stands in the text: from
+  // its first byte to the one behind its last. The readers of VRML97 and of X3D ClassicVRML call it
+  // before closeField(), closeDeclaration() and closeNode().
+  virtual void placed(const char* begin, const char* end) { (void)begin, (void)end; }
+
   // node ::= nodeTypeId { nodeBody }
   // openNode: `def` is the DEF name or null. It returns false if the type is unknown; then the body
   // is skipped and the node is not closed. closeNode: `good` is false if the body could not be

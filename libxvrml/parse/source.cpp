@@ -123,6 +123,34 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
   out.fit();
 }
 
+} // namespace
+
+std::string packed(std::string_view text) {
+  z_stream stream{};
+  // 15 bits of window and a header of gzip.
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  std::string out;
+  char buffer[1 << 15];
+  int status = Z_OK;
+  do {
+    const size_t step = std::min<size_t>(text.size(), size_t(1) << 30);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = uInt(step);
+    text.remove_prefix(step);
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(buffer);
+      stream.avail_out = uInt(sizeof buffer);
+      status = deflate(&stream, text.empty() ? Z_FINISH : Z_NO_FLUSH);
+      out.append(buffer, sizeof buffer - stream.avail_out);
+    } while (stream.avail_out == 0);
+  } while (status != Z_STREAM_END);
+  deflateEnd(&stream);
+  return out;
+}
+
+namespace {
+
 bool isGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
 std::string_view firstLine(std::string_view text) {
@@ -230,7 +258,7 @@ Source Source::fromMemory(std::string_view bytes, const std::string& name, const
 }
 
 void Source::unpack(const std::string& name, const Limits& limits, const BudgetPtr& budget) {
-  if (isGzip(text_)) {
+  if ((packed_ = isGzip(text_))) {
     TextBuffer unpacked(budget);
     inflateAll(text_, name, limits, damage_, unpacked);
     buffer_ = std::move(unpacked); // the packed data is not needed any more
@@ -249,7 +277,7 @@ void Source::unpack(const std::string& name, const Limits& limits, const BudgetP
 Source::Source(Source&& other) noexcept
     : text_(other.text_), buffer_(std::move(other.buffer_)), damage_(std::move(other.damage_)),
       mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
-      byteOrderMark_(other.byteOrderMark_), utf16_(other.utf16_) {}
+      packed_(other.packed_), byteOrderMark_(other.byteOrderMark_), utf16_(other.utf16_) {}
 
 Source::~Source() {
   if (mapping_) munmap(mapping_, mappedBytes_);

@@ -55,6 +55,9 @@ void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres
 // a disk's sector, and the blanks around these.
 std::string_view withoutDosEnd(std::string_view text);
 
+// Returns the bytes of a gzip file with this text. Throws std::bad_alloc.
+std::string packed(std::string_view text);
+
 class Source {
  public:
   // Opens a file; "-" is standard input. budget: the world's budget, for the text that the source
@@ -76,6 +79,10 @@ class Source {
 
   // Returns the text after a byte-order mark.
   std::string_view text() const { return text_; }
+  // What the bytes of the file are beside the text.
+  bool isPacked() const { return packed_; } // gzip
+  bool hasByteOrderMark() const { return byteOrderMark_; }
+  bool isUtf16() const { return utf16_; }
   // Finds out what the file is: by its content or, where that says nothing, by its suffix. The name
   // `file` then carries the version (fileVersion). Throws LoadError if this is no world that can be
   // read. Warns if its header is not exact (ISO/IEC 14772-1 4.2.2, ISO/IEC 19776-2 4.3.2.2).
@@ -92,6 +99,7 @@ class Source {
   std::string damage_; // error in gzip data that could be read in part
   void* mapping_ = nullptr;
   size_t mappedBytes_ = 0;
+  bool packed_ = false;
   bool byteOrderMark_ = false; // the text began with a byte-order mark, which text_ leaves out
   bool utf16_ = false;         // the bytes were in UTF-16, and text_ is their UTF-8
 };

@@ -27,14 +27,14 @@ from ._camera import Pinhole
 from ._features import Feature, features
 from ._live import LiveView
 from ._world import loads
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Measurement, Mesh, Node,
-                     ParseError, Picture, RenderError, ViewpointInfo, Worker, World,
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, EditError, Editor, Film,
+                     Measurement, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo, Worker, World,
                      load_node_plugins, __version__)
 
 load = _arguments.explained(_xvrml.load)
 denoise = _arguments.explained(_xvrml.denoise)
 merge = _arguments.explained(_xvrml.merge)
-for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
+for _class in (World, Browser, Cluster, Editor, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
 
@@ -47,8 +47,8 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Feature", "Film", "LiveView",
-    "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "EditError", "Editor", "Feature", "Film",
+    "LiveView", "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
     "ViewpointInfo", "Worker", "World", "denoise", "features", "load", "load_node_plugins", "loads",
     "merge", "__version__", *nodes.__all__
 ]

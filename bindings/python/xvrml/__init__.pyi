@@ -44,6 +44,10 @@ class ParseError(ValueError):
     column: int
 
 
+class EditError(ValueError):
+    ...
+
+
 class RenderError(RuntimeError):
     ...
 
@@ -450,6 +454,89 @@ class Film:
         ...
 
 
+class EditStep:
+
+    def __enter__(self) -> None:
+        ...
+
+    def __exit__(self, arg0: object, arg1: object, arg2: object) -> None:
+        ...
+
+
+class Editor:
+
+    def __call__(self, name: str) -> EditStep:
+        ...
+
+    def set(self, node: Node, field: str, value: object) -> None:
+        ...
+
+    def insert(
+        self,
+        text: str,
+        parent: Optional[Node] = ...,
+        field: str = ...,
+        index: Optional[int] = ...,
+    ) -> Node:
+        ...
+
+    def use(
+        self,
+        node: Node,
+        parent: Optional[Node] = ...,
+        field: str = ...,
+        index: Optional[int] = ...,
+    ) -> None:
+        ...
+
+    def remove(self, node: Node, parent: Optional[Node] = ..., field: str = ...) -> None:
+        ...
+
+    def move(
+        self,
+        node: Node,
+        parent: Optional[Node] = ...,
+        field: str = ...,
+        index: Optional[int] = ...,
+    ) -> None:
+        ...
+
+    def duplicate(self, node: Node, parent: Optional[Node] = ..., field: str = ...) -> Node:
+        ...
+
+    def wrap(self, node: Node, type: str = ...) -> Node:
+        ...
+
+    def rename(self, node: Node, name: str) -> None:
+        ...
+
+    def add_route(self, from_node: Node, out: str, to_node: Node, in_: str) -> None:
+        ...
+
+    def delete_route(self, from_node: Node, out: str, to_node: Node, in_: str) -> None:
+        ...
+
+    def undo(self) -> Optional[str]:
+        ...
+
+    def redo(self) -> Optional[str]:
+        ...
+
+    @property
+    def changed(self) -> bool:
+        ...
+
+    @property
+    def read_only(self) -> Optional[str]:
+        ...
+
+    def text(self) -> str:
+        ...
+
+    def save(self, path: Optional[_Path] = ..., *, overwrite: bool = ...) -> None:
+        ...
+
+
 class World:
 
     def __init__(self) -> None:
@@ -489,6 +576,10 @@ class World:
 
     @property
     def epoch(self) -> float:
+        ...
+
+    @property
+    def edit(self) -> Editor:
         ...
 
     def __getitem__(self, name: str) -> Node:

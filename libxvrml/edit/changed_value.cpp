@@ -1,0 +1,138 @@
+#include "edit/changed_value.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/lexer.h"
+#include "base/visit_storage.h"
+#include "write/value_writer.h"
+#include "xvrml/numbers.h"
+
+namespace xvrml {
+namespace {
+
+void* storageOf(Value& value) {
+  return std::visit([](auto& stored) -> void* { return &stored; }, value);
+}
+
+// A value as the words that a file has for it; empty for one that is written as a whole.
+struct Words {
+  std::vector<std::string> words;
+  size_t ofElement = 1; // words of one element of a list
+};
+
+template <class T> void append(std::vector<std::string>& words, const T& value) {
+  if constexpr (Numeric<T>) {
+    for (int i = 0; i < numberCount<T>; ++i) writeNumber(words.emplace_back(), numbersOf(value)[i]);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    writeString(words.emplace_back(), value);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    words.emplace_back(value ? "TRUE" : "FALSE");
+  }
+}
+
+Words wordsOf(FieldType type, Value value) {
+  Words out;
+  visitStorage(type, storageOf(value), [&](auto& stored) {
+    using T = std::remove_reference_t<decltype(stored)>;
+    if constexpr (isList<T>) {
+      using Element = typename T::value_type;
+      if constexpr (Numeric<Element>) out.ofElement = size_t(numberCount<Element>);
+      for (const auto& element : std::as_const(stored)) append(out.words, element);
+    } else {
+      append(out.words, stored);
+    }
+  });
+  return out;
+}
+
+// Returns the tokens of a value's text, without brackets.
+std::vector<std::string_view> tokensOf(std::string_view text) {
+  Diagnostics none;
+  none.limit = 0;
+  Locator locator(text, nullptr, none);
+  Lexer lexer(locator);
+  std::vector<std::string_view> tokens;
+  for (Token token = lexer.next(); !token.is(TokenKind::end); token = lexer.next())
+    if (!token.is(TokenKind::bracketOpen) && !token.is(TokenKind::bracketClose))
+      tokens.push_back(token.text);
+  return tokens;
+}
+
+std::string whole(FieldType type, Value value, size_t indent) {
+  std::string out;
+  writeValue(out, type, storageOf(value), indent);
+  return out;
+}
+
+// Replaces the words that differ, where both values have the same number of words.
+std::string wordByWord(std::string_view text, const std::vector<std::string_view>& tokens,
+                       const Words& before, const Words& after) {
+  std::string out;
+  const char* at = text.data();
+  for (size_t i = 0; i < tokens.size(); ++i) {
+    if (before.words[i] == after.words[i]) continue;
+    out.append(at, tokens[i].data());
+    out += after.words[i];
+    at = tokens[i].data() + tokens[i].size();
+  }
+  return out.append(at, text.data() + text.size());
+}
+
+// Replaces the elements between those at the beginning and at the end that both lists share.
+std::string elementsBetween(std::string_view text, const std::vector<std::string_view>& tokens,
+                            const Words& before, const Words& after) {
+  const size_t size = before.ofElement,
+               most = std::min(before.words.size(), after.words.size()) / size;
+  const auto sameElement = [&](size_t i, size_t j) {
+    return std::equal(before.words.begin() + std::ptrdiff_t(i * size),
+                      before.words.begin() + std::ptrdiff_t((i + 1) * size),
+                      after.words.begin() + std::ptrdiff_t(j * size));
+  };
+  const size_t olds = before.words.size() / size, news = after.words.size() / size;
+  size_t first = 0, last = 0; // elements that stay at the beginning and at the end
+  while (first < most && sameElement(first, first)) ++first;
+  while (first + last < most && sameElement(olds - 1 - last, news - 1 - last)) ++last;
+  std::string middle;
+  for (size_t i = first * size; i < (news - last) * size; ++i) {
+    if (i > first * size) middle += i % size == 0 && size > 1 ? ", " : " ";
+    middle += after.words[i];
+  }
+  const auto beginOf = [&](size_t element) { return tokens[element * size].data(); };
+  const auto endOf = [&](size_t element) {
+    const std::string_view token = tokens[(element + 1) * size - 1];
+    return token.data() + token.size();
+  };
+  const char* const end = text.data() + text.size();
+  std::string out;
+  if (first < olds - last) { // some go
+    out.append(text.data(), beginOf(first)).append(middle);
+    if (!middle.empty()) return out.append(endOf(olds - last - 1), end);
+    // Nothing takes their place, so what separates them goes, too.
+    return last > 0 ? out.append(beginOf(olds - last), end)
+                    : std::string(text.data(), endOf(first - 1)) + " ]";
+  }
+  const std::string_view between = size > 1 ? ", " : " ";
+  if (first > 0)
+    return out.append(text.data(), endOf(first - 1))
+        .append(between)
+        .append(middle)
+        .append(endOf(first - 1), end);
+  return out.append(text.data(), beginOf(0)).append(middle).append(between).append(beginOf(0), end);
+}
+
+} // namespace
+
+std::string changedValue(std::string_view text, FieldType type, const Value& before,
+                         const Value& after, size_t indent) {
+  const Words olds = wordsOf(type, before), news = wordsOf(type, after);
+  const std::vector<std::string_view> tokens = tokensOf(text);
+  const bool known = !olds.words.empty() && tokens.size() == olds.words.size();
+  if (known && olds.words.size() == news.words.size()) return wordByWord(text, tokens, olds, news);
+  const bool inBrackets = text.starts_with('[') && text.ends_with(']');
+  if (known && inBrackets && !news.words.empty()) return elementsBetween(text, tokens, olds, news);
+  return whole(type, after, indent);
+}
+
+} // namespace xvrml

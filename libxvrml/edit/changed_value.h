@@ -1,0 +1,18 @@
+// changed_value.h: the text of a value that has been changed, with as little of the old text
+// changed as possible: comments, separators and numbers that stay are kept. [any thread]
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "xvrml/types.h"
+
+namespace xvrml {
+
+// Returns the text of the value `after` in the place of `text`, which is what a file of VRML97 has
+// for `before`. Both have the type, which is not of nodes. indent: the number of blanks before the
+// line, for long lists that are written anew.
+std::string changedValue(std::string_view text, FieldType type, const Value& before,
+                         const Value& after, size_t indent);
+
+} // namespace xvrml

@@ -1,0 +1,84 @@
+// document.h: a file that is being edited: its text, where everything stands in it, and the graph
+// of the file as it has been edited. The graph does not run: nothing that routes and Scripts do is
+// in it. Internal; one thread at a time.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "parse/text_layout.h"
+#include "xvrml/walk.h"
+
+namespace xvrml {
+
+// A text that nodes come from: the file, or one that was given to insert nodes.
+struct DocumentText {
+  std::string text;
+  TextLayout layout;
+  std::unique_ptr<World> world;
+  std::unordered_map<uint64_t, Node*> byPlace; // by line and column
+};
+
+class Document {
+ public:
+  // path: the file's name. text: its text without compression and byte-order mark. Throws
+  // LoadError.
+  Document(std::string text, const std::string& path, const LoadOptions& options);
+  ~Document();
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
+  Scope& scope() { return file().world->scope; }
+  const Scope& scope() const { return file().world->scope; }
+  const World& world() const { return *file().world; }
+  const DocumentText& file() const { return texts_.front(); }
+  DocumentText& file() { return texts_.front(); }
+
+  // Reads nodes from a text of VRML97 or X3D ClassicVRML without a header. name: for the places of
+  // its nodes, different from all others. Throws LoadError.
+  const DocumentText& read(const std::string& text, const std::string& name);
+  // Returns the node that stands at a place in the file or in one of these texts; null if there is
+  // none, or it is part of a prototype.
+  Node* find(const SourcePosition& place) const;
+  // Returns the text that a node of the document comes from, and where it stands there.
+  const DocumentText& textOf(const Node& node) const;
+  const NodeText& placeOf(const Node& node) const;
+
+  // Sets a field that holds no nodes. Its value before the first change is kept.
+  void set(Node& node, const FieldInfo& field, Value value);
+  // Returns the value that the text has for a field; null if the field has not been changed.
+  const Value* originalOf(const Node& node, const FieldInfo& field) const;
+  // Returns the list that a place is in: an MFNode, or the roots for null.
+  const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
+  void insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node);
+  void erase(Node* parent, const FieldInfo* field, size_t index);
+  void setNode(Node& parent, const FieldInfo& field, NodeRef child);
+  void rename(Node& node, const std::string& name);
+  // Returns the names of the file as it is now.
+  const std::map<std::string, NodeRef, std::less<>>& names();
+  // Returns a name that no node has yet, and that is not in `taken`: `wish`, or the wish with a
+  // number behind it.
+  std::string freshName(const std::string& wish,
+                        const std::set<std::string, std::less<>>& taken = {});
+  // Returns the nodes that stand anywhere in the file.
+  SeenNodes standing() const;
+
+ private:
+  void index(DocumentText& text);
+
+  MFNode& list(Node* parent, const FieldInfo* field);
+
+  const LoadOptions options_;
+  bool namesAreOld_ = false;       // nodes or their names have changed
+  std::deque<DocumentText> texts_; // the file first; a deque does not move its elements
+  std::map<std::string, DocumentText*, std::less<>> byName_;
+  std::unordered_map<const Node*, const DocumentText*> owners_;
+  std::unordered_map<const Node*, std::map<std::string, Value, std::less<>>> originals_;
+};
+
+} // namespace xvrml

@@ -1,0 +1,19 @@
+// in_place_writer.h: writes a document as its own text with what has been edited. Comments, order,
+// spaces and numbers that have not been edited stay as they are. Internal; one thread at a time.
+#pragma once
+
+#include <string>
+
+#include "edit/document.h"
+
+namespace xvrml {
+
+// Returns the text of the document. Recursion follows the nesting of nodes: call it on a stack for
+// Parser::maximumNesting.
+std::string writeInPlace(const Document& document);
+
+// Returns the text of a node with all that is in it, as the document has it, without indentation of
+// its own. A node with a name that stands further up in the file is written in full.
+std::string writeNode(const Document& document, const Node& node);
+
+} // namespace xvrml

@@ -1,0 +1,117 @@
+// edit.h: edits the file of a world: each edit changes the world at once, can be undone, and is
+// written back into the text of the file, which otherwise stays as it is.
+//
+// An edit belongs to the file, and not to what routes and Scripts have made of the world since it
+// began: of a field that an interpolator moves, only a value that was edited is written. Undo
+// restores what the edit has changed, and nothing else.
+//
+// Files of VRML97 and of X3D ClassicVRML can be edited, also packed with gzip. Nodes that stand in
+// the world's own file can be edited, and what has been inserted there; nodes in the bodies of
+// prototypes, of Inlines and of Scripts cannot.
+//
+// All functions are for the thread that owns the world. A function that throws EditError has
+// changed nothing.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "xvrml/browser.h"
+
+namespace xvrml {
+
+// Says in one sentence why an edit is not possible.
+struct EditError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// A place for a node: in a field of a node or, without a parent, among the roots of the file.
+struct NodeSlot {
+  Node* parent = nullptr;
+  std::string field; // an SFNode or MFNode; empty for the roots
+  size_t index = 0;  // in an MFNode or among the roots; one past the last appends
+};
+
+class Editor {
+ public:
+  // Edit a world that runs, or one that does not. The world must outlive the editor, and must not
+  // be replaced by another one (loadUrl, replaceWorld). The file is read at the first edit.
+  explicit Editor(Browser& browser);
+  explicit Editor(World& world);
+  // To be called when a browser has taken the world over, which then runs.
+  void run(Browser& browser);
+  ~Editor();
+  Editor(const Editor&) = delete;
+  Editor& operator=(const Editor&) = delete;
+
+  // --- Steps ---
+  // Edits from begin() to end() are one step, which is undone as a whole; other edits are a step
+  // each. Further values of a field within a step take the place of earlier ones. begin() and end()
+  // may nest; the outermost name counts. cancel() undoes the open step, if there is one.
+  void begin(std::string name);
+  void end();
+  void cancel();
+  // Undo the last step, or do again the one that was undone last. Return false if there is none.
+  // An edit after undo() forgets the steps that could be done again.
+  bool undo();
+  bool redo();
+  // Return the names of these steps; empty if there is none.
+  std::string undoName() const;
+  std::string redoName() const;
+
+  // Returns the places where a node stands in the world now: once where it is defined, and once for
+  // each USE. Places in Inlines and in the bodies of prototypes are left out.
+  std::vector<NodeSlot> placesOf(const Node& node);
+
+  // --- Edits ---
+  // Sets a field that holds no nodes. Throws EditError for a value of another type, out of the
+  // field's range, or with a number that is not finite.
+  void set(Node& node, std::string_view field, Value value);
+  // Inserts a node that is given as text in the encoding of the file, with all that is in it.
+  // Returns the node. In an SFNode it takes the place of the present one. Names that the file has
+  // already get a number behind them. Throws EditError if the text cannot be read as one node
+  // without routes and prototypes, or the node cannot stand there.
+  NodeRef insert(const NodeSlot& slot, std::string_view text);
+  // Lets a node of the file stand at a further place (USE). A node without a name gets one.
+  void use(const NodeSlot& slot, Node& node);
+  // Removes the node at a place. A node that also stands elsewhere stays there. Routes to and from
+  // nodes that are nowhere any more go with them.
+  void remove(const NodeSlot& slot);
+  // Moves a node. The index of the second slot is counted after the node has been taken out.
+  void move(const NodeSlot& from, const NodeSlot& to);
+  // Inserts a copy of the node at a place behind it (in an MFNode or among the roots), with names
+  // of its own, as the file has it: not as it has moved since the world began.
+  NodeRef duplicate(const NodeSlot& slot);
+  // Puts a new grouping node of this type around the node at a place. Returns the new node.
+  NodeRef wrap(const NodeSlot& slot, std::string_view type = "Transform");
+  // Gives a node a DEF name, or another one, in all of its references. Throws EditError for a name
+  // that is none or that another node has.
+  void rename(Node& node, const std::string& name);
+  // Add or remove a route between nodes of the file. Nodes without names get some.
+  void addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
+  void removeRoute(Node& from, std::string_view out, Node& to, std::string_view in);
+
+  // --- The file ---
+  // Returns why the world's file cannot be edited; empty if it can.
+  std::string whyReadOnly();
+  // Returns the text of the file with all edits. It has been read back, and gives the edited world.
+  // Throws EditError if it does not.
+  std::string text();
+  // Returns the bytes of the file with this text: with its byte-order mark, packed as it was.
+  std::string bytes();
+  // Returns whether there are edits that have not been saved.
+  bool isChanged() const;
+  // Returns whether another program has written to the file since it was read or saved.
+  bool isChangedOnDisk() const;
+  // To be called when bytes() has been written to the file.
+  void saved();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace xvrml

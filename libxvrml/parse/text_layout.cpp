@@ -1,0 +1,141 @@
+#include "parse/text_layout.h"
+
+#include <utility>
+
+#include "base/lexer.h"
+
+namespace xvrml {
+
+// Returns where the keyword before a name begins; the name's own place if something else stands
+// between them.
+size_t LayoutRecorder::keywordBefore(const Name& name, std::string_view keyword) const {
+  const std::string_view text = locator_.text();
+  const size_t own = offset(name.at);
+  size_t at = own;
+  while (at > 0 && isVrmlSpace(text[at - 1])) --at;
+  return at >= keyword.size() && text.substr(at - keyword.size(), keyword.size()) == keyword
+             ? at - keyword.size()
+             : own;
+}
+
+void LayoutRecorder::add(const NodePlace& place) {
+  if (nodes_.empty())
+    layout_.roots.push_back(place);
+  else if (nodes_.back().inField)
+    nodes_.back().field.nodes.push_back(place);
+}
+
+void LayoutRecorder::placed(const char* begin, const char* end) {
+  placed_ = {offset(begin), offset(end)};
+}
+
+bool LayoutRecorder::openNode(const Name& type, const Name* def) {
+  const bool made = builder_.openNode(type, def);
+  if (!made || !isRecording()) return made;
+  NodeText text;
+  text.whole.begin = offset(type.at);
+  if (def) {
+    text.whole.begin = keywordBefore(*def, "DEF");
+    text.name = spanOf(*def);
+  }
+  nodes_.push_back({&builder_.innermostNode(), std::move(text), false, {}});
+  return made;
+}
+
+void LayoutRecorder::closeNode(bool good) {
+  if (isRecording()) {
+    OpenNode closed = std::move(nodes_.back());
+    nodes_.pop_back();
+    closed.text.node = NodeRef(const_cast<Node*>(closed.node));
+    closed.text.body = placed_;
+    closed.text.whole.end = placed_.end;
+    add({closed.text.whole, closed.node, false});
+    layout_.nodes.emplace(closed.node, std::move(closed.text));
+  }
+  builder_.closeNode(good);
+}
+
+void LayoutRecorder::useNode(const Name& name) {
+  if (isRecording())
+    add({{keywordBefore(name, "USE"), spanOf(name).end}, builder_.named(name.text), true});
+  builder_.useNode(name);
+}
+
+void LayoutRecorder::nullNode(const Name& token) {
+  if (isRecording()) add({spanOf(token), nullptr, false});
+  builder_.nullNode(token);
+}
+
+void LayoutRecorder::beginField(std::string name, const char* at) {
+  OpenNode& open = nodes_.back();
+  open.inField = true;
+  open.field = {};
+  open.field.name = std::move(name);
+  open.field.whole.begin = offset(at);
+}
+
+void LayoutRecorder::endField(bool good) {
+  OpenNode& open = nodes_.back();
+  if (!std::exchange(open.inField, false)) return;
+  open.field.value = placed_;
+  open.field.whole.end = placed_.end;
+  open.field.readable = good;
+  open.text.fields.push_back(std::move(open.field));
+}
+
+FieldTarget LayoutRecorder::openField(const Name& name) {
+  const FieldTarget target = builder_.openField(name);
+  if (target.known && isRecording()) beginField(builder_.innermostField().name, name.at);
+  return target;
+}
+
+void LayoutRecorder::closeField(bool good) {
+  if (isRecording()) endField(good);
+  builder_.closeField(good);
+}
+
+FieldTarget LayoutRecorder::openDeclaration(Access access, FieldType type, const Name& name,
+                                            bool hasValue) {
+  const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
+  if (isRecording() && hasValue && target.known) beginField(std::string(name.text), name.at);
+  return target;
+}
+
+void LayoutRecorder::closeDeclaration(bool good) {
+  if (isRecording()) endField(good);
+  builder_.closeDeclaration(good);
+}
+
+void LayoutRecorder::openProto(const Name& name) {
+  ++prototypes_;
+  builder_.openProto(name);
+}
+
+void LayoutRecorder::closeProto(bool good) {
+  --prototypes_;
+  builder_.closeProto(good);
+}
+
+void LayoutRecorder::openExternProto(const Name& name) {
+  ++prototypes_;
+  builder_.openExternProto(name);
+}
+
+void LayoutRecorder::closeExternProto(bool good) {
+  --prototypes_;
+  builder_.closeExternProto(good);
+}
+
+void LayoutRecorder::route(const Name& keyword, const RouteNames& names) {
+  if (isRecording()) {
+    const SourcePosition place = locator_.place(keyword.at);
+    layout_.routes.push_back({{offset(keyword.at), spanOf(names.toField).end},
+                              spanOf(names.from),
+                              spanOf(names.to),
+                              place.line,
+                              place.column});
+  }
+  builder_.route(keyword, names);
+}
+
+} // namespace xvrml

@@ -1,0 +1,357 @@
+// xvrml_edit.cpp: Tests edits of a world's file: what becomes of its text, undo, and what is
+// refused.
+#include <random>
+
+#include "parse/source.h"
+#include "unit/xvrml_parser_support.h"
+#include "xvrml/edit.h"
+#include "xvrml/walk.h"
+
+namespace {
+
+using namespace parser_test;
+
+// A world of one file that is edited while it rests or runs.
+class Edited : public testing::TestWithParam<bool> {
+ protected:
+  void load(const std::string& body, const std::string& head = "#VRML V2.0 utf8\n") {
+    original = head + body;
+    path = folder.write("w.wrl", original);
+    resting = loadWorld(path);
+    ASSERT_EQ(messages(*resting), "");
+    if (GetParam()) {
+      browser = std::make_unique<Browser>(std::move(resting));
+      editor = std::make_unique<Editor>(*browser);
+    } else {
+      editor = std::make_unique<Editor>(*resting);
+    }
+  }
+  World& world() { return browser ? browser->world() : *resting; }
+  Node& node(const std::string& name) { return *world().scope.names.at(name); }
+  // Returns the text without the header.
+  std::string text() {
+    const std::string all = editor->text();
+    return all.substr(all.find('\n') + 1);
+  }
+  std::string body() const { return original.substr(original.find('\n') + 1); }
+  // Undoes all steps, which gives the file back, and does them again.
+  void undoAll() {
+    const std::string now = editor->text();
+    size_t steps = 0;
+    while (editor->undo()) ++steps;
+    EXPECT_EQ(editor->text(), original);
+    EXPECT_FALSE(editor->isChanged());
+    while (editor->redo()) --steps;
+    EXPECT_EQ(steps, 0u);
+    EXPECT_EQ(editor->text(), now);
+  }
+  template <class F> std::string refusal(const F& edit) {
+    const std::string before = editor->text();
+    try {
+      edit();
+    } catch (const EditError& error) {
+      EXPECT_EQ(editor->text(), before) << "nothing has changed";
+      return error.what();
+    }
+    return "done";
+  }
+
+  const Folder folder;
+  std::string original, path;
+  std::unique_ptr<World> resting;
+  std::unique_ptr<Browser> browser;
+  std::unique_ptr<Editor> editor;
+};
+INSTANTIATE_TEST_SUITE_P(World, Edited, testing::Bool(),
+                         [](const auto& info) { return info.param ? "Running" : "Resting"; });
+
+TEST_P(Edited, AValueChangesInItsPlace) {
+  load("# a lamp\nDEF L PointLight {\n  intensity 0.50 # half\n\tlocation 0 1 0\n}\n");
+  editor->set(node("L"), "intensity", 0.75f);
+  EXPECT_EQ(text(), "# a lamp\nDEF L PointLight {\n  intensity 0.75 # half\n\tlocation 0 1 0\n}\n");
+  EXPECT_EQ((field<SFFloat>(node("L"), "intensity")), 0.75f);
+  EXPECT_TRUE(editor->isChanged());
+  EXPECT_EQ(editor->undoName(), "Set PointLight.intensity");
+  undoAll();
+}
+
+TEST_P(Edited, AbsentFieldsAreAdded) {
+  load("Transform {\n    children [\n        DEF L PointLight { intensity 0 }\n"
+       "        DEF M PointLight {}\n        DEF N PointLight {\n            intensity 0\n"
+       "        }\n        DEF O PointLight {\n        }\n    ]\n}\n");
+  for (const char* name : {"L", "M", "N", "O"}) editor->set(node(name), "radius", 5.f);
+  EXPECT_EQ(text(),
+            "Transform {\n    children [\n        DEF L PointLight { intensity 0 radius 5 }\n"
+            "        DEF M PointLight { radius 5 }\n        DEF N PointLight {\n"
+            "            intensity 0\n            radius 5\n"
+            "        }\n        DEF O PointLight {\n          radius 5\n        }\n    ]\n}\n");
+  undoAll();
+}
+
+TEST_P(Edited, NodesAreInsertedRemovedAndMoved) {
+  load("DEF G Group {\n  children [\n    DEF A Shape { } # the first\n    DEF B Shape { }\n"
+       "  ]\n}\nDEF H Group { children [ ] }\nDEF I Group { }\n");
+  editor->insert({&node("G"), "children", 1}, "DEF C Shape { geometry Box { } }");
+  EXPECT_EQ(text(), "DEF G Group {\n  children [\n    DEF A Shape { } # the first\n"
+                    "    DEF C Shape { geometry Box { } }\n    DEF B Shape { }\n"
+                    "  ]\n}\nDEF H Group { children [ ] }\nDEF I Group { }\n");
+  undoAll();
+  editor->remove({&node("G"), "children", 2});
+  EXPECT_EQ(text(), "DEF G Group {\n  children [\n    DEF A Shape { } # the first\n"
+                    "    DEF C Shape { geometry Box { } }\n"
+                    "  ]\n}\nDEF H Group { children [ ] }\nDEF I Group { }\n");
+  editor->move({&node("G"), "children", 0}, {&node("H"), "children", 0});
+  EXPECT_EQ(text(), "DEF G Group {\n  children [\n    # the first\n"
+                    "    DEF C Shape { geometry Box { } }\n"
+                    "  ]\n}\nDEF H Group { children [\n  DEF A Shape { }\n] }\nDEF I Group { }\n");
+  editor->move({&node("H"), "children", 0}, {&node("I"), "children", 0});
+  editor->move({nullptr, "", 0}, {nullptr, "", 2});
+  EXPECT_EQ(field<MFNode>(node("I"), "children").size(), 1u);
+  EXPECT_EQ(field<MFNode>(node("H"), "children").size(), 0u);
+  undoAll();
+}
+
+TEST_P(Edited, RootsAreInsertedAndRemoved) {
+  load("DEF A Group { }\n\n# of B\nDEF B Group { }\n");
+  editor->insert({nullptr, "", 0}, "DEF C Group { }");
+  editor->insert({nullptr, "", 3}, "DEF D Group { }");
+  EXPECT_EQ(text(),
+            "DEF C Group { }\nDEF A Group { }\n\n# of B\nDEF B Group { }\nDEF D Group { }\n");
+  editor->remove({nullptr, "", 1});
+  editor->remove({nullptr, "", 1});
+  EXPECT_EQ(text(), "DEF C Group { }\n\n# of B\nDEF D Group { }\n");
+  undoAll();
+}
+
+TEST_P(Edited, ANodeThatStandsElsewhereStays) {
+  load("DEF G Group { children [ DEF S Shape { geometry Box { } } ] }\n"
+       "Group { children [ USE S ] }\n");
+  editor->remove({&node("G"), "children", 0});
+  EXPECT_EQ(text(), "DEF G Group { children [ ] }\n"
+                    "Group { children [ DEF S Shape { geometry Box { } } ] }\n");
+  undoAll();
+}
+
+TEST_P(Edited, UsesGetNames) {
+  load("Group { children [ Shape { geometry Box { } } ] }\nDEF H Group { }\n");
+  Node& shape = *field<MFNode>(*world().scope.roots[0], "children")[0];
+  editor->use({&node("H"), "children", 0}, shape);
+  EXPECT_EQ(text(), "Group { children [ DEF Shape Shape { geometry Box { } } ] }\n"
+                    "DEF H Group { children [\n  USE Shape\n] }\n");
+  EXPECT_EQ(editor->placesOf(shape).size(), 2u);
+  undoAll();
+}
+
+TEST_P(Edited, NamesChangeWithAllReferences) {
+  load("DEF T TimeSensor { }\nDEF I ScalarInterpolator { }\nGroup { children [ USE T ] }\n"
+       "ROUTE T.fraction_changed TO I.set_fraction\n");
+  editor->rename(node("T"), "Clock");
+  EXPECT_EQ(text(), "DEF Clock TimeSensor { }\nDEF I ScalarInterpolator { }\n"
+                    "Group { children [ USE Clock ] }\n"
+                    "ROUTE Clock.fraction_changed TO I.set_fraction\n");
+  EXPECT_EQ(&node("Clock"), world().scope.roots[0].get());
+  undoAll();
+  EXPECT_EQ(refusal([&] { editor->rename(node("Clock"), "I"); }), "another node is named I");
+  EXPECT_EQ(refusal([&] { editor->rename(node("Clock"), "1 2"); }), "'1 2' is no name for a node");
+}
+
+TEST_P(Edited, RoutesAreAddedAndRemoved) {
+  load("DEF T TimeSensor { }\nDEF I ScalarInterpolator { }\n"
+       "ROUTE T.fraction_changed TO I.set_fraction # old\nDEF P PointLight { }");
+  editor->addRoute(node("I"), "value_changed", node("P"), "set_intensity");
+  EXPECT_EQ(text(), "DEF T TimeSensor { }\nDEF I ScalarInterpolator { }\n"
+                    "ROUTE T.fraction_changed TO I.set_fraction # old\nDEF P PointLight { }\n"
+                    "ROUTE I.value_changed TO P.set_intensity\n");
+  editor->removeRoute(node("T"), "fraction_changed", node("I"), "set_fraction");
+  EXPECT_EQ(text().find("fraction_changed"), std::string::npos);
+  undoAll();
+  while (editor->undo()) {}
+  editor->remove({nullptr, "", 0}); // its route goes with it
+  EXPECT_EQ(text(), "DEF I ScalarInterpolator { }\n# old\nDEF P PointLight { }");
+  EXPECT_TRUE(editor->undo());
+  EXPECT_EQ(editor->text(), original);
+}
+
+TEST_P(Edited, ANodeIsWrappedAndCopied) {
+  load("DEF G Group {\n  children [\n    DEF S Shape {\n      geometry DEF B Box { }\n    }\n"
+       "  ]\n}\n");
+  editor->wrap({&node("G"), "children", 0});
+  EXPECT_EQ(text(), "DEF G Group {\n  children [\n    Transform {\n      children [\n"
+                    "        DEF S Shape {\n          geometry DEF B Box { }\n        }\n"
+                    "      ]\n    }\n  ]\n}\n");
+  undoAll();
+  editor->undo();
+  editor->set(node("B"), "size", Vec3f{1, 2, 3});
+  const NodeRef copy = editor->duplicate({&node("G"), "children", 0});
+  EXPECT_EQ(copy->defName, "S_2");
+  EXPECT_EQ(text(), "DEF G Group {\n  children [\n    DEF S Shape {\n"
+                    "      geometry DEF B Box { size 1 2 3 }\n    }\n    DEF S_2 Shape {\n"
+                    "      geometry DEF B_2 Box { size 1 2 3 }\n    }\n  ]\n}\n");
+}
+
+TEST_P(Edited, StepsAreUndoneAsAWhole) {
+  load("DEF L PointLight { intensity 0 }\n");
+  editor->begin("Drag");
+  for (int i = 1; i <= 100; ++i) editor->set(node("L"), "intensity", float(i) / 100);
+  editor->set(node("L"), "on", false);
+  editor->end();
+  EXPECT_EQ(editor->undoName(), "Drag");
+  undoAll();
+  editor->begin("Other");
+  editor->set(node("L"), "on", true);
+  editor->cancel();
+  EXPECT_EQ(text(), "DEF L PointLight { intensity 1 on FALSE }\n");
+  EXPECT_TRUE(editor->undo());
+  EXPECT_EQ(editor->redoName(), "Drag");
+  editor->set(node("L"), "radius", 1.f);
+  EXPECT_FALSE(editor->redo()) << "forgotten";
+  EXPECT_TRUE(editor->undo());
+  EXPECT_FALSE(editor->undo());
+}
+
+TEST_P(Edited, FieldsOfInstancesAndScripts) {
+  load("PROTO Lamp [ field SFFloat bright 1 exposedField SFBool lit TRUE ] {\n"
+       "  DEF INNER PointLight { intensity IS bright on IS lit } }\n"
+       "DEF P Lamp { }\nDEF S Script { field SFFloat x 1 field SFNode n DEF K Group { } }\n");
+  editor->set(node("P"), "bright", .5f);
+  editor->set(node("S"), "x", 2.f);
+  editor->remove({&node("S"), "n", 0});
+  EXPECT_EQ(renderedNode(&node("P"))->type().name, "PointLight");
+  EXPECT_EQ((field<SFFloat>(*renderedNode(&node("P")), "intensity")), .5f);
+  EXPECT_NE(text().find("DEF P Lamp { bright 0.5 }\nDEF S Script { field SFFloat x 2"),
+            std::string::npos)
+      << text();
+  Node* const inner = renderedNode(&node("P"));
+  EXPECT_EQ(refusal([&] { editor->set(*inner, "radius", 1.f); }),
+            "this PointLight of line 3 belongs to the body of a prototype: edit the fields of the "
+            "instance");
+}
+
+TEST_P(Edited, WhatIsRefusedIsSaid) {
+  load("DEF L PointLight { }\nDEF G Group { children Group { children USE L } }\n");
+  Node &lamp = node("L"), &group = node("G");
+  EXPECT_EQ(refusal([&] { editor->set(lamp, "intensity", 2.f); }),
+            "PointLight.intensity: a number is outside of [0,1]");
+  EXPECT_EQ(refusal([&] { editor->set(lamp, "radius", std::numeric_limits<float>::infinity()); }),
+            "PointLight.radius: a number is not finite, which no file can say");
+  EXPECT_EQ(refusal([&] { editor->set(lamp, "intensity", Vec3f{}); }),
+            "PointLight.intensity is SFFloat");
+  EXPECT_EQ(refusal([&] { editor->set(lamp, "colour", 1.f); }),
+            "there is no field PointLight.colour");
+  EXPECT_EQ(refusal([&] {
+              editor->insert({&group, "children", 0}, "Box { }");
+            }),
+            "Box cannot be in field children of Group: expected child");
+  EXPECT_EQ(refusal([&] {
+              editor->insert({&group, "children", 5}, "Group { }");
+            }),
+            "there is no place 5 among 1 nodes");
+  EXPECT_EQ(refusal([&] {
+              editor->insert({&group, "children", 0}, "Group { } Group { }");
+            }),
+            "the text must be that of one node, without routes and prototypes");
+  EXPECT_NE(refusal([&] { editor->insert({&group, "children", 0}, "Grupp { }"); }), "done");
+  Node& within = *field<MFNode>(group, "children")[0];
+  EXPECT_EQ(refusal([&] {
+              editor->use({&within, "children", 0}, group);
+            }),
+            "this Group would become a part of itself");
+  EXPECT_EQ(refusal([&] {
+              editor->move({nullptr, "", 1}, {&within, "children", 0});
+            }),
+            "this Group would become a part of itself");
+  EXPECT_EQ(refusal([&] { editor->wrap({&group, "children", 0}, "Shape"); }).substr(0, 5), "Shape");
+}
+
+TEST_P(Edited, LineEndsAndTheByteOrderMarkStay) {
+  load("DEF G Group {\r\n}\r\n", "#VRML V2.0 utf8\r\n");
+  editor->insert({&node("G"), "children", 0}, "Group { }");
+  EXPECT_EQ(editor->text(), "#VRML V2.0 utf8\r\nDEF G Group {\r\n  children [\r\n    Group { }\r\n"
+                            "  ]\r\n}\r\n");
+  EXPECT_EQ(editor->bytes(), editor->text());
+}
+
+TEST(Editor, PackedFilesStayPacked) {
+  const Folder folder;
+  const std::string text = "#VRML V2.0 utf8\nDEF L PointLight { }\n";
+  const std::string path = folder.write("w.wrz", packed(text));
+  const auto world = loadWorld(path);
+  Editor editor(*world);
+  EXPECT_EQ(editor.whyReadOnly(), "");
+  editor.set(*world->scope.names.at("L"), "on", false);
+  const std::string bytes = editor.bytes();
+  EXPECT_EQ(bytes.substr(0, 2), "\x1f\x8b");
+  const auto read = loadWorldFromMemory(bytes, "w.wrz");
+  EXPECT_FALSE(field<SFBool>(*read->scope.names.at("L"), "on"));
+  EXPECT_FALSE(editor.isChangedOnDisk());
+  folder.write("w.wrz", bytes);
+  EXPECT_TRUE(editor.isChangedOnDisk());
+  editor.saved();
+  EXPECT_FALSE(editor.isChangedOnDisk());
+  EXPECT_FALSE(editor.isChanged());
+}
+
+TEST(Editor, FilesThatCannotBeEditedAreSaid) {
+  const Folder folder;
+  const auto why = [&](const std::string& name, const std::string& text) {
+    const auto world = loadWorld(folder.write(name, text));
+    Editor editor(*world);
+    return editor.whyReadOnly();
+  };
+  EXPECT_NE(why("a.x3d", "<X3D><Scene></Scene></X3D>").find("is X3D XML"), std::string::npos);
+  EXPECT_NE(why("a.stl", "solid a\nendsolid\n").find("is STL"), std::string::npos);
+  const auto world = loadWorldFromMemory("#VRML V2.0 utf8\n", "-");
+  EXPECT_EQ(Editor(*world).whyReadOnly(), "the world does not come from a file");
+}
+
+// Random edits, all undone, give the file back; all done again, the edited one.
+TEST_P(Edited, RandomEditsCanBeUndone) {
+  load("DEF C2 Group { }\n# one\nDEF A Transform {\n  translation 1 2 3 # here\n  children [\n"
+       "    DEF B Shape { geometry DEF C Box { size 1 1 1 } }, # comma\n    USE B\n"
+       "    Group { children DEF D Transform { } }\n  ]\n}\n"
+       "DEF E Group { children [ USE C2 ] }\n"
+       "DEF T TimeSensor { }\nROUTE T.time TO T.startTime\n"
+       "PROTO P [ field SFVec3f s 1 1 1 exposedField MFNode kids [ ] ]\n"
+       "{ Group { children IS kids } }\nDEF I P { kids [ Group { } ] }\n");
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](size_t n) { return size_t(random() % n); };
+    for (int i = 0; i < 60; ++i) {
+      // All nodes of the file, as they stand now.
+      std::vector<Node*> nodes;
+      walk(rootsOf(world().scope), [&](Node& one, std::vector<Node*>& open) {
+        nodes.push_back(&one);
+        appendChildren(one, open);
+      });
+      const auto any = [&]() -> Node& { return *nodes[below(nodes.size())]; };
+      const auto slot = [&]() -> NodeSlot {
+        if (below(4) == 0) return {nullptr, "", below(world().scope.roots.size() + 1)};
+        Node& parent = any();
+        for (const char* name : {"children", "kids", "geometry"})
+          if (const FieldInfo* info = parent.type().find(name))
+            return {&parent, name,
+                    info->type == FieldType::SFNode
+                        ? 0
+                        : below(field<MFNode>(parent, name).size() + 1)};
+        return {nullptr, "", 0};
+      };
+      try {
+        switch (below(8)) {
+        case 0: editor->set(any(), "translation", Vec3f{float(below(9)), .5f, -1}); break;
+        case 1: editor->set(any(), "size", Vec3f{1, float(below(9)) + 1, 2}); break;
+        case 2: editor->insert(slot(), "DEF N Transform { children [ Group { } ] }"); break;
+        case 3: editor->remove(slot()); break;
+        case 4: editor->move(slot(), slot()); break;
+        case 5: editor->use(slot(), any()); break;
+        case 6: editor->wrap(slot()); break;
+        default: editor->rename(any(), "R" + std::to_string(below(99)));
+        }
+      } catch (const EditError&) {}
+    }
+    undoAll();
+    while (editor->undo()) {}
+    EXPECT_EQ(editor->text(), original) << seed;
+  }
+}
+
+} // namespace
