@@ -319,7 +319,7 @@ void LiveRenderer::Impl::map(FrameRequest frame) {
 }
 
 std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
-  const FrameInFlight flight = std::move(inFlight.front());
+  FrameInFlight flight = std::move(inFlight.front());
   inFlight.pop_front();
   rtFinishFrame();
   throwOnError("rendering");
@@ -331,7 +331,8 @@ std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
     lastStill = nullptr;
   }
   stage.describe(flight.settings, result->result);
-  stage.readChannels(flight.settings, result->picture, &flight.names);
+  result->picture.names = std::move(flight.names);
+  stage.readChannels(flight.settings, result->picture);
   result->result.map = flight.map;
   result->whole =
       !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
@@ -470,8 +471,8 @@ bool LiveRenderer::Impl::look(LivePicture& out) {
   out.ended = true;
   out.rebuilding = finished->rebuilding;
   out.denoisedBy = finished->denoisedBy;
-  out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
-                                   finished->result.stats.time.render);
+  out.overhead =
+      std::max(0.0, finished->seconds - finished->rebuilding - finished->result.stats.time.render);
   out.map = finished->result.map;
   out.stats = finished->result.stats;
   return true;

@@ -118,6 +118,7 @@ const std::vector<float>& rgbaOf(const Picture& picture) {
 
 Picture withChannels(const Picture& picture, uint32_t channels) {
   Picture out{picture, {}};
+  if (!hasNames(channels)) out.names.clear();
   for (const auto& [bit, plane] : picture.planes)
     if (channels & bit) out.planes[bit] = plane;
   return out;

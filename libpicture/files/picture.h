@@ -55,7 +55,20 @@ struct Picture : PictureFacts {
   std::map<uint32_t, std::vector<float>> planes;
 };
 
-// Returns the picture with those of its channels that are named.
+// Gives a picture these channels: makes a plane of its size for each, in the order of the table.
+// fill(channel, plane) returns whether it could fill the plane; if not, no further one is made.
+template <class Fill> bool fillChannels(Picture& picture, uint32_t channels, const Fill& fill) {
+  for (const Channel& channel : channelTable()) {
+    if (!(channels & channel.bit)) continue;
+    std::vector<float>& plane = picture.planes[channel.bit];
+    plane.resize(size_t(picture.width) * size_t(picture.height) * size_t(channel.components));
+    if (!fill(channel.bit, plane)) return false;
+  }
+  return true;
+}
+
+// Returns the picture with those of its channels that are named, and without names that none of
+// them has.
 Picture withChannels(const Picture& picture, uint32_t channels);
 
 // Keeps a rectangle of the pixels of a whole picture, which must lie within it.
