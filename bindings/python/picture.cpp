@@ -78,7 +78,7 @@ py::object item(const py::object& self, const py::object& key) {
       if (p.planes.count(one.bit)) known += (known.empty() ? "" : ", ") + std::string(one.name);
     throw py::key_error(fmt::format("no channel {}; the picture has {}", name, known));
   }
-  if (channel->bit == RT_NAME || channel->bit == RT_SAMPLES) return counts(p, *channel);
+  if (channel->isWhole) return counts(p, *channel);
   return floats(self, *channel);
 }
 
