@@ -62,7 +62,7 @@ namespace {
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
   const bool loads =
       in.name == "load" && static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
-  if (in.name == "url" || loads) loadInlineContent(static_cast<Engine&>(events), node);
+  if (in.name == "url" || loads) loadInlineContent(Engine::of(events), node);
 }
 
 } // namespace

@@ -10,73 +10,65 @@
 namespace xvrml {
 
 Engine::Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser)
-    : Events(diagnostics, browser), observer(makeObserver(*this)) {}
+    : observer(makeObserver(*this)), diagnostics_(diagnostics), browser_(browser) {}
 
 // An eventOut sends once per cascade (4.10.3, 4.10.4). If nothing receives the event, only its last
 // value is stored.
-void Events::send(Node& from, const FieldInfo& out, Value value) {
-  auto& engine = static_cast<Engine&>(*this);
+void Engine::send(Node& from, const FieldInfo& out, Value value) {
   if (value.index() != size_t(out.type)) return;
-  Participant& part = engine.part(from);
-  Participant::Out& state = part.out(out);
-  if (state.cascade == engine.cascade_) return;
-  state.cascade = engine.cascade_;
-  if (!part.links.empty() || !part.listeners.empty())
-    engine.queue_.push_back({NodeRef(&from), &out, std::move(value), false});
+  Participant& sender = part(from);
+  Participant::Out& state = sender.out(out);
+  if (state.cascade == cascade_) return;
+  state.cascade = cascade_;
+  if (!sender.links.empty() || !sender.listeners.empty())
+    queue_.push_back({NodeRef(&from), &out, std::move(value), false});
   else if (out.access == Access::eventOut)
     state.last = std::move(value);
 }
 
-void Events::preset(Node& from, const FieldInfo& out, Value value) {
+void Engine::preset(Node& from, const FieldInfo& out, Value value) {
   if (value.index() != size_t(out.type) || out.access != Access::eventOut) return;
-  Participant::Out& state = static_cast<Engine&>(*this).part(from).out(out);
+  Participant::Out& state = part(from).out(out);
   if (state.cascade == 0) state.last = std::move(value);
 }
 
-bool Events::hasSent(const Node& from, const FieldInfo& out) const {
+bool Engine::hasSent(const Node& from, const FieldInfo& out) const {
   const Participant* part = from.live ? liveOf(from)->part.get() : nullptr;
   const Participant::Out* state = part ? part->findOut(out) : nullptr;
-  return state && state->cascade == static_cast<const Engine&>(*this).cascade_;
+  return state && state->cascade == cascade_;
 }
 
-void Events::send(Node& from, std::string_view out, Value value) {
-  if (const FieldInfo* field = from.type().findEventOut(out)) send(from, *field, std::move(value));
-}
-
-void Events::post(Node& to, const FieldInfo& in, Value value) {
+void Engine::post(Node& to, const FieldInfo& in, Value value) {
   if (value.index() != size_t(in.type)) return;
-  auto& engine = static_cast<Engine&>(*this);
-  engine.adopt(to);
-  engine.queue_.push_back({NodeRef(&to), &in, std::move(value), true});
+  adopt(to);
+  queue_.push_back({NodeRef(&to), &in, std::move(value), true});
 }
 
-Value Events::lastSent(const Node& node, const FieldInfo& out) const {
+Value Engine::lastSent(const Node& node, const FieldInfo& out) const {
   if (out.access != Access::eventOut) return node.get(out);
   const Participant* part = node.live ? liveOf(node)->part.get() : nullptr;
   const Participant::Out* state = part ? part->findOut(out) : nullptr;
   return state ? state->last : defaultValue(out.type);
 }
 
-NodeState* Events::state(Node& node) const {
+NodeState* Engine::state(Node& node) const {
   return node.live && liveOf(node)->part ? liveOf(node)->part->state.get() : nullptr;
 }
 
-void Events::wantTicks(Node& node, bool wanted) {
-  auto& engine = static_cast<Engine&>(*this);
-  engine.adopt(node);
+void Engine::wantTicks(Node& node, bool wanted) {
+  adopt(node);
   if (wanted)
-    engine.ticking_[liveOf(node)->order] = &node;
+    ticking_[liveOf(node)->order] = &node;
   else
-    engine.ticking_.erase(liveOf(node)->order);
+    ticking_.erase(liveOf(node)->order);
 }
 
-void Events::wantLooks(Node& node, bool wanted) {
-  auto& engine = static_cast<Engine&>(*this);
-  engine.adopt(node);
+void Engine::wantLooks(Node& node, bool wanted) {
+  adopt(node);
   if (wanted)
-    engine.looking_[liveOf(node)->order] = &node;
+    looking_[liveOf(node)->order] = &node;
   else
-    engine.looking_.erase(liveOf(node)->order);
+    looking_.erase(liveOf(node)->order);
 }
 
 void Engine::beginCascade(double time) {

@@ -311,8 +311,7 @@ bool Engine::wouldCreateCycle(Node& parent, const Value& value) {
   return std::any_of(many.begin(), many.end(), inside);
 }
 
-bool Events::store(Node& node, const FieldInfo& field, Value value) {
-  auto& engine = static_cast<Engine&>(*this);
+bool Engine::store(Node& node, const FieldInfo& field, Value value) {
   if (!holdsValue(field) || value.index() != size_t(field.type)) return false;
   if (holdsNodes(field)) {
     const bool inHierarchy = node.type().index >= 0 && !node.type().expand;
@@ -327,7 +326,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     const bool keeps = keepsNull(node.type()) || !inHierarchy;
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
-    if (inHierarchy && engine.wouldCreateCycle(node, value)) {
+    if (inHierarchy && wouldCreateCycle(node, value)) {
       diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.4.4)",
                                                  field.name, node.type().name));
       return false;
@@ -338,37 +337,36 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
         for (const NodeRef& child : *many)
           if (child) visit(*child);
     };
-    each(value, [&](Node& child) { engine.adopt(child); });
+    each(value, [&](Node& child) { adopt(child); });
     const Value old = node.get(field);
     if (inHierarchy && node.live) {
       each(old, [&](Node& child) {
-        if (child.live) engine.unlinkChild(node, child);
+        if (child.live) unlinkChild(node, child);
       });
-      each(value, [&](Node& child) { engine.linkChild(node, child); });
+      each(value, [&](Node& child) { linkChild(node, child); });
     }
     node.set(field, std::move(value));
   } else {
     node.set(field, std::move(value));
   }
   if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
-  engine.mirror(node, field);
+  mirror(node, field);
   changed(node, field);
   return true;
 }
 
-void Events::changed(Node& node, const FieldInfo& field) {
-  auto& engine = static_cast<Engine&>(*this);
-  if (node.type().expand && node.live) engine.outdated_.emplace_back(&node);
+void Engine::changed(Node& node, const FieldInfo& field) {
+  if (node.type().expand && node.live) outdated_.emplace_back(&node);
   if (field.change == Change::none || !node.live || node.type().index < 0) return;
   Live& live = *liveOf(node);
-  engine.observer->changed(node, field);
-  if (!reaches(node, field.change)) engine.markReach(node, field, "it has been changed");
+  observer->changed(node, field);
+  if (!reaches(node, field.change)) markReach(node, field, "it has been changed");
   const size_t index = size_t(&field - node.type().fields.data());
   if (index < 64) {
     if (live.changed >> index & 1) return;
     live.changed |= uint64_t(1) << index;
   }
-  engine.changes_.push_back({NodeRef(&node), &field});
+  changes_.push_back({NodeRef(&node), &field});
 }
 
 FieldChanges Engine::takeChanges() {
