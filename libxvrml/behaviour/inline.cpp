@@ -25,7 +25,7 @@ std::vector<std::string> enclosingFiles(const Node& node) {
 
 // A field `load` FALSE takes the content away (ISO/IEC 19775-1 9.4.2).
 bool loadInlineContent(Engine& engine, Node& node) {
-  auto* inlineNode = dynamic_cast<InlineNode*>(&node);
+  auto* inlineNode = nodeCast<InlineNode>(&node);
   if (!inlineNode || !engine.browser()) return false;
   if (!inlineNode->load && !inlineNode->content) return false;
   World& world = engine.browser()->world();
@@ -48,7 +48,7 @@ bool loadInlineContent(Engine& engine, Node& node) {
 uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
   uint64_t loaded = 0;
   walk(rootsOf(scope), [&](Node& node, std::vector<Node*>& open) {
-    const auto* inlineNode = dynamic_cast<const InlineNode*>(&node);
+    const auto* inlineNode = nodeCast<InlineNode>(&node);
     if (inlineNode && inlineNode->load && !inlineNode->content && !inlineNode->url.empty())
       loaded += loadInlineContent(engine, node);
     childrenInHierarchy(node, open);

@@ -31,7 +31,7 @@ bool isReadable(const Node& node, const FieldInfo& field, const MFString& urls,
 Loaded loadedOf(Events& events, const Node& written) {
   const Node* node = renderedNode(const_cast<Node*>(&written));
   if (!node) return Loaded::no;
-  if (const auto* content = dynamic_cast<const InlineNode*>(node)) {
+  if (const auto* content = nodeCast<InlineNode>(node)) {
     if (content->content) return Loaded::yes;
     return content->tried && content->load ? Loaded::no : Loaded::waits;
   }

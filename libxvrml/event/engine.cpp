@@ -144,11 +144,16 @@ void Engine::followLinks(Event& event) {
 
 void Engine::deliver(Node& node, const FieldInfo& in, const Value& value, const FileName& urlBase) {
   ++delivered_;
-  if (node.type().index >= 0) return deliverToStatic(node, in, value);
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&node))
-    return deliverToInstance(*instance, in, value, urlBase);
-  auto& script = static_cast<ScriptNode&>(node);
-  if (in.access == Access::exposedField && store(node, in, value)) send(node, in, value);
+  if (auto* instance = nodeCast<ProtoInstance>(&node))
+    deliverToInstance(*instance, in, value, urlBase);
+  else if (auto* script = nodeCast<ScriptNode>(&node))
+    deliverToScript(*script, in, value);
+  else
+    deliverToStatic(node, in, value);
+}
+
+void Engine::deliverToScript(ScriptNode& script, const FieldInfo& in, const Value& value) {
+  if (in.access == Access::exposedField && store(script, in, value)) send(script, in, value);
   if (scripts) scripts->receive(script, in, value);
 }
 

@@ -175,6 +175,7 @@ class Engine final : public Events {
                const FileName& urlBase = nullptr);
   void deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value,
                          FileName urlBase);
+  void deliverToScript(ScriptNode& script, const FieldInfo& in, const Value& value);
   void deliverToStatic(Node& node, const FieldInfo& in, const Value& value);
   void sendFromInstance(ProtoInstance& instance, const FieldInfo& out, const Value& value,
                         bool keeps);

@@ -22,7 +22,7 @@ uint64_t bytesOf(const Value& value) {
 NodeRef makeNobody() {
   auto type = std::make_shared<NodeType>();
   type->name = "Script";
-  type->index = -1;
+  type->index = ScriptNode::typeIndex;
   return NodeRef(new ScriptNode(std::move(type)));
 }
 
@@ -278,14 +278,14 @@ void ScriptHost::end(ScriptNode& node) noexcept {
   script.waiting.clear();
   script.nodeCopy = nobody_;
   try {
-    const NodeRef copy(new ScriptNode(node.typePtr));
-    auto& nodeCopy = static_cast<ScriptNode&>(*copy);
-    nodeCopy.values.swap(node.values); // readers of the node find the values that its type declares
-    nodeCopy.source = node.source;
-    nodeCopy.defName = node.defName;
-    script.nodeCopy = copy;
+    auto* const copy = new ScriptNode(node.typePtr);
+    const NodeRef kept(copy);
+    copy->values.swap(node.values); // readers of the node find the values that its type declares
+    copy->source = node.source;
+    copy->defName = node.defName;
+    script.nodeCopy = kept;
   } catch (const std::bad_alloc&) {} // shutdown() finds no fields
-  script.node = static_cast<ScriptNode*>(script.nodeCopy.get());
+  script.node = nodeCast<ScriptNode>(script.nodeCopy);
   script.handles.setOwn(script.node);
 }
 

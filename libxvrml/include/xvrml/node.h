@@ -94,7 +94,9 @@ inline bool holdsValue(const FieldInfo& field) {
 // long as any node of the type.
 struct NodeType {
   std::string name;
-  int index; // position in the registry's list of static types; -1 for prototypes and scripts
+  // Position in the registry's list of static types. Negative for types that a world declares:
+  // ProtoInstance::typeIndex and ScriptNode::typeIndex (world.h).
+  int index;
   // Stands in bytes that were padding, so that node plug-ins made earlier still fit.
   Standard standard = Standard::none;
   // Roles that the node can take in SFNode and MFNode fields: child, grouping, geometry, appearance
@@ -175,10 +177,13 @@ inline NodeRef::~NodeRef() {
 }
 
 // Returns the node if it is exactly of the concrete type, else null: nodeCast<nodes::Box>(ref).
-// Generated structs have a static `typeIndex`. That of a built-in node never changes, because
-// programs have it compiled in (libxvrml/nodes/numbers.txt).
+// Generated structs, ProtoInstance and ScriptNode have a static `typeIndex`. That of a built-in
+// node never changes, because programs have it compiled in (libxvrml/nodes/numbers.txt).
 template <class T> T* nodeCast(Node* node) {
   return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr;
+}
+template <class T> const T* nodeCast(const Node* node) {
+  return nodeCast<T>(const_cast<Node*>(node));
 }
 template <class T> T* nodeCast(const NodeRef& ref) { return nodeCast<T>(ref.get()); }
 
