@@ -165,14 +165,10 @@ void Engine::deliverToStatic(Node& node, const FieldInfo& in, const Value& value
     if (behaviour && behaviour->accept && !behaviour->accept(*this, node, in, value)) return;
     if (!store(node, in, value)) return;
     send(node, in, holdsNodes(in) || hasNormalizedAxes(in) ? node.get(in) : value);
-  } else if (in.name.starts_with("set_")) {
-    if (const FieldInfo* field = node.type().find(std::string_view(in.name).substr(4));
-        field && field->type == in.type)
-      store(node, *field, value);
+  } else if (const FieldInfo* field = node.type().fieldSetBy(in)) {
+    store(node, *field, value);
   }
-  // Metadata has no effect on its node (ISO/IEC 19775-1 7.3.3).
-  const bool isMetadata = in.type == FieldType::SFNode && in.name == "metadata";
-  if (behaviour && behaviour->receive && !isMetadata) behaviour->receive(*this, node, in, value);
+  if (behaviour && behaviour->receive && !in.isMetadata) behaviour->receive(*this, node, in, value);
 }
 
 // Forwards an event into the body. An exposedField stores its value itself, unless an exposedField

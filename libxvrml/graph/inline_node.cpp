@@ -12,6 +12,7 @@ NodeRef makeStaticNode(const NodeType& type) {
 const FieldInfo& addField(NodeType& type, FieldInfo field) {
   uint32_t offset = 0;
   for (const FieldInfo& other : type.fields) offset += holdsValue(other);
+  field.sets = -1; // the field may be that of a static type
   field.offset = offset;
   return type.fields.emplace_back(std::move(field));
 }

@@ -94,8 +94,7 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& 
   field.defaultValue = defaultValue(type);
   // A Script of VRML97 may declare a field of that name, which X3D gives to every node.
   if (isScript() && isVrml97() && field.name == "metadata")
-    std::erase_if(target.fields,
-                  [](const FieldInfo& own) { return own.ofX3d && own.name == "metadata"; });
+    std::erase_if(target.fields, [](const FieldInfo& own) { return own.isMetadata; });
   const uint64_t limit = state_.options.limits.interfaceFields;
   declaration.accepted = target.fields.size() < limit;
   if (!declaration.accepted && std::exchange(fullInterface_, &target) != &target)

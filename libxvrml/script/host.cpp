@@ -154,7 +154,7 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
   const auto found = scripts_.find(key);
   if (found == scripts_.end()) return;
   Script& script = *found->second;
-  if (in.name == "url") { // another program (6.40)
+  if (&in == script.url) { // another program (6.40)
     stop(script);
     script.stopped = false;
     script.nextUrl = 0;
@@ -166,7 +166,7 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
     engine_.requestScriptStart();
     return;
   }
-  if (!Script::isOwn(in) || script.stopped || (!script.engine && !script.startPending)) return;
+  if (in.isMetadata || script.stopped || (!script.engine && !script.startPending)) return;
   const bool atOnce = script.flag(XS_MUST_EVALUATE) && script.waiting.empty() && script.ready();
   bool& waits = due_[key];
   if (atOnce) return deliver(script, in, value);
@@ -195,8 +195,9 @@ void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) 
 
 void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value) {
   if (!script.ready() || !script.engine->event) return;
+  // Both names are the same string of the Script's type.
   const auto named = std::find_if(script.fields.begin(), script.fields.end(),
-                                  [&](const XsField& f) { return f.name == in.name; });
+                                  [&](const XsField& f) { return f.name == in.name.c_str(); });
   const auto index = uint32_t(named - script.fields.begin());
   LentValue event;
   const XsValue& lent = event.lend(value, script.handles);

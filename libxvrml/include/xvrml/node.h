@@ -84,6 +84,11 @@ struct FieldInfo {
   // SFNode and MFNode: accepted abstract or concrete node types, separated by blanks; empty: any.
   std::string nodeTypes;
   std::string text; // one line of documentation
+  // The rest is derived from the names when a static type is made, so that events compare none.
+  // Index of the field x in NodeType::fields that an eventIn set_x sets; -1: it sets none.
+  int sets = -1;
+  // The SFNode that X3D gives to every node. It has no effect on its node (ISO/IEC 19775-1 7.3.3).
+  bool isMetadata = false;
 };
 // Returns whether nodes store a value of the field: a field or an exposedField, not an event.
 inline bool holdsValue(const FieldInfo& field) {
@@ -97,7 +102,6 @@ struct NodeType {
   // Position in the registry's list of static types. Negative for types that a world declares:
   // ProtoInstance::typeIndex and ScriptNode::typeIndex (world.h).
   int index;
-  // Stands in bytes that were padding, so that node plug-ins made earlier still fit.
   Standard standard = Standard::none;
   // Roles that the node can take in SFNode and MFNode fields: child, grouping, geometry, appearance
   // ...
@@ -117,6 +121,10 @@ struct NodeType {
   // Also find set_x and x_changed of an exposedField x (clause 4.7).
   const FieldInfo* findEventIn(std::string_view name) const;
   const FieldInfo* findEventOut(std::string_view name) const;
+  // Returns the field x that an eventIn set_x of a static node sets; null: it sets none.
+  const FieldInfo* fieldSetBy(const FieldInfo& in) const {
+    return in.sets < 0 ? nullptr : &fields[size_t(in.sets)];
+  }
 };
 // Returns false if a number of the value lies outside the field's range, or is NaN and the field
 // has a range.
