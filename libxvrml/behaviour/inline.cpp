@@ -1,6 +1,7 @@
 #include "behaviour/inline.h"
 
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "event/hierarchy.h"
 #include "graph/inline_node.h"
 #include "parse/loader.h"
@@ -41,7 +42,7 @@ bool loadInlineContent(Engine& engine, Node& node) {
   if (const uint64_t after = budget->used(); after > before)
     inlineNode->share.adopt(budget, after - before);
   engine.contentLoaded(node);
-  engine.changed(node, fieldOf<nodes::Inline>("url"));
+  engine.changed(node, *fieldNamed<"url">(node));
   return inlineNode->content != nullptr;
 }
 
@@ -60,9 +61,9 @@ namespace {
 
 // load TRUE of an Inline that has its content, or FALSE of one that has none, changes nothing.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
-  const bool loads =
-      in.name == "load" && static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
-  if (in.name == "url" || loads) loadInlineContent(Engine::of(events), node);
+  const bool loads = isField<"load">(node, in) &&
+                     static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
+  if (isField<"url">(node, in) || loads) loadInlineContent(Engine::of(events), node);
 }
 
 } // namespace
