@@ -88,6 +88,12 @@ Background readBackground(const std::string& text) {
   refuse(text);
 }
 
+void setBackdrop(const Background& background, PictureFacts& picture) {
+  picture.transparent = background.kind == Background::Kind::none;
+  picture.backdrop.reset();
+  if (background.kind == Background::Kind::backdrop) picture.backdrop = background.colour;
+}
+
 BackgroundLayer::BackgroundLayer(const Background& background, bool linear) {
   if (background.kind == Background::Kind::file) read(background.file, linear);
   if (background.kind != Background::Kind::colour) return;

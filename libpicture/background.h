@@ -11,6 +11,8 @@
 
 namespace picture {
 
+struct PictureFacts;
+
 struct Background {
   // backdrop: a colour that screens and files for them show, and programs do not read
   enum class Kind : unsigned char { world, none, colour, file, backdrop } kind = Kind::world;
@@ -26,6 +28,9 @@ Background readBackground(const std::string& text);
 inline constexpr const char* backgroundForms =
     "none, a colour (a name such as white, #rgb, #rrggbb, or R,G,B from 0 to 1) or a picture (png, "
     "jpg, gif, exr, hdr, pfm)";
+
+// Sets what a picture says about its background: whether it is transparent, and its backdrop.
+void setBackdrop(const Background& background, PictureFacts& picture);
 
 // Draws a background behind frames: a colour, or a picture. The picture is centred and scaled until
 // it covers the frame; it is neither rotated nor stretched.

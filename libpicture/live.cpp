@@ -321,7 +321,7 @@ void LiveRenderer::Impl::map(FrameRequest frame) {
 }
 
 std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
-  const FrameInFlight flight = std::move(inFlight.front());
+  FrameInFlight flight = std::move(inFlight.front());
   inFlight.pop_front();
   rtFinishFrame();
   throwOnError("rendering");
@@ -333,7 +333,8 @@ std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
     lastStill = nullptr;
   }
   stage.describe(flight.settings, result->result);
-  stage.readChannels(flight.settings, result->picture, &flight.names);
+  result->picture.names = std::move(flight.names);
+  stage.readChannels(flight.settings, result->picture);
   result->result.map = flight.map;
   result->whole =
       !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));

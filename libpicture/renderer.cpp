@@ -35,13 +35,11 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A started frame, and the facts that are known only at its start.
+// A frame that is set up or has begun, and the facts that are known only at its start.
 struct FrameInFlight {
   RenderSettings settings;
-  RenderResult result{};
-  std::vector<std::string> names;
-  xvrml::CameraSettings camera{}; // its shader is compared with null and not used
-  bool otherWorld = false;        // the first frame of another world
+  RenderResult result{};   // without pixels and statistics; the camera still has its shader
+  bool otherWorld = false; // the first frame of another world
 };
 
 // denoisedBy: the library that has filtered the picture; "": none has.
@@ -155,91 +153,91 @@ struct Renderer::Impl {
     if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
   }
 
-  void noteCamera(RenderResult& result) const {
-    result.camera = stage.shown();
-    result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
-  }
-
   void apply(const WorldChanges& worldChanges) {
     stage.apply(worldChanges);
     otherWorld |= worldChanges.otherWorld;
   }
 
-  void beginWithSums() {
-    if (const Sums sums = std::exchange(continueFrom, Sums())) rtContinueFrom(sums.get());
-  }
-
-  // Returns the settings of the next frame.
-  RenderSettings nextFrame() {
-    RenderSettings frame = stage.settings;
-    if (frame.preview) {
-      live::drawFreshSamples(frame, previews++);
-      live::askForGuides(frame);
+  // Maps the world for a view and sets up its frame. Returns what is known before the frame begins.
+  FrameInFlight setUp(const View& view) {
+    const auto begin = Clock::now();
+    stage.prepare(view);
+    FrameInFlight frame;
+    RenderResult& result = frame.result;
+    // meshes are built once, with the first picture
+    result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
+    result.map = stage.mapper()->stats();
+    result.camera = stage.shown();
+    frame.otherWorld = std::exchange(otherWorld, false);
+    frame.settings = stage.settings;
+    if (frame.settings.preview) {
+      live::drawFreshSamples(frame.settings, previews++);
+      live::askForGuides(frame.settings);
     }
+    // The guides of a preview have names, too, but nobody asks for their nodes.
+    if (hasNames(frame.settings.channels)) result.picture.names = stage.mapper()->names();
+    if (hasNames(stage.settings.channels)) result.nodes = stage.mapper()->nodes();
+    stage.setUpFrame(frame.settings);
+    if (inFlight.empty()) lastEnd = Clock::now();
+    if (const Sums sums = std::exchange(continueFrom, Sums())) rtContinueFrom(sums.get());
     return frame;
   }
 
+  // Completes the result of a frame that has ended.
+  RenderResult complete(FrameInFlight frame) {
+    throwOnError("rendering");
+    RenderResult result = std::move(frame.result);
+    // for overlapping frames: the time since the previous frame ended
+    result.renderSeconds = secondsSince(lastEnd);
+    lastEnd = Clock::now();
+    stage.reportMessages(); // safe here: the browser's thread is waiting
+    result.interrupted = cancelled;
+    stage.readChannels(frame.settings, result.picture);
+    rebuild(frame, result);
+    result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
+    stage.describe(frame.settings, result);
+    return result;
+  }
+
   // Replaces the samples of a frame by the picture that is rebuilt from them, if it is a preview.
-  void rebuild(const RenderSettings& frame, const xvrml::CameraSettings& camera, bool newWorld,
-               RenderResult& result) {
-    if (newWorld && reconstruction) reconstruction->reset();
-    if (!frame.preview || result.interrupted) return;
-    if (!reconstruction) reconstruction.emplace(frame.threads);
-    if (frame.denoiser == Denoiser::oidn && !denoiser) denoiser = newDenoiser(frame.threads);
-    const bool transparent = result.picture.transparent;
-    const auto backdrop = result.picture.backdrop;
-    result.picture = reconstruction->add(
-        result.picture, {camera, double(frame.width) / frame.height}, 1, denoiser.get());
+  void rebuild(const FrameInFlight& frame, RenderResult& result) {
+    const RenderSettings& settings = frame.settings;
+    if (frame.otherWorld && reconstruction) reconstruction->reset();
+    if (!settings.preview || result.interrupted) return;
+    if (!reconstruction) reconstruction.emplace(settings.threads);
+    if (settings.denoiser == Denoiser::oidn && !denoiser) denoiser = newDenoiser(settings.threads);
+    result.picture = reconstruction->add(result.picture,
+                                         {result.camera, double(settings.width) / settings.height},
+                                         1, denoiser.get());
     if (const std::string& problem = reconstruction->facts().problem; !problem.empty())
       throw RenderError(problem);
-    result.picture.transparent = transparent;
-    result.picture.backdrop = backdrop;
-    result.picture.note = previewNote(frame.samples, denoiser ? denoiser->name() : "");
+    result.picture.note = previewNote(settings.samples, denoiser ? denoiser->name() : "");
     result.renderSeconds += reconstruction->facts().seconds;
     lastEnd = Clock::now();
   }
 
+  RenderResult render(const View& view) {
+    FrameInFlight frame = setUp(view);
+    rtRender();
+    return complete(std::move(frame));
+  }
+
   void start(const View& view) {
-    const auto begin = Clock::now();
     doing = "mapping";
-    stage.prepare(view);
-    FrameInFlight flight;
-    flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
-    flight.result.map = stage.mapper()->stats();
-    if (hasNames(stage.settings.channels)) {
-      flight.names = stage.mapper()->names();
-      flight.result.nodes = stage.mapper()->nodes();
-    }
-    noteCamera(flight.result);
-    flight.camera = stage.shown();
-    flight.otherWorld = std::exchange(otherWorld, false);
-    flight.settings = nextFrame();
-    stage.setUpFrame(flight.settings);
+    FrameInFlight frame = setUp(view);
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
-    if (inFlight.empty()) lastEnd = Clock::now();
     doing = "building";
-    beginWithSums();
     rtSwapBuffers();
     doing = "";
     throwOnError("rendering");
-    inFlight.push_back(std::move(flight));
+    inFlight.push_back(std::move(frame));
   }
 
-  void finish(RenderResult& result) {
-    const FrameInFlight flight = std::move(inFlight.front());
+  RenderResult finish() {
+    FrameInFlight frame = std::move(inFlight.front());
     inFlight.pop_front();
     rtFinishFrame();
-    throwOnError("rendering");
-    result = flight.result;
-    // for overlapping frames: the time since the previous frame ended
-    result.renderSeconds = secondsSince(lastEnd);
-    lastEnd = Clock::now();
-    stage.reportMessages();
-    result.interrupted = cancelled;
-    stage.readChannels(flight.settings, result.picture, &flight.names);
-    rebuild(flight.settings, flight.camera, flight.otherWorld, result);
-    stage.describe(flight.settings, result);
-    result.map = flight.result.map;
+    return complete(std::move(frame));
   }
 
   void measure(const View& view, std::vector<Measurement>& out) {
@@ -257,27 +255,6 @@ struct Renderer::Impl {
       out.back().interrupted = cancelled;
     }
     stage.reportMessages(); // safe here: the browser's thread is waiting
-  }
-
-  void render(const View& view, RenderResult& result) {
-    auto start = Clock::now();
-    stage.prepare(view);
-    // meshes are built once, with the first picture
-    result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds();
-    noteCamera(result);
-    const RenderSettings frame = nextFrame();
-    stage.setUpFrame(frame);
-    start = Clock::now();
-    beginWithSums();
-    rtRender();
-    throwOnError("rendering");
-    result.renderSeconds = secondsSince(start);
-    stage.reportMessages(); // safe here: the browser's thread is waiting
-    result.interrupted = cancelled;
-    stage.readChannels(frame, result.picture);
-    rebuild(frame, stage.shown(), std::exchange(otherWorld, false), result);
-    stage.describe(frame, result);
-    if (hasNames(stage.settings.channels)) result.nodes = stage.mapper()->nodes();
   }
 };
 
@@ -416,7 +393,7 @@ void Renderer::start(const View& view) {
 RenderResult Renderer::finish() {
   if (impl_->inFlight.empty()) throw RenderError("no frame is in flight");
   RenderResult result{};
-  impl_->run([&] { impl_->finish(result); });
+  impl_->run([&] { result = impl_->finish(); });
   return result;
 }
 
@@ -440,7 +417,7 @@ RenderResult Renderer::render(const View& view) {
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
     impl_->apply(worldChanges);
-    impl_->render(view, result);
+    result = impl_->render(view);
   });
   return result;
 }

@@ -31,21 +31,21 @@ std::string withoutCall(const std::string& message) {
 
 double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
 
-// Allocates each wanted channel; `fill` returns whether it could fill it.
-template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t channels,
-                                        Picture& picture, const Fill& fill) {
-  for (const Channel& channel : channelTable()) {
-    if (!(channels & channel.bit)) continue;
-    std::vector<float>& plane = picture.planes[channel.bit];
-    plane.resize(size_t(settings.width) * size_t(settings.height) * size_t(channel.components));
-    if (!fill(channel.bit, plane)) return false;
-  }
-  return true;
+// Sets what the settings of a frame say about its whole picture.
+void setFacts(const RenderSettings& frame, PictureFacts& picture) {
+  picture.width = frame.width;
+  picture.height = frame.height;
+  picture.linear = frame.linear;
+  picture.view = frame.view;
+  picture.depthAlongRay = frame.quality.whole(RT_DEPTH_ALONG) == RT_DEPTH_ALONG_RAY;
+  setBackdrop(frame.background, picture);
 }
 
-} // namespace
-
-namespace {
+// Keeps the part of a picture that its settings ask for.
+void keepCrop(const RenderSettings& frame, Picture& picture) {
+  if (const Crop& crop = frame.crop; crop.width > 0)
+    cut(picture, crop.x, crop.y, crop.width, crop.height);
+}
 
 // Returns the first number of each number's name: Shapes of one name are one object.
 std::vector<uint32_t> unitedNames(const std::vector<std::string>& names) {
@@ -296,45 +296,26 @@ void Stage::setUpFrame(const RenderSettings& frame) {
   throwOnError("frame");
 }
 
-void Stage::describe(const RenderSettings& frame, Picture& picture, uint32_t channels) const {
-  picture.width = frame.width;
-  picture.height = frame.height;
-  picture.linear = frame.linear;
-  picture.view = frame.view;
-  picture.depthAlongRay = frame.quality.whole(RT_DEPTH_ALONG) == RT_DEPTH_ALONG_RAY;
-  picture.transparent = frame.background.kind == Background::Kind::none;
-  if (frame.background.kind == Background::Kind::backdrop)
-    picture.backdrop = frame.background.colour;
-  if (hasNames(channels)) picture.names = mapper_->names();
-}
-
-// Keeps the part of a picture that its settings ask for.
-static void keepCrop(const RenderSettings& frame, Picture& picture) {
-  if (const Crop& crop = frame.crop; crop.width > 0)
-    cut(picture, crop.x, crop.y, crop.width, crop.height);
-}
-
 bool Stage::snapshot(Picture& picture, uint32_t channels) const {
   const RTcontext context = context_;
   const auto copied = [&](uint32_t channel, std::vector<float>& plane) {
     return rtSnapshot(context, channel, plane.data(), plane.size()) != 0;
   };
   if (!context) return false;
+  setFacts(settings, picture);
   // Other tiles finish meanwhile. Reading RT_SAMPLES first ensures that counted samples have data.
-  if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
-  if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
-  describe(settings, picture, channels);
+  if (!fillChannels(picture, channels & RT_SAMPLES, copied)) return false;
+  if (!fillChannels(picture, channels & ~uint32_t(RT_SAMPLES), copied)) return false;
+  if (hasNames(channels)) picture.names = mapper_->names();
   if (channels & RT_RGBA)
     backgroundLayer_.compositeOver(picture.planes[RT_RGBA], settings.width, settings.height);
   keepCrop(settings, picture);
   return true;
 }
 
-void Stage::readChannels(const RenderSettings& frame, Picture& picture,
-                         const std::vector<std::string>* names) const {
-  describe(frame, picture, names ? 0 : frame.channels);
-  if (names) picture.names = *names;
-  fillChannels(frame, frame.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
+void Stage::readChannels(const RenderSettings& frame, Picture& picture) const {
+  setFacts(frame, picture);
+  fillChannels(picture, frame.channels, [](uint32_t channel, std::vector<float>& plane) {
     rtReadPixels(channel, plane.data(), plane.size());
     throwOnError("reading the picture");
     return true;
@@ -345,8 +326,7 @@ void Stage::readChannels(const RenderSettings& frame, Picture& picture,
 }
 
 void Stage::describe(const RenderSettings& frame, RenderResult& result) const {
-  result.map = mapper_->stats();
-  result.missing = pluginMissing_ || result.map.missingTextures > 0;
+  result.missing = pluginMissing_ || mapper_->stats().missingTextures > 0;
   result.stats.size = sizeof result.stats;
   rtGetStats(&result.stats);
   if (frame.cluster) result.workers = frame.cluster->workers();

@@ -68,11 +68,11 @@ class Stage {
   // Sets size, channels and quality of the next frame, from the settings or from others.
   void setUpFrame() { setUpFrame(settings); }
   void setUpFrame(const RenderSettings& frame);
-  // Reads the channels of the finished frame, which had these settings. `names` are the names at
-  // its start; null: the current names.
-  void readChannels(const RenderSettings& frame, Picture& picture,
-                    const std::vector<std::string>* names = nullptr) const;
-  void describe(const RenderSettings& frame, RenderResult& result) const; // adds the statistics
+  // Reads the channels of the finished frame, which had these settings. The names are left as they
+  // are: a picture has those at the start of its frame.
+  void readChannels(const RenderSettings& frame, Picture& picture) const;
+  // Adds the statistics of the finished frame, but not those of the mapper.
+  void describe(const RenderSettings& frame, RenderResult& result) const;
   const xvrml::CameraSettings& shown() const { return shown_; } // camera of the last prepare()
   const xvrml::OpenRTMapper* mapper() const { return mapper_.get(); }
   double takeMeshSeconds(); // seconds spent constructing mappers since the last call
@@ -87,7 +87,6 @@ class Stage {
   void makeMapper();
   void useEnvironment();
   void readBackground();
-  void describe(const RenderSettings& frame, Picture& picture, uint32_t channels) const;
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
 

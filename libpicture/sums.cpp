@@ -276,16 +276,12 @@ Picture pictureOf(const Sums& sums, const SumsFacts& facts) {
   picture.height = info.height;
   picture.linear = facts.linear;
   picture.depthAlongRay = facts.depthAlongRay;
-  picture.transparent = facts.background.kind == Background::Kind::none;
-  if (facts.background.kind == Background::Kind::backdrop)
-    picture.backdrop = facts.background.colour;
+  setBackdrop(facts.background, picture);
   picture.names = facts.names;
-  for (const Channel& channel : channelTable()) {
-    if (!(info.channels & channel.bit)) continue;
-    std::vector<float>& plane = picture.planes[channel.bit];
-    plane.resize(size_t(info.width) * size_t(info.height) * size_t(channel.components));
-    if (!rtReadSumsPixels(sums.get(), channel.bit, plane.data(), plane.size())) failed();
-  }
+  fillChannels(picture, info.channels, [&](uint32_t channel, std::vector<float>& plane) {
+    if (!rtReadSumsPixels(sums.get(), channel, plane.data(), plane.size())) failed();
+    return true;
+  });
   // Sums do not hold a picture that is the background.
   if (const auto rgba = picture.planes.find(RT_RGBA);
       rgba != picture.planes.end() && facts.background.kind != Background::Kind::file)

@@ -22,11 +22,8 @@ void walkInto(NodeList first, const Visit& visit, const Enter& enter) {
       enter(scope);
       xvrml::appendRoots(scope, open);
     };
-    if (node.type().index < 0)
-      if (auto* instance = dynamic_cast<const xvrml::ProtoInstance*>(&node)) add(instance->body);
-    if (const xvrml::Scope* content =
-            node.type().name == "Inline" ? xvrml::inlineScope(node) : nullptr)
-      add(*content);
+    if (const auto* instance = xvrml::nodeCast<xvrml::ProtoInstance>(&node)) add(instance->body);
+    if (const xvrml::Scope* content = xvrml::inlineScope(node)) add(*content);
   });
 }
 

@@ -123,10 +123,10 @@ inline constexpr uint32_t everyChannel = (RT_REFLECTION << 1) - 1;
 
 // Returns the numbers that a pixel of a channel has.
 inline size_t componentsOf(uint32_t channel) {
-  if (channel == RT_RGBA) return 4;
-  constexpr uint32_t vectors =
-      RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR | RT_REFLECTION;
-  return channel & vectors ? 3 : 1;
+  RTchannelInfo info{};
+  info.size = sizeof info;
+  for (int i = 0; rtGetChannelInfo(i, &info) && info.channel != channel; i++) {}
+  return size_t(info.components);
 }
 
 inline std::vector<float> readChannel(uint32_t channel, int width, int height) {

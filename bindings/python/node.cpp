@@ -51,7 +51,7 @@ bool takesEvent(const ProtoInstance& instance, const std::string& name) {
   for (const IsConnection& connection : instance.is) {
     if (connection.interfaceName != name) continue;
     const FieldInfo* in = connection.node->type().findEventIn(connection.field);
-    const auto* inner = dynamic_cast<const ProtoInstance*>(connection.node.get());
+    const auto* inner = nodeCast<ProtoInstance>(connection.node);
     if ((in && in->access == Access::eventIn) || (inner && takesEvent(*inner, connection.field)))
       return true;
   }
@@ -60,7 +60,7 @@ bool takesEvent(const ProtoInstance& instance, const std::string& name) {
 
 // Sets a field of a static world, as if the file contained the value.
 void setStaticField(WorldObject& world, const NodeRef& node, const FieldInfo& field, Value value) {
-  const auto* instance = dynamic_cast<const ProtoInstance*>(node.get());
+  const auto* instance = nodeCast<ProtoInstance>(node);
   if (!world.world) {
     node->set(field, std::move(value));
     return;

@@ -1,7 +1,8 @@
 // picture.cpp: Implements the Python class Picture: planes are numpy arrays that share the
 // picture's memory. [GIL held]
-#include <array>
 #include <cstring>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -77,7 +78,7 @@ py::object item(const py::object& self, const py::object& key) {
       if (p.planes.count(one.bit)) known += (known.empty() ? "" : ", ") + std::string(one.name);
     throw py::key_error(fmt::format("no channel {}; the picture has {}", name, known));
   }
-  if (channel->bit == RT_NAME || channel->bit == RT_SAMPLES) return counts(p, *channel);
+  if (channel->isWhole) return counts(p, *channel);
   return floats(self, *channel);
 }
 
@@ -123,11 +124,13 @@ void save(const PictureObject& self, const py::object& file) {
   raiseOsError(failure);
 }
 
-py::tuple names(const PictureObject& self) {
-  py::tuple out(self.picture.names.size());
-  for (size_t i = 0; i < self.picture.names.size(); ++i) out[i] = toText(self.picture.names[i]);
+py::tuple textsOf(const std::vector<std::string>& texts) {
+  py::tuple out(texts.size());
+  for (size_t i = 0; i < texts.size(); ++i) out[i] = toText(texts[i]);
   return out;
 }
+
+py::tuple names(const PictureObject& self) { return textsOf(self.picture.names); }
 
 py::object nodes(PictureObject& self) {
   if (self.nodeList) return self.nodeList;
@@ -172,67 +175,108 @@ void setCurve(PictureObject& self, const std::string& name) {
   self.picture.view.curve = curve;
 }
 
-constexpr int pickleVersion = 1;
+constexpr int pickleVersion = 2;
 
-// Returns the pickled members: version, size, linear, names, time, stats, {channel name: numbers},
-// camera, exposure, view, place in the whole picture, whether z is along the ray, note, denoisedBy.
+[[noreturn]] void refusePickle() {
+  throw py::value_error("this is no pickled Picture of this version");
+}
+
+// Returns references to all members. The compiler refuses a list in which one is missing.
+template <class Facts> auto membersOf(Facts& facts) {
+  auto& [width, height, linear, depthAlongRay, view, transparent, backdrop, wholeWidth, wholeHeight,
+         left, top, names, note, denoisedBy] = facts;
+  return std::tie(width, height, linear, depthAlongRay, view, transparent, backdrop, wholeWidth,
+                  wholeHeight, left, top, names, note, denoisedBy);
+}
+
+// Convert members for pickles.
+template <class T> py::object toPickle(const T& value) { return py::cast(value); }
+py::object toPickle(const std::string& text) { return toText(text); }
+py::object toPickle(const std::vector<std::string>& texts) { return textsOf(texts); }
+py::object toPickle(const picture::ViewTransform& view) {
+  return py::make_tuple(view.exposure, std::string(picture::curveName(view.curve)));
+}
+
+template <class T> void fromPickle(const py::handle& from, T& to) { to = from.cast<T>(); }
+void fromPickle(const py::handle& from, std::string& to) {
+  if (!py::isinstance<py::str>(from)) refusePickle();
+  to = fromText(from);
+}
+void fromPickle(const py::handle& from, std::vector<std::string>& to) {
+  if (!py::isinstance<py::tuple>(from)) refusePickle();
+  for (const py::handle text : from) fromPickle(text, to.emplace_back());
+}
+void fromPickle(const py::handle& from, picture::ViewTransform& to) {
+  const auto [exposure, curve] = from.cast<std::pair<py::object, py::object>>();
+  std::string name;
+  fromPickle(curve, name);
+  to = {exposureOf(exposure).value_or(0), curveOf(name)};
+}
+
+// Checks what the rest of the program relies on.
+void checkFacts(const picture::PictureFacts& facts) {
+  constexpr int most = 65536;
+  const auto lies = [](int begin, int size, int whole) {
+    return begin >= 0 && whole <= most && begin <= whole - size;
+  };
+  const bool isWhole =
+      facts.wholeWidth == 0 && facts.wholeHeight == 0 && facts.left == 0 && facts.top == 0;
+  if (facts.width < 1 || facts.height < 1 || facts.width > most || facts.height > most ||
+      !(isWhole || (lies(facts.left, facts.width, facts.wholeWidth) &&
+                    lies(facts.top, facts.height, facts.wholeHeight))) ||
+      (facts.note + facts.denoisedBy).find_first_of("\n\r") != std::string::npos)
+    refusePickle();
+}
+
+// Returns the pickled members: version, facts, {channel name: numbers}, time, stats, camera.
 py::tuple pickled(const py::object& self) {
   PictureObject& object = self.cast<PictureObject&>();
+  const picture::PictureFacts& made = object.picture;
+  const py::tuple facts = std::apply(
+      [](const auto&... member) { return py::make_tuple(toPickle(member)...); }, membersOf(made));
   py::dict planes;
   for (const picture::Channel& channel : picture::channelTable())
     if (object.picture.planes.count(channel.bit))
       planes[py::str(std::string(channel.name))] = floats(self, channel);
-  return py::make_tuple(
-      pickleVersion, object.picture.width, object.picture.height, object.picture.linear,
-      names(object), object.time, object.stats, planes, camera(object),
-      object.picture.view.exposure, std::string(picture::curveName(object.picture.view.curve)),
-      py::make_tuple(object.picture.wholeWidth, object.picture.wholeHeight, object.picture.left,
-                     object.picture.top),
-      object.picture.depthAlongRay, toText(object.picture.note), toText(object.picture.denoisedBy));
+  return py::make_tuple(pickleVersion, facts, planes, object.time, object.stats, camera(object));
 }
 
-PictureObject unpickled(const py::tuple& state) {
-  const auto refuse = [] { throw py::value_error("this is no pickled Picture of this version"); };
-  if (state.size() != 15 || !py::isinstance<py::int_>(state[0]) ||
-      state[0].cast<int>() != pickleVersion)
-    refuse();
-  PictureObject object;
-  picture::Picture& made = object.picture;
-  made.width = state[1].cast<int>();
-  made.height = state[2].cast<int>();
-  if (made.width < 1 || made.height < 1 || made.width > 65536 || made.height > 65536) refuse();
-  made.linear = state[3].cast<bool>();
-  for (const py::handle name : state[4].cast<py::tuple>()) made.names.push_back(fromText(name));
-  object.time = state[5].cast<double>();
-  object.stats = state[6].cast<py::dict>();
-  for (const auto& [name, numbers] : state[7].cast<py::dict>()) {
+picture::Picture unpickledPicture(const py::tuple& facts, const py::dict& planes) {
+  picture::Picture made;
+  const auto members = membersOf<picture::PictureFacts>(made);
+  if (facts.size() != std::tuple_size_v<decltype(members)>) refusePickle();
+  size_t next = 0;
+  std::apply([&](auto&... member) { (fromPickle(facts[next++], member), ...); }, members);
+  checkFacts(made);
+  for (const auto& [name, numbers] : planes) {
     const picture::Channel* const channel = picture::findChannel(fromText(name));
     const auto plane =
         py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(numbers);
     const auto pixels = size_t(made.width) * size_t(made.height);
     if (!channel || !plane || size_t(plane.size()) != pixels * size_t(channel->components))
-      refuse();
+      refusePickle();
     made.planes[channel->bit].assign(plane.data(), plane.data() + plane.size());
   }
-  if (!made.planes.count(RT_RGBA)) refuse();
-  if (!state[8].is_none()) {
-    if (!py::isinstance(state[8], py::module_::import("xvrml._camera").attr("Pinhole"))) refuse();
-    object.camera = state[8];
+  if (!made.planes.count(RT_RGBA)) refusePickle();
+  return made;
+}
+
+PictureObject unpickled(const py::tuple& state) {
+  if (state.size() != 6 || !py::isinstance<py::int_>(state[0]) ||
+      state[0].cast<int>() != pickleVersion || !py::isinstance<py::tuple>(state[1]) ||
+      !py::isinstance<py::dict>(state[2]) || !py::isinstance<py::dict>(state[4]))
+    refusePickle();
+  PictureObject object;
+  try {
+    object.picture = unpickledPicture(state[1], state[2]);
+    object.time = state[3].cast<double>();
+  } catch (const py::cast_error&) { refusePickle(); }
+  object.stats = state[4];
+  if (!state[5].is_none()) {
+    if (!py::isinstance(state[5], py::module_::import("xvrml._camera").attr("Pinhole")))
+      refusePickle();
+    object.camera = state[5];
   }
-  if (!py::isinstance<py::str>(state[10])) refuse();
-  made.view = {exposureOf(state[9]).value_or(0), curveOf(fromText(state[10]))};
-  const auto place = state[11].cast<std::array<int, 4>>();
-  const bool lies = place[2] >= 0 && place[3] >= 0 && place[0] <= 65536 && place[1] <= 65536 &&
-                    place[2] <= place[0] - made.width && place[3] <= place[1] - made.height;
-  if (!lies && place != std::array<int, 4>{}) refuse();
-  made.wholeWidth = place[0];
-  made.wholeHeight = place[1];
-  made.left = place[2];
-  made.top = place[3];
-  made.depthAlongRay = state[12].cast<bool>();
-  made.note = fromText(state[13]);
-  made.denoisedBy = fromText(state[14]);
-  if ((made.note + made.denoisedBy).find_first_of("\n\r") != std::string::npos) refuse();
   return object;
 }
 

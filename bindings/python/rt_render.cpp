@@ -81,12 +81,10 @@ py::object render(const RtContextPtr& self, const FrameArguments& given) {
   const auto read = [&] {
     picture.width = given.size.first;
     picture.height = given.size.second;
-    for (const picture::Channel& channel : picture::channelTable()) {
-      if (!(bits & channel.bit)) continue;
-      std::vector<float>& plane = picture.planes[channel.bit];
-      plane.resize(size_t(picture.width) * size_t(picture.height) * size_t(channel.components));
-      rtReadPixels(channel.bit, plane.data(), plane.size());
-    }
+    picture::fillChannels(picture, bits, [](uint32_t channel, std::vector<float>& plane) {
+      rtReadPixels(channel, plane.data(), plane.size());
+      return true;
+    });
     RTstats s{};
     s.size = sizeof s;
     rtGetStats(&s);

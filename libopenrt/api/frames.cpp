@@ -160,6 +160,14 @@ int rtGetTransportInfo(RTenum transport, RTtransportInfo* info) {
   return copyInfo(known, info);
 }
 
+int rtGetChannelInfo(int number, RTchannelInfo* info) {
+  if (number < 0 || size_t(number) >= channelTable.size()) return 0;
+  const ChannelInfo& row = channelTable[size_t(number)];
+  const RTchannelInfo known{sizeof known, row.bit,  row.name, int(row.components),
+                            row.planes,   row.kind, row.text};
+  return copyInfo(known, info);
+}
+
 void rtSwapBuffers(void) {
   guarded("rtSwapBuffers", [](Context& c) {
     requireNoDefinition(c);

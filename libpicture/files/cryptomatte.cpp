@@ -14,7 +14,7 @@ namespace picture {
 
 namespace {
 
-constexpr std::string_view layerName = "CryptoObject";
+constexpr std::string_view layerName = "CryptoObject"; // the planes' names begin with it
 
 uint32_t murmurHash3(std::string_view bytes) {
   constexpr uint32_t c1 = 0xcc9e2d51u, c2 = 0x1b873593u;
@@ -45,10 +45,6 @@ std::string nameOf(const Picture& picture, size_t number) {
 uint32_t cryptomatteHash(std::string_view name) {
   const uint32_t hash = murmurHash3(name), exponent = hash >> 23 & 255;
   return exponent == 0 || exponent == 255 ? hash ^ 1u << 23 : hash;
-}
-
-std::string cryptomattePlane(int component) {
-  return fmt::format("{}{:02}.{}", layerName, component / 4, "RGBA"[component % 4]);
 }
 
 std::vector<float> cryptomatteLayers(const Picture& picture) {

@@ -17,9 +17,6 @@ namespace picture {
 // with one bit of the exponent changed where the float of these bits would not be a normal number.
 uint32_t cryptomatteHash(std::string_view name);
 
-// Returns the name of a plane, one for each component of the channel.
-std::string cryptomattePlane(int component);
-
 // Returns the channel with hashes in the place of numbers. Shapes of one name become one. Bytes of
 // names that are not UTF-8 count as U+FFFD, as in the manifest.
 std::vector<float> cryptomatteLayers(const Picture& picture);

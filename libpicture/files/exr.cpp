@@ -86,12 +86,11 @@ std::string encodeExr(const Picture& picture) {
     for (const Channel& channel : channelTable()) {
       auto plane = picture.planes.find(channel.bit);
       if (plane == picture.planes.end()) continue;
-      const bool isMatte = channel.bit == RT_COVERAGE;
-      if (isMatte) layers = cryptomatteLayers(picture);
-      const std::vector<float>& values = isMatte ? layers : plane->second;
+      if (channel.bit == RT_COVERAGE) layers = cryptomatteLayers(picture);
+      const std::vector<float>& values = channel.bit == RT_COVERAGE ? layers : plane->second;
       const size_t pixel = size_t(channel.components) * sizeof(float);
-      for (int c = 0; c < channel.components; ++c) {
-        const std::string name = isMatte ? cryptomattePlane(c) : std::string(channel.exr[c]);
+      for (size_t c = 0; c < channel.exr.size(); ++c) {
+        const std::string& name = channel.exr[c];
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
         char* base = reinterpret_cast<char*>(const_cast<float*>(values.data() + c));
         const size_t row = pixel * size_t(picture.width);

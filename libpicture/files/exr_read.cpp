@@ -33,12 +33,12 @@ void readRows(Imf::InputFile& file, const Imath::Box2i& window,
     const size_t pixel = size_t(channel->components) * sizeof(float),
                  row = pixel * size_t(picture.width);
     plane.resize(size_t(picture.width) * size_t(y + rows) * size_t(channel->components));
-    for (int c = 0; c < channel->components; ++c) {
+    for (size_t c = 0; c < channel->exr.size(); ++c) {
       char* base = reinterpret_cast<char*>(plane.data() + c);
       // OpenEXR addresses pixels relative to the data window, whose corner may be anywhere.
       base -= std::ptrdiff_t(window.min.x) * std::ptrdiff_t(pixel) +
               std::ptrdiff_t(window.min.y) * std::ptrdiff_t(row);
-      frame.insert(std::string(channel->exr[c]),
+      frame.insert(channel->exr[c],
                    Imf::Slice(Imf::FLOAT, base, pixel, row, 1, 1, c == 3 ? 1.0 : 0.0));
     }
   }
@@ -73,7 +73,7 @@ Picture readExr(const std::string& path) {
     std::vector<const Channel*> channels;
     for (const Channel& channel : channelTable())
       if (channel.bit & (RT_RGBA | RT_ERROR | RT_TRUST) &&
-          file.header().channels().findChannel(channel.exr[0].data()))
+          file.header().channels().findChannel(channel.exr[0]))
         channels.push_back(&channel);
     if (channels.empty() || channels[0]->bit != RT_RGBA)
       throw std::runtime_error("there is no channel R");

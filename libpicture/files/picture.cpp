@@ -1,10 +1,11 @@
-// picture.cpp: Defines the table of channels, and converts pictures to display colours.
+// picture.cpp: Reads the library's table of channels, and converts pictures to display colours.
 #include "libpicture/files/picture.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "openrt/openrt.h"
@@ -14,49 +15,18 @@ namespace picture {
 
 namespace {
 
-constexpr Channel table[] = {
-    {"rgba", RT_RGBA, 4, {"R", "G", "B", "A"}, "mean radiance and coverage"},
-    {"z",
-     RT_DEPTH,
-     1,
-     {"Z"},
-     "distance along the view axis or the ray, infinite where nothing is hit"},
-    {"normal", RT_NORMAL, 3, {"N.X", "N.Y", "N.Z"}, "mean shading normal in world space"},
-    {"albedo", RT_ALBEDO, 3, {"albedo.R", "albedo.G", "albedo.B"}, "mean surface colour"},
-    {"position", RT_POSITION, 3, {"P.X", "P.Y", "P.Z"}, "world-space position of the first hit"},
-    {"id",
-     RT_NAME,
-     1,
-     {"id"},
-     "number of the Shape hit; the table of names is in the attribute idNames"},
-    {"samples", RT_SAMPLES, 1, {"samples"}, "samples taken"},
-    {"variance",
-     RT_VARIANCE,
-     3,
-     {"variance.R", "variance.G", "variance.B"},
-     "sample variance of the radiance"},
-    {"error",
-     RT_ERROR,
-     3,
-     {"error.R", "error.G", "error.B"},
-     "half-width of the 95 % interval of each colour"},
-    {"trust", RT_TRUST, 1, {"trust"}, "1 where that interval can be trusted, else 0"},
-    {"motion",
-     RT_MOTION,
-     3,
-     {"motion.X", "motion.Y", "motion.Z"},
-     "world-space motion of the first hit since the picture before; not a number where it is new"},
-    {"reflection",
-     RT_REFLECTION,
-     3,
-     {"reflection.R", "reflection.G", "reflection.B"},
-     "part of the radiance that coats reflect: varnish, lacquer, highlights"},
-    {"cryptomatte",
-     RT_COVERAGE,
-     16,
-     {},
-     "up to eight Shapes in the pixel, each with its share of the samples"},
-};
+Channel channelOf(const RTchannelInfo& info) {
+  Channel channel{.name = info.name,
+                  .bit = info.channel,
+                  .components = info.components,
+                  .exr = {},
+                  .isWhole = info.kind == RT_CHANNEL_COUNTS || info.kind == RT_CHANNEL_NAMES,
+                  .hasNames = info.kind == RT_CHANNEL_NAMES || info.kind == RT_CHANNEL_SHARES,
+                  .text = info.text ? info.text : ""};
+  std::istringstream words(info.planes);
+  for (std::string plane; words >> plane;) channel.exr.push_back(plane);
+  return channel;
+}
 
 uint8_t rounded(float v) { return uint8_t(v * 255 + 0.5f); }
 
@@ -100,15 +70,28 @@ uint8_t displayByte(float v, bool linear) {
 
 } // namespace
 
-std::span<const Channel> channelTable() { return table; }
+const std::vector<Channel>& channelTable() {
+  static const std::vector<Channel> table = [] {
+    std::vector<Channel> rows;
+    RTchannelInfo info{};
+    info.size = sizeof info;
+    for (int i = 0; rtGetChannelInfo(i, &info); ++i) rows.push_back(channelOf(info));
+    return rows;
+  }();
+  return table;
+}
 
 const Channel* findChannel(std::string_view name) {
-  for (const Channel& channel : table)
+  for (const Channel& channel : channelTable())
     if (channel.name == name) return &channel;
   return nullptr;
 }
 
-bool hasNames(uint32_t channels) { return channels & (RT_NAME | RT_COVERAGE); }
+bool hasNames(uint32_t channels) {
+  for (const Channel& channel : channelTable())
+    if (channel.hasNames && (channels & channel.bit)) return true;
+  return false;
+}
 
 const std::vector<float>& rgbaOf(const Picture& picture) {
   auto found = picture.planes.find(RT_RGBA);
@@ -118,13 +101,14 @@ const std::vector<float>& rgbaOf(const Picture& picture) {
 
 Picture withChannels(const Picture& picture, uint32_t channels) {
   Picture out{picture, {}};
+  if (!hasNames(channels)) out.names.clear();
   for (const auto& [bit, plane] : picture.planes)
     if (channels & bit) out.planes[bit] = plane;
   return out;
 }
 
 void cut(Picture& picture, int x, int y, int width, int height) {
-  for (const Channel& channel : table) {
+  for (const Channel& channel : channelTable()) {
     const auto found = picture.planes.find(channel.bit);
     if (found == picture.planes.end()) continue;
     const std::vector<float> whole = std::move(found->second);

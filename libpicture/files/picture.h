@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,16 +15,17 @@
 
 namespace picture {
 
-// One channel of a frame: its name on the command line and in Python, OpenRT's bit, and the names
-// of its planes in OpenEXR. Those of the channel cryptomatte are in cryptomatte.h.
+// One channel of a frame, as rtGetChannelInfo describes it.
 struct Channel {
-  std::string_view name;
+  std::string_view name; // on the command line and in Python
   uint32_t bit;
-  int components;
-  std::string_view exr[4];
-  std::string_view text;
+  int components;               // floats per pixel
+  std::vector<std::string> exr; // the names of its planes in OpenEXR files
+  bool isWhole;                 // it has counts or numbers of Shapes
+  bool hasNames;                // it has numbers of Shapes
+  std::string_view text;        // RTchannelInfo::text; "": the name says enough
 };
-std::span<const Channel> channelTable();
+const std::vector<Channel>& channelTable();
 const Channel* findChannel(std::string_view name);
 // Returns whether one of the channels has numbers of Shapes.
 bool hasNames(uint32_t channels);
@@ -55,7 +55,20 @@ struct Picture : PictureFacts {
   std::map<uint32_t, std::vector<float>> planes;
 };
 
-// Returns the picture with those of its channels that are named.
+// Gives a picture these channels: makes a plane of its size for each, in the order of the table.
+// fill(channel, plane) returns whether it could fill the plane; if not, no further one is made.
+template <class Fill> bool fillChannels(Picture& picture, uint32_t channels, const Fill& fill) {
+  for (const Channel& channel : channelTable()) {
+    if (!(channels & channel.bit)) continue;
+    std::vector<float>& plane = picture.planes[channel.bit];
+    plane.resize(size_t(picture.width) * size_t(picture.height) * size_t(channel.components));
+    if (!fill(channel.bit, plane)) return false;
+  }
+  return true;
+}
+
+// Returns the picture with those of its channels that are named, and without names that none of
+// them has.
 Picture withChannels(const Picture& picture, uint32_t channels);
 
 // Keeps a rectangle of the pixels of a whole picture, which must lie within it.

@@ -27,48 +27,49 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
   const size_t row = layout.row(y);
   const auto stride = ptrdiff_t(layout.stride);
   const auto step = float(pass.step);
-  const Lanes zero = all(0), one = all(1);
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     const Lanes ownName = load(name + i), ownNear = load(near + i);
     const Lanes slopeX = load(guides.slopeX.data() + i), slopeY = load(guides.slopeY.data() + i);
-    const Lanes3 own = load(*pass.from, i), normal = load(guides.normal, i);
+    const LaneVec own = load(*pass.from, i), normal = load(guides.normal, i);
 
     // The variance is itself noisy: its mean over 3 x 3 pixels judges what is alike.
-    Lanes spread = load(variance + i) * all(0.25f);
+    Lanes spread = load(variance + i) * lanesOf(0.25f);
     for (int k = -1; k <= 1; k += 2) {
-      spread = spread + (load(variance + i + k) + load(variance + i + k * stride)) * all(0.125f);
+      spread =
+          spread + (load(variance + i + k) + load(variance + i + k * stride)) * lanesOf(0.125f);
       spread =
           spread + (load(variance + i + k * stride - 1) + load(variance + i + k * stride + 1)) *
-                       all(0.0625f);
+                       lanesOf(0.0625f);
     }
     // Few samples are rarely like their mean: most lack the light that some have. Judged by what
     // they have in common with their neighbours they would lose it.
-    const Lanes frames = larger(load(now.accumulated.frames.data() + i), one);
-    const Lanes tolerance = all(lumaSpread) + all(earlySpread) / frames;
-    const Lanes perLuma = one / (tolerance * hn::Sqrt(spread) + all(1e-6f));
-    const Lanes slope = absolute(slopeX) + absolute(slopeY);
-    const Lanes scale = now.projection.parallel ? one : absolute(ownNear);
+    const Lanes frames = max(load(now.accumulated.frames.data() + i), one);
+    const Lanes tolerance = lanesOf(lumaSpread) + lanesOf(earlySpread) / frames;
+    const Lanes perLuma = one / (tolerance * hn::Sqrt(spread) + lanesOf(1e-6f));
+    const Lanes slope = abs(slopeX) + abs(slopeY);
+    const Lanes scale = now.projection.parallel ? one : abs(ownNear);
     const Lanes perNear =
-        one / (slope * all(1 + 0.1f * step) + scale * all(0.002f * step) + all(1e-20f));
+        one / (slope * lanesOf(1 + 0.1f * step) + scale * lanesOf(0.002f * step) + lanesOf(1e-20f));
 
-    Lanes weights = all(bspline[0] * bspline[0]);
-    Lanes3 sum = own * weights;
+    Lanes weights = lanesOf(bspline[0] * bspline[0]);
+    LaneVec sum = own * weights;
     Lanes varianceSum = load(variance + i) * (weights * weights);
     for (int dy = -2; dy <= 2; dy++)
       for (int dx = -2; dx <= 2; dx++) {
         if (dx == 0 && dy == 0) continue;
         const size_t j = i + size_t((stride * dy + dx) * pass.step);
-        const Lanes3 other = load(*pass.from, j);
+        const LaneVec other = load(*pass.from, j);
         const Lanes expected =
-            ownNear + slopeX * all(float(dx) * step) + slopeY * all(float(dy) * step);
-        const Lanes away = absolute(load(near + j) - expected) * perNear +
-                           absolute(other.x - own.x) * perLuma +
-                           absolute(one - dot(load(guides.normal, j), normal)) * all(normalFall) +
-                           select(load(name + j) == ownName, zero, all(otherName));
-        const Lanes weight =
-            where(load(name + j) >= zero,
-                  fallOff(away) * all(bspline[std::abs(dx)] * bspline[std::abs(dy)]));
+            ownNear + slopeX * lanesOf(float(dx) * step) + slopeY * lanesOf(float(dy) * step);
+        const Lanes away = abs(load(near + j) - expected) * perNear +
+                           abs(other.x - own.x) * perLuma +
+                           abs(one - dot(load(guides.normal, j), normal)) * lanesOf(normalFall) +
+                           select(load(name + j) == ownName, zero, lanesOf(otherName));
+        const Lanes weight = hn::IfThenElseZero(
+            load(name + j) >= zero,
+            fallOff(away) * lanesOf(bspline[std::abs(dx)] * bspline[std::abs(dy)]));
         weights = weights + weight;
         sum = sum + other * weight;
         varianceSum = varianceSum + load(variance + j) * (weight * weight);

@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 
 // Up to four pixels of the frame before, and their weights, which sum up to 1 or are all 0.
 struct Taps {
-  Index index[4];
+  Indices index[4];
   Lanes weight[4];
   Mask found;
 
@@ -27,18 +27,18 @@ struct Taps {
     for (int k = 1; k < 4; k++) sum = sum + gather(plane.data(), index[k]) * weight[k];
     return sum;
   }
-  Lanes3 of(const Plane3& planes) const { return {of(planes.x), of(planes.y), of(planes.z)}; }
+  LaneVec of(const Plane3& planes) const { return {of(planes.x), of(planes.y), of(planes.z)}; }
 };
 
 // The surface of pixels of this frame, as it is expected in the frame before.
 struct Expected {
   Lanes name, nearness, tolerance;
-  Lanes3 normal;
+  LaneVec normal;
 
-  Mask matches(const Guides& guides, Index at) const {
-    const Mask near = absolute(gather(guides.nearness.data(), at) - nearness) <= tolerance;
+  Mask matches(const Guides& guides, Indices at) const {
+    const Mask near = abs(gather(guides.nearness.data(), at) - nearness) <= tolerance;
     const Mask same = gather(guides.name.data(), at) == name;
-    return both(both(near, same), dot(gather(guides.normal, at), normal) > all(0.6f));
+    return hn::And(hn::And(near, same), dot(gather(guides.normal, at), normal) > lanesOf(0.6f));
   }
 };
 
@@ -47,37 +47,37 @@ inline Expected expectedAt(const Moment& now, const Moment& before, const Readin
                            Lanes slope, size_t i) {
   const Guides& guides = now.guides;
   const Lanes nearness = load(reading.pastNearness.data() + i);
-  const Lanes scale = before.projection.parallel ? all(1) : nearness;
+  const Lanes scale = before.projection.parallel ? lanesOf(1) : nearness;
   const float enlarged = float(now.layout.width) / float(std::max(1, before.layout.width));
   return {load(guides.name.data() + i), nearness,
-          slope * all(1.5f * std::max(1.0f, enlarged)) + scale * all(0.01f),
+          slope * lanesOf(1.5f * std::max(1.0f, enlarged)) + scale * lanesOf(0.01f),
           load(guides.normal, i)};
 }
 
 // Weights of the four pixels around (x, y), those of other surfaces left out.
 inline Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y) {
   const Layout& layout = before.layout;
-  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
-                           both(y > all(-1), y < all(float(layout.height))));
-  const Lanes atX = where(inside, x), atY = where(inside, y);
+  const Mask inside = hn::And(hn::And(x > lanesOf(-1), x < lanesOf(float(layout.width))),
+                              hn::And(y > lanesOf(-1), y < lanesOf(float(layout.height))));
+  const Lanes atX = hn::IfThenElseZero(inside, x), atY = hn::IfThenElseZero(inside, y);
   const Lanes left = hn::Floor(atX), top = hn::Floor(atY);
   const Lanes partX = atX - left, partY = atY - top;
-  const IndexTag tag;
+  const IndicesTag tag;
   const auto stride = int32_t(layout.stride);
-  const Index corner =
+  const Indices corner =
       (hn::ConvertTo(tag, top) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
       hn::ConvertTo(tag, left) + hn::Set(tag, Layout::border);
-  const Lanes acrossX[2] = {all(1) - partX, partX}, acrossY[2] = {all(1) - partY, partY};
+  const Lanes acrossX[2] = {lanesOf(1) - partX, partX}, acrossY[2] = {lanesOf(1) - partY, partY};
   Taps taps;
-  Lanes sum = all(0);
+  Lanes sum = lanesOf(0);
   for (int k = 0; k < 4; k++) {
     taps.index[k] = corner + hn::Set(tag, (k / 2) * stride + k % 2);
-    const Mask valid = both(inside, expected.matches(before.guides, taps.index[k]));
-    taps.weight[k] = where(valid, acrossX[k % 2] * acrossY[k / 2]);
+    const Mask valid = hn::And(inside, expected.matches(before.guides, taps.index[k]));
+    taps.weight[k] = hn::IfThenElseZero(valid, acrossX[k % 2] * acrossY[k / 2]);
     sum = sum + taps.weight[k];
   }
-  taps.found = sum > all(0.01f);
-  const Lanes per = where(taps.found, all(1) / sum);
+  taps.found = sum > lanesOf(0.01f);
+  const Lanes per = hn::IfThenElseZero(taps.found, lanesOf(1) / sum);
   for (Lanes& weight : taps.weight) weight = weight * per;
   return taps;
 }
@@ -87,34 +87,35 @@ inline Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, 
 inline void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y,
                          Taps& taps) {
   const Layout& layout = before.layout;
-  const Lanes half = all(0.5f);
-  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
-                           both(y > all(-1), y < all(float(layout.height))));
+  const Lanes half = lanesOf(0.5f);
+  const Mask inside = hn::And(hn::And(x > lanesOf(-1), x < lanesOf(float(layout.width))),
+                              hn::And(y > lanesOf(-1), y < lanesOf(float(layout.height))));
   const Mask missing = hn::AndNot(taps.found, inside);
-  if (hn::AllFalse(Tag(), missing)) return;
-  const Lanes middleX = hn::Floor(where(missing, x) + half),
-              middleY = hn::Floor(where(missing, y) + half);
-  const IndexTag tag;
+  if (hn::AllFalse(LanesTag(), missing)) return;
+  const Lanes middleX = hn::Floor(hn::IfThenElseZero(missing, x) + half),
+              middleY = hn::Floor(hn::IfThenElseZero(missing, y) + half);
+  const IndicesTag tag;
   const auto stride = int32_t(layout.stride);
-  const Index middle =
+  const Indices middle =
       (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
       hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
-  Lanes least = all(1e30f);
-  Index best = middle;
+  Lanes least = lanesOf(1e30f);
+  Indices best = middle;
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
-      const Index at = middle + hn::Set(tag, dy * stride + dx);
-      const Lanes awayX = middleX + all(float(dx)) - x, awayY = middleY + all(float(dy)) - y;
+      const Indices at = middle + hn::Set(tag, dy * stride + dx);
+      const Lanes awayX = middleX + lanesOf(float(dx)) - x,
+                  awayY = middleY + lanesOf(float(dy)) - y;
       const Lanes distance = awayX * awayX + awayY * awayY;
       const Mask better =
-          both(both(missing, expected.matches(before.guides, at)), distance < least);
+          hn::And(hn::And(missing, expected.matches(before.guides, at)), distance < least);
       least = select(better, distance, least);
       best = hn::IfThenElse(hn::RebindMask(tag, better), at, best);
     }
-  const Mask met = least < all(1e30f);
+  const Mask met = least < lanesOf(1e30f);
   taps.index[0] = hn::IfThenElse(hn::RebindMask(tag, met), best, taps.index[0]);
-  taps.weight[0] = select(met, all(1), taps.weight[0]);
-  taps.found = either(taps.found, met);
+  taps.weight[0] = select(met, lanesOf(1), taps.weight[0]);
+  taps.found = hn::Or(taps.found, met);
 }
 
 } // namespace HWY_NAMESPACE

@@ -224,13 +224,7 @@ struct Reconstruction::Impl {
     facts.denoised = denoiser && isNoisy() && denoise(*denoiser);
     colour(planes);
 
-    Picture picture;
-    picture.width = frame.width;
-    picture.height = frame.height;
-    picture.linear = frame.linear;
-    picture.view = frame.view;
-    picture.transparent = frame.transparent;
-    picture.backdrop = frame.backdrop;
+    Picture picture = withChannels(frame, 0);
     std::vector<float>& rgba = picture.planes[RT_RGBA];
     rgba.resize(size_t(frame.width) * size_t(frame.height) * 4);
     const Moment& grid = sparse ? pixels : now;

@@ -52,7 +52,7 @@ class Reconstruction {
   // Forgets everything that was accumulated: after a jump to another world.
   void reset();
 
-  // Adds a frame and returns the rebuilt picture: its size and linear mode are those of the frame,
+  // Adds a frame and returns the rebuilt picture: it is described as the frame is, without names,
   // and its only plane is RT_RGBA. Frames may differ in size. The bytes depend on the frames since
   // reset() and on nothing else, in particular not on the number of threads. `frame` must have the
   // planes of previewChannels, RT_RGBA and RT_SAMPLES; otherwise std::invalid_argument is thrown.

@@ -33,17 +33,18 @@ inline Past pastOf(const Moment& before, const Moment& now, const Reading& readi
   const float ratioX = float(before.layout.width) / float(now.layout.width),
               ratioY = float(before.layout.height) / float(now.layout.height);
   const Lanes own = load(guides.nearness.data() + i);
-  const Mask some = load(guides.name.data() + i) >= all(0);
-  Lanes nearest = own + all(nearer) * (now.projection.parallel ? all(1) : own);
+  const Mask some = load(guides.name.data() + i) >= lanesOf(0);
+  Lanes nearest = own + lanesOf(nearer) * (now.projection.parallel ? lanesOf(1) : own);
   Past past{load(reading.pastX.data() + i), load(reading.pastY.data() + i)};
   for (ptrdiff_t dy = -1; dy <= 1; dy++)
     for (ptrdiff_t dx = -1; dx <= 1; dx++) {
       const size_t j = i + size_t(dy * stride + dx);
       const Lanes other = load(guides.nearness.data() + j);
-      const Mask front = both(both(some, load(guides.name.data() + j) >= all(0)), other > nearest);
+      const Mask front =
+          hn::And(hn::And(some, load(guides.name.data() + j) >= lanesOf(0)), other > nearest);
       nearest = select(front, other, nearest);
-      past.x = select(front, load(reading.pastX.data() + j) - all(float(dx) * ratioX), past.x);
-      past.y = select(front, load(reading.pastY.data() + j) - all(float(dy) * ratioY), past.y);
+      past.x = select(front, load(reading.pastX.data() + j) - lanesOf(float(dx) * ratioX), past.x);
+      past.y = select(front, load(reading.pastY.data() + j) - lanesOf(float(dy) * ratioY), past.y);
     }
   return past;
 }
@@ -100,27 +101,29 @@ struct Recalled {
 // Tells where pixels were. seen: their surfaces were found in the frame before.
 inline Recalled recalledAt(const ColourPass& pass, Mask seen, int x, size_t i) {
   const Layout &layout = pass.pixels.layout, &old = pass.shown.layout;
-  const Mask some = load(pass.pixels.guides.name.data() + i) >= all(0);
+  const Mask some = load(pass.pixels.guides.name.data() + i) >= lanesOf(0);
   const Past past = pastOf(pass.before, pass.pixels, pass.reading, i);
-  const Mask inside = both(both(past.x > all(-0.5f), past.x < all(float(old.width) - 0.5f)),
-                           both(past.y > all(-0.5f), past.y < all(float(old.height) - 0.5f)));
+  const Mask inside =
+      hn::And(hn::And(past.x > lanesOf(-0.5f), past.x < lanesOf(float(old.width) - 0.5f)),
+              hn::And(past.y > lanesOf(-0.5f), past.y < lanesOf(float(old.height) - 0.5f)));
   // A surface that is seen for the first time has no colours yet. A pixel without a sample takes
   // what was there.
-  return {past, both(both(inside, present(x, layout.width)), either(hn::Not(some), seen))};
+  return {past,
+          hn::And(hn::And(inside, presentFrom(x, layout.width)), hn::Or(hn::Not(some), seen))};
 }
 
 // Returns numbers that were shown; 0 where nothing is known. `last` receives the fourth ones.
-inline Lanes3 shownNumbers(const Layout& layout, const std::vector<float>& shown,
-                           const Recalled& recalled, Lanes& last) {
+inline LaneVec shownNumbers(const Layout& layout, const std::vector<float>& shown,
+                            const Recalled& recalled, Lanes& last) {
   float x[Layout::widest], y[Layout::widest], known[Layout::widest],
       numbers[4 * Layout::widest] = {};
   store(recalled.past.x, x);
   store(recalled.past.y, y);
-  store(where(recalled.known, all(1)), known);
+  store(hn::IfThenElseZero(recalled.known, lanesOf(1)), known);
   for (int k = 0; k < width(); k++)
     if (known[k] > 0) shownAt(layout, shown.data(), x[k], y[k], numbers + 4 * k);
-  Lanes3 v;
-  hn::LoadInterleaved4(Tag(), numbers, v.x, v.y, v.z, last);
+  LaneVec v;
+  hn::LoadInterleaved4(LanesTag(), numbers, v.x, v.y, v.z, last);
   return v;
 }
 
@@ -130,7 +133,7 @@ inline Lanes lastNumbers(const Layout& layout, const std::vector<float>& shown,
   float x[Layout::widest], y[Layout::widest], known[Layout::widest], numbers[Layout::widest];
   store(recalled.past.x, x);
   store(recalled.past.y, y);
-  store(where(recalled.known, all(1)), known);
+  store(hn::IfThenElseZero(recalled.known, lanesOf(1)), known);
   for (int k = 0; k < width(); k++) {
     numbers[k] = unknown;
     if (!(known[k] > 0)) continue;
@@ -144,24 +147,25 @@ inline Lanes lastNumbers(const Layout& layout, const std::vector<float>& shown,
 // Returns where a pixel that rests was covered, or its neighbours were, by something in front that
 // has moved away since, or by something that is gone: what was shown there is not its own colour.
 inline Mask wasUncovered(const ColourPass& pass, const Recalled& recalled, int x, int y, size_t i) {
-  const Mask none = all(1) < all(0);
+  const Mask none = lanesOf(1) < lanesOf(0);
   if (!(pass.before.layout == pass.pixels.layout)) return none;
-  const Mask rests =
-      both(recalled.known, both(recalled.past.x == countFrom(x), recalled.past.y == all(float(y))));
+  const Mask rests = hn::And(recalled.known, hn::And(recalled.past.x == countFrom(x),
+                                                     recalled.past.y == lanesOf(float(y))));
   const Guides& old = pass.before.guides;
   const auto stride = ptrdiff_t(pass.before.layout.stride);
   const Lanes own = load(pass.pixels.guides.nearness.data() + i);
-  const Lanes front = own + all(nearer) * (pass.pixels.projection.parallel ? all(1) : own);
+  const Lanes front = own + lanesOf(nearer) * (pass.pixels.projection.parallel ? lanesOf(1) : own);
   Mask covered = none;
   for (ptrdiff_t dy = -1; dy <= 1; dy++)
     for (ptrdiff_t dx = -1; dx <= 1; dx++) {
       const size_t j = i + size_t(dy * stride + dx);
       const Mask ahead =
-          both(load(old.name.data() + j) >= all(0), load(old.nearness.data() + j) > front);
+          hn::And(load(old.name.data() + j) >= lanesOf(0), load(old.nearness.data() + j) > front);
       const Lanes moves = load(old.moves.data() + j);
-      covered = either(covered, either(both(ahead, moves > all(0)), moves >= all(isGone)));
+      covered =
+          hn::Or(covered, hn::Or(hn::And(ahead, moves > lanesOf(0)), moves >= lanesOf(isGone)));
     }
-  return both(rests, covered);
+  return hn::And(rests, covered);
 }
 
 // Continues a row of colours by the widest range of showRow on both sides, the first and the last
@@ -185,7 +189,7 @@ inline void continueBorder(const Layout& layout, int y, Plane3& colours) {
 // Keeps for showRow what was shown.
 inline void keepShown(const ColourPass& pass, Recalled recalled, int x, int y, size_t i,
                       Fresh& fresh) {
-  const Lanes nowhere = all(std::numeric_limits<float>::quiet_NaN());
+  const Lanes nowhere = lanesOf(std::numeric_limits<float>::quiet_NaN());
   recalled.known = hn::AndNot(wasUncovered(pass, recalled, x, y, i), recalled.known);
   Lanes frames;
   store(shownNumbers(pass.shown.layout, pass.shown.colour, recalled, frames), fresh.oldColour, i);
@@ -195,16 +199,16 @@ inline void keepShown(const ColourPass& pass, Recalled recalled, int x, int y, s
 }
 
 // Returns the illumination that would bring as much light as coats reflect.
-inline Lanes3 asIllumination(const Lanes3& reflection, const Lanes3& albedo) {
-  const Lanes3 radiance = colourOf(reflection);
+inline LaneVec asIllumination(const LaneVec& reflection, const LaneVec& albedo) {
+  const LaneVec radiance = colourOf(reflection);
   return lumaOf({radiance.x / albedo.x, radiance.y / albedo.y, radiance.z / albedo.z});
 }
 
 // Multiplies illumination by albedo again.
-inline void storeColour(const Lanes3& light, const Reading& reading, size_t i, Fresh& fresh) {
-  const Lanes3 rgb = colourOf(light) * load(reading.albedo, i);
-  const Lanes zero = all(0);
-  store(Lanes3{larger(rgb.x, zero), larger(rgb.y, zero), larger(rgb.z, zero)}, fresh.colour, i);
+inline void storeColour(const LaneVec& light, const Reading& reading, size_t i, Fresh& fresh) {
+  const LaneVec rgb = colourOf(light) * load(reading.albedo, i);
+  const Lanes zero = lanesOf(0);
+  store(LaneVec{max(rgb.x, zero), max(rgb.y, zero), max(rgb.z, zero)}, fresh.colour, i);
   store(light, fresh.light, i);
 }
 

@@ -24,24 +24,25 @@ constexpr float noiseFall = 4; // from a quarter of noise on, a pixel's own samp
 constexpr float albedoFall = 9, mostAlbedoFall = 3, alikeAlbedo = 1;
 
 // The cells of neighbouring pixels: the first one, and the others counted from it.
-using Table = decltype(hn::IndicesFromVec(Tag(), hn::Zero(IndexTag())));
+using Table = decltype(hn::IndicesFromVec(LanesTag(), hn::Zero(IndicesTag())));
 
 // Where pixels from x on lie among the cells of one axis.
 struct Columns {
-  Columns(int x, int block) : first(x / block), table(hn::IndicesFromVec(Tag(), cells(x, block))) {
+  Columns(int x, int block)
+      : first(x / block), table(hn::IndicesFromVec(LanesTag(), cells(x, block))) {
     float places[Layout::widest];
     for (int k = 0; k < width(); k++)
       places[k] = (float(x + k) + 0.5f) / float(block) - 0.5f - float((x + k) / block);
     part = load(places);
   }
-  static Index cells(int x, int block) {
+  static Indices cells(int x, int block) {
     int32_t numbers[Layout::widest];
     for (int k = 0; k < width(); k++) numbers[k] = (x + k) / block - x / block;
-    return hn::LoadU(IndexTag(), numbers);
+    return hn::LoadU(IndicesTag(), numbers);
   }
   // Returns the numbers of the pixels' cells, `at` being where the first cell's number lies.
   Lanes of(const float* at) const { return hn::TableLookupLanes(load(at), table); }
-  Lanes3 of(const Plane3& planes, size_t at) const {
+  LaneVec of(const Plane3& planes, size_t at) const {
     return {of(planes.x.data() + at), of(planes.y.data() + at), of(planes.z.data() + at)};
   }
 
@@ -57,13 +58,13 @@ template <class Number> inline void splineWeights3(Number part, Number half, Num
   weight[2] = half * (half + part) * (half + part);
 }
 
-inline Lanes meanOf(const Lanes3& colour) {
-  return (colour.x + colour.y + colour.z) * all(1.0f / 3);
+inline Lanes meanOf(const LaneVec& colour) {
+  return (colour.x + colour.y + colour.z) * lanesOf(1.0f / 3);
 }
 
 // Holds what the cells around a pixel tell.
 struct Around {
-  Lanes3 light, least, most;
+  LaneVec light, least, most;
   Lanes weights, noise, slope, changed;
   // Holds the largest noise of the cells with the pixel's name, however they lie; -1: there are
   // none.
@@ -72,44 +73,42 @@ struct Around {
   // Written out, because GCC compiles a constructor of its own making for the oldest instruction
   // set, where vectors are returned in another way.
   Around()
-      : light{all(0), all(0), all(0)}, least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f),
-                                                                                       all(-1e30f),
-                                                                                       all(-1e30f)},
-        weights(all(0)), noise(all(0)), slope(all(0)), changed(all(0)), nameNoise(all(-1)) {}
+      : light{lanesOf(0), lanesOf(0), lanesOf(0)}, least{lanesOf(1e30f), lanesOf(1e30f),
+                                                         lanesOf(1e30f)},
+        most{lanesOf(-1e30f), lanesOf(-1e30f), lanesOf(-1e30f)}, weights(lanesOf(0)),
+        noise(lanesOf(0)), slope(lanesOf(0)), changed(lanesOf(0)), nameNoise(lanesOf(-1)) {}
 
   // same: the names are equal. alike: the cell's albedo is like the pixel's, so that its light is a
   // bound for the pixel's.
-  void add(const Lanes3& other, Lanes weight, Mask same, Mask alike, Lanes otherNoise,
+  void add(const LaneVec& other, Lanes weight, Mask same, Mask alike, Lanes otherNoise,
            Lanes otherSlope) {
-    const Mask counts = both(alike, weight > all(0.1f * leastWeight));
+    const Mask counts = hn::And(alike, weight > lanesOf(0.1f * leastWeight));
     weights = weights + weight;
     light = light + other * weight;
     noise = noise + otherNoise * weight;
-    nameNoise = select(same, larger(nameNoise, otherNoise), nameNoise);
+    nameNoise = select(same, max(nameNoise, otherNoise), nameNoise);
     slope = slope + otherSlope * weight;
-    least = select(
-        counts,
-        Lanes3{smaller(least.x, other.x), smaller(least.y, other.y), smaller(least.z, other.z)},
-        least);
-    most = select(counts,
-                  Lanes3{larger(most.x, other.x), larger(most.y, other.y), larger(most.z, other.z)},
+    least =
+        select(counts, LaneVec{min(least.x, other.x), min(least.y, other.y), min(least.z, other.z)},
+               least);
+    most = select(counts, LaneVec{max(most.x, other.x), max(most.y, other.y), max(most.z, other.z)},
                   most);
   }
-  Mask found() const { return weights > all(leastWeight); }
+  Mask found() const { return weights > lanesOf(leastWeight); }
 };
 
 // The surfaces of some pixels.
 struct Surface {
   Lanes name, nearness, albedo; // mean of the colours
-  Lanes3 colour;                // the albedo
+  LaneVec colour;               // the albedo
   Lanes x, y;                   // the sample from the centre of the pixel's cell, in cells
-  Lanes3 normal;
+  LaneVec normal;
 };
 
 // Returns the illumination of cells; what coats reflect becomes one of the pixels' own albedo.
-inline Lanes3 lightOf(const ColourPass& pass, const Columns& columns, size_t at,
-                      const Surface& surface) {
-  const Lanes3 light = columns.of(pass.light, at);
+inline LaneVec lightOf(const ColourPass& pass, const Columns& columns, size_t at,
+                       const Surface& surface) {
+  const LaneVec light = columns.of(pass.light, at);
   if (!pass.reflection) return light;
   return light + asIllumination(columns.of(*pass.reflection, at), surface.colour);
 }
@@ -123,35 +122,37 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
   float down[3];
   splineWeights3((float(y) + 0.5f) / block - 0.5f - float(cellY), 0.5f, down);
   Lanes across[3];
-  splineWeights3(columns.part, all(0.5f), across);
-  const Lanes scale = cells.projection.parallel ? all(1) : absolute(surface.nearness);
+  splineWeights3(columns.part, lanesOf(0.5f), across);
+  const Lanes scale = cells.projection.parallel ? lanesOf(1) : abs(surface.nearness);
   Around around;
   for (int dy = -1; dy <= 1; dy++)
     for (int dx = -1; dx <= 1; dx++) {
       const size_t at = size_t(ptrdiff_t(cells.layout.row(cellY + dy)) + columns.first + dx);
       const auto of = [&](const Plane& plane) { return columns.of(plane.data() + at); };
       const Lanes slopeX = of(guides.slopeX), slopeY = of(guides.slopeY),
-                  slope = absolute(slopeX) + absolute(slopeY);
+                  slope = abs(slopeX) + abs(slopeY);
       const Lanes expected = of(guides.nearness) +
-                             slopeX * (surface.x - all(float(dx)) - of(guides.offsetX)) +
-                             slopeY * (surface.y - all(float(dy)) - of(guides.offsetY));
-      const Lanes away =
-          absolute(surface.nearness - expected) /
-              (slope * all(0.5f) + scale * all(0.003f) + all(1e-20f)) +
-          absolute(all(1) - dot(columns.of(guides.normal, at), surface.normal)) * all(normalFall);
+                             slopeX * (surface.x - lanesOf(float(dx)) - of(guides.offsetX)) +
+                             slopeY * (surface.y - lanesOf(float(dy)) - of(guides.offsetY));
+      const Lanes away = abs(surface.nearness - expected) /
+                             (slope * lanesOf(0.5f) + scale * lanesOf(0.003f) + lanesOf(1e-20f)) +
+                         abs(lanesOf(1) - dot(columns.of(guides.normal, at), surface.normal)) *
+                             lanesOf(normalFall);
       const Lanes albedo = meanOf(columns.of(pass.cellAlbedo, at));
-      const Lanes unlike = smaller(absolute(albedo - surface.albedo) * all(albedoFall) /
-                                       (albedo + surface.albedo + all(1e-6f)),
-                                   all(mostAlbedoFall));
+      const Lanes unlike = min(abs(albedo - surface.albedo) * lanesOf(albedoFall) /
+                                   (albedo + surface.albedo + lanesOf(1e-6f)),
+                               lanesOf(mostAlbedoFall));
       const Mask same = of(guides.name) == surface.name;
-      const Lanes weight = where(same, fallOff(away + unlike) * across[dx + 1] * all(down[dy + 1]));
-      around.add(lightOf(pass, columns, at, surface), weight, same, unlike < all(alikeAlbedo),
+      const Lanes weight =
+          hn::IfThenElseZero(same, fallOff(away + unlike) * across[dx + 1] * lanesOf(down[dy + 1]));
+      around.add(lightOf(pass, columns, at, surface), weight, same, unlike < lanesOf(alikeAlbedo),
                  of(cells.accumulated.noise), slope);
-      const Mask exists = of(guides.name) >= all(0);
+      const Mask exists = of(guides.name) >= lanesOf(0);
       around.changed =
-          larger(around.changed, where(hn::AndNot(of(pass.verdict) == all(0), exists), all(1)));
+          max(around.changed,
+              hn::IfThenElseZero(hn::AndNot(of(pass.verdict) == lanesOf(0), exists), lanesOf(1)));
     }
-  const Lanes per = all(1) / larger(around.weights, all(1e-20f));
+  const Lanes per = lanesOf(1) / max(around.weights, lanesOf(1e-20f));
   around.light = around.light * per;
   around.noise = around.noise * per;
   around.slope = around.slope * per;
@@ -161,34 +162,34 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
 // Returns the illumination of cells farther away: those with the pixel's name count, however they
 // lie, and the others only if there are none. The light of a surface with a lower albedo is lowered
 // with it, because some of that light may be reflected as by varnish.
-inline Lanes3 lightFarAround(const ColourPass& pass, const Columns& columns, const Surface& surface,
-                             int y) {
+inline LaneVec lightFarAround(const ColourPass& pass, const Columns& columns,
+                              const Surface& surface, int y) {
   constexpr int reach = 2;
   constexpr float otherWeight = 1e-4f;
   const Moment& cells = pass.cells;
   const int cellY = y / cells.block;
-  Lanes weights = all(1e-20f);
-  Lanes3 sum{all(0), all(0), all(0)};
+  Lanes weights = lanesOf(1e-20f);
+  LaneVec sum{lanesOf(0), lanesOf(0), lanesOf(0)};
   for (int dy = -reach; dy <= reach; dy++)
     for (int dx = -reach; dx <= reach; dx++) {
       const size_t at = size_t(ptrdiff_t(cells.layout.row(cellY + dy)) + columns.first + dx);
       const Lanes other = columns.of(cells.guides.name.data() + at);
       const float nearby = 1 / float(1 + dx * dx + dy * dy);
-      const Lanes weight = where(
-          other >= all(0), select(other == surface.name, all(nearby), all(nearby * otherWeight)));
+      const Lanes weight =
+          hn::IfThenElseZero(other >= lanesOf(0), select(other == surface.name, lanesOf(nearby),
+                                                         lanesOf(nearby * otherWeight)));
       const Lanes albedo = meanOf(columns.of(pass.cellAlbedo, at));
-      const Lanes lower = smaller(albedo / larger(surface.albedo, all(1e-6f)), all(1));
+      const Lanes lower = min(albedo / max(surface.albedo, lanesOf(1e-6f)), lanesOf(1));
       weights = weights + weight;
       sum = sum + columns.of(pass.light, at) * (weight * lower);
       if (pass.reflection)
         sum = sum + asIllumination(columns.of(*pass.reflection, at), surface.colour) * weight;
     }
-  return sum * (all(1) / weights);
+  return sum * (lanesOf(1) / weights);
 }
 
-inline Lanes3 bounded(const Lanes3& v, const Lanes3& least, const Lanes3& most) {
-  return {clamped(v.x, least.x, most.x), clamped(v.y, least.y, most.y),
-          clamped(v.z, least.z, most.z)};
+inline LaneVec bounded(const LaneVec& v, const LaneVec& least, const LaneVec& most) {
+  return {clamp(v.x, least.x, most.x), clamp(v.y, least.y, most.y), clamp(v.z, least.z, most.z)};
 }
 
 // Holds what was shown of pixels, and the pixels of the frame before that showed their surfaces.
@@ -199,7 +200,7 @@ struct RecalledSurfaces : Recalled {
 // Tells where the surfaces of pixels were shown. slope: change of nearness from cell to cell.
 inline RecalledSurfaces recalledSurfaces(const ColourPass& pass, Lanes slope, int x, size_t i) {
   const Expected expected = expectedAt(pass.pixels, pass.before, pass.reading,
-                                       slope * all(1 / float(pass.cells.block)), i);
+                                       slope * lanesOf(1 / float(pass.cells.block)), i);
   const Lanes pastX = load(pass.reading.pastX.data() + i),
               pastY = load(pass.reading.pastY.data() + i);
   Taps taps = tapsAround(pass.before, expected, pastX, pastY);
@@ -210,12 +211,12 @@ inline RecalledSurfaces recalledSurfaces(const ColourPass& pass, Lanes slope, in
 // Returns the illumination that was shown of the pixels' own surfaces. A spline across the edges of
 // something thin would swing below and above the light of what is beside it, and more with each
 // frame.
-inline Lanes3 lightOfSurfaces(const ColourPass& pass, const Taps& taps) {
+inline LaneVec lightOfSurfaces(const ColourPass& pass, const Taps& taps) {
   const float* light = pass.shown.light.data();
-  Lanes3 sum{all(0), all(0), all(0)};
+  LaneVec sum{lanesOf(0), lanesOf(0), lanesOf(0)};
   for (int k = 0; k < 4; k++) {
-    const Index at = hn::ShiftLeft<2>(taps.index[k]);
-    const Lanes3 tap{gather(light, at), gather(light + 1, at), gather(light + 2, at)};
+    const Indices at = hn::ShiftLeft<2>(taps.index[k]);
+    const LaneVec tap{gather(light, at), gather(light + 1, at), gather(light + 2, at)};
     sum = sum + tap * taps.weight[k];
   }
   return sum;
@@ -235,35 +236,37 @@ struct Lit {
 inline Lit litPixels(const ColourPass& pass, const Pixels& at) {
   const int w = pass.pixels.layout.width;
   const size_t first = size_t(at.y) * size_t(w);
-  const Mask lit = loadSome(pass.frame.samples + first, at.x, w) > all(0);
+  const Mask lit = loadSome(pass.frame.samples + first, at.x, w) > lanesOf(0);
   // The environment has an albedo only in mirrors and behind glass.
-  const Lanes3 albedo = loadTriples(pass.frame.albedo + 3 * first, at.x, w);
-  const Mask untinted =
-      absolute(albedo.x) + absolute(albedo.y) + absolute(albedo.z) <= HWY_NAMESPACE::all(0);
+  const LaneVec albedo = loadTriples(pass.frame.albedo + 3 * first, at.x, w);
+  const Mask untinted = abs(albedo.x) + abs(albedo.y) + abs(albedo.z) <= lanesOf(0);
   const Mask far = hn::AndNot(isFinite(loadSome(pass.frame.depth + first, at.x, w)), lit);
-  return {lit, both(far, untinted)};
+  return {lit, hn::And(far, untinted)};
 }
 
 // Returns the illumination of pixels of which `around` may be noise or have no light.
-inline Lanes3 ownLight(const ColourPass& pass, const Around& around,
-                       const RecalledSurfaces& recalled, Mask lit, const Pixels& at) {
+inline LaneVec ownLight(const ColourPass& pass, const Around& around,
+                        const RecalledSurfaces& recalled, Mask lit, const Pixels& at) {
   Lanes unused;
-  Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
+  LaneVec shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
   // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
   // for the cells.
-  const Mask same = pass.shown.layout == pass.pixels.layout ? all(0) < all(1) : all(1) < all(0);
-  const Mask rests = both(both(recalled.known, same), both(recalled.past.x == countFrom(at.x),
-                                                           recalled.past.y == all(float(at.y))));
-  const Mask calm = both(rests, around.changed <= all(0)), alone = hn::Not(around.found());
-  const Mask keeps = either(calm, alone);
-  const Mask follows = both(both(hn::AndNot(calm, alone), recalled.known), recalled.taps.found);
-  if (!hn::AllFalse(Tag(), follows))
+  const Mask same =
+      pass.shown.layout == pass.pixels.layout ? lanesOf(0) < lanesOf(1) : lanesOf(1) < lanesOf(0);
+  const Mask rests =
+      hn::And(hn::And(recalled.known, same),
+              hn::And(recalled.past.x == countFrom(at.x), recalled.past.y == lanesOf(float(at.y))));
+  const Mask calm = hn::And(rests, around.changed <= lanesOf(0)), alone = hn::Not(around.found());
+  const Mask keeps = hn::Or(calm, alone);
+  const Mask follows =
+      hn::And(hn::And(hn::AndNot(calm, alone), recalled.known), recalled.taps.found);
+  if (!hn::AllFalse(LanesTag(), follows))
     shown = select(follows, lightOfSurfaces(pass, recalled.taps), shown);
   // A colour that was shown may belong to another albedo: the sample lies anywhere in the pixel.
   const Mask isBound = hn::Not(around.least.x > around.most.x);
-  const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
-  const Lanes3 old = select(keeps, shown, bound);
-  const Lanes3 sample =
+  const LaneVec bound = select(isBound, bounded(shown, around.least, around.most), around.light);
+  const LaneVec old = select(keeps, shown, bound);
+  const LaneVec sample =
       load(pass.reading.light, at.i) +
       asIllumination(load(pass.reading.reflection, at.i), load(pass.reading.albedo, at.i));
   return select(lit, sample, select(recalled.known, old, around.light));
@@ -273,38 +276,42 @@ inline Lanes3 ownLight(const ColourPass& pass, const Around& around,
 // its own, also where there is no noise, and once noise is found to have been none.
 inline void forgetLent(Mask unsampled, Mask lit, Mask found, Lanes noise, size_t i, Fresh& fresh) {
   const Lanes frames = load(fresh.oldFrames.data() + i);
-  const Mask lent = both(unsampled, hn::Not(either(found, lit)));
-  const Mask quiet = either(hn::Not(found), noise < all(1 / noiseFall));
-  const Mask first = both(both(lit, unsampled), either(quiet, frames <= all(1)));
-  const Mask settles = both(noise > all(0), noise <= all(almostNoNoise));
-  store(where(hn::Not(either(lent, either(first, settles))), frames), fresh.oldFrames.data() + i);
+  const Mask lent = hn::And(unsampled, hn::Not(hn::Or(found, lit)));
+  const Mask quiet = hn::Or(hn::Not(found), noise < lanesOf(1 / noiseFall));
+  const Mask first = hn::And(hn::And(lit, unsampled), hn::Or(quiet, frames <= lanesOf(1)));
+  const Mask settles = hn::And(noise > lanesOf(0), noise <= lanesOf(almostNoNoise));
+  store(hn::IfThenElseZero(hn::Not(hn::Or(lent, hn::Or(first, settles))), frames),
+        fresh.oldFrames.data() + i);
 }
 
-inline Lanes3 spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
-                          const Around& around, const RecalledSurfaces& recalled, const Pixels& at,
-                          Fresh& fresh) {
+inline LaneVec spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
+                           const Around& around, const RecalledSurfaces& recalled, const Pixels& at,
+                           Fresh& fresh) {
   const Lit lit = litPixels(pass, at);
-  const Lanes one = all(1);
-  const Mask some = both(surface.name >= all(0), present(at.x, pass.pixels.layout.width));
+  const Lanes one = lanesOf(1);
+  const Mask some =
+      hn::And(surface.name >= lanesOf(0), presentFrom(at.x, pass.pixels.layout.width));
   const Mask found = hn::AndNot(lit.environment, around.found());
   const Lanes last = lastNumbers(pass.shown.layout, pass.shown.light, recalled, Shown::noSample);
   // Nobody knows about the noise of something thin that no cell shows: its samples are kept.
-  const Lanes nameNoise =
-      select(around.nameNoise >= all(0), around.nameNoise, where(last < all(0), one));
-  const Lanes noise = where(hn::Not(lit.environment), select(found, around.noise, nameNoise));
+  const Lanes nameNoise = select(around.nameNoise >= lanesOf(0), around.nameNoise,
+                                 hn::IfThenElseZero(last < lanesOf(0), one));
+  const Lanes noise =
+      hn::IfThenElseZero(hn::Not(lit.environment), select(found, around.noise, nameNoise));
   store(noise, fresh.noise.data() + at.i);
-  const Lanes3 own = load(pass.reading.light, at.i);
+  const LaneVec own = load(pass.reading.light, at.i);
   store(select(lit.all, own.x, last), fresh.sample.data() + at.i);
 
-  const Lanes trust = where(found, smaller(noise * all(noiseFall), one)); // 0: free of noise
-  forgetLent(last < all(0), lit.all, found, noise, at.i, fresh);
-  Lanes3 light = around.light;
-  if (!hn::AllTrue(Tag(), trust >= one)) {
-    const Lanes3 sharp = ownLight(pass, around, recalled, lit.all, at);
+  const Lanes trust =
+      hn::IfThenElseZero(found, min(noise * lanesOf(noiseFall), one)); // 0: free of noise
+  forgetLent(last < lanesOf(0), lit.all, found, noise, at.i, fresh);
+  LaneVec light = around.light;
+  if (!hn::AllTrue(LanesTag(), trust >= one)) {
+    const LaneVec sharp = ownLight(pass, around, recalled, lit.all, at);
     light = select(trust >= one, light, sharp + (light - sharp) * trust);
   }
-  const Mask missing = hn::AndNot(either(found, either(lit.all, recalled.known)), some);
-  if (!hn::AllFalse(Tag(), missing))
+  const Mask missing = hn::AndNot(hn::Or(found, hn::Or(lit.all, recalled.known)), some);
+  if (!hn::AllFalse(LanesTag(), missing))
     light = select(missing, lightFarAround(pass, columns, surface, at.y), light);
   return light;
 }
@@ -322,8 +329,8 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
                           load(guides.nearness.data() + i),
                           meanOf(load(pass.reading.albedo, i)),
                           load(pass.reading.albedo, i),
-                          columns.part + load(guides.offsetX.data() + i) * all(1 / block),
-                          all(partY) + load(guides.offsetY.data() + i) * all(1 / block),
+                          columns.part + load(guides.offsetX.data() + i) * lanesOf(1 / block),
+                          lanesOf(partY) + load(guides.offsetY.data() + i) * lanesOf(1 / block),
                           load(guides.normal, i)};
     const Around around = cellsAround(pass, columns, surface, y);
     const RecalledSurfaces recalled = recalledSurfaces(pass, around.slope, x, i);

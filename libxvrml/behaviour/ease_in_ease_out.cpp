@@ -6,6 +6,7 @@
 #include "behaviour/builtin.h"
 #include "behaviour/ease.h"
 #include "behaviour/keys.h"
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -14,11 +15,11 @@ namespace {
 // Sends the part of its interval in which a fraction lies, eased by the second number of the key
 // before and the first number of the key after. Outside of the keys it is 0 or 1.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  static const FieldInfo& set = fieldOf<nodes::EaseInEaseOut>("set_fraction");
   static const FieldInfo& out = fieldOf<nodes::EaseInEaseOut>("modifiedFraction_changed");
   const auto& ease = static_cast<const nodes::EaseInEaseOut&>(node);
   const size_t count = std::min(ease.key.size(), ease.easeInEaseOut.size());
-  if (&in != &set || count == 0 || std::isnan(std::get<SFFloat>(value))) return;
+  if (!isField<"set_fraction">(node, in) || count == 0 || std::isnan(std::get<SFFloat>(value)))
+    return;
   const float fraction = std::get<SFFloat>(value);
   const KeyPosition place = locate(ease.key.data(), count, fraction);
   if (place.left + 1 >= count)

@@ -1,6 +1,7 @@
 // event_utilities.cpp: BooleanFilter, BooleanToggle, BooleanTrigger, IntegerTrigger and TimeTrigger
 // (ISO/IEC 19775-1 clause 30). Each answers an event with others, at the same time.
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -20,7 +21,9 @@ void filter(Events& events, Node& node, const FieldInfo&, const Value& value) {
 // does nothing: the field never differs from what was sent.
 void toggle(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   static const FieldInfo& toggled = fieldOf<nodes::BooleanToggle>("toggle");
-  if (in.name != "set_boolean" || !std::get<SFBool>(value) || events.hasSent(node, toggled)) return;
+  if (!isField<"set_boolean">(node, in) || !std::get<SFBool>(value) ||
+      events.hasSent(node, toggled))
+    return;
   const bool next = !static_cast<nodes::BooleanToggle&>(node).toggle;
   events.store(node, toggled, next);
   events.send(node, toggled, next);
@@ -35,7 +38,7 @@ void triggerTrue(Events& events, Node& node, const FieldInfo&, const Value&) {
 // 30.4.6
 void triggerInteger(Events& events, Node& node, const FieldInfo& in, const Value&) {
   static const FieldInfo& out = fieldOf<nodes::IntegerTrigger>("triggerValue");
-  if (in.name == "set_boolean")
+  if (isField<"set_boolean">(node, in))
     events.send(node, out, static_cast<nodes::IntegerTrigger&>(node).integerKey);
 }
 

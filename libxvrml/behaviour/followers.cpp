@@ -7,6 +7,7 @@
 
 #include "behaviour/builtin.h"
 #include "behaviour/follower_filter.h"
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -84,13 +85,13 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
   auto& follower = static_cast<Follower&>(node);
   State<Follower>& state = stateOf<Follower>(events, node);
   if constexpr (isDamper<Follower>) {
-    if (in.name == "tau") return state.filter.setTau(follower.tau, events.now());
-    if (in.name == "tolerance") return state.filter.setTolerance(follower.tolerance);
+    if (isField<"tau">(node, in)) return state.filter.setTau(follower.tau, events.now());
+    if (isField<"tolerance">(node, in)) return state.filter.setTolerance(follower.tolerance);
   }
   using Field = std::remove_cvref_t<decltype(follower.initialValue)>;
   const auto& list = listOf(std::get<Field>(value));
   if (!isUsable(events, follower, state, list)) return;
-  if (in.name == "set_value") {
+  if (isField<"set_value">(node, in)) {
     state.filter.setValue(list, events.now());
     sendValue<Follower>(events, node, state);
   } else {

@@ -4,23 +4,25 @@
 
 #include "behaviour/builtin.h"
 #include "behaviour/lod.h"
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
 
 // Returns the field that holds the children.
-const FieldInfo& listOf(const NodeType& type) {
-  if (type.index == nodes::LOD::typeIndex) return *type.find("level");
-  return *type.find(type.index == nodes::Switch::typeIndex ? "choice" : "children");
+const FieldInfo& listOf(const Node& node) {
+  if (nodeCast<nodes::LOD>(&node)) return *fieldNamed<"level">(node);
+  return nodeCast<nodes::Switch>(&node) ? *fieldNamed<"choice">(node)
+                                        : *fieldNamed<"children">(node);
 }
 
 // Adds or removes children. children is an exposedField, so a change sends children_changed. Adding
 // a present child or removing an absent one has no effect and sends no event.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  const bool adds = in.name == "addChildren";
-  if (!adds && in.name != "removeChildren") return;
-  const FieldInfo& children = listOf(node.type());
+  const bool adds = isField<"addChildren">(node, in);
+  if (!adds && !isField<"removeChildren">(node, in)) return;
+  const FieldInfo& children = listOf(node);
   auto list = std::get<MFNode>(node.get(children));
   const MFNode before = list;
   const auto holds = [&](const NodeRef& child) {

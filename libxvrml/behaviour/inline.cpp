@@ -1,6 +1,7 @@
 #include "behaviour/inline.h"
 
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "event/hierarchy.h"
 #include "graph/inline_node.h"
 #include "parse/loader.h"
@@ -25,7 +26,7 @@ std::vector<std::string> enclosingFiles(const Node& node) {
 
 // A field `load` FALSE takes the content away (ISO/IEC 19775-1 9.4.2).
 bool loadInlineContent(Engine& engine, Node& node) {
-  auto* inlineNode = dynamic_cast<InlineNode*>(&node);
+  auto* inlineNode = nodeCast<InlineNode>(&node);
   if (!inlineNode || !engine.browser()) return false;
   if (!inlineNode->load && !inlineNode->content) return false;
   World& world = engine.browser()->world();
@@ -41,14 +42,14 @@ bool loadInlineContent(Engine& engine, Node& node) {
   if (const uint64_t after = budget->used(); after > before)
     inlineNode->share.adopt(budget, after - before);
   engine.contentLoaded(node);
-  engine.changed(node, fieldOf<nodes::Inline>("url"));
+  engine.changed(node, *fieldNamed<"url">(node));
   return inlineNode->content != nullptr;
 }
 
 uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
   uint64_t loaded = 0;
   walk(rootsOf(scope), [&](Node& node, std::vector<Node*>& open) {
-    const auto* inlineNode = dynamic_cast<const InlineNode*>(&node);
+    const auto* inlineNode = nodeCast<InlineNode>(&node);
     if (inlineNode && inlineNode->load && !inlineNode->content && !inlineNode->url.empty())
       loaded += loadInlineContent(engine, node);
     childrenInHierarchy(node, open);
@@ -60,9 +61,9 @@ namespace {
 
 // load TRUE of an Inline that has its content, or FALSE of one that has none, changes nothing.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
-  const bool loads =
-      in.name == "load" && static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
-  if (in.name == "url" || loads) loadInlineContent(static_cast<Engine&>(events), node);
+  const bool loads = isField<"load">(node, in) &&
+                     static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
+  if (isField<"url">(node, in) || loads) loadInlineContent(Engine::of(events), node);
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include "behaviour/blend.h"
 #include "behaviour/builtin.h"
 #include "behaviour/keys.h"
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -97,9 +98,8 @@ template <class Interpolator> void presetFirst(Events& events, Interpolator& nod
 // Handles eventIns. A new key or keyValue sends nothing; only set_fraction does.
 template <class Interpolator>
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  static const FieldInfo& fraction = fieldOf<Interpolator>("set_fraction");
   auto& interpolator = static_cast<Interpolator&>(node);
-  if (&in != &fraction)
+  if (!isField<"set_fraction">(node, in))
     presetFirst(events, interpolator);
   else if (!std::isnan(std::get<SFFloat>(value)))
     evaluate(events, interpolator, std::get<SFFloat>(value));

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "behaviour/media.h"
+#include "behaviour/named_fields.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 
@@ -31,11 +32,11 @@ bool isReadable(const Node& node, const FieldInfo& field, const MFString& urls,
 Loaded loadedOf(Events& events, const Node& written) {
   const Node* node = renderedNode(const_cast<Node*>(&written));
   if (!node) return Loaded::no;
-  if (const auto* content = dynamic_cast<const InlineNode*>(node)) {
+  if (const auto* content = nodeCast<InlineNode>(node)) {
     if (content->content) return Loaded::yes;
     return content->tried && content->load ? Loaded::no : Loaded::waits;
   }
-  if (const FieldInfo* duration = node->type().find("duration_changed"))
+  if (const FieldInfo* duration = fieldNamed<"duration_changed">(*node))
     return std::get<SFTime>(events.lastSent(*node, *duration)) >= 0 ? Loaded::yes : Loaded::no;
   for (const FieldInfo& field : node->type().fields)
     if (field.type == FieldType::MFString && holdsValue(field) && holdsUrls(*node, field) &&
@@ -50,7 +51,7 @@ State& stateOf(Events& events, Node& node) { return static_cast<State&>(*events.
 void end(Events& events, Node& node) {
   stateOf(events, node).senses = false;
   events.wantTicks(node, false);
-  events.send(node, "isActive", false);
+  sendFrom<"isActive">(events, node, false);
 }
 
 // An eventOut sends once at a time, so that what has been loaded already is told a tick later.
@@ -66,8 +67,8 @@ void tick(Events& events, Node& node) {
   if (!std::exchange(state.senses, true)) {
     state.begun = events.now();
     state.progress = 0;
-    events.send(node, "isActive", true);
-    return events.send(node, "progress", 0.f);
+    sendFrom<"isActive">(events, node, true);
+    return sendFrom<"progress">(events, node, 0.f);
   }
   size_t loaded = 0;
   bool failed = false;
@@ -78,12 +79,13 @@ void tick(Events& events, Node& node) {
     failed = failed || one == Loaded::no;
   }
   const float progress = float(loaded) / float(count);
-  if (std::exchange(state.progress, progress) != progress) events.send(node, "progress", progress);
+  if (std::exchange(state.progress, progress) != progress)
+    sendFrom<"progress">(events, node, progress);
   const bool all = loaded == size_t(count);
   const bool late = sensor.timeOut > 0 && events.now() - state.begun >= sensor.timeOut;
   if (!all && !failed && !late) return;
-  events.send(node, "isLoaded", all);
-  if (all) events.send(node, "loadTime", events.now());
+  sendFrom<"isLoaded">(events, node, all);
+  if (all) sendFrom<"loadTime">(events, node, events.now());
   end(events, node);
 }
 
@@ -94,11 +96,12 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
 
 // A new list is watched from the beginning.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
-  if (in.name != "watchList" && in.name != "enabled") return;
+  const bool isList = isField<"watchList">(node, in);
+  if (!isList && !isField<"enabled">(node, in)) return;
   State& state = stateOf(events, node);
   const bool enabled = static_cast<nodes::LoadSensor&>(node).enabled;
   if (!enabled && state.senses) return end(events, node);
-  if (in.name == "watchList" && state.senses) {
+  if (isList && state.senses) {
     state.begun = events.now();
     state.progress = -1;
   }

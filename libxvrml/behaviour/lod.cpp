@@ -3,6 +3,7 @@
 // or not. An LOD at several places tells that of the first path to it.
 #include "behaviour/lod.h"
 
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/descend.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
@@ -16,13 +17,13 @@ struct State : NodeState {
 
 // Only an LOD whose level somebody reads is measured: worlds may have thousands of others.
 bool isListenedTo(const Node& node) {
-  static const FieldInfo& out = fieldOf<nodes::LOD>("activeLevel_changed");
+  const FieldInfo* const out = fieldNamed<"activeLevel_changed">(node);
   const Participant* part = liveOf(node)->part.get();
   if (!part) return false;
   for (const Link& link : part->links)
-    if (link.out == &out) return true;
+    if (link.out == out) return true;
   for (const auto& [number, listener] : part->listeners)
-    if (listener.first == &out) return true;
+    if (listener.first == out) return true;
   return false;
 }
 
@@ -38,7 +39,8 @@ void lookLod(Events& events, Node& node) {
   above.pop_back();
   const auto level = int32_t(levelFor(lod, Picker::toWorld(above, view), view));
   auto& state = static_cast<State&>(*events.state(node));
-  if (std::exchange(state.level, level) != level) events.send(node, "activeLevel_changed", level);
+  if (std::exchange(state.level, level) != level)
+    sendFrom<"activeLevel_changed">(events, node, level);
 }
 
 std::unique_ptr<NodeState> beginLod(Events& events, Node& node) {

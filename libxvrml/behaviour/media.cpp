@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "behaviour/named_fields.h"
 #include "xvrml/browser.h"
 
 namespace xvrml {
@@ -14,38 +15,40 @@ Media& mediaOf(Events& events, Node& node) { return *static_cast<Media*>(events.
 
 void send(Events& events, Node& node, Media& media, const TimeStep& step) {
   if (!step.running) return;
-  if (step.begins) events.send(node, "isActive", true);
-  if (step.resumes) events.send(node, "isPaused", false);
+  if (step.begins) sendFrom<"isActive">(events, node, true);
+  if (step.resumes) sendFrom<"isPaused">(events, node, false);
   media.play(events, node, step);
-  if (!step.alreadySent) events.send(node, "elapsedTime", step.elapsed);
-  if (step.pauses) events.send(node, "isPaused", true);
-  if (step.ends) events.send(node, "isActive", false);
+  if (!step.alreadySent) sendFrom<"elapsedTime">(events, node, step.elapsed);
+  if (step.pauses) sendFrom<"isPaused">(events, node, true);
+  if (step.ends) sendFrom<"isActive">(events, node, false);
 }
 
 MaySend maySend(const Events& events, const Node& node) {
-  return {!events.hasSent(node, *node.type().find("isActive")),
-          !events.hasSent(node, *node.type().find("isPaused"))};
+  return {!events.hasSent(node, *fieldNamed<"isActive">(node)),
+          !events.hasSent(node, *fieldNamed<"isPaused">(node))};
 }
 
-bool isRate(const FieldInfo& field) { return field.name == "pitch" || field.name == "speed"; }
+bool isRate(const Node& node, const FieldInfo& field) {
+  return isField<"pitch">(node, field) || isField<"speed">(node, field);
+}
 
 bool accept(Events& events, Node& node, const FieldInfo& field, const Value& value) {
   const Media& media = mediaOf(events, node);
-  if (isRate(field) &&
+  if (isRate(node, field) &&
       (media.time.active() || !inRange(field, value) || !std::isfinite(std::get<SFFloat>(value))))
     return false;
-  return media.time.accepts(media.fields(node), field, value);
+  return media.time.accepts(media.fields(node), node, field, value);
 }
 
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
   Media& media = mediaOf(events, node);
-  if (in.name == "url") {
+  if (isField<"url">(node, in)) {
     media.duration = media.load(events, node);
-    events.send(node, "duration_changed", media.duration);
+    sendFrom<"duration_changed">(events, node, media.duration);
   }
   const TimeFields fields = media.fields(node);
-  const TimeStep step =
-      media.time.fieldChanged(fields, events.now(), maySend(events, node), in.name == "startTime");
+  const TimeStep step = media.time.fieldChanged(fields, events.now(), maySend(events, node),
+                                                isField<"startTime">(node, in));
   send(events, node, media, step);
   events.wantTicks(node, media.time.wantsTicks(fields, events.now()));
 }
@@ -66,7 +69,7 @@ void addMedia(const AddBehaviour& add, const NodeType& type,
 
 std::unique_ptr<NodeState> beginMedia(Events& events, Node& node, std::unique_ptr<Media> state) {
   state->duration = state->load(events, node);
-  events.send(node, "duration_changed", state->duration);
+  sendFrom<"duration_changed">(events, node, state->duration);
   const TimeFields fields = state->fields(node);
   state->time.begin(fields, events.now());
   if (state->time.wantsTicks(fields, events.now())) events.wantTicks(node, true);

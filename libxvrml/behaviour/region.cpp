@@ -8,6 +8,7 @@
 #include <Imath/ImathQuat.h>
 
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "nodes/viewpoint.h"
@@ -42,8 +43,11 @@ Rotation rotationOf(const Matrix& m) {
 
 void setActive(Events& events, Node& node, bool active) {
   static_cast<RegionState&>(*events.state(node)).active = active;
-  events.send(node, "isActive", active);
-  events.send(node, active ? "enterTime" : "exitTime", events.now());
+  sendFrom<"isActive">(events, node, active);
+  if (active)
+    sendFrom<"enterTime">(events, node, events.now());
+  else
+    sendFrom<"exitTime">(events, node, events.now());
 }
 
 // Finds the first of the sensor's boxes that contains the viewer, and the matrix from the viewer to
@@ -93,14 +97,14 @@ void lookProximity(Events& events, Node& node) {
   const Vector p = transformPoint(viewer, Vector(0));
   const Vec3f position{float(p.x), float(p.y), float(p.z)};
   const Rotation orientation = rotationOf(viewer);
-  if (entered || position != state.position) events.send(node, "position_changed", position);
+  if (entered || position != state.position) sendFrom<"position_changed">(events, node, position);
   if (entered || orientation != state.orientation)
-    events.send(node, "orientation_changed", orientation);
+    sendFrom<"orientation_changed">(events, node, orientation);
   state.position = position;
   state.orientation = orientation;
   Vec3f center;
   if (!centerOfRotation(events, viewer, center)) return;
-  if (entered || center != state.center) events.send(node, "centerOfRotation_changed", center);
+  if (entered || center != state.center) sendFrom<"centerOfRotation_changed">(events, node, center);
   state.center = center;
 }
 
@@ -167,7 +171,7 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
 
 // A sensor that is disabled sends isActive FALSE at once (4.6.7.2).
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  if (in.name == "enabled" && !std::get<bool>(value) &&
+  if (isField<"enabled">(node, in) && !std::get<bool>(value) &&
       static_cast<RegionState&>(*events.state(node)).active)
     setActive(events, node, false);
 }

@@ -5,6 +5,7 @@
 
 #include "behaviour/builtin.h"
 #include "behaviour/keys.h"
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 #include "xvrml/numbers.h"
 
@@ -34,18 +35,18 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
   auto& sequencer = static_cast<Sequencer&>(node);
   size_t& index = static_cast<State*>(events.state(node))->index;
   const size_t count = usable(sequencer);
-  if (in.name == "key" || in.name == "keyValue") {
+  if (isField<"key">(node, in) || isField<"keyValue">(node, in)) {
     index = none;
   } else if (count == 0) {
     return;
-  } else if (in.name == "set_fraction") {
+  } else if (isField<"set_fraction">(node, in)) {
     const float fraction = std::get<SFFloat>(value);
     if (std::isnan(fraction)) return;
     const size_t chosen = locate(sequencer.key.data(), count, fraction).left;
     if (chosen != index) sendValue(events, sequencer, chosen);
   } else if (std::get<SFBool>(value)) { // next or previous
     const size_t last = count - 1;
-    if (in.name == "next")
+    if (isField<"next">(node, in))
       sendValue(events, sequencer, index == none || index >= last ? 0 : index + 1);
     else
       sendValue(events, sequencer, index == none || index == 0 ? last : std::min(index - 1, last));

@@ -7,6 +7,7 @@
 
 #include "behaviour/builtin.h"
 #include "behaviour/keys.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/spline.h"
 #include "xvrml/nodes.h"
 
@@ -54,7 +55,7 @@ template <class Interpolator> void presetFirst(Events& events, Interpolator& nod
 template <class Interpolator>
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   auto& interpolator = static_cast<Interpolator&>(node);
-  if (in.name != "set_fraction")
+  if (!isField<"set_fraction">(node, in))
     presetFirst(events, interpolator);
   else if (!std::isnan(std::get<SFFloat>(value)))
     evaluate(events, interpolator, std::get<SFFloat>(value));

@@ -7,6 +7,7 @@
 
 #include "behaviour/builtin.h"
 #include "behaviour/keys.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/squad.h"
 #include "xvrml/nodes.h"
 
@@ -42,7 +43,7 @@ void evaluate(Events& events, Interpolator& node, float fraction) {
 
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   auto& interpolator = static_cast<Interpolator&>(node);
-  if (in.name != "set_fraction")
+  if (!isField<"set_fraction">(node, in))
     presetFirst(events, interpolator);
   else if (!std::isnan(std::get<SFFloat>(value)))
     evaluate(events, interpolator, std::get<SFFloat>(value));

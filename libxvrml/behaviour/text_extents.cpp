@@ -2,6 +2,7 @@
 // 19775-1 15.4.2). They are sent at the first tick and whenever the text changes. Text of files of
 // VRML97 has no such outputs and sends nothing.
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "geometry/text/text_extent.h"
 #include "xvrml/nodes.h"
 
@@ -10,9 +11,9 @@ namespace {
 
 void sendExtents(Events& events, Node& node) {
   TextExtent extent = extentOf(static_cast<nodes::Text&>(node));
-  events.send(node, fieldOf<nodes::Text>("lineBounds"), std::move(extent.lines));
-  events.send(node, fieldOf<nodes::Text>("textBounds"), extent.text);
-  events.send(node, fieldOf<nodes::Text>("origin"), extent.origin);
+  sendFrom<"lineBounds">(events, node, std::move(extent.lines));
+  sendFrom<"textBounds">(events, node, extent.text);
+  sendFrom<"origin">(events, node, extent.origin);
 }
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {

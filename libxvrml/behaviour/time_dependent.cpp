@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "behaviour/named_fields.h"
+
 namespace xvrml {
 namespace {
 
@@ -23,11 +25,11 @@ void TimeDependent::begin(const TimeFields& fields, double now) {
   waiting_ = !finished_ && (fields.startTime > now || end(fields) > now);
 }
 
-bool TimeDependent::accepts(const TimeFields& fields, const FieldInfo& field,
+bool TimeDependent::accepts(const TimeFields& fields, const Node& node, const FieldInfo& field,
                             const Value& value) const {
   if (!active_) return true;
-  if (field.name == "startTime") return false;
-  return field.name != "stopTime" || std::get<SFTime>(value) > fields.startTime;
+  if (isField<"startTime">(node, field)) return false;
+  return !isField<"stopTime">(node, field) || std::get<SFTime>(value) > fields.startTime;
 }
 
 bool TimeDependent::wantsTicks(const TimeFields& fields, double now) const {

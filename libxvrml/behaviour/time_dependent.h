@@ -58,7 +58,8 @@ class TimeDependent {
 
   // Returns whether the node accepts a field value (clauses 4.6.9, 6.50). An active node ignores
   // startTime, and a stopTime that is not after startTime.
-  bool accepts(const TimeFields& fields, const FieldInfo& field, const Value& value) const;
+  bool accepts(const TimeFields& fields, const Node& node, const FieldInfo& field,
+               const Value& value) const;
 
  private:
   TimeStep step(const TimeFields& fields, double now, MaySend may);

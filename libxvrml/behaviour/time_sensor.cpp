@@ -1,6 +1,7 @@
 // time_sensor.cpp: TimeSensor (clause 6.50, ISO/IEC 19775-1 8.4.1), based on the state machine of
 // time-dependent nodes.
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/time_dependent.h"
 #include "xvrml/nodes.h"
 
@@ -10,21 +11,6 @@ namespace {
 struct State : NodeState {
   TimeDependent time;
 };
-
-// The fields of TimeSensor that are sent, looked up once.
-struct SentFields {
-  const FieldInfo &isActive = fieldNamed("isActive"), &cycleTime = fieldNamed("cycleTime"),
-                  &fraction = fieldNamed("fraction_changed"), &time = fieldNamed("time"),
-                  &startTime = fieldNamed("startTime"), &elapsed = fieldNamed("elapsedTime"),
-                  &isPaused = fieldNamed("isPaused");
-  static const FieldInfo& fieldNamed(std::string_view name) {
-    return fieldOf<nodes::TimeSensor>(name);
-  }
-};
-const SentFields& sentFields() {
-  static const SentFields all;
-  return all;
-}
 
 TimeFields fieldsOf(const Node& node) {
   const auto& sensor = static_cast<const nodes::TimeSensor&>(node);
@@ -37,25 +23,23 @@ TimeDependent& machine(Events& events, Node& node) {
 }
 
 MaySend maySend(const Events& events, const Node& node) {
-  return {!events.hasSent(node, sentFields().isActive),
-          !events.hasSent(node, sentFields().isPaused)};
+  return {!events.hasSent(node, *fieldNamed<"isActive">(node)),
+          !events.hasSent(node, *fieldNamed<"isPaused">(node))};
 }
 
 // Sends the events of a step in the order of 6.50: isActive TRUE first, isActive FALSE last.
 void send(Events& events, Node& node, const TimeStep& step) {
-  const SentFields& out = sentFields();
-  if (step.running) {
-    if (step.begins) events.send(node, out.isActive, true);
-    if (step.resumes) events.send(node, out.isPaused, false);
-    if (step.newCycle) events.send(node, out.cycleTime, step.cycleStart);
-    if (!step.alreadySent) {
-      events.send(node, out.fraction, float(step.fraction));
-      events.send(node, out.time, step.time);
-      events.send(node, out.elapsed, step.elapsed);
-    }
-    if (step.pauses) events.send(node, out.isPaused, true);
-    if (step.ends) events.send(node, out.isActive, false);
+  if (!step.running) return;
+  if (step.begins) sendFrom<"isActive">(events, node, true);
+  if (step.resumes) sendFrom<"isPaused">(events, node, false);
+  if (step.newCycle) sendFrom<"cycleTime">(events, node, step.cycleStart);
+  if (!step.alreadySent) {
+    sendFrom<"fraction_changed">(events, node, float(step.fraction));
+    sendFrom<"time">(events, node, step.time);
+    sendFrom<"elapsedTime">(events, node, step.elapsed);
   }
+  if (step.pauses) sendFrom<"isPaused">(events, node, true);
+  if (step.ends) sendFrom<"isActive">(events, node, false);
 }
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {
@@ -68,8 +52,8 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
 
 bool accept(Events& events, Node& node, const FieldInfo& field, const Value& value) {
   const TimeDependent& time = machine(events, node);
-  if (field.name == "cycleInterval") return !time.active() && std::get<SFTime>(value) > 0;
-  return time.accepts(fieldsOf(node), field, value);
+  if (isField<"cycleInterval">(node, field)) return !time.active() && std::get<SFTime>(value) > 0;
+  return time.accepts(fieldsOf(node), node, field, value);
 }
 
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
@@ -77,7 +61,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
   TimeDependent& time = machine(events, node);
   send(events, node,
        time.fieldChanged(fields, events.now(), maySend(events, node),
-                         &in == &sentFields().startTime));
+                         isField<"startTime">(node, in)));
   events.wantTicks(node, time.wantsTicks(fields, events.now()));
 }
 

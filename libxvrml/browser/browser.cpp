@@ -58,7 +58,7 @@ static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value
   if (!engine.store(node, field, std::move(value))) return false;
   std::vector<std::pair<ProtoInstance*, const FieldInfo*>> open;
   const auto add = [&](Node& one, const FieldInfo& its) {
-    if (auto* instance = dynamic_cast<ProtoInstance*>(&one)) open.emplace_back(instance, &its);
+    if (auto* instance = nodeCast<ProtoInstance>(&one)) open.emplace_back(instance, &its);
   };
   add(node, field);
   while (!open.empty()) {
@@ -78,8 +78,7 @@ static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value
       }
       if (auto* urls = std::get_if<MFString>(&passed)) {
         passUrls({*instance, *from, *connection.node, *to, base}, *urls);
-        if (auto* inner = dynamic_cast<ProtoInstance*>(connection.node.get()))
-          inner->setUrlBase(*to, base);
+        if (auto* inner = nodeCast<ProtoInstance>(connection.node)) inner->setUrlBase(*to, base);
       }
       if (engine.store(*connection.node, *to, std::move(passed))) add(*connection.node, *to);
     }

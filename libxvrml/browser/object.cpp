@@ -155,10 +155,6 @@ std::string Browser::worldUrl() const { return impl_->world->path; }
 void Browser::setDescription(std::string text) { impl_->description = std::move(text); }
 std::string Browser::description() const { return impl_->description; }
 
-MFNode Browser::createVrmlFromString(std::string_view text) {
-  return createVrmlFromString(text, "");
-}
-
 MFNode Browser::createVrmlFromString(std::string_view text, const std::string& base) {
   constexpr std::string_view suffix = " (createVrmlFromString)";
   std::string name = base.empty() ? impl_->world->path : base;

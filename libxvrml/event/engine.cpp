@@ -10,73 +10,65 @@
 namespace xvrml {
 
 Engine::Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser)
-    : Events(diagnostics, browser), observer(makeObserver(*this)) {}
+    : observer(makeObserver(*this)), diagnostics_(diagnostics), browser_(browser) {}
 
 // An eventOut sends once per cascade (4.10.3, 4.10.4). If nothing receives the event, only its last
 // value is stored.
-void Events::send(Node& from, const FieldInfo& out, Value value) {
-  auto& engine = static_cast<Engine&>(*this);
+void Engine::send(Node& from, const FieldInfo& out, Value value) {
   if (value.index() != size_t(out.type)) return;
-  Participant& part = engine.part(from);
-  Participant::Out& state = part.out(out);
-  if (state.cascade == engine.cascade_) return;
-  state.cascade = engine.cascade_;
-  if (!part.links.empty() || !part.listeners.empty())
-    engine.queue_.push_back({NodeRef(&from), &out, std::move(value), false});
+  Participant& sender = part(from);
+  Participant::Out& state = sender.out(out);
+  if (state.cascade == cascade_) return;
+  state.cascade = cascade_;
+  if (!sender.links.empty() || !sender.listeners.empty())
+    queue_.push_back({NodeRef(&from), &out, std::move(value), false});
   else if (out.access == Access::eventOut)
     state.last = std::move(value);
 }
 
-void Events::preset(Node& from, const FieldInfo& out, Value value) {
+void Engine::preset(Node& from, const FieldInfo& out, Value value) {
   if (value.index() != size_t(out.type) || out.access != Access::eventOut) return;
-  Participant::Out& state = static_cast<Engine&>(*this).part(from).out(out);
+  Participant::Out& state = part(from).out(out);
   if (state.cascade == 0) state.last = std::move(value);
 }
 
-bool Events::hasSent(const Node& from, const FieldInfo& out) const {
+bool Engine::hasSent(const Node& from, const FieldInfo& out) const {
   const Participant* part = from.live ? liveOf(from)->part.get() : nullptr;
   const Participant::Out* state = part ? part->findOut(out) : nullptr;
-  return state && state->cascade == static_cast<const Engine&>(*this).cascade_;
+  return state && state->cascade == cascade_;
 }
 
-void Events::send(Node& from, std::string_view out, Value value) {
-  if (const FieldInfo* field = from.type().findEventOut(out)) send(from, *field, std::move(value));
-}
-
-void Events::post(Node& to, const FieldInfo& in, Value value) {
+void Engine::post(Node& to, const FieldInfo& in, Value value) {
   if (value.index() != size_t(in.type)) return;
-  auto& engine = static_cast<Engine&>(*this);
-  engine.adopt(to);
-  engine.queue_.push_back({NodeRef(&to), &in, std::move(value), true});
+  adopt(to);
+  queue_.push_back({NodeRef(&to), &in, std::move(value), true});
 }
 
-Value Events::lastSent(const Node& node, const FieldInfo& out) const {
+Value Engine::lastSent(const Node& node, const FieldInfo& out) const {
   if (out.access != Access::eventOut) return node.get(out);
   const Participant* part = node.live ? liveOf(node)->part.get() : nullptr;
   const Participant::Out* state = part ? part->findOut(out) : nullptr;
   return state ? state->last : defaultValue(out.type);
 }
 
-NodeState* Events::state(Node& node) const {
+NodeState* Engine::state(Node& node) const {
   return node.live && liveOf(node)->part ? liveOf(node)->part->state.get() : nullptr;
 }
 
-void Events::wantTicks(Node& node, bool wanted) {
-  auto& engine = static_cast<Engine&>(*this);
-  engine.adopt(node);
+void Engine::wantTicks(Node& node, bool wanted) {
+  adopt(node);
   if (wanted)
-    engine.ticking_[liveOf(node)->order] = &node;
+    ticking_[liveOf(node)->order] = &node;
   else
-    engine.ticking_.erase(liveOf(node)->order);
+    ticking_.erase(liveOf(node)->order);
 }
 
-void Events::wantLooks(Node& node, bool wanted) {
-  auto& engine = static_cast<Engine&>(*this);
-  engine.adopt(node);
+void Engine::wantLooks(Node& node, bool wanted) {
+  adopt(node);
   if (wanted)
-    engine.looking_[liveOf(node)->order] = &node;
+    looking_[liveOf(node)->order] = &node;
   else
-    engine.looking_.erase(liveOf(node)->order);
+    looking_.erase(liveOf(node)->order);
 }
 
 void Engine::beginCascade(double time) {
@@ -152,11 +144,16 @@ void Engine::followLinks(Event& event) {
 
 void Engine::deliver(Node& node, const FieldInfo& in, const Value& value, const FileName& urlBase) {
   ++delivered_;
-  if (node.type().index >= 0) return deliverToStatic(node, in, value);
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&node))
-    return deliverToInstance(*instance, in, value, urlBase);
-  auto& script = static_cast<ScriptNode&>(node);
-  if (in.access == Access::exposedField && store(node, in, value)) send(node, in, value);
+  if (auto* instance = nodeCast<ProtoInstance>(&node))
+    deliverToInstance(*instance, in, value, urlBase);
+  else if (auto* script = nodeCast<ScriptNode>(&node))
+    deliverToScript(*script, in, value);
+  else
+    deliverToStatic(node, in, value);
+}
+
+void Engine::deliverToScript(ScriptNode& script, const FieldInfo& in, const Value& value) {
+  if (in.access == Access::exposedField && store(script, in, value)) send(script, in, value);
   if (scripts) scripts->receive(script, in, value);
 }
 
@@ -168,14 +165,10 @@ void Engine::deliverToStatic(Node& node, const FieldInfo& in, const Value& value
     if (behaviour && behaviour->accept && !behaviour->accept(*this, node, in, value)) return;
     if (!store(node, in, value)) return;
     send(node, in, holdsNodes(in) || hasNormalizedAxes(in) ? node.get(in) : value);
-  } else if (in.name.starts_with("set_")) {
-    if (const FieldInfo* field = node.type().find(std::string_view(in.name).substr(4));
-        field && field->type == in.type)
-      store(node, *field, value);
+  } else if (const FieldInfo* field = node.type().fieldSetBy(in)) {
+    store(node, *field, value);
   }
-  // Metadata has no effect on its node (ISO/IEC 19775-1 7.3.3).
-  const bool isMetadata = in.type == FieldType::SFNode && in.name == "metadata";
-  if (behaviour && behaviour->receive && !isMetadata) behaviour->receive(*this, node, in, value);
+  if (behaviour && behaviour->receive && !in.isMetadata) behaviour->receive(*this, node, in, value);
 }
 
 // Forwards an event into the body. An exposedField stores its value itself, unless an exposedField

@@ -46,7 +46,7 @@ class EngineObserver {
 
 // Wide because nodes, routes, prototypes and cascades are states of one world that change together:
 // an event may end a node, and with it routes, while a cascade is under way.
-class Engine : public Events {
+class Engine final : public Events {
  public:
   // Makes the observer of an engine that is being constructed. The observer may keep the reference,
   // and use it from began() on.
@@ -55,6 +55,24 @@ class Engine : public Events {
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
+  // Returns the engine that a behaviour of the library sees as Events. No other class implements
+  // them.
+  static Engine& of(Events& events) { return static_cast<Engine&>(events); }
+
+  double now() const override { return now_; }
+  using Events::send;
+  void send(Node& from, const FieldInfo& out, Value value) override;
+  bool hasSent(const Node& from, const FieldInfo& out) const override;
+  void preset(Node& from, const FieldInfo& out, Value value) override;
+  bool store(Node& node, const FieldInfo& field, Value value) override;
+  void post(Node& to, const FieldInfo& in, Value value) override;
+  void changed(Node& node, const FieldInfo& field) override;
+  Value lastSent(const Node& node, const FieldInfo& out) const override;
+  NodeState* state(Node& node) const override;
+  void wantTicks(Node& node, bool wanted) override;
+  void wantLooks(Node& node, bool wanted) override;
+  Diagnostics& diagnostics() override { return diagnostics_; }
+  Browser* browser() const override { return browser_; }
 
   uint64_t maximumEvents = 1'000'000; // limit for one cascade; more are dropped with a message
   ScriptRunner* scripts = nullptr;    // not owned; null: Scripts do nothing
@@ -115,7 +133,6 @@ class Engine : public Events {
   void lookNow() { callAll(looking_, &Behaviour::look); }
 
  private:
-  friend class Events;
   class Settling { // a part of the code that is settling, also if it is left by an exception
    public:
     explicit Settling(Engine& engine) : engine_(engine) { engine_.settling_ = true; }
@@ -158,6 +175,7 @@ class Engine : public Events {
                const FileName& urlBase = nullptr);
   void deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value,
                          FileName urlBase);
+  void deliverToScript(ScriptNode& script, const FieldInfo& in, const Value& value);
   void deliverToStatic(Node& node, const FieldInfo& in, const Value& value);
   void sendFromInstance(ProtoInstance& instance, const FieldInfo& out, const Value& value,
                         bool keeps);
@@ -168,6 +186,9 @@ class Engine : public Events {
   using Watchers = std::map<uint32_t, Node*>; // by Live::order
   void callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&));
 
+  Diagnostics& diagnostics_;
+  Browser* const browser_;
+  double now_ = 0;
   std::vector<Live*> lives_;
   std::deque<Event> queue_;
   Watchers ticking_, looking_;

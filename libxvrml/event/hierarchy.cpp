@@ -13,7 +13,7 @@ namespace xvrml {
 
 void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
   if (node.type().index < 0) {
-    if (const auto* instance = dynamic_cast<ProtoInstance*>(&node);
+    if (const auto* instance = nodeCast<ProtoInstance>(&node);
         instance && !instance->body.roots.empty())
       out.push_back(instance->body.roots[0].get());
     return;

@@ -21,7 +21,7 @@ namespace {
 // content.
 template <class Edit>
 void eachImportedRoute(const Node& inlineNode, Diagnostics& diagnostics, const Edit& edit) {
-  const auto* node = dynamic_cast<const InlineNode*>(&inlineNode);
+  const auto* node = nodeCast<InlineNode>(&inlineNode);
   const std::shared_ptr<Exchange> importer = node ? node->importer.lock() : nullptr;
   if (!importer || !node->content) return;
   for (const ResolvedRoute& route : resolveImports(*importer, node, diagnostics)) edit(route);
@@ -78,11 +78,9 @@ void Engine::forget(LiveBase* base) noexcept {
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
   engine.observer->forgotten(*live->node);
-  if (live->node->type().index < 0) {
-    if (auto* instance = dynamic_cast<ProtoInstance*>(live->node)) engine.disconnectBody(*instance);
-    if (auto* script = dynamic_cast<ScriptNode*>(live->node); script && engine.scripts)
-      engine.scripts->end(*script);
-  }
+  if (auto* instance = nodeCast<ProtoInstance>(live->node)) engine.disconnectBody(*instance);
+  if (auto* script = nodeCast<ScriptNode>(live->node); script && engine.scripts)
+    engine.scripts->end(*script);
   engine.lives_[live->slot] = engine.lives_.back();
   engine.lives_[live->slot]->slot = live->slot;
   engine.lives_.pop_back();
@@ -150,7 +148,7 @@ void Engine::collect(Node& first, AdoptedNodes& adopted) {
     adopted.nodes.emplace_back(&node);
     below.clear();
     if (const Scope* content = inlineScope(node)) adopted.scopes.push_back(content);
-    if (auto* instance = node.type().index < 0 ? dynamic_cast<ProtoInstance*>(&node) : nullptr) {
+    if (auto* instance = nodeCast<ProtoInstance>(&node)) {
       adopted.instances.push_back(instance);
       adopted.scopes.push_back(&instance->body);
       for (size_t i = 1; i < instance->body.roots.size(); ++i)
@@ -199,7 +197,7 @@ void Engine::complete(AdoptedNodes& adopted) {
   for (const NodeRef& node : adopted.nodes)
     if (node->type().index == nodes::Inline::typeIndex) connectImports(*this, *node);
   for (const NodeRef& node : adopted.nodes) {
-    if (auto* script = node->type().index < 0 ? dynamic_cast<ScriptNode*>(node.get()) : nullptr) {
+    if (auto* script = nodeCast<ScriptNode>(node)) {
       if (!scripts) continue;
       scripts->begin(*script);
       scriptsToStart_ = true;
@@ -258,7 +256,7 @@ void Engine::keepOnly(const std::vector<NodeRef>& kept) {
     if (!node.live) return;
     childrenInHierarchy(node, open);
     if (node.type().index < 0) appendChildren(node, open);
-    if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
+    if (const auto* instance = nodeCast<ProtoInstance>(&node)) {
       appendRoots(instance->body, open);
       for (const IsConnection& c : instance->is) open.push_back(c.node.get());
     }
@@ -311,8 +309,7 @@ bool Engine::wouldCreateCycle(Node& parent, const Value& value) {
   return std::any_of(many.begin(), many.end(), inside);
 }
 
-bool Events::store(Node& node, const FieldInfo& field, Value value) {
-  auto& engine = static_cast<Engine&>(*this);
+bool Engine::store(Node& node, const FieldInfo& field, Value value) {
   if (!holdsValue(field) || value.index() != size_t(field.type)) return false;
   if (holdsNodes(field)) {
     const bool inHierarchy = node.type().index >= 0 && !node.type().expand;
@@ -327,7 +324,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     const bool keeps = keepsNull(node.type()) || !inHierarchy;
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
-    if (inHierarchy && engine.wouldCreateCycle(node, value)) {
+    if (inHierarchy && wouldCreateCycle(node, value)) {
       diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.4.4)",
                                                  field.name, node.type().name));
       return false;
@@ -338,37 +335,36 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
         for (const NodeRef& child : *many)
           if (child) visit(*child);
     };
-    each(value, [&](Node& child) { engine.adopt(child); });
+    each(value, [&](Node& child) { adopt(child); });
     const Value old = node.get(field);
     if (inHierarchy && node.live) {
       each(old, [&](Node& child) {
-        if (child.live) engine.unlinkChild(node, child);
+        if (child.live) unlinkChild(node, child);
       });
-      each(value, [&](Node& child) { engine.linkChild(node, child); });
+      each(value, [&](Node& child) { linkChild(node, child); });
     }
     node.set(field, std::move(value));
   } else {
     node.set(field, std::move(value));
   }
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
-  engine.mirror(node, field);
+  if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
+  mirror(node, field);
   changed(node, field);
   return true;
 }
 
-void Events::changed(Node& node, const FieldInfo& field) {
-  auto& engine = static_cast<Engine&>(*this);
-  if (node.type().expand && node.live) engine.outdated_.emplace_back(&node);
+void Engine::changed(Node& node, const FieldInfo& field) {
+  if (node.type().expand && node.live) outdated_.emplace_back(&node);
   if (field.change == Change::none || !node.live || node.type().index < 0) return;
   Live& live = *liveOf(node);
-  engine.observer->changed(node, field);
-  if (!reaches(node, field.change)) engine.markReach(node, field, "it has been changed");
+  observer->changed(node, field);
+  if (!reaches(node, field.change)) markReach(node, field, "it has been changed");
   const size_t index = size_t(&field - node.type().fields.data());
   if (index < 64) {
     if (live.changed >> index & 1) return;
     live.changed |= uint64_t(1) << index;
   }
-  engine.changes_.push_back({NodeRef(&node), &field});
+  changes_.push_back({NodeRef(&node), &field});
 }
 
 FieldChanges Engine::takeChanges() {

@@ -197,7 +197,7 @@ void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string&
     open.pop_back();
     if (!node->live) continue;
     Live& live = *liveOf(*node);
-    if (dynamic_cast<ProtoInstance*>(node)) {
+    if (nodeCast<ProtoInstance>(node)) {
       if (!live.part) continue;
       for (const Link& link : live.part->links)
         if (link.kind == Link::Kind::intoBody && link.out == in && link.to)

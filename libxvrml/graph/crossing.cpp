@@ -16,7 +16,7 @@ namespace {
 // the body that are connected to the field.
 bool passesUrls(const IsAssignment& c) {
   return holdsUrls(c.node, c.to) ||
-         (dynamic_cast<const ScriptNode*>(&c.node) && holdsUrls(c.instance, c.from));
+         (nodeCast<ScriptNode>(&c.node) && holdsUrls(c.instance, c.from));
 }
 
 // Returns whether `target` is a descendant of `top`, without the fields of Scripts and prototype
@@ -25,7 +25,7 @@ bool reaches(Node& top, const Node& target) {
   return !walk(std::vector<Node*>{&top}, [&](Node& node, std::vector<Node*>& open) {
     if (&node == &target) return false;
     if (node.type().index >= 0) appendChildren(node, open);
-    const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
+    const auto* instance = nodeCast<ProtoInstance>(&node);
     if (!instance) return true;
     appendRoots(instance->body, open);
     for (const IsConnection& connection : instance->is) open.push_back(connection.node.get());
@@ -58,7 +58,7 @@ bool acceptsNode(const IsAssignment& c, const NodeRef& child, Diagnostics& diagn
 } // namespace
 
 void passUrls(const IsAssignment& c, MFString& urls) {
-  if (dynamic_cast<const ProtoInstance*>(&c.node) || !passesUrls(c)) return;
+  if (nodeCast<ProtoInstance>(&c.node) || !passesUrls(c)) return;
   if (c.base && c.node.source.file) rebaseUrls(urls, *c.base, *c.node.source.file);
 }
 
@@ -80,7 +80,7 @@ ReturnedUrls returnUrls(const Node& node, const FieldInfo& out, const ProtoInsta
 }
 
 void assignUrlBase(Node& node, const FieldInfo& field, const Value& value) {
-  auto* instance = dynamic_cast<ProtoInstance*>(&node);
+  auto* instance = nodeCast<ProtoInstance>(&node);
   if (!instance || field.type != FieldType::MFString || !holdsValue(field)) return;
   if (instance->values[field.offset] != value) instance->setUrlBase(field, nullptr);
 }
@@ -91,7 +91,7 @@ void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& dia
     target = std::get<T>(value);
     if constexpr (std::is_same_v<T, MFString>) {
       passUrls(c, target);
-      if (auto* inner = dynamic_cast<ProtoInstance*>(&c.node)) inner->setUrlBase(c.to, c.base);
+      if (auto* inner = nodeCast<ProtoInstance>(&c.node)) inner->setUrlBase(c.to, c.base);
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!acceptsNode(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {

@@ -25,11 +25,9 @@ Registry& registry() {
   return *all;
 }
 
-const InlineNode* inlineOf(const Node& node) { return dynamic_cast<const InlineNode*>(&node); }
-
 void reportImport(Exchange::Import& import, Diagnostics& diagnostics) {
   if (std::exchange(import.reported, true)) return;
-  const InlineNode* const node = inlineOf(*import.inlineNode);
+  const InlineNode* const node = nodeCast<InlineNode>(import.inlineNode);
   std::string exports;
   if (node && node->exchange)
     for (const Exchange::Export& one : node->exchange->exports) {
@@ -61,7 +59,7 @@ std::string_view spelled(const Node& node, std::string_view field) {
 } // namespace
 
 Node* exportedNode(const Node& inlineNode, std::string_view name) {
-  const InlineNode* const node = inlineOf(inlineNode);
+  const InlineNode* const node = nodeCast<InlineNode>(&inlineNode);
   if (!node || !node->content || !node->exchange) return nullptr;
   for (const Exchange::Export& one : node->exchange->exports)
     if (one.exported == name) return one.node.get();

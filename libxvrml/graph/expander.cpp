@@ -130,7 +130,7 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
                     bytesOfName * declaration->body.names.size();
   plan->bytes = plan->ownBytes;
   for (size_t i = 0; good && i < plan->nodes.size(); ++i) {
-    if (auto* nested = dynamic_cast<ProtoInstance*>(plan->nodes[i]))
+    if (auto* nested = nodeCast<ProtoInstance>(plan->nodes[i]))
       good = addNested(*plan, *nested, where);
   }
   good = good && addDefaults(*plan, where);
@@ -151,8 +151,7 @@ bool Expander::addDefaults(Plan& plan, const SourcePosition& where) {
   plan.expandedNodes = saturatingAdd(plan.expandedNodes, nodes.size());
   for (Node* node : nodes) {
     plan.bytes = saturatingAdd(plan.bytes, nodeBytes(*node));
-    if (auto* nested = dynamic_cast<ProtoInstance*>(node);
-        nested && !addNested(plan, *nested, where))
+    if (auto* nested = nodeCast<ProtoInstance>(node); nested && !addNested(plan, *nested, where))
       return false;
   }
   return true;
@@ -202,12 +201,12 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
 
 NodeRef Expander::copyNode(Node& original) {
   NodeRef copy;
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&original)) {
+  if (auto* instance = nodeCast<ProtoInstance>(&original)) {
     auto* made = new ProtoInstance(instance->typePtr, instance->declaration);
     copy = NodeRef(made);
     made->given = instance->given;
     made->urlBases = instance->urlBases;
-  } else if (auto* script = dynamic_cast<ScriptNode*>(&original)) {
+  } else if (auto* script = nodeCast<ScriptNode>(&original)) {
     auto* made = new ScriptNode(script->typePtr);
     copy = NodeRef(made);
     made->urlLines = script->urlLines;
@@ -256,8 +255,8 @@ std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes,
     if (copies[i].get() == nodes[i]) continue;
     copyFields(*nodes[i], *copies[i], index, copies);
     if (state_.selfContaining.contains(nodes[i])) state_.selfContaining.insert(copies[i].get());
-    if (dynamic_cast<ProtoInstance*>(copies[i].get())) todo_.push_back(copies[i]);
-    if (dynamic_cast<InlineNode*>(copies[i].get())) inlines.push_back(copies[i]);
+    if (nodeCast<ProtoInstance>(copies[i])) todo_.push_back(copies[i]);
+    if (nodeCast<InlineNode>(copies[i])) inlines.push_back(copies[i]);
     // A copy of a node that may hold itself may hold itself, too.
     if (state_.cycleHolders.contains(nodes[i])) addCyclic(copies[i]);
   }
@@ -361,7 +360,7 @@ void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef
   while (!todo_.empty()) {
     const NodeRef next = std::move(todo_.back());
     todo_.pop_back();
-    auto& instance = static_cast<ProtoInstance&>(*next);
+    auto& instance = *nodeCast<ProtoInstance>(next);
     if (instance.body.roots.empty()) expandOne(instance, inlines);
   }
 }
@@ -425,7 +424,7 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
                        const std::shared_ptr<const std::string>& base) {
   Node& node = *connection.node;
   const FieldInfo& to = *fieldOf(node.type(), connection.field);
-  if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
+  if (auto* inner = nodeCast<ProtoInstance>(&node)) inner->give(to);
   if (!state_.selfContaining.empty() && node.type().index < 0 && holdsNodes(to))
     addCyclic(connection.node); // it may hold itself; more is not known
   const void* const storage =

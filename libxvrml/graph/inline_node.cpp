@@ -12,6 +12,7 @@ NodeRef makeStaticNode(const NodeType& type) {
 const FieldInfo& addField(NodeType& type, FieldInfo field) {
   uint32_t offset = 0;
   for (const FieldInfo& other : type.fields) offset += holdsValue(other);
+  field.sets = -1; // the field may be that of a static type
   field.offset = offset;
   return type.fields.emplace_back(std::move(field));
 }
@@ -19,7 +20,7 @@ const FieldInfo& addField(NodeType& type, FieldInfo field) {
 std::shared_ptr<NodeType> scriptType(const NodeType& script) {
   auto type = std::make_shared<NodeType>();
   type->name = script.name;
-  type->index = -1;
+  type->index = ScriptNode::typeIndex;
   type->abstract = script.abstract;
   type->component = script.component;
   type->text = script.text;
@@ -29,8 +30,7 @@ std::shared_ptr<NodeType> scriptType(const NodeType& script) {
 }
 
 const Scope* inlineScope(const Node& inlineNode) {
-  if (inlineNode.type().index != nodes::Inline::typeIndex) return nullptr;
-  const auto* node = dynamic_cast<const InlineNode*>(&inlineNode);
+  const auto* node = nodeCast<InlineNode>(&inlineNode);
   return node ? node->content.get() : nullptr;
 }
 

@@ -18,6 +18,12 @@ struct InlineNode : nodes::Inline {
   Share share; // reservation of the world's budget for content that a running world has loaded
 };
 
+// Returns the node if it is an Inline that can have content, else null. A program may also have
+// made a bare nodes::Inline.
+template <> inline InlineNode* nodeCast<InlineNode>(Node* node) {
+  return dynamic_cast<InlineNode*>(nodeCast<nodes::Inline>(node));
+}
+
 // Makes a node of a registered type other than Script.
 NodeRef makeStaticNode(const NodeType& type);
 // Returns the type of a Script that has not declared any field of its own yet.

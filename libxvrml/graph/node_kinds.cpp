@@ -16,7 +16,7 @@ const NodeType* effectiveType(const Node& node) {
   const Node* current = &node;
   // Follows instances of instances. Each prototype is declared before the next one uses it, which
   // bounds their number.
-  while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
+  while (const auto* instance = nodeCast<ProtoInstance>(current)) {
     current = firstNode(instance->declaration.get());
     if (!current) return nullptr;
   }

@@ -11,10 +11,9 @@ namespace xvrml {
 Node* renderedNode(Node* node) {
   constexpr int deepest = 32; // limit for plug-in nodes that expand to plug-in nodes
   for (int expanded = 0; node;) {
-    if (node->type().index >= 0 && !node->type().expand) break; // the usual case
     if (node->type().expand) {
       node = ++expanded < deepest ? expansionOf(*node) : nullptr;
-    } else if (auto* instance = dynamic_cast<ProtoInstance*>(node)) {
+    } else if (auto* instance = nodeCast<ProtoInstance>(node)) {
       node = instance->body.roots.empty() ? nullptr : instance->body.roots[0].get();
     } else {
       break;

@@ -65,6 +65,18 @@ std::vector<std::string> splitWords(std::string_view words) {
   return result;
 }
 
+// Fills in what follows from the names of the fields.
+void readFieldNames(NodeType& type) {
+  constexpr std::string_view set = "set_";
+  for (FieldInfo& field : type.fields) {
+    field.isMetadata = field.type == FieldType::SFNode && field.name == "metadata";
+    if (field.access != Access::eventIn || !field.name.starts_with(set)) continue;
+    const FieldInfo* const target = type.find(std::string_view(field.name).substr(set.size()));
+    if (target && target->type == field.type && holdsValue(*target))
+      field.sets = int(target - type.fields.data());
+  }
+}
+
 } // namespace
 
 NodeType makeNodeType(const NodeRow& row, int index) {
@@ -84,6 +96,7 @@ NodeType makeNodeType(const NodeRow& row, int index) {
                            field.nodeTypes,
                            field.text});
   }
+  readFieldNames(type);
   const std::unique_ptr<Node> fresh(row.create(type));
   for (FieldInfo& field : type.fields) field.defaultValue = fresh->get(field);
   return type;

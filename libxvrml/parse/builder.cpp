@@ -119,8 +119,7 @@ bool Builder::openNode(const Name& type, const Name* def) {
   Node& node = *frame.node;
   node.source = locator_.place(type.at);
   if (!inTemplate()) {
-    if (node.type().index < 0 && dynamic_cast<ProtoInstance*>(&node))
-      file_.instances.push_back(frame.node);
+    if (nodeCast<ProtoInstance>(&node)) file_.instances.push_back(frame.node);
     if (node.type().index == nodes::Inline::typeIndex) file_.inlines.push_back(frame.node);
   }
   if (def) {
@@ -346,8 +345,7 @@ FieldTarget Builder::targetOf(const FieldInfo& field, bool resumed) {
   NodeFrame& frame = nodes_.back();
   Node& node = *frame.node;
   frame.field = &field;
-  if (node.type().index < 0)
-    if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
+  if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
   void* storage = node.storage(field);
   if (field.type == FieldType::SFNode) {
     *static_cast<NodeRef*>(storage) = {};
@@ -358,7 +356,7 @@ FieldTarget Builder::targetOf(const FieldInfo& field, bool resumed) {
   }
   FieldTarget target{true, field.type, storage};
   if (frame.scriptType && field.name == "url")
-    target.stringLines = &static_cast<ScriptNode&>(node).urlLines;
+    target.stringLines = &nodeCast<ScriptNode>(&node)->urlLines;
   return target;
 }
 

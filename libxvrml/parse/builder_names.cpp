@@ -160,7 +160,7 @@ void Builder::useNode(const Name& name) {
   }
   Node* between = nullptr;
   for (auto frame = nodes_.rbegin(); frame != nodes_.rend() && !between; ++frame) {
-    if (dynamic_cast<DynamicNode*>(frame->node.get())) between = frame->node.get();
+    if (frame->node->type().index < 0) between = frame->node.get();
     if (frame->node == node) break;
   }
   if (!between || !nodeTargets_.back().holder) {

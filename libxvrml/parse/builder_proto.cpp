@@ -94,8 +94,7 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& 
   field.defaultValue = defaultValue(type);
   // A Script of VRML97 may declare a field of that name, which X3D gives to every node.
   if (isScript() && isVrml97() && field.name == "metadata")
-    std::erase_if(target.fields,
-                  [](const FieldInfo& own) { return own.ofX3d && own.name == "metadata"; });
+    std::erase_if(target.fields, [](const FieldInfo& own) { return own.isMetadata; });
   const uint64_t limit = state_.options.limits.interfaceFields;
   declaration.accepted = target.fields.size() < limit;
   if (!declaration.accepted && std::exchange(fullInterface_, &target) != &target)
@@ -110,7 +109,7 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& 
   const auto kind =
       type == FieldType::SFNode ? NodeTarget::Kind::single : NodeTarget::Kind::multiple;
   if (isScript()) {
-    auto& script = static_cast<ScriptNode&>(*nodes_.back().node);
+    auto& script = *nodeCast<ScriptNode>(nodes_.back().node);
     if (declaration.accepted) {
       // A reference to an element of the type's fields.
       const FieldInfo* added = &addField(target, field);
@@ -171,7 +170,7 @@ void Builder::openProto(const Name& name) {
   auto proto = std::make_shared<ProtoDeclaration>();
   auto type = std::make_shared<NodeType>();
   type->name = name.text;
-  type->index = -1;
+  type->index = ProtoInstance::typeIndex;
   type->create = nullptr;
   proto->type = type;
   proto->source = locator_.place(name.at);

@@ -145,7 +145,7 @@ bool Builder::isAngle(const Node& node, const FieldInfo& field) const {
   for (size_t i = 0; i < open.size() && i < 1000; ++i) {
     const auto [one, name] = open[i];
     if (one->type().index >= 0 && isAngleField(one->type().name, name)) return true;
-    if (const auto* instance = dynamic_cast<const ProtoInstance*>(one))
+    if (const auto* instance = nodeCast<ProtoInstance>(one))
       for (const IsConnection& connection : instance->declaration->is)
         if (connection.interfaceName == name)
           open.emplace_back(connection.node.get(), connection.field);
@@ -192,7 +192,7 @@ void Builder::importNode(const Name& keyword, const ImportNames& names) {
     return lostName(names.local);
   }
   const NodeRef node = findName(names.inlineName);
-  auto* const inlineNode = node ? dynamic_cast<InlineNode*>(node.get()) : nullptr;
+  auto* const inlineNode = nodeCast<InlineNode>(node);
   if (node && !inlineNode)
     locator_.error(names.inlineName.at,
                    fmt::format("IMPORT takes nodes from the file of an Inline, but {} is a node of "

@@ -83,7 +83,7 @@ void Loader::complete(ParsedFile& file, uint64_t depth) {
   composed_ = composed_ || !file.instances.empty() || !file.inlines.empty();
   expander_.expand(file.instances, file.inlines);
   if (!state_.options.loadInlines) return;
-  for (const NodeRef& node : file.inlines) loadInline(static_cast<InlineNode&>(*node), depth + 1);
+  for (const NodeRef& node : file.inlines) loadInline(*nodeCast<InlineNode>(node), depth + 1);
   if (file.exchange) resolveImports(*file.exchange, nullptr, state_.diagnostics); // reports
 }
 
@@ -269,8 +269,7 @@ void Loader::checkSize(Scope& scope) {
     // Nodes in the fields of Scripts and instances are only drawn where a body holds them.
     if (node->type().index >= 0)
       forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
-    if (const auto* instance =
-            node->type().index < 0 ? dynamic_cast<ProtoInstance*>(node) : nullptr) {
+    if (const auto* instance = nodeCast<ProtoInstance>(node)) {
       for (const NodeRef& root : instance->body.roots) out.push_back(root.get());
     }
     if (const Scope* content = inlineScope(*node)) {

@@ -38,10 +38,10 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
   while (!open.empty()) {
     const auto [one, from] = open.back();
     open.pop_back();
-    if (auto* inlineNode = dynamic_cast<InlineNode*>(one);
+    if (auto* inlineNode = nodeCast<InlineNode>(one);
         inlineNode && (from->name == "url" || from->name == "load"))
       loadAgain(world, *inlineNode);
-    auto* instance = dynamic_cast<ProtoInstance*>(one);
+    auto* instance = nodeCast<ProtoInstance>(one);
     if (!instance) continue;
     instance->give(*from);
     for (const IsConnection& connection : instance->is) {

@@ -16,7 +16,7 @@ ProtoPtr builtinPrototype(std::string_view url, const ProtoDeclaration& declarat
   if (!type || type->name == "Script") return nullptr;
   auto interface = std::make_shared<NodeType>();
   interface->name = wanted.name;
-  interface->index = -1;
+  interface->index = ProtoInstance::typeIndex;
   interface->create = nullptr;
   auto proto = std::make_shared<ProtoDeclaration>();
   proto->source = declaration.source;

@@ -22,7 +22,7 @@ uint64_t bytesOf(const Value& value) {
 NodeRef makeNobody() {
   auto type = std::make_shared<NodeType>();
   type->name = "Script";
-  type->index = -1;
+  type->index = ScriptNode::typeIndex;
   return NodeRef(new ScriptNode(std::move(type)));
 }
 
@@ -154,7 +154,7 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
   const auto found = scripts_.find(key);
   if (found == scripts_.end()) return;
   Script& script = *found->second;
-  if (in.name == "url") { // another program (6.40)
+  if (&in == script.url) { // another program (6.40)
     stop(script);
     script.stopped = false;
     script.nextUrl = 0;
@@ -166,7 +166,7 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
     engine_.requestScriptStart();
     return;
   }
-  if (!Script::isOwn(in) || script.stopped || (!script.engine && !script.startPending)) return;
+  if (in.isMetadata || script.stopped || (!script.engine && !script.startPending)) return;
   const bool atOnce = script.flag(XS_MUST_EVALUATE) && script.waiting.empty() && script.ready();
   bool& waits = due_[key];
   if (atOnce) return deliver(script, in, value);
@@ -195,8 +195,9 @@ void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) 
 
 void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value) {
   if (!script.ready() || !script.engine->event) return;
+  // Both names are the same string of the Script's type.
   const auto named = std::find_if(script.fields.begin(), script.fields.end(),
-                                  [&](const XsField& f) { return f.name == in.name; });
+                                  [&](const XsField& f) { return f.name == in.name.c_str(); });
   const auto index = uint32_t(named - script.fields.begin());
   LentValue event;
   const XsValue& lent = event.lend(value, script.handles);
@@ -278,14 +279,14 @@ void ScriptHost::end(ScriptNode& node) noexcept {
   script.waiting.clear();
   script.nodeCopy = nobody_;
   try {
-    const NodeRef copy(new ScriptNode(node.typePtr));
-    auto& nodeCopy = static_cast<ScriptNode&>(*copy);
-    nodeCopy.values.swap(node.values); // readers of the node find the values that its type declares
-    nodeCopy.source = node.source;
-    nodeCopy.defName = node.defName;
-    script.nodeCopy = copy;
+    auto* const copy = new ScriptNode(node.typePtr);
+    const NodeRef kept(copy);
+    copy->values.swap(node.values); // readers of the node find the values that its type declares
+    copy->source = node.source;
+    copy->defName = node.defName;
+    script.nodeCopy = kept;
   } catch (const std::bad_alloc&) {} // shutdown() finds no fields
-  script.node = static_cast<ScriptNode*>(script.nodeCopy.get());
+  script.node = nodeCast<ScriptNode>(script.nodeCopy);
   script.handles.setOwn(script.node);
 }
 

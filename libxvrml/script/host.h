@@ -37,7 +37,7 @@ struct Script {
   // VRML97 it may be a Script's own.
   static bool isOwn(const FieldInfo& field) {
     return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate" &&
-           !(field.name == "metadata" && field.ofX3d);
+           !field.isMetadata;
   }
   bool flag(uint32_t bit) const { return info.flags & bit; }
   // Returns whether a call is running in its process, for this Script or another one. Events wait
@@ -48,6 +48,7 @@ struct Script {
   const Key key;
   // Never dangles: the node in the world until it is destroyed (ScriptHost::end), then `nodeCopy`.
   ScriptNode* node;
+  const FieldInfo* const url = node->type().find("url"); // the field that names the program
   NodeRef nodeCopy;      // copy of a destroyed node's fields, for shutdown()
   NodeRef heldUntilStop; // the node in the world while all Scripts end
   const XsNode self;

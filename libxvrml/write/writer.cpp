@@ -32,7 +32,7 @@ size_t lastPrototypeOf(Node* root,
   std::unordered_map<const Node*, uint32_t> index;
   collectNodes({root}, nodes, index);
   for (Node* node : nodes) {
-    const auto* instance = dynamic_cast<ProtoInstance*>(node);
+    const auto* instance = nodeCast<ProtoInstance>(node);
     const auto found = instance ? prototypes.find(instance->declaration.get()) : prototypes.end();
     if (found != prototypes.end()) last = std::max(last, found->second);
   }
@@ -41,7 +41,7 @@ size_t lastPrototypeOf(Node* root,
 
 // Returns whether the Script itself declares the field.
 bool isDeclared(const Node& node, const FieldInfo& field) {
-  if (!dynamic_cast<const ScriptNode*>(&node)) return false;
+  if (!nodeCast<ScriptNode>(&node)) return false;
   const NodeType* script = findNodeType("Script");
   return !script || !script->find(field.name);
 }
@@ -50,7 +50,7 @@ bool isDeclared(const Node& node, const FieldInfo& field) {
 bool hasOwnValue(Node& node, const FieldInfo& field, bool x3d) {
   const Value* standard = x3d ? x3dDefault(node.type().name, field.name) : nullptr;
   if (!standard) standard = &field.defaultValue;
-  if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
+  if (const auto* instance = nodeCast<ProtoInstance>(&node)) {
     // A default of the prototype's file that a program has assigned again stays a default.
     if (instance->isGiven(field) && instance->hasOwnUrlBase(field)) return true;
     if (holdsNodes(field)) return false;

@@ -163,7 +163,7 @@ class XmlWriter : public Writer {
   }
 
   void attributeOfPlace(const Node& node, std::string_view place) {
-    const bool instance = dynamic_cast<const ProtoInstance*>(&node) != nullptr;
+    const bool instance = nodeCast<ProtoInstance>(&node) != nullptr;
     const std::string_view usual = instance ? "children" : containerOf(node.type());
     // X3D 4 has another usual field for metadata in a MetadataSet.
     const bool varies = version_.major >= 4 && usual == "metadata";
@@ -172,7 +172,7 @@ class XmlWriter : public Writer {
 
   void writeNode(const Content& content, std::string_view place) override {
     const Node& node = *content.node;
-    const bool instance = dynamic_cast<const ProtoInstance*>(&node) != nullptr;
+    const bool instance = nodeCast<ProtoInstance>(&node) != nullptr;
     const std::string element = instance ? "ProtoInstance" : node.type().name;
     text_ += '<' + element;
     if (content.name) attribute("DEF", *content.name);
@@ -278,7 +278,7 @@ class XmlWriter : public Writer {
   }
 
   void writeUse(const Node& node, const std::string& name, std::string_view place) override {
-    const bool instance = dynamic_cast<const ProtoInstance*>(&node) != nullptr;
+    const bool instance = nodeCast<ProtoInstance>(&node) != nullptr;
     text_ += '<' + (instance ? "ProtoInstance" : node.type().name);
     if (instance) attribute("name", node.type().name);
     attributesOf(node, "USE", name, place);

@@ -115,19 +115,18 @@ struct Game {
         s.first[k] = b;
         s.delta[k] = c;
         s.delta2[k] = a;
-        s.normal[k] = b;
-        s.albedo[k] = c;
         s.closed[k] = a;
         s.closed2[k] = b;
         s.closed3[k] = c;
         s.closed4[k] = a;
         s.grey[k] = b;
         s.largest[k] = float(c);
-        s.position[k] = float(a);
-        s.name = float(b);
-        s.depth = float(c);
         s.random = true;
       }
+    for (PixelSums& s : result.sums) {
+      std::ranges::fill(s.firstValues, float(a));
+      std::ranges::fill(s.valueSums, b);
+    }
     result.sums[0].rgba[0] = b;
     result.sums[0].delta[0] = a; // not all pixels equal
     std::vector<std::byte> bytes = encodeResult(frame, job, result);

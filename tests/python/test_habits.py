@@ -171,15 +171,30 @@ def test_copies_of_pictures_keep_the_camera():
 
 def test_damaged_pickles_are_refused():
     image = xvrml.loads(BALL).render(**SMALL)
-    state = list(image.__getstate__())
-    for place, wrong in ((0, 99), (1, 33), (1, -1), (7, {}), (7, {
-            "rgba": np.zeros(3, np.float32)
-    }), (7, {
-            "nothing": np.zeros(3)
-    }), (8, "camera"), (9, "two\nlines")):
-        damaged = [*state[:place], wrong, *state[place + 1:]]
+    version, facts, planes, *rest = image.__getstate__()
+    wrong_facts = [(*facts[:place], wrong, *facts[place + 1:])
+                   for place, wrong in ((0, 33), (0, -1), (0, "wide"), (4, (99, "agx")), (4, (0, "no curve")),
+                                        (4, 0), (6, (1, 2)), (9, 40), (11, "names"), (12, "two\nlines"), (13, 5))]
+    damaged = [(99, facts, planes, *rest), (version, facts, planes), (version, 33, planes, *rest),
+               (version, facts[:-1], planes, *rest), (version, facts, planes, *rest[:-1], "camera"),
+               (version, facts, planes, "never", *rest[1:])]
+    damaged += [(version, wrong, planes, *rest) for wrong in wrong_facts]
+    damaged += [(version, facts, wrong, *rest)
+                for wrong in ({}, {"rgba": np.zeros(3, np.float32)}, {"nothing": np.zeros(3)})]
+    for state in damaged:
         with pytest.raises(ValueError):
-            xvrml.Picture.__new__(xvrml.Picture).__setstate__(tuple(damaged))
+            xvrml.Picture.__new__(xvrml.Picture).__setstate__(state)
+
+
+def test_copies_of_pictures_are_saved_with_the_same_bytes(tmp_path):
+    board = xvrml.loads(BALL.replace("Viewpoint { position 0 0 6 }", ""))
+    ball = xvrml.loads(BALL)
+    for name, image in (("clear.png", ball.render(background="none", **SMALL)),
+                        ("model.png", board.render(**SMALL)),
+                        ("part.exr", ball.render(crop=(4, 3, 9, 8), channels=("z", "id"), **SMALL))):
+        image.save(tmp_path / name)
+        pickle.loads(pickle.dumps(copy.copy(image))).save(tmp_path / f"again-{name}")
+        assert (tmp_path / name).read_bytes() == (tmp_path / f"again-{name}").read_bytes()
 
 
 def test_worlds_are_pickled(tmp_path):

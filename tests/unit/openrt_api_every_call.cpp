@@ -203,6 +203,7 @@ const char* const anywhere[] = {"rtGetError",
                                 "rtRunningShader",
                                 "rtGetQualityInfo",
                                 "rtGetTransportInfo",
+                                "rtGetChannelInfo",
                                 "rtIsQualityAllowed"};
 
 enum State { Outside, Definition, List };
@@ -455,11 +456,11 @@ const Wrong wrong[] = {
     WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
 // Functions that fail only without a context, or never.
-const char* const infallible[] = {"rtErrorCallback",    "rtLogCallback",     "rtLoadName",
-                                  "rtPushMatrix",       "rtLoadIdentity",    "rtGetError",
-                                  "rtGetCurrent",       "rtGetErrorMessage", "rtInit",
-                                  "rtRunningShader",    "rtFinishFrame",     "rtGetQualityInfo",
-                                  "rtIsQualityAllowed", "rtGetTransportInfo"};
+const char* const infallible[] = {"rtErrorCallback",    "rtLogCallback",      "rtLoadName",
+                                  "rtPushMatrix",       "rtLoadIdentity",     "rtGetError",
+                                  "rtGetCurrent",       "rtGetErrorMessage",  "rtInit",
+                                  "rtRunningShader",    "rtFinishFrame",      "rtGetQualityInfo",
+                                  "rtIsQualityAllowed", "rtGetTransportInfo", "rtGetChannelInfo"};
 
 class EveryCall : public ApiTest {
  protected:

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "scene/quality.h"
@@ -156,6 +157,34 @@ TEST_F(Frames, TheTableOfTransportsIsWhatIsAccepted) {
   EXPECT_EQ(rtGetTransportInfo(RT_TRANSPORT_PATH, &info), 1);
   EXPECT_EQ(info.transport, RTenum(RT_TRANSPORT_PATH));
   EXPECT_EQ(info.name, nullptr);
+}
+
+TEST_F(Frames, TheTableOfChannelsIsWhatFramesHave) {
+  RTchannelInfo info{};
+  EXPECT_EQ(rtGetChannelInfo(0, &info), 0) << "its size is not set";
+  info.size = sizeof info;
+  EXPECT_EQ(rtGetChannelInfo(-1, &info), 0);
+  EXPECT_EQ(rtGetChannelInfo(0, nullptr), 0);
+  std::set<std::string> names, planes;
+  uint32_t channels = 0;
+  int count = 0, components = 0;
+  for (; rtGetChannelInfo(count, &info); count++) {
+    SCOPED_TRACE(info.name);
+    EXPECT_EQ(info.size, sizeof info);
+    names.insert(info.name);
+    channels |= info.channel;
+    components += info.components;
+    std::istringstream words(info.planes);
+    for (std::string plane; words >> plane;) planes.insert(plane);
+    if (info.text) { EXPECT_STRNE(info.text, ""); }
+    rtFrameBuffer(4, 4, info.channel);
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR));
+  }
+  EXPECT_EQ(names.size(), size_t(count));
+  EXPECT_EQ(planes.size(), size_t(components));
+  EXPECT_EQ(channels, (1u << count) - 1) << "the bits have gaps";
+  rtFrameBuffer(4, 4, 1u << count);
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
 }
 
 TEST(FramesWithoutBuffer, AFrameNeedsASize) {

@@ -62,7 +62,7 @@ TEST(Film, unfinishedTilesAreNothing) {
   PixelSums sums;
   const float radiance[3] = {1, 2, 3};
   sums.add(radiance, 1);
-  sums.depth = 5;
+  sums.firstValues[channelInfo(RT_DEPTH).place] = 5;
   for (uint32_t y = 0; y < 2; y++)
     for (uint32_t x = 0; x < 3; x++) film.store(x, y, sums);
   std::vector<float> rgba(24, -1.0f), depth(6, -1.0f);

@@ -62,14 +62,12 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   for (PixelSums& s : result.sums) {
     s.samples = job.count;
     for (double& x : s.rgba) x = value();
-    if (frame.channels & RT_DEPTH) s.depth = float(value());
-    if (frame.channels & RT_NAME) s.name = float(random() % 3);
+    for (const ChannelInfo& row : channelTable)
+      for (uint32_t k = 0; k < row.components && (frame.channels & row.bit); k++) {
+        if (row.source == ChannelSource::firstSample) s.firstValues[row.place + k] = float(value());
+        if (row.source == ChannelSource::mean) s.valueSums[row.place + k] = value();
+      }
     for (int k = 0; k < 3; k++) {
-      if (frame.channels & RT_POSITION) s.position[k] = float(value());
-      if (frame.channels & RT_MOTION) s.motion[k] = float(value());
-      if (frame.channels & RT_NORMAL) s.normal[k] = value();
-      if (frame.channels & RT_ALBEDO) s.albedo[k] = value();
-      if (frame.channels & RT_REFLECTION) s.reflection[k] = value();
       if (g.spread) {
         s.first[k] = value();
         s.delta[k] = value();
@@ -90,12 +88,11 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   return result;
 }
 
-// Field by field: there is no padding between them.
+// Compares the bytes of sums that were zero at first, also between the fields.
 bool sameBytes(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b) {
   if (a.size() != b.size()) return false;
   for (size_t i = 0; i < a.size(); i++)
-    if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random ||
-        std::memcmp(a[i].motion, b[i].motion, sizeof a[i].motion) != 0)
+    if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random)
       return false;
   return true;
 }

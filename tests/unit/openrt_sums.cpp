@@ -11,7 +11,10 @@
 namespace openrt {
 namespace {
 
-constexpr RequiredSums everything{true, true, true};
+constexpr RequiredSums everything{.spread = true,
+                                  .error = true,
+                                  .firstValues = placesOf(ChannelSource::firstSample),
+                                  .valueSums = placesOf(ChannelSource::mean)};
 using Samples = std::vector<std::array<float, 3>>;
 
 // The first sample is darker than all others, so that the sums of differences from it have one
@@ -28,10 +31,8 @@ Samples samplesOf(uint32_t count, uint32_t seed) {
 void add(PixelSums& sums, const std::array<float, 3>& sample) {
   sums.add(sample.data(), sample[0]);
   sums.addTails(sample.data());
-  for (int k = 0; k < 3; k++) {
-    sums.normal[k] += sample[size_t(k)];
-    sums.albedo[k] += 1 - sample[size_t(k)];
-  }
+  for (size_t k = 0; k < std::size(sums.valueSums); k++)
+    sums.valueSums[k] += k % 2 ? 1 - sample[k % 3] : sample[k % 3];
 }
 
 // Sums a leaf as the wavefront does.
@@ -115,7 +116,7 @@ TEST(Sums, MergedAreThoseOfAllSamplesAtOnce) {
       EXPECT_EQ(merged.samples, count);
       EXPECT_EQ(merged.replicates, count >> shift);
       expectNear(merged.rgba, direct.rgba, "rgba");
-      expectNear(merged.normal, direct.normal, "normal");
+      expectNear(merged.valueSums, direct.valueSums, "values");
       for (int k = 0; k < 3; k++) {
         EXPECT_EQ(merged.first[k], direct.first[k]);
         EXPECT_EQ(merged.largest[k], direct.largest[k]);

@@ -425,5 +425,18 @@ TEST(Nodes, EventsAreFoundUnderAllTheirNames) {
             faces.find("set_coordIndex")); // not the field of that name
 }
 
+TEST(Nodes, AnEventInKnowsTheFieldThatItSets) {
+  const auto setBy = [](std::string_view node, std::string_view in) {
+    const NodeType& type = *findNodeType(node);
+    const FieldInfo* field = type.fieldSetBy(*type.find(in));
+    return field ? field->name : "";
+  };
+  EXPECT_EQ(setBy("IndexedFaceSet", "set_coordIndex"), "coordIndex");
+  EXPECT_EQ(setBy("ElevationGrid", "set_height"), "height");
+  EXPECT_EQ(setBy("Viewpoint", "set_bind"), "");          // there is no field of that name
+  EXPECT_EQ(setBy("TimeTrigger", "set_triggerTime"), ""); // it is an eventOut
+  EXPECT_EQ(setBy("Transform", "translation"), "");       // an exposedField sets itself
+}
+
 } // namespace
 } // namespace xvrml

@@ -2,6 +2,7 @@
 // is loaded.
 #include <fmt/format.h>
 
+#include "graph/inline_node.h"
 #include "unit/xvrml_parser_support.h"
 
 namespace {
@@ -31,6 +32,22 @@ TEST(ParserProto, ValuesReachTheBody) {
   const auto* second = nodeCast<nodes::Shape>(renderedNode(world->scope.roots[1].get()));
   EXPECT_NE(nodeCast<nodes::Box>(first->geometry), nullptr);
   EXPECT_EQ(nodeCast<nodes::Sphere>(second->geometry)->radius, 4);
+}
+
+TEST(ParserProto, NodeCastTellsWhatNodesOfAWorldAre) {
+  const auto world = parse("PROTO P [ ] { Group { } }\nP { }\nScript { }\nInline { }\nGroup { }");
+  ASSERT_EQ(messages(*world), "");
+  const std::vector<NodeRef>& roots = world->scope.roots;
+  ASSERT_EQ(roots.size(), 4u);
+  const NodeRef bare(new nodes::Inline()); // made by a program: it has no place for content
+  for (size_t i = 0; i < roots.size(); ++i) {
+    EXPECT_EQ(nodeCast<ProtoInstance>(roots[i]) != nullptr, i == 0) << i;
+    EXPECT_EQ(nodeCast<ScriptNode>(roots[i]) != nullptr, i == 1) << i;
+    EXPECT_EQ(nodeCast<InlineNode>(roots[i]) != nullptr, i == 2) << i;
+  }
+  EXPECT_EQ(nodeCast<InlineNode>(bare), nullptr);
+  const Node* constant = roots[0].get();
+  EXPECT_EQ(nodeCast<ProtoInstance>(constant), constant);
 }
 
 TEST(ParserProto, PrototypesOfManyFieldsFindEachByItsName) {

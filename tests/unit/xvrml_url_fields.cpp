@@ -266,7 +266,7 @@ TEST(UrlFields, APluginsFieldIsOneOnlyIfItsStanzaSaysSo) {
     node->source.file = std::make_shared<const std::string>("lib/p.wrl");
     auto interface = std::make_shared<NodeType>();
     interface->name = "P";
-    interface->index = -1;
+    interface->index = ProtoInstance::typeIndex;
     FieldInfo declared = *type.find("url");
     declared.offset = 0;
     interface->fields.push_back(declared);

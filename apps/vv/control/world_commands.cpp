@@ -69,7 +69,7 @@ struct Checked {
 
 // Tells whether the nodes that are sent to it become part of the node. Scripts only know theirs.
 bool holdsWhatItGets(const Node& node, const FieldInfo& field) {
-  return !dynamic_cast<const ScriptNode*>(&node) && field.name != "removeChildren";
+  return !nodeCast<ScriptNode>(&node) && field.name != "removeChildren";
 }
 
 void appendNodes(const Value& value, std::vector<Node*>& out) {
@@ -89,7 +89,7 @@ void refuseLoops(const std::vector<Checked>& all) {
     if (holdsWhatItGets(*one.node, *one.field)) appendNodes(one.value, open);
     if (open.empty()) continue;
     const bool free = walk(std::move(open), [&](Node& node, std::vector<Node*>& next) {
-      if (!dynamic_cast<ScriptNode*>(&node)) appendChildren(node, next);
+      if (!nodeCast<ScriptNode>(&node)) appendChildren(node, next);
       const auto [begin, end] = fresh.equal_range(&node);
       for (auto at = begin; at != end; ++at) appendNodes(at->second->value, next);
       return &node != one.node.get();

@@ -63,7 +63,7 @@ Definition readOne(const std::string& text, const World& world) {
     fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name,
                            one.field->name));
   one.value = std::move(*value);
-  const bool instance = dynamic_cast<const ProtoInstance*>(one.node.get()) != nullptr;
+  const bool instance = nodeCast<ProtoInstance>(one.node) != nullptr;
   if (instance && one.field->access == Access::field)
     fail(text, fmt::format("{} is a field of prototype {}, which is fixed when the file is read; "
                            "an exposedField can be set",

@@ -155,6 +155,14 @@ std::string channelNames(std::string_view separator) {
   return names;
 }
 
+// Returns a sentence for each channel whose name does not say enough.
+std::string channelTexts() {
+  std::string texts;
+  for (const picture::Channel& channel : picture::channelTable())
+    if (!channel.text.empty()) texts += fmt::format(" {} {}.", channel.name, channel.text);
+  return texts;
+}
+
 void setChannels(Options& o, const std::string& value) {
   uint32_t channels = 0;
   for (std::string_view name : split(value, ',')) {
@@ -251,12 +259,8 @@ const OptionInfo table[] = {
      "time. An EXR file says where the part lies (dataWindow in displayWindow).",
      [](Options& o, const std::string& v) { o.render.crop = readCrop(v); }},
     {"--channels", "LIST", "Picture",
-     "Channels of an EXR file, separated by commas: " + channelNames(", ") +
-         " (default rgba). error is the half-width of the 95 % interval of each colour, trust is 1 "
-         "where that interval can be trusted. With error or trust, other sample positions are "
-         "used. motion is how far what is seen has moved since the picture before. reflection is "
-         "the part of the light that coats reflect: varnish, lacquer, highlights. cryptomatte "
-         "tells which Shapes cover a pixel, and how much of it each.",
+     "Channels of an EXR file, separated by commas: " + channelNames(", ") + " (default rgba)." +
+         channelTexts(),
      setChannels, with(inPresets)},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light is added linearly, and " +

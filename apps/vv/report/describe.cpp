@@ -103,7 +103,7 @@ std::string scriptProtocol(const std::vector<std::string>& urls) {
 namespace {
 
 void countScript(const Node& node, std::map<std::string, uint64_t>& scripts) {
-  if (!dynamic_cast<const ScriptNode*>(&node)) return;
+  if (!nodeCast<ScriptNode>(&node)) return;
   if (const FieldInfo* url = node.type().find("url"))
     ++scripts[scriptProtocol(*static_cast<const MFString*>(node.storage(*url)))];
 }

@@ -307,7 +307,7 @@ struct Compat {
 Compat compatOf(const xvrml::World& world) {
   Compat compat;
   forEachNode(world, [&](const xvrml::Node& node) {
-    if (const auto* script = dynamic_cast<const xvrml::ScriptNode*>(&node)) {
+    if (const auto* script = xvrml::nodeCast<xvrml::ScriptNode>(&node)) {
       const xvrml::FieldInfo* flag = node.type().find("directOutput");
       const bool allowed = flag && node.get(*flag) == xvrml::Value(true);
       const bool holds = std::any_of(script->type().fields.begin(), script->type().fields.end(),

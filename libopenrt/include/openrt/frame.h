@@ -52,6 +52,13 @@ enum {
    * those with the smallest numbers are counted. */
   RT_COVERAGE = 4096
 };
+/* Values of RTchannelInfo.kind: what the floats of a channel are. */
+enum {
+  RT_CHANNEL_NUMBERS = 0, /* any numbers */
+  RT_CHANNEL_COUNTS = 1,  /* whole numbers */
+  RT_CHANNEL_NAMES = 2,   /* names (rtLoadName), which are whole numbers */
+  RT_CHANNEL_SHARES = 3   /* pairs of a name and a share */
+};
 
 /* Settings of rtQuality and rtQualityf. */
 enum {
@@ -218,6 +225,21 @@ typedef struct RTtransportInfo {
  * Returns 1, or 0 if there is no such transport, or if info is NULL or info->size is not set. Works
  * without a context. [any-thread] */
 RT_API int rtGetTransportInfo(RTenum transport, RTtransportInfo* info);
+
+/* A channel of frames. The library owns the texts, which are constants. */
+typedef struct RTchannelInfo {
+  size_t size;        /* Set it to sizeof(RTchannelInfo) before the call. */
+  RTenum channel;     /* RT_RGBA ... */
+  const char* name;   /* for people and command lines: "rgba", "z" ... */
+  int components;     /* floats per pixel */
+  const char* planes; /* names of the floats in OpenEXR files, with blanks between them */
+  RTenum kind;        /* one of RT_CHANNEL_* */
+  const char* text;   /* the rest of a sentence that begins with the name; NULL if the name says
+                         enough */
+} RTchannelInfo;
+/* Writes what is known about channel number 0, 1 ... Returns 1, or 0 if there are not so many, or
+ * if info is NULL or info->size is not set. Works without a context. [any-thread] */
+RT_API int rtGetChannelInfo(int number, RTchannelInfo* info);
 
 /* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
  * follow. [context-thread] */

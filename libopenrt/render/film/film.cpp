@@ -11,12 +11,8 @@ namespace openrt {
 
 Film::Film(uint32_t width, uint32_t height, uint32_t channels, ErrorMap::Kind errors)
     : width_(width), height_(height), channels_(channels), errors_(width, height, errors) {
-  for (uint32_t bit = 0; bit < channelBits; bit++)
-    if (channels & (1u << bit))
-      planes_[bit].assign(size_t(width) * height * channelComponents(1u << bit), 0.0f);
-  if (has(RT_DEPTH))
-    std::fill(plane(RT_DEPTH).begin(), plane(RT_DEPTH).end(),
-              std::numeric_limits<float>::infinity());
+  for (const ChannelInfo& row : channelTable)
+    if (has(row.bit)) plane(row.bit).assign(size_t(width) * height * row.components, row.nothing);
 }
 
 namespace {
@@ -34,12 +30,12 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* li
   if (has(RT_RGBA))
     for (int k = 0; k < 4; k++)
       plane(RT_RGBA)[4 * pixel + k] = float(s.rgba[k] / n + (light && k < 3 ? light->mean[k] : 0));
-  for (const ChannelSum& sum : channelSums) {
-    if (!has(sum.channel)) continue;
-    float* const out = &plane(sum.channel)[channelComponents(sum.channel) * pixel];
-    if (sum.number) *out = s.*sum.number;
-    for (int k = 0; k < 3 && sum.vector; k++) out[k] = (s.*sum.vector)[k];
-    for (int k = 0; k < 3 && sum.mean; k++) out[k] = float((s.*sum.mean)[k] / n);
+  for (const ChannelInfo& row : channelTable) {
+    if (row.source == ChannelSource::film || !has(row.bit)) continue;
+    float* const out = &plane(row.bit)[row.components * pixel];
+    for (uint32_t k = 0; k < row.components; k++)
+      out[k] = row.source == ChannelSource::mean ? float(s.valueSums[row.place + k] / n)
+                                                 : s.firstValues[row.place + k];
   }
   for (int k = 0; k < 3 && has(RT_VARIANCE); k++) {
     const double sum2 = s.delta2[k] - s.delta[k] * s.delta[k] / n;
@@ -113,10 +109,10 @@ bool Film::read(uint32_t channel, std::span<float> out) const {
 
 bool Film::clear(uint32_t channel, std::span<float> out) const {
   if (!std::has_single_bit(channel) || !has(channel)) return false;
-  const size_t size = size_t(width_) * height_ * channelComponents(channel);
+  const ChannelInfo& row = channelInfo(channel);
+  const size_t size = size_t(width_) * height_ * row.components;
   if (out.size() < size) return false;
-  std::fill_n(out.begin(), size,
-              channel == RT_DEPTH ? std::numeric_limits<float>::infinity() : 0.0f);
+  std::fill_n(out.begin(), size, row.nothing);
   return true;
 }
 

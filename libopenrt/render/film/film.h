@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "openrt/openrt.h"
 #include "render/film/error_map.h"
 #include "render/film/sums.h"
 #include "render/wave/tiles.h"

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <type_traits>
 
-#include "openrt/openrt.h"
 #include "render/film/error.h"
 #include "scene/quality.h"
 
@@ -22,8 +21,8 @@ static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout
 size_t keptBytes(const RequiredSums& g) {
   if (g.error) return sizeof(PixelSums);
   if (g.spread) return offsetof(PixelSums, closed);
-  if (g.motion) return offsetof(PixelSums, first);
-  return g.surface ? offsetof(PixelSums, motion) : offsetof(PixelSums, normal);
+  return g.valueSums ? offsetof(PixelSums, valueSums) + g.valueSums * sizeof(double)
+                     : offsetof(PixelSums, firstValues) + g.firstValues * sizeof(float);
 }
 
 // Merges the sums for error estimates. change: the shift that makes the differences of l relative
@@ -54,10 +53,9 @@ RequiredSums requiredSums(const edit::FrameSettingsT& frame) {
   RequiredSums g;
   g.error = wantsError(frame);
   g.spread = g.error || (frame.channels & RT_VARIANCE);
-  for (const ChannelSum& sum : channelSums)
-    if (sum.mean && (frame.channels & sum.channel)) g.surface = true;
-  g.motion = frame.channels & RT_MOTION;
   g.names = frame.channels & RT_COVERAGE;
+  g.firstValues = placesOf(ChannelSource::firstSample, frame.channels);
+  g.valueSums = placesOf(ChannelSource::mean, frame.channels);
   return g;
 }
 
@@ -80,9 +78,7 @@ void PixelSums::closeReplicate() {
 
 void PixelSums::merge(const PixelSums& l, const RequiredSums& required, const Replicates& parts) {
   for (int k = 0; k < 4; k++) rgba[k] += l.rgba[k];
-  for (const ChannelSum& sum : channelSums)
-    for (int k = 0; k < 3 && sum.mean && required.surface; k++)
-      (this->*sum.mean)[k] += (l.*sum.mean)[k];
+  for (uint32_t k = 0; k < required.valueSums; k++) valueSums[k] += l.valueSums[k];
   if (required.spread) {
     const double n = l.samples;
     double c[3]; // change of the differences

@@ -9,21 +9,21 @@
 #include <span>
 #include <vector>
 
-#include "openrt/openrt.h"
 #include "render/film/hit_counts.h"
 #include "render/film/ledger.h"
 #include "render/wave/sampler.h"
+#include "scene/channels.h"
 #include "scene/scene.h"
 
 namespace openrt {
 
 // Tells which sums the channels of a frame need; the other fields of PixelSums are undefined.
 struct RequiredSums {
-  bool spread = false;  // true if first, delta and delta2 are needed
-  bool surface = false; // true if the means of channelSums are needed
-  bool error = false;   // true if all sums are needed
-  bool motion = false;  // true if motion is needed
-  bool names = false;   // true if the names of hits are counted
+  bool spread = false; // true if first, delta and delta2 are needed
+  bool error = false;  // true if all sums are needed
+  bool names = false;  // true if the names of hits are counted
+  // Numbers of elements of firstValues and of valueSums that are needed.
+  uint32_t firstValues = 0, valueSums = 0;
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
@@ -31,10 +31,11 @@ RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 // only as much of each pixel as its channels need.
 struct PixelSums {
   double rgba[4] = {};
-  float depth = 0, position[3] = {}, name = 0; // values of sample 0
   uint32_t samples = 0;
-  double normal[3] = {}, albedo[3] = {}, reflection[3] = {};
-  float motion[3] = {}; // value of sample 0
+  // The channels from ChannelSource::firstSample and from ChannelSource::mean, by
+  // ChannelInfo::place: the values of sample 0, and the sums of the values of all samples.
+  float firstValues[placesOf(ChannelSource::firstSample)] = {};
+  double valueSums[placesOf(ChannelSource::mean)] = {};
   // Sums of (x - first) and of its square. The difference avoids cancellation.
   double first[3] = {}, delta[3] = {}, delta2[3] = {};
   // Over the complete replicates: sums of their delta, and of its square, cube and fourth power.
@@ -77,23 +78,6 @@ struct PixelSums {
   void closeReplicate();
   // Merges the sums of the samples that follow these; closes a replicate that they complete.
   void merge(const PixelSums& later, const RequiredSums& required, const Replicates& replicates);
-};
-
-// Where the floats of a channel come from that is the mean of the samples, or the value of sample
-// 0. One of the members is not null.
-struct ChannelSum {
-  uint32_t channel;
-  double (PixelSums::*mean)[3];                                          // the sum over the samples
-  float (PixelSums::*vector)[3] = nullptr, PixelSums::*number = nullptr; // values of sample 0
-};
-inline constexpr ChannelSum channelSums[] = {
-    {RT_DEPTH, nullptr, nullptr, &PixelSums::depth},
-    {RT_POSITION, nullptr, &PixelSums::position},
-    {RT_NAME, nullptr, nullptr, &PixelSums::name},
-    {RT_MOTION, nullptr, &PixelSums::motion},
-    {RT_NORMAL, &PixelSums::normal},
-    {RT_ALBEDO, &PixelSums::albedo},
-    {RT_REFLECTION, &PixelSums::reflection},
 };
 
 // Clears the sums of the given number of pixels.

@@ -26,28 +26,17 @@ template <class T> T* elements(T PixelSums::*);
 template <class T, size_t n> constexpr size_t countOf(T (PixelSums::*)[n]) { return n; }
 template <class T> constexpr size_t countOf(T PixelSums::*) { return 1; }
 
-template <class T> size_t offsetOf(T PixelSums::*member) {
-  static const PixelSums any;
-  return size_t(reinterpret_cast<const std::byte*>(&(any.*member)) -
-                reinterpret_cast<const std::byte*>(&any));
-}
-
-Field fieldOf(const ChannelSum& sum) {
-  if (sum.mean) return {offsetOf(sum.mean), sizeof(double), countOf(sum.mean)};
-  if (sum.vector) return {offsetOf(sum.vector), sizeof(float), countOf(sum.vector)};
-  return {offsetOf(sum.number), sizeof(float), 1};
-}
-
 std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
   const RequiredSums required = requiredSums(frame);
   std::vector<Field> fields{FIELD(rgba)};
-  const auto addSums = [&](bool means) {
-    for (const ChannelSum& sum : channelSums)
-      if ((frame.channels & sum.channel) && bool(sum.mean) == means) fields.push_back(fieldOf(sum));
+  const auto addChannels = [&](ChannelSource source, const Field& all) {
+    for (const ChannelInfo& row : channelTable)
+      if (row.source == source && (frame.channels & row.bit))
+        fields.push_back({all.offset + row.place * all.bytes, all.bytes, row.components});
   };
-  addSums(false);
+  addChannels(ChannelSource::firstSample, FIELD(firstValues));
   if (required.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
-  addSums(true);
+  addChannels(ChannelSource::mean, FIELD(valueSums));
   if (required.error)
     fields.insert(fields.end(), {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4),
                                  FIELD(grey), FIELD(largest), FIELD(random)});

@@ -1,10 +1,7 @@
-// lanes-inl.h: vector lanes: `Lanes` holds as many floats as the instruction set computes at once,
-// `Bits` as many 32-bit integers. Arrays of the renderer are padded to 16 elements (arena.h), which
-// every width divides, so loops over them have no remainder. Included by files that Highway
-// compiles once for each instruction set (https://google.github.io/highway).
-//
-// All instruction sets give the same numbers: the operations are correctly rounded, products and
-// sums are not fused, and there is no sum across lanes.
+// lanes-inl.h: vector lanes (common/vector_lanes-inl.h) and the renderer's arrays: `Bits` holds as
+// many 32-bit integers as `Lanes` holds floats. Arrays of the renderer are padded to 16 elements
+// (arena.h), which every width divides, so loops over them have no remainder. Included by files
+// that Highway compiles once for each instruction set.
 
 #if defined(OPENRT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef OPENRT_LANES_INL_H
@@ -24,34 +21,17 @@ HWY_BEFORE_NAMESPACE();
 namespace openrt {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+#include "vector_lanes-inl.h"
 
-using LanesTag = hn::CappedTag<float, 16>;
 using BitsTag = hn::CappedTag<uint32_t, 16>;
-using Lanes = hn::Vec<LanesTag>;
 using Bits = hn::Vec<BitsTag>;
-using Mask = hn::Mask<LanesTag>;
 using BitsMask = hn::Mask<BitsTag>;
 inline uint32_t width() { return uint32_t(hn::Lanes(LanesTag())); }
 
-inline Lanes lanesOf(float value) { return hn::Set(LanesTag(), value); }
 inline Bits bitsOf(uint32_t value) { return hn::Set(BitsTag(), value); }
-inline Lanes load(const float* from) { return hn::LoadU(LanesTag(), from); }
 inline Bits load(const uint32_t* from) { return hn::LoadU(BitsTag(), from); }
-inline void store(Lanes v, float* to) { hn::StoreU(v, LanesTag(), to); }
 inline void store(Bits v, uint32_t* to) { hn::StoreU(v, BitsTag(), to); }
 
-// These work with vectors of any width.
-template <class M, class V> inline V select(M condition, V a, V b) {
-  return hn::IfThenElse(condition, a, b);
-}
-template <class V> inline V constant(float value) { return hn::Set(hn::DFromV<V>(), value); }
-template <class V> inline V sqrt(V v) { return hn::Sqrt(v); }
-template <class V> inline V abs(V v) { return hn::Abs(v); }
-// Like std::max and std::min, also with NaN: the result is `a` unless the comparison holds.
-template <class V> inline V max(V a, V b) { return hn::IfThenElse(a < b, b, a); }
-template <class V> inline V min(V a, V b) { return hn::IfThenElse(b < a, b, a); }
-inline Mask isFinite(Lanes v) { return hn::Abs(v) <= lanesOf(std::numeric_limits<float>::max()); }
 // Returns v where it is finite and above 0, else 0.
 inline Lanes checked(Lanes v) {
   return hn::IfThenElseZero(hn::And(v > lanesOf(0), isFinite(v)), v);
@@ -66,9 +46,12 @@ inline Bits bitsWhere(Mask condition, uint32_t bits) {
   return hn::IfThenElseZero(maskOf(condition), bitsOf(bits));
 }
 
-#include "render/lanes/vec3-inl.h"
+// The rows of a linear map.
+template <class T> struct Rows { Vec3<T> x, y, z; };
+template <class T> inline Vec3<T> operator*(const Rows<T>& m, const Vec3<T>& v) {
+  return {dot(m.x, v), dot(m.y, v), dot(m.z, v)};
+}
 
-using LaneVec = Vec3<Lanes>;
 inline LaneVec checked(const LaneVec& v) { return {checked(v.x), checked(v.y), checked(v.z)}; }
 inline LaneVec vectorOf(const float v[3]) { return {lanesOf(v[0]), lanesOf(v[1]), lanesOf(v[2])}; }
 // Load and store the elements from i on of three arrays.
@@ -122,26 +105,20 @@ inline void storeSome(const LaneVec& v, float* const to[3], size_t i, uint32_t c
   storeSome(v.z, to[2] + i, count);
 }
 
-// Indices into arrays.
-using Indices = hn::Vec<hn::RebindToSigned<LanesTag>>;
 // Loads the indices from i on of an array of n. Lanes beyond its end repeat its last index.
 inline Indices indicesFrom(const uint32_t* index, uint32_t i, uint32_t n) {
-  const hn::RebindToSigned<LanesTag> tag;
+  const IndicesTag tag;
   if (i + width() <= n) return hn::BitCast(tag, load(index + i));
   uint32_t last[lanes];
   for (uint32_t k = 0; k < width(); k++) last[k] = index[i + k < n ? i + k : n - 1];
   return hn::BitCast(tag, load(last));
 }
-inline Lanes gather(const float* from, Indices index) {
-  return hn::GatherIndex(LanesTag(), from, index);
-}
 inline LaneVec gather(const float* const from[3], Indices index) {
   return {gather(from[0], index), gather(from[1], index), gather(from[2], index)};
 }
 inline Bits gather(const uint32_t* from, Indices index) {
-  const hn::RebindToSigned<LanesTag> tag;
-  return hn::BitCast(BitsTag(),
-                     hn::GatherIndex(tag, reinterpret_cast<const int32_t*>(from), index));
+  const auto* const numbers = reinterpret_cast<const int32_t*>(from);
+  return hn::BitCast(BitsTag(), hn::GatherIndex(IndicesTag(), numbers, index));
 }
 
 // Returns the lanes of element i to element n - 1 of an array whose first vector starts at i.

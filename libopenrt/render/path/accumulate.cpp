@@ -100,7 +100,8 @@ void addCoated(const PathStates& states, uint32_t lane, const Vec3f& light, floa
   if (flags.reflected() || flags.scattered()) return; // PixelSamples::add(); not the first surface
   const Vec3f arriving = load(states.throughput, lane) * (transmittance * light);
   const uint32_t path = states.path[lane];
-  if (isFinite(arriving)) store(load(found.reflection, path) + arriving, found.reflection, path);
+  float* const* const reflection = found.of(RT_REFLECTION);
+  if (isFinite(arriving)) store(load(reflection, path) + arriving, reflection, path);
 }
 
 } // namespace
@@ -124,7 +125,7 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
     if (found.first[ray.path]) {
       found.first[ray.path] = 0;
       if (!found.firstHits || !found.firstHits->takeShading(batch, i, transmission))
-        found.storeFirst(batch.scene, *batch.points, i, ray.path, shaded.albedo);
+        storeFirstHit({batch.scene, *batch.points, i, shaded.albedo}, ray.path, found);
     }
     if (through <= 1e-6f)
       paths.ledger.cutByEnergy += double(through);
@@ -156,7 +157,7 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLigh
       found.first[path] = 0;
       if (found.firstHits && !leads) leads = findImageLeads(batch, boundaries);
       if (!leads || !found.firstHits->takeSurface(batch, boundaries, i, leads[i]))
-        found.storeFirst(batch.scene, *batch.points, i, path, surface.albedo);
+        storeFirstHit({batch.scene, *batch.points, i, surface.albedo}, path, found);
     }
   }
 }

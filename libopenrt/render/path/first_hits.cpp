@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "render/film/error.h"
 #include "render/motion.h"
@@ -92,8 +91,9 @@ bool FirstHits::isLast(PathFlags path) const {
 void FirstHits::visit(const StageContext& context, Wave& wave, PixelSamples& found) {
   ArenaScope scope(arena_);
   for (const uint32_t lane : wave.missed) // the sky in a mirror has the tint of the mirror
-    if (found.albedo[0] && wave.states.flagsOf(lane).deflected())
-      openrt::store(load(wave.states.throughput, lane), found.albedo, wave.states.path[lane]);
+    if (has(RT_ALBEDO) && wave.states.flagsOf(lane).deflected())
+      openrt::store(load(wave.states.throughput, lane), found.of(RT_ALBEDO),
+                    wave.states.path[lane]);
   forEachBucket(context, wave, [&](const Points& points, const Bucket& bucket) {
     describeBucket(context, points, bucket, wave.states, found);
   });
@@ -176,8 +176,8 @@ void FirstHits::queue(const RtsBatch& batch, uint32_t i, const ImageLead& lead,
   if (surface_ == 0) to.flags.setPassages(0);
   if (lead.straight) to.flags.addPassage();
   if (step == Step::image) {
-    Image& image = images_[from.path];
-    if (!from.flags.deflected()) image = Image();
+    MirrorSpace& image = images_[from.path];
+    if (!from.flags.deflected()) image = MirrorSpace();
     if (lead.reflected) reflect(batch, i, lead.direction, image);
     to.flags.set(PathFlags::deflectedBit, true);
   }
@@ -185,7 +185,8 @@ void FirstHits::queue(const RtsBatch& batch, uint32_t i, const ImageLead& lead,
 }
 
 // Adds the mirror at hit i, which sends the ray to `out`, to those that an image is seen in.
-void FirstHits::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const {
+void FirstHits::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out,
+                        MirrorSpace& image) const {
   const Points& points = *batch.points;
   Plane now{Vec3d(load(points.hits.position, i)),
             normalize(Vec3d(out) - Vec3d(load(points.hits.direction, i)))};
@@ -201,37 +202,13 @@ void FirstHits::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Ima
 // Records what is seen at hit i as the first surface of its path.
 void FirstHits::store(const RtsBatch& batch, uint32_t i, float* const albedo[3],
                       PixelSamples& found) const {
-  const Points& points = *batch.points;
   const RayState ray = (*batch.states)[batch.order[i]];
-  found.storeFirst(scene_, points, i, ray.path, albedo);
-  if (!ray.flags.deflected()) return; // it is seen directly
-  const RtsHits& hits = points.hits;
-  const Image& image = images_[ray.path];
-  const Vec3f position = load(hits.position, i);
-  const Vec3d along = Vec3d(load(direction_, ray.path)) * double(hits.distance[i]),
-              seen = Vec3d(load(origin_, ray.path)) + along;
-  if (found.normal[0])
-    openrt::store(Vec3f(image.now.direction(Vec3d(load(hits.normal, i)))), found.normal, ray.path);
-  if (found.albedo[0]) openrt::store(load(albedo, i) * ray.throughput, found.albedo, ray.path);
-  if (found.position[0])
-    openrt::store(Vec3f(seen + vectorOf(scene_.origin)), found.position, ray.path);
-  if (found.depth)
-    found.depth[ray.path] =
-        float(dot(seen - Vec3d(scene_.eye), scene_.frame.depthAlong == RT_DEPTH_ALONG_RAY
-                                                ? Vec3d(load(direction_, ray.path))
-                                                : Vec3d(scene_.depthAxis)));
-  if (found.motion[0]) {
-    const Vec3d motion = motionOf(scene_, *points.rayHits, points.order[i], position);
-    openrt::store(Vec3f(motionOfImage(Vec3d(position), motion, image)), found.motion, ray.path);
-  }
-}
-
-// place and motion: of the point that is seen, in render space.
-Vec3d FirstHits::motionOfImage(const Vec3d& place, const Vec3d& motion, const Image& image) const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  if (image.mirrorNew) return {nan, nan, nan};
-  if (!image.mirrorMoved) return image.now.direction(motion);
-  return image.now.point(place) - image.before.point(place - motion);
+  FirstHit hit{scene_, *batch.points, i, albedo};
+  if (!ray.flags.deflected()) return storeFirstHit(hit, ray.path, found);
+  const SeenImage image{images_[ray.path], ray.throughput, Vec3d(load(origin_, ray.path)),
+                        Vec3d(load(direction_, ray.path))};
+  hit.image = &image;
+  storeFirstHit(hit, ray.path, found);
 }
 
 } // namespace openrt

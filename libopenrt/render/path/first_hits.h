@@ -1,11 +1,9 @@
-// first_hits.h: what the channels of the first hit describe (RT_DEPTH, RT_NORMAL, RT_ALBEDO,
-// RT_POSITION, RT_NAME, RT_MOTION), apart from the light that is followed. [render]
+// first_hits.h: finds the hits that the channels of the first hit describe (wave/first_hit.h),
+// apart from the light that is followed. [render]
 //
 // With RT_FOLLOW_IMAGES they describe what is seen in smooth mirrors and through smooth glass.
 // Where the lobes of a hit show an image (image_leads.h), a first-hit ray follows it, up to
-// `mostSurfaces` times. The image that is seen lies on the ray of the camera, as far away as the
-// light has travelled. Its normal and its motion are those of the surface, taken back through the
-// mirrors.
+// `mostSurfaces` times.
 //
 // In frames without any channel of light, this is all that is done.
 #pragma once
@@ -15,7 +13,7 @@
 
 #include "render/path/image_leads.h"
 #include "render/wave/boundaries.h"
-#include "render/wave/pixel_samples.h"
+#include "render/wave/first_hit.h"
 #include "render/wave/wave.h"
 
 namespace openrt {
@@ -46,12 +44,6 @@ class FirstHits {
   static constexpr uint32_t mostSurfaces = 8;
 
  private:
-  // How the space beyond the mirrors of a path appears in front of them, in render space.
-  struct Image {
-    Matrix4d now, before;
-    bool mirrorMoved = false; // before differs from now
-    bool mirrorNew = false;   // the image was not there in the frame before
-  };
   // Says what a first-hit ray does at a hit: it passes a boundary that has no effect, or follows an
   // image.
   enum class Step : uint8_t { pass, image };
@@ -61,9 +53,8 @@ class FirstHits {
   bool isLast(PathFlags path) const;
   void queue(const RtsBatch& batch, uint32_t i, const ImageLead& lead, const MediaStack& media,
              Step step);
-  void reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const;
+  void reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, MirrorSpace& image) const;
   void store(const RtsBatch& batch, uint32_t i, float* const albedo[3], PixelSamples& found) const;
-  Vec3d motionOfImage(const Vec3d& place, const Vec3d& motion, const Image& image) const;
   bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
 
   const RenderScene& scene_;
@@ -78,7 +69,7 @@ class FirstHits {
   uint32_t surface_ = 0; // number of surfaces that the rays of the wave have met before
   // By path. Those that follow an image, and only those, are valid; the rays of such paths count as
   // deflected (PathFlags).
-  std::vector<Image> images_;
+  std::vector<MirrorSpace> images_;
   RayQueue queue_, next_;
 };
 

@@ -19,7 +19,13 @@ constexpr uint32_t pathsInFlight = 4096;
 } // namespace
 
 TileRenderer::TileRenderer(const RenderScene& scene)
-    : scene_(scene), width_(scene.frame.width), required_(requiredSums(scene.frame)) {}
+    : scene_(scene), width_(scene.frame.width), required_(requiredSums(scene.frame)) {
+  for (const ChannelInfo& row : channelTable)
+    for (uint32_t k = 0; k < row.components && (scene.frame.channels & row.bit); k++) {
+      if (row.source == ChannelSource::firstSample) firstPlaces_.push_back(row.place + k);
+      if (row.source == ChannelSource::mean) meanPlaces_.push_back(row.place + k);
+    }
+}
 
 void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
@@ -91,7 +97,7 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   const uint32_t n = film.count();
   PixelSamples found;
   found.allocate(arena, n);
-  found.allocateFirst(arena, n, scene_.frame.channels);
+  found.allocateChannels(arena, n, scene_.frame.channels);
   PathSamples paths;
   paths.allocate(arena, n);
   paths.random = arena.takeZero<uint8_t>(n);
@@ -168,14 +174,13 @@ void TileRenderer::addToPixels(const PixelRange& range, const FilmSamples& film,
     PixelSums& sums = sums_[place];
     for (uint32_t s = 0; s < film.perPixel; s++) {
       const uint32_t i = pixel * film.perPixel + s;
-      const bool first = film.first + s == 0;
       if (hits_) {
         const std::vector<uint32_t>& united = scene_.frame.unitedNames;
-        const uint32_t name = found.name[i];
+        const uint32_t name = found.names[i];
         hits_->add(place, name < united.size() ? united[name] : name);
       }
       if (found.complete && !found.complete[i]) { // a surface, and no light
-        addFirst(found, i, sums);
+        addValues(found, i, true, sums);
         continue;
       }
       float radiance[3] = {found.radiance[0][i], found.radiance[1][i], found.radiance[2][i]};
@@ -195,30 +200,17 @@ void TileRenderer::addToPixels(const PixelRange& range, const FilmSamples& film,
             next - leaf_ >= replicates_.size())
           sums.closeReplicate();
       }
-      if (first)
-        addFirst(found, i, sums);
-      else
-        addSurfaces(found, i, sums);
+      addValues(found, i, film.first + s == 0, sums);
     }
   }
 }
 
-void TileRenderer::addSurfaces(const PixelSamples& found, uint32_t path, PixelSums& sums) const {
-  for (int k = 0; k < 3; k++) {
-    if (found.normal[k]) sums.normal[k] += found.normal[k][path];
-    if (found.albedo[k]) sums.albedo[k] += found.albedo[k][path];
-    if (found.reflection[k]) sums.reflection[k] += found.reflection[k][path];
-  }
-}
-
-void TileRenderer::addFirst(const PixelSamples& found, uint32_t path, PixelSums& sums) const {
-  addSurfaces(found, path, sums);
-  if (found.depth) sums.depth = found.depth[path];
-  if (found.position[0])
-    for (int k = 0; k < 3; k++) sums.position[k] = found.position[k][path];
-  if (found.motion[0])
-    for (int k = 0; k < 3; k++) sums.motion[k] = found.motion[k][path];
-  sums.name = scene_.frame.channels & RT_NAME ? float(found.name[path]) : 0.0f;
+void TileRenderer::addValues(const PixelSamples& found, uint32_t path, bool first,
+                             PixelSums& sums) const {
+  for (const uint32_t place : meanPlaces_) sums.valueSums[place] += found.meanValues[place][path];
+  if (!first) return;
+  for (const uint32_t place : firstPlaces_)
+    sums.firstValues[place] = found.firstValues[place][path];
 }
 
 } // namespace openrt

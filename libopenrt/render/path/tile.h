@@ -53,13 +53,13 @@ class TileRenderer {
   void renderPaths(bool light, Wave& wave, PixelSamples& found);
   void describe(Wave& wave, PixelSamples& found);
   void addToPixels(const PixelRange& range, const FilmSamples& film, const PixelSamples& found);
-  // Add what a path has found first: of any sample, of sample 0.
-  void addSurfaces(const PixelSamples& found, uint32_t path, PixelSums& sums) const;
-  void addFirst(const PixelSamples& found, uint32_t path, PixelSums& sums) const;
+  // Adds the values of a path's channels. first: the path is that of sample 0.
+  void addValues(const PixelSamples& found, uint32_t path, bool first, PixelSums& sums) const;
 
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture
   const RequiredSums required_;
+  std::vector<uint32_t> firstPlaces_, meanPlaces_; // ChannelInfo::place of all values of the frame
   const bool showsNoLight_{showsNoLight(scene_.frame)};
   // 1 where there is no light to save, or a plug-in follows it
   const uint32_t lightStride_{

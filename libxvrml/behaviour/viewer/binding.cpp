@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
@@ -18,13 +19,13 @@ namespace xvrml {
 size_t Binding::typeOf(const Node& node) { return size_t(bindableStack(node.type())); }
 
 void Binding::sendBindEvents(Node& node, bool bound) {
-  engine_.send(node, "isBound", bound);
-  engine_.send(node, "bindTime", engine_.now());
-  engine_.changed(node, *node.type().find("set_bind"));
+  sendFrom<"isBound">(engine_, node, bound);
+  sendFrom<"bindTime">(engine_, node, engine_.now());
+  engine_.changed(node, *fieldNamed<"set_bind">(node));
   // The NavigationInfo of a viewpoint is bound and unbound with it (ISO/IEC 19775-1:2023 23.3.1).
   if (const auto viewpoint = viewpointFields(&node))
     if (Node* info = renderedNode(viewpoint->navigationInfo))
-      if (const FieldInfo* bind = info->type().find("set_bind")) engine_.post(*info, *bind, bound);
+      if (const FieldInfo* bind = fieldNamed<"set_bind">(*info)) engine_.post(*info, *bind, bound);
 }
 
 // Rules a and b: sends isBound FALSE of the old node, then isBound TRUE of the new node, at the
@@ -140,7 +141,7 @@ BoundNodes Binding::bound() const { return {top(0), top(1), top(2), top(3)}; }
 namespace {
 
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  if (in.name == "set_bind") interactionOf(events).binding.set(node, std::get<bool>(value));
+  if (isField<"set_bind">(node, in)) interactionOf(events).binding.set(node, std::get<bool>(value));
 }
 
 } // namespace

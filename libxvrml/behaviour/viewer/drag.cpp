@@ -10,6 +10,7 @@
 #include <Imath/ImathMatrixAlgo.h>
 #include <Imath/ImathQuat.h>
 
+#include "behaviour/named_fields.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -91,8 +92,8 @@ class PlaneDrag final : public Drag {
     moved.y = limited(moved.y, sensor_.minPosition.y, sensor_.maxPosition.y);
     last_ = narrow(axes_.out(moved));
     has_ = true;
-    events.send(sensor_, "trackPoint_changed", narrow(axes_.out(p)));
-    events.send(sensor_, "translation_changed", last_);
+    sendFrom<"trackPoint_changed">(events, sensor_, narrow(axes_.out(p)));
+    sendFrom<"translation_changed">(events, sensor_, last_);
   }
 
   void end(Events& events) override {
@@ -138,8 +139,8 @@ class SphereDrag final : public Drag {
     p *= radius / p.length();
     last_ = rotationOf(compose(turn(start_, p), offset_));
     has_ = true;
-    events.send(sensor_, "trackPoint_changed", narrow(p));
-    events.send(sensor_, "rotation_changed", last_);
+    sendFrom<"trackPoint_changed">(events, sensor_, narrow(p));
+    sendFrom<"rotation_changed">(events, sensor_, last_);
   }
 
   void end(Events& events) override {
@@ -179,8 +180,8 @@ class CylinderDrag final : public Drag {
     last_ = float(limited(turned_ + offset_, sensor_.minAngle, sensor_.maxAngle));
     has_ = true;
     const Vec3f axis = narrow(axes_.out({0, 1, 0}));
-    events.send(sensor_, "trackPoint_changed", narrow(axes_.out(p)));
-    events.send(sensor_, "rotation_changed", Rotation{axis.x, axis.y, axis.z, last_});
+    sendFrom<"trackPoint_changed">(events, sensor_, narrow(axes_.out(p)));
+    sendFrom<"rotation_changed">(events, sensor_, Rotation{axis.x, axis.y, axis.z, last_});
   }
 
   void end(Events& events) override {

@@ -2,6 +2,7 @@
 // their directions, for xvrml/media.h. [the browser's thread]
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
@@ -37,12 +38,10 @@ double gainOf(const Node* source) {
 
 std::vector<Heard> heardIn(Browser& browser) {
   constexpr size_t places = 16; // places of one Sound that count
-  auto& engine = static_cast<Engine&>(browser.events());
-  Interaction& interaction = interactionOf(engine);
-  if (interaction.soundsStructure != engine.structure()) {
-    interaction.soundsStructure = engine.structure();
+  Interaction& interaction = interactionOf(browser.events());
+  const uint64_t structure = interaction.engine.structure();
+  if (std::exchange(interaction.soundsStructure, structure) != structure)
     interaction.sounds = soundsBelow(browser.world().scope);
-  }
   std::vector<Heard> heard;
   Matrix toViewer;
   const Matrix view = interaction.viewer.view();

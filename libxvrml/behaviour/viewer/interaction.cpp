@@ -1,6 +1,8 @@
 // interaction.cpp: passes the engine's notifications on to the parts that depend on them.
 #include "behaviour/viewer/interaction.h"
 
+#include "behaviour/named_fields.h"
+
 namespace xvrml {
 
 std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) {
@@ -20,7 +22,7 @@ void Interaction::changed(Node& node, const FieldInfo& field) {
   case Change::children: picker.changed(node); break;
   default: break;
   }
-  if (field.name == "viewAll" && &node == binding.bound().viewpoint) viewer.showAll();
+  if (isField<"viewAll">(node, field) && &node == binding.bound().viewpoint) viewer.showAll();
   moved_ |= field.change == Change::transform || field.change == Change::view ||
             field.change == Change::children;
 }

@@ -44,7 +44,7 @@ class Interaction final : public EngineObserver {
 
 std::unique_ptr<EngineObserver> makeInteraction(Engine& engine);
 inline Interaction& interactionOf(Events& events) {
-  return static_cast<Interaction&>(*static_cast<Engine&>(events).observer);
+  return static_cast<Interaction&>(*Engine::of(events).observer);
 }
 
 } // namespace xvrml

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "xvrml/nodes.h"
@@ -23,10 +24,12 @@ constexpr ActionKey actionKeys[] = {{"F1", 1},    {"F2", 2},    {"F3", 3},      
                                     {"Up", 17},   {"Down", 18}, {"Left", 19},   {"Right", 20}};
 
 struct Modifier {
-  std::string_view name, out;
+  std::string_view name;
+  void (*send)(Events& events, Node& node, Value pressed);
 };
-constexpr Modifier modifiers[] = {
-    {"Shift", "shiftKey"}, {"Control", "controlKey"}, {"Alt", "altKey"}};
+constexpr Modifier modifiers[] = {{"Shift", sendFrom<"shiftKey">},
+                                  {"Control", sendFrom<"controlKey">},
+                                  {"Alt", sendFrom<"altKey">}};
 
 struct NamedCharacter {
   std::string_view name, text;
@@ -57,16 +60,22 @@ State& stateOf(Events& events, Node& node) { return static_cast<State&>(*events.
 
 bool keySensor(Events& events, Node& node, std::string_view name, bool pressed) {
   if (const auto* action = findNamed(actionKeys, name)) {
-    events.send(node, pressed ? "actionKeyPress" : "actionKeyRelease", action->number);
+    if (pressed)
+      sendFrom<"actionKeyPress">(events, node, action->number);
+    else
+      sendFrom<"actionKeyRelease">(events, node, action->number);
     return true;
   }
   if (const auto* modifier = findNamed(modifiers, name)) {
-    events.send(node, modifier->out, pressed);
+    modifier->send(events, node, pressed);
     return true;
   }
   const std::string_view text = characterOf(name);
   if (text.empty()) return false;
-  events.send(node, pressed ? "keyPress" : "keyRelease", std::string(text));
+  if (pressed)
+    sendFrom<"keyPress">(events, node, std::string(text));
+  else
+    sendFrom<"keyRelease">(events, node, std::string(text));
   return true;
 }
 
@@ -79,7 +88,7 @@ bool stringSensor(Events& events, Node& node, std::string_view name, bool presse
   if (!pressed) return true;
   std::string& typed = stateOf(events, node).typed;
   if (text == "\n") {
-    events.send(node, "finalText", std::exchange(typed, {}));
+    sendFrom<"finalText">(events, node, std::exchange(typed, {}));
   } else if (text == "\b") {
     if (!static_cast<nodes::StringSensor&>(node).deletionAllowed || typed.empty()) return true;
     do typed.pop_back();
@@ -90,7 +99,7 @@ bool stringSensor(Events& events, Node& node, std::string_view name, bool presse
     if (!types || typed.size() + text.size() > longest) return true;
     typed += text;
   }
-  events.send(node, "enteredText", typed);
+  sendFrom<"enteredText">(events, node, typed);
   return true;
 }
 
@@ -116,7 +125,7 @@ bool Keyboard::key(std::string_view name, bool pressed) {
 
 void Keyboard::activate(Node& sensor) {
   Node* const before = std::exchange(active_, &sensor);
-  if (before && before != &sensor) engine_.post(*before, *before->type().find("enabled"), false);
+  if (before && before != &sensor) engine_.post(*before, *fieldNamed<"enabled">(*before), false);
 }
 
 void Keyboard::deactivate(Node& sensor) {
@@ -130,7 +139,7 @@ void Keyboard::forget(const Node& node) {
 namespace {
 
 bool isEnabled(const Node& node) {
-  return *static_cast<const SFBool*>(node.storage(*node.type().find("enabled")));
+  return *static_cast<const SFBool*>(node.storage(*fieldNamed<"enabled">(node)));
 }
 
 // A sensor is active while it is enabled (21.2).
@@ -142,7 +151,7 @@ void setActive(Events& events, Node& node, State& state, bool active) {
     keyboard.activate(node);
   else
     keyboard.deactivate(node);
-  events.send(node, "isActive", active);
+  sendFrom<"isActive">(events, node, active);
 }
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {
@@ -152,7 +161,8 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
 }
 
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  if (in.name == "enabled") setActive(events, node, stateOf(events, node), std::get<bool>(value));
+  if (isField<"enabled">(node, in))
+    setActive(events, node, stateOf(events, node), std::get<bool>(value));
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/interaction.h"
 #include "nodes/viewpoint.h"
 #include "xvrml/browser.h"
@@ -46,7 +47,7 @@ bool Navigator::findObstacle(const PickRay& ray, const Matrix& view, bool touch,
   if (touch)
     for (const Hit::Step& step : hit.path)
       if (step.node->type().index == nodes::Collision::typeIndex)
-        interaction_.engine.send(*step.node, "collideTime", interaction_.engine.now());
+        sendFrom<"collideTime">(interaction_.engine, *step.node, interaction_.engine.now());
   return true;
 }
 

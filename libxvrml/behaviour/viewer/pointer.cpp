@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "behaviour/builtin.h"
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "xvrml/browser.h"
@@ -24,7 +25,7 @@ bool isEnabledSensor(Node& node) {
 const std::vector<NodeRef>* childrenOf(Node& node) {
   if (const Scope* content = inlineScope(node)) return &content->roots;
   if (node.type().index < 0 || !node.type().is("parent")) return nullptr;
-  const FieldInfo* children = node.type().find("children");
+  const FieldInfo* children = fieldNamed<"children">(node);
   return children && children->type == FieldType::MFNode
              ? static_cast<MFNode*>(node.storage(*children))
              : nullptr;
@@ -62,7 +63,7 @@ bool Pointer::isOver(const Node& sensor) const { return holds(over_, sensor); }
 // Sends isOver, which all sensors have in X3D (ISO/IEC 19775-1 20.3.2); Anchors have no events.
 void Pointer::sendOver(Node& sensor, bool over) {
   if (sensor.type().index != nodes::Anchor::typeIndex)
-    interaction_.engine.send(sensor, "isOver", over);
+    sendFrom<"isOver">(interaction_.engine, sensor, over);
 }
 
 // While a sensor has grabbed the pointer, no other sensor sends events (4.6.7.3).
@@ -94,10 +95,12 @@ void Pointer::touch(const Candidate& candidate, const Hit& hit) {
   Matrix toLocal;
   if (!invert(candidate.toWorld, toLocal)) return;
   Engine& engine = interaction_.engine;
-  engine.send(*candidate.sensor, "hitPoint_changed", narrow(transformPoint(toLocal, hit.point)));
-  engine.send(*candidate.sensor, "hitNormal_changed",
-              narrow(transformDirection(candidate.toWorld.transposed(), hit.normal).normalized()));
-  engine.send(*candidate.sensor, "hitTexCoord_changed", hit.texCoord);
+  sendFrom<"hitPoint_changed">(engine, *candidate.sensor,
+                               narrow(transformPoint(toLocal, hit.point)));
+  sendFrom<"hitNormal_changed">(
+      engine, *candidate.sensor,
+      narrow(transformDirection(candidate.toWorld.transposed(), hit.normal).normalized()));
+  sendFrom<"hitTexCoord_changed">(engine, *candidate.sensor, hit.texCoord);
 }
 
 void Pointer::press(const std::vector<Candidate>& candidates, const PickRay& ray, const Hit& hit) {
@@ -108,17 +111,17 @@ void Pointer::press(const std::vector<Candidate>& candidates, const PickRay& ray
                         transformDirection(toLocal, ray.direction)};
     active_.push_back(
         {c.sensor, toLocal, beginDrag(*c.sensor, local, transformPoint(toLocal, hit.point))});
-    interaction_.engine.send(*c.sensor, "isActive", true); // no effect for an Anchor
+    sendFrom<"isActive">(interaction_.engine, *c.sensor, true); // no effect for an Anchor
   }
 }
 
 void Pointer::release(bool click) {
   Engine& engine = interaction_.engine;
   for (const Active& a : std::exchange(active_, {})) {
-    engine.send(*a.sensor, "isActive", false);
+    sendFrom<"isActive">(engine, *a.sensor, false);
     if (a.drag) a.drag->end(engine);
     if (!click || !isOver(*a.sensor)) continue;
-    if (isTouch(*a.sensor)) engine.send(*a.sensor, "touchTime", engine.now());
+    if (isTouch(*a.sensor)) sendFrom<"touchTime">(engine, *a.sensor, engine.now());
     if (a.sensor->type().index == nodes::Anchor::typeIndex) clicked_.push_back(a.sensor);
   }
 }
@@ -173,7 +176,7 @@ void Pointer::enabledChanged(Node& sensor) {
   const NodeRef keep(&sensor);
   std::erase_if(active_, [&](const Active& a) {
     if (a.sensor.get() != &sensor) return false;
-    engine.send(sensor, "isActive", false);
+    sendFrom<"isActive">(engine, sensor, false);
     if (a.drag) a.drag->end(engine);
     return true;
   });
@@ -189,7 +192,7 @@ bool Pointer::dropAbsent() {
   bool dropped = false;
   std::erase_if(active_, [&](const Active& a) {
     if (isInScene(*a.sensor)) return false;
-    engine.send(*a.sensor, "isActive", false);
+    sendFrom<"isActive">(engine, *a.sensor, false);
     if (a.drag) a.drag->end(engine);
     return dropped = true;
   });
@@ -216,7 +219,7 @@ std::vector<NodeRef> Pointer::sensors() const {
 namespace {
 
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
-  if (in.name == "enabled") interactionOf(events).pointer.enabledChanged(node);
+  if (isField<"enabled">(node, in)) interactionOf(events).pointer.enabledChanged(node);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <Imath/ImathMatrixAlgo.h>
 #include <Imath/ImathQuat.h>
 
+#include "behaviour/named_fields.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "geometry/lens.h"
@@ -156,7 +157,7 @@ double Viewer::transitionSeconds() const {
 void Viewer::completeTransition() {
   moving_.running = false;
   if (auto* info = nodeCast<nodes::NavigationInfo>(binding_.bound().navigationInfo))
-    engine_.send(*info, "transitionComplete", true);
+    sendFrom<"transitionComplete">(engine_, *info, true);
 }
 
 // Rule b of 6.53. `to` is already on the stack; the view is still relative to `from`.

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include "xvrml/change.h"
 #include "xvrml/diagnostics.h"
@@ -24,45 +25,44 @@ class Events {
  public:
   // Returns the world's time in seconds. During a cascade it is the cascade's time: all its events
   // have the same timestamp (clause 4.10.3).
-  double now() const { return now_; }
+  virtual double now() const = 0;
   // Sends an event from an eventOut, or from an exposedField that already has its new value. Each
   // eventOut sends at most once per cascade: a second event is dropped, which breaks loops
   // (4.10.4). Returns at once; routes are followed later.
-  void send(Node& from, const FieldInfo& out, Value value);
+  virtual void send(Node& from, const FieldInfo& out, Value value) = 0;
   // Sends by name. Does nothing if there is no such event.
-  void send(Node& from, std::string_view out, Value value);
+  void send(Node& from, std::string_view out, Value value) {
+    if (const FieldInfo* field = from.type().findEventOut(out))
+      send(from, *field, std::move(value));
+  }
   // Returns whether an eventOut or exposedField has already sent in this cascade, so that send()
   // would drop another event.
-  bool hasSent(const Node& from, const FieldInfo& out) const;
+  virtual bool hasSent(const Node& from, const FieldInfo& out) const = 0;
   // Sets the value that an eventOut reads as before it first sends. Does nothing afterwards.
-  void preset(Node& from, const FieldInfo& out, Value value);
+  virtual void preset(Node& from, const FieldInfo& out, Value value) = 0;
   // Gives a field or exposedField a new value without an event, and reports the change. Returns
   // false if the type does not match. Also returns false, with a diagnostic, if a node would become
   // its own descendant.
-  bool store(Node& node, const FieldInfo& field, Value value);
+  virtual bool store(Node& node, const FieldInfo& field, Value value) = 0;
   // Queues an event to an eventIn or exposedField, as if a route had brought it. It is delivered
   // after the events already queued.
-  void post(Node& to, const FieldInfo& in, Value value);
+  virtual void post(Node& to, const FieldInfo& in, Value value) = 0;
   // Reports a change that stores no field value (set_bind).
-  void changed(Node& node, const FieldInfo& field);
+  virtual void changed(Node& node, const FieldInfo& field) = 0;
   // Returns the last value that an eventOut sent; before the first event, the default of its type.
-  Value lastSent(const Node& node, const FieldInfo& out) const;
+  virtual Value lastSent(const Node& node, const FieldInfo& out) const = 0;
   // Returns the state that Behaviour::begin made; null if it made none.
-  NodeState* state(Node& node) const;
+  virtual NodeState* state(Node& node) const = 0;
   // Turn the calls of Behaviour::tick or Behaviour::look at each tick on or off for a node. Calls
   // come in the order in which the nodes became part of the world.
-  void wantTicks(Node& node, bool wanted);
-  void wantLooks(Node& node, bool wanted);
-  Diagnostics& diagnostics() { return diagnostics_; }
+  virtual void wantTicks(Node& node, bool wanted) = 0;
+  virtual void wantLooks(Node& node, bool wanted) = 0;
+  virtual Diagnostics& diagnostics() = 0;
   // Null if no browser runs the world (a bare engine in a test).
-  Browser* browser() const { return browser_; }
+  virtual Browser* browser() const = 0;
 
  protected:
-  Events(Diagnostics& diagnostics, Browser* browser)
-      : diagnostics_(diagnostics), browser_(browser) {}
-  double now_ = 0;
-  Diagnostics& diagnostics_;
-  Browser* browser_;
+  ~Events() = default;
 };
 
 // The functions of a behaviour. Each may be null.

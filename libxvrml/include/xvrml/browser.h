@@ -204,11 +204,9 @@ class Browser {
   // Makes nodes from VRML text. The text needs no header and has its own scope of names, prototypes
   // and routes. The nodes are part of the world at once, but not of its scene. Routes live as long
   // as the nodes they start from. Errors in the text are reported in world().diagnostics. Throws
-  // LoadError if nothing of the text can be used.
-  MFNode createVrmlFromString(std::string_view text);
-  // Does the same for a text whose relative URLs are relative to the file `base`; "" means the
-  // world's file.
-  MFNode createVrmlFromString(std::string_view text, const std::string& base);
+  // LoadError if nothing of the text can be used. base: the file that relative URLs are relative
+  // to; "" means the world's file.
+  MFNode createVrmlFromString(std::string_view text, const std::string& base = "");
   // The next three calls wait for the end of the cascade if one is under way. base: the file that
   // relative URLs are relative to; "" means the world's file.
   //

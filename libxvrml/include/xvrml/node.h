@@ -84,6 +84,11 @@ struct FieldInfo {
   // SFNode and MFNode: accepted abstract or concrete node types, separated by blanks; empty: any.
   std::string nodeTypes;
   std::string text; // one line of documentation
+  // The rest is derived from the names when a static type is made, so that events compare none.
+  // Index of the field x in NodeType::fields that an eventIn set_x sets; -1: it sets none.
+  int sets = -1;
+  // The SFNode that X3D gives to every node. It has no effect on its node (ISO/IEC 19775-1 7.3.3).
+  bool isMetadata = false;
 };
 // Returns whether nodes store a value of the field: a field or an exposedField, not an event.
 inline bool holdsValue(const FieldInfo& field) {
@@ -94,8 +99,9 @@ inline bool holdsValue(const FieldInfo& field) {
 // long as any node of the type.
 struct NodeType {
   std::string name;
-  int index; // position in the registry's list of static types; -1 for prototypes and scripts
-  // Stands in bytes that were padding, so that node plug-ins made earlier still fit.
+  // Position in the registry's list of static types. Negative for types that a world declares:
+  // ProtoInstance::typeIndex and ScriptNode::typeIndex (world.h).
+  int index;
   Standard standard = Standard::none;
   // Roles that the node can take in SFNode and MFNode fields: child, grouping, geometry, appearance
   // ...
@@ -115,6 +121,10 @@ struct NodeType {
   // Also find set_x and x_changed of an exposedField x (clause 4.7).
   const FieldInfo* findEventIn(std::string_view name) const;
   const FieldInfo* findEventOut(std::string_view name) const;
+  // Returns the field x that an eventIn set_x of a static node sets; null: it sets none.
+  const FieldInfo* fieldSetBy(const FieldInfo& in) const {
+    return in.sets < 0 ? nullptr : &fields[size_t(in.sets)];
+  }
 };
 // Returns false if a number of the value lies outside the field's range, or is NaN and the field
 // has a range.
@@ -175,10 +185,13 @@ inline NodeRef::~NodeRef() {
 }
 
 // Returns the node if it is exactly of the concrete type, else null: nodeCast<nodes::Box>(ref).
-// Generated structs have a static `typeIndex`. That of a built-in node never changes, because
-// programs have it compiled in (libxvrml/nodes/numbers.txt).
+// Generated structs, ProtoInstance and ScriptNode have a static `typeIndex`. That of a built-in
+// node never changes, because programs have it compiled in (libxvrml/nodes/numbers.txt).
 template <class T> T* nodeCast(Node* node) {
   return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr;
+}
+template <class T> const T* nodeCast(const Node* node) {
+  return nodeCast<T>(const_cast<Node*>(node));
 }
 template <class T> T* nodeCast(const NodeRef& ref) { return nodeCast<T>(ref.get()); }
 

@@ -68,6 +68,7 @@ struct ProtoDeclaration {
 // and nodes that hold only such).
 class ProtoInstance : public DynamicNode {
  public:
+  static constexpr int typeIndex = -2; // -1 is that of no type
   ProtoInstance(NodeTypePtr type, ProtoPtr declaration)
       : DynamicNode(std::move(type)), declaration(std::move(declaration)) {}
   const ProtoPtr declaration;
@@ -107,14 +108,14 @@ class ProtoInstance : public DynamicNode {
 // Returns whether the strings of the node's field are URLs, relative to the file urlBase(). Those
 // of a prototype instance are known once it has been expanded.
 inline bool holdsUrls(const Node& node, const FieldInfo& field) {
-  const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
+  const auto* instance = nodeCast<ProtoInstance>(&node);
   return instance ? instance->declaration->holdsUrls(field) : field.holdsUrls;
 }
 
 // Returns the file that relative URLs in a field of the node count from; null if the node is in no
 // file.
 inline const std::shared_ptr<const std::string>& urlBase(const Node& node, const FieldInfo& field) {
-  const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
+  const auto* instance = nodeCast<ProtoInstance>(&node);
   return !instance || !holdsValue(field) || instance->hasOwnUrlBase(field)
              ? node.source.file
              : instance->urlBases[field.offset];
@@ -123,6 +124,7 @@ inline const std::shared_ptr<const std::string>& urlBase(const Node& node, const
 // A Script node: fields url, directOutput and mustEvaluate, and those that it declares.
 class ScriptNode : public DynamicNode {
  public:
+  static constexpr int typeIndex = -3;
   using DynamicNode::DynamicNode;
   // Line of the file at which each string of url begins. May be shorter than url.
   std::vector<uint32_t> urlLines;
