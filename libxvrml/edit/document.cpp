@@ -87,7 +87,7 @@ const NodeText& Document::placeOf(const Node& node) const {
 void Document::set(Node& node, const FieldInfo& field, Value value) {
   originals_[&node].try_emplace(field.name, node.get(field));
   node.set(field, std::move(value));
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
+  if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
 }
 
 const Value* Document::originalOf(const Node& node, const FieldInfo& field) const {
@@ -108,7 +108,7 @@ const MFNode& Document::listOf(const Node* parent, const FieldInfo* field) const
 void Document::insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node) {
   MFNode& list = this->list(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
-  if (auto* instance = dynamic_cast<ProtoInstance*>(parent)) instance->give(*field);
+  if (auto* instance = nodeCast<ProtoInstance>(parent)) instance->give(*field);
   namesAreOld_ = true;
 }
 
@@ -120,7 +120,7 @@ void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
 
 void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   *static_cast<NodeRef*>(parent.storage(field)) = std::move(child);
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&parent)) instance->give(field);
+  if (auto* instance = nodeCast<ProtoInstance>(&parent)) instance->give(field);
   namesAreOld_ = true;
 }
 

@@ -11,6 +11,7 @@
 #include "edit/changed_value.h"
 #include "edit/lines.h"
 #include "edit/list_steps.h"
+#include "edit/text_copier.h"
 #include "graph/field_access.h"
 #include "write/value_writer.h"
 
@@ -38,24 +39,19 @@ bool namesNode(std::string_view use, const std::string& name) {
          isVrmlSpace(use[use.size() - name.size() - 1]);
 }
 
-uint64_t placeKey(uint32_t line, uint32_t column) { return uint64_t(line) << 32 | column; }
-
-// The text is copied from `at_` on wherever nothing has been edited.
+// The text is copied wherever nothing has been edited.
 class InPlaceWriter {
  public:
   explicit InPlaceWriter(const Document& document)
-      : document_(document), feed_(lineFeedOf(document.file().text)) {
-    for (const Route& route : document.scope().routes)
-      routes_.emplace(placeKey(route.source.line, route.source.column), &route);
-  }
+      : document_(document), feed_(lineFeedOf(document.file().text)), text_(document) {}
 
   std::string file() {
     const DocumentText& file = document_.file();
     writeList({file, file.layout.roots, file.text.size(), "", ""}, document_.scope().roots);
-    copy(file, file.text.size());
+    text_.copy(file, file.text.size());
     for (const Route& route : document_.scope().routes)
       if (route.source.line == 0) addRoute(route);
-    return std::move(out_);
+    return std::move(text_.out);
   }
 
   // Returns the text of a node with this indentation, or its USE if it has been written already.
@@ -64,11 +60,11 @@ class InPlaceWriter {
     if (written_.contains(node)) return "USE " + node->defName;
     const std::string& text = document_.textOf(*node).text;
     const size_t begin = document_.placeOf(*node).whole.begin;
-    std::string outer = std::exchange(out_, {});
-    const size_t at = std::exchange(at_, begin);
+    std::string outer = std::exchange(text_.out, {});
+    const size_t at = std::exchange(text_.at, begin);
     writeNode(*node);
-    const std::string own = std::exchange(out_, std::move(outer));
-    at_ = at;
+    const std::string own = std::exchange(text_.out, std::move(outer));
+    text_.at = at;
     return indented(own, indentationAt(text, begin), indentation);
   }
 
@@ -80,57 +76,12 @@ class InPlaceWriter {
                : field;
   }
 
-  void raw(const DocumentText& text, size_t end) {
-    if (end <= at_) return;
-    out_.append(text.text, at_, end - at_);
-    at_ = end;
-  }
-
-  // Copies the text up to a byte, but for routes that have been edited.
-  void copy(const DocumentText& text, size_t end) {
-    const std::vector<RouteText>& routes = text.layout.routes;
-    auto route =
-        std::lower_bound(routes.begin(), routes.end(), at_,
-                         [](const RouteText& one, size_t at) { return one.whole.begin < at; });
-    for (; route != routes.end() && route->whole.begin < end; ++route)
-      if (route->valid) copyRoute(text, *route);
-    raw(text, end);
-  }
-
-  void copyRoute(const DocumentText& text, const RouteText& place) {
-    const auto found = routes_.find(placeKey(place.line, place.column));
-    if (found == routes_.end()) return remove(text, place.whole);
-    replaceName(text, place.from, *found->second->from);
-    replaceName(text, place.to, *found->second->to);
-  }
-
-  void replaceName(const DocumentText& text, const TextSpan& span, const Node& node) {
-    if (text.text.compare(span.begin, span.size(), node.defName) == 0) return;
-    raw(text, span.begin);
-    out_ += node.defName;
-    at_ = span.end;
-  }
-
   void addRoute(const Route& route) {
-    if (!out_.empty() && out_.back() != '\n' && out_.back() != '\r') out_ += feed_;
-    out_ += fmt::format("ROUTE {}.{} TO {}.{}{}", route.from->defName,
-                        spelled(*route.from, route.fromField), route.to->defName,
-                        spelled(*route.to, route.toField), feed_);
-  }
-
-  // Leaves a part of the text out, with its line if nothing else stands in it.
-  void remove(const DocumentText& text, const TextSpan& span) {
-    const std::string_view all = text.text;
-    size_t begin = span.begin, end = span.end;
-    while (end < all.size() && (isBlank(all[end]) || all[end] == ',')) ++end;
-    if (startsLine(all, begin) && end == lineEnd(all, end) && lineBegin(all, begin) >= at_) {
-      copy(text, lineBegin(all, begin));
-      at_ = nextLine(all, end);
-      return;
-    }
-    while (begin > at_ && isBlank(all[begin - 1])) --begin;
-    copy(text, begin);
-    at_ = span.end;
+    if (!text_.out.empty() && text_.out.back() != '\n' && text_.out.back() != '\r')
+      text_.out += feed_;
+    text_.out += fmt::format("ROUTE {}.{} TO {}.{}{}", route.from->defName,
+                             spelled(*route.from, route.fromField), route.to->defName,
+                             spelled(*route.to, route.toField), feed_);
   }
 
   // Writes a node at its place in its text.
@@ -139,11 +90,11 @@ class InPlaceWriter {
     const NodeText& place = document_.placeOf(node);
     written_.insert(&node);
     if (place.name.size() > 0) {
-      copy(text, place.name.begin);
-      replaceName(text, place.name, node);
+      text_.copy(text, place.name.begin);
+      text_.replaceName(text, place.name, node);
     } else if (!node.defName.empty()) {
-      copy(text, place.whole.begin);
-      out_ += fmt::format("DEF {} ", node.defName);
+      text_.copy(text, place.whole.begin);
+      text_.out += fmt::format("DEF {} ", node.defName);
     }
     std::unordered_map<std::string_view, const FieldText*> given; // the last one of a name counts
     for (const FieldText& field : place.fields) given[field.name] = &field;
@@ -153,7 +104,7 @@ class InPlaceWriter {
     for (const FieldInfo& field : node.type().fields)
       if (holdsValue(field) && !given.contains(field.name)) absent.push_back(&field);
     addFields(text, node, place, absent);
-    copy(text, place.whole.end);
+    text_.copy(text, place.whole.end);
   }
 
   // Adds fields that the text does not have, before the closing brace: in lines of their own if
@@ -181,10 +132,10 @@ class InPlaceWriter {
     }
     if (added.empty()) return;
     size_t at = brace;
-    while (at > at_ && isBlank(all[at - 1])) --at;
-    copy(text, at);
-    out_ += added;
-    if (!inLines && at == brace) out_ += ' ';
+    while (at > text_.at && isBlank(all[at - 1])) --at;
+    text_.copy(text, at);
+    text_.out += added;
+    if (!inLines && at == brace) text_.out += ' ';
   }
 
   // Returns the value of a field that the text does not have; empty if the field still has that of
@@ -219,11 +170,11 @@ class InPlaceWriter {
     if (field.type == FieldType::MFNode) return writeChildren(text, node, field, place);
     const Value* const original = document_.originalOf(node, field);
     if (!original || *original == node.get(field)) return;
-    copy(text, place.value.begin);
-    out_ += changedValue(std::string_view(text.text).substr(place.value.begin, place.value.size()),
-                         field.type, *original, node.get(field),
-                         indentationAt(text.text, place.whole.begin).size());
-    at_ = place.value.end;
+    text_.copy(text, place.value.begin);
+    text_.out += changedValue(
+        std::string_view(text.text).substr(place.value.begin, place.value.size()), field.type,
+        *original, node.get(field), indentationAt(text.text, place.whole.begin).size());
+    text_.at = place.value.end;
   }
 
   void writeChild(const DocumentText& text, const Node& node, const FieldInfo& field,
@@ -231,14 +182,14 @@ class InPlaceWriter {
     const Node* const child = static_cast<const NodeRef*>(node.storage(field))->get();
     const NodePlace* const own = place.nodes.empty() ? nullptr : &place.nodes.back();
     if (own && own->node == child) {
-      copy(text, own->span.begin);
+      text_.copy(text, own->span.begin);
       keep(text, *own);
     } else if (child) {
-      copy(text, place.value.begin);
-      out_ += this->node(child, indentationAt(text.text, place.whole.begin));
-      at_ = place.value.end;
+      text_.copy(text, place.value.begin);
+      text_.out += this->node(child, indentationAt(text.text, place.whole.begin));
+      text_.at = place.value.end;
     } else if (own) {
-      remove(text, place.whole);
+      text_.remove(text, place.whole);
     }
   }
 
@@ -246,17 +197,17 @@ class InPlaceWriter {
                      const FieldText& place) {
     const auto& children = *static_cast<const MFNode*>(node.storage(field));
     const std::string indentation(indentationAt(text.text, place.whole.begin));
-    copy(text, place.value.begin);
+    text_.copy(text, place.value.begin);
     if (text.text[place.value.begin] == '[') {
-      copy(text, place.value.begin + 1);
+      text_.copy(text, place.value.begin + 1);
       writeList({text, place.nodes, place.value.end - 1, indentation, deeper(indentation)},
                 children);
     } else if (children.size() == 1 && place.nodes.size() == 1 &&
                children[0].get() == place.nodes[0].node) {
       keep(text, place.nodes[0]);
     } else {
-      out_ += children.empty() ? "[ ]" : inBrackets(children, indentation);
-      at_ = place.value.end;
+      text_.out += children.empty() ? "[ ]" : inBrackets(children, indentation);
+      text_.at = place.value.end;
     }
   }
 
@@ -266,8 +217,8 @@ class InPlaceWriter {
     if (place.node && !place.isUse && !written_.contains(place.node)) return writeNode(*place.node);
     const bool stays = !place.node || (place.isUse && written_.contains(place.node) &&
                                        namesNode(own, place.node->defName));
-    out_ += stays ? own : node(place.node, indentationAt(text.text, place.span.begin));
-    at_ = place.span.end;
+    text_.out += stays ? own : node(place.node, indentationAt(text.text, place.span.begin));
+    text_.at = place.span.end;
   }
 
   void writeList(ListText list, const MFNode& nodes) {
@@ -282,16 +233,16 @@ class InPlaceWriter {
     for (const ListStep& step : steps) {
       const NodePlace* const place = step.kind == Kind::insert ? nullptr : &list.places[step.place];
       switch (step.kind) {
-      case Kind::remove: remove(list.text, place->span); break;
+      case Kind::remove: text_.remove(list.text, place->span); break;
       case Kind::replace:
-        copy(list.text, place->span.begin);
-        out_ += node(step.node, indentationAt(all, place->span.begin));
-        at_ = place->span.end;
+        text_.copy(list.text, place->span.begin);
+        text_.out += node(step.node, indentationAt(all, place->span.begin));
+        text_.at = place->span.end;
         begun = true;
         break;
       case Kind::keep:
-        copy(list.text, place->span.begin);
-        out_ += std::exchange(waiting, {});
+        text_.copy(list.text, place->span.begin);
+        text_.out += std::exchange(waiting, {});
         keep(list.text, *place);
         begun = true;
         break;
@@ -311,12 +262,12 @@ class InPlaceWriter {
   // Inserts a node behind the one that has been written: in the next line if nothing but a comment
   // follows in this one.
   void insertBehind(const ListText& list, const std::string& node) {
-    const size_t end = lineEnd(list.text.text, at_);
-    if (endsLine(list.text.text, at_) && end <= list.end) {
-      copy(list.text, end);
-      out_ += feed_ + list.inner + node;
+    const size_t end = lineEnd(list.text.text, text_.at);
+    if (endsLine(list.text.text, text_.at) && end <= list.end) {
+      text_.copy(list.text, end);
+      text_.out += feed_ + list.inner + node;
     } else {
-      out_ += " " + node;
+      text_.out += " " + node;
     }
   }
 
@@ -325,24 +276,23 @@ class InPlaceWriter {
     nodes.resize(nodes.size() - list.inner.size() - feed_.size());
     const std::string_view all = list.text.text;
     if (list.end == all.size()) { // the roots of a file
-      copy(list.text, list.end);
-      if (!out_.empty() && out_.back() != '\n' && out_.back() != '\r') out_ += feed_;
-      out_ += nodes + feed_;
+      text_.copy(list.text, list.end);
+      if (!text_.out.empty() && text_.out.back() != '\n' && text_.out.back() != '\r')
+        text_.out += feed_;
+      text_.out += nodes + feed_;
     } else if (startsLine(all, list.end)) { // a bracket in a line of its own
-      copy(list.text, lineBegin(all, list.end));
-      out_ += list.inner + nodes + feed_;
+      text_.copy(list.text, lineBegin(all, list.end));
+      text_.out += list.inner + nodes + feed_;
     } else {
-      out_ += feed_ + list.inner + nodes + feed_ + list.outer;
-      at_ = list.end;
+      text_.out += feed_ + list.inner + nodes + feed_ + list.outer;
+      text_.at = list.end;
     }
   }
 
   const Document& document_;
   const std::string feed_;
-  std::unordered_map<uint64_t, const Route*> routes_; // by their places in the file
+  TextCopier text_;
   std::unordered_set<const Node*> written_;
-  std::string out_;
-  size_t at_ = 0; // the first byte of the present text that has not been copied
 };
 
 } // namespace

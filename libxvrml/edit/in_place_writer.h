@@ -8,8 +8,11 @@
 
 namespace xvrml {
 
-// Returns the text of the document. Recursion follows the nesting of nodes: call it on a stack for
-// Parser::maximumNesting.
+// Stack in bytes that these functions take for the deepest nesting that a file may have
+// (Parser::maximumNesting): recursion follows the nodes.
+inline constexpr size_t deepestStack = size_t(32) << 20;
+
+// Returns the text of the document.
 std::string writeInPlace(const Document& document);
 
 // Returns the text of a node with all that is in it, as the document has it, without indentation of

@@ -79,7 +79,7 @@ class Source {
 
   // Returns the text after a byte-order mark.
   std::string_view text() const { return text_; }
-  // What the bytes of the file are beside the text.
+  // Return what the bytes of the file have beside the text.
   bool isPacked() const { return packed_; } // gzip
   bool hasByteOrderMark() const { return byteOrderMark_; }
   bool isUtf16() const { return utf16_; }

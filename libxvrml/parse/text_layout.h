@@ -17,7 +17,7 @@ struct TextSpan {
   size_t size() const { return end - begin; }
 };
 
-// What stands at one place in a list of nodes, or as the value of an SFNode.
+// A node, a USE or NULL at one place in a list of nodes, or as the value of an SFNode.
 struct NodePlace {
   TextSpan span;
   const Node* node = nullptr; // null: NULL
@@ -49,11 +49,12 @@ struct RouteText {
 
 struct TextLayout {
   std::unordered_map<const Node*, NodeText> nodes;
-  std::vector<NodePlace> roots; // of the file
+  std::vector<NodePlace> roots;
   std::vector<RouteText> routes;
 };
 
-// Passes everything on to a builder, and fills the layout meanwhile.
+// Passes everything on to a builder, and fills the layout meanwhile. Wide because there is one
+// function for each event of the sink.
 class LayoutRecorder : public ParseSink {
  public:
   LayoutRecorder(Builder& builder, Locator& locator, TextLayout& layout)

@@ -1,0 +1,65 @@
+// edited_file.h: the file of a live world that is edited, and how places and nodes of the two
+// belong together. Internal; the thread that owns the world.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "edit/document.h"
+#include "edit/live_world.h"
+#include "xvrml/edit.h"
+
+namespace xvrml {
+
+// A node in the live world and in the document.
+struct Twin {
+  NodeRef live, document;
+};
+
+// A place for a node in both of them.
+struct Slot {
+  Twin parent; // empty: the roots
+  const FieldInfo* field = nullptr;
+  size_t liveIndex = 0, index = 0;
+
+  bool isSingle() const { return field && field->type == FieldType::SFNode; }
+};
+
+class EditedFile {
+ public:
+  explicit EditedFile(std::unique_ptr<LiveWorld> live) : live_(std::move(live)) {}
+  void setLive(std::unique_ptr<LiveWorld> live) { live_ = std::move(live); }
+  LiveWorld& live() { return *live_; }
+  World& world() { return live_->world(); }
+
+  // Returns why the file cannot be edited. Reads it if it can.
+  std::string whyNot();
+  Document& document();
+  // Returns the node with its counterpart in the document. Throws EditError if it has none.
+  Twin twinOf(Node& node);
+  // holds: there must be a node at the place.
+  Slot slotOf(const NodeSlot& given, bool holds);
+  Node* nodeAt(const Slot& slot);
+
+  std::string text();
+  std::string bytes();
+  bool isChangedOnDisk();
+  void saved();
+
+ private:
+  // Tells a file that has been written to from one that has not.
+  struct FileState {
+    int64_t seconds = 0, nanoseconds = 0, bytes = 0;
+    uint64_t number = 0;
+    bool operator==(const FileState&) const = default;
+  };
+  static FileState stateOf(const std::string& path);
+  const MFNode& liveList(const Slot& slot);
+
+  std::unique_ptr<LiveWorld> live_;
+  std::unique_ptr<Document> document_; // read at the first edit
+  bool packed_ = false, marked_ = false;
+  FileState onDisk_;
+};
+
+} // namespace xvrml

@@ -1,0 +1,77 @@
+// history.h: the steps of an editor, and undo. Internal; the thread that owns the world.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "xvrml/node.h"
+
+namespace xvrml {
+
+// One edit of the document and of the live world.
+struct Edit {
+  std::function<void()> redo, undo;
+  // A value: the node and its field. A later value in the same step takes its place.
+  const Node* node = nullptr;
+  std::string field{};
+};
+
+class History {
+ public:
+  // Edits from begin() to end() are one step; both may nest.
+  void begin(std::string name);
+  void end();
+  void cancel();
+  // Does an edit, as a part of the open step.
+  void perform(Edit edit);
+  bool undo();
+  bool redo();
+  std::string undoName() const;
+  std::string redoName() const;
+  // Returns whether the edits are others than when the file was saved.
+  bool isChanged() const { return done_ != savedAt_ || (depth_ > 0 && !open_.edits.empty()); }
+  void saved() { savedAt_ = done_; }
+
+ private:
+  friend class OpenStep;
+  struct Step {
+    std::string name;
+    std::vector<Edit> edits;
+  };
+  void rollBack(size_t edits);
+
+  std::vector<Step> steps_; // those that have been done first, then those that have been undone
+  size_t done_ = 0;
+  // Value of done_ at which the file was saved; ~0: it cannot be reached again.
+  size_t savedAt_ = 0;
+  Step open_;
+  size_t depth_ = 0; // number of begin() without end()
+};
+
+// A step, or a part of one, that is undone unless it is closed.
+class OpenStep {
+ public:
+  OpenStep(History& history, std::string name)
+      : history_(history), edits_(history.depth_ > 0 ? history.open_.edits.size() : 0) {
+    history.begin(std::move(name));
+  }
+  ~OpenStep() {
+    if (closed_) return;
+    history_.rollBack(edits_);
+    --history_.depth_;
+  }
+  OpenStep(const OpenStep&) = delete;
+  OpenStep& operator=(const OpenStep&) = delete;
+  void close() {
+    closed_ = true;
+    history_.end();
+  }
+
+ private:
+  History& history_;
+  const size_t edits_; // number of edits of the step before
+  bool closed_ = false;
+};
+
+} // namespace xvrml

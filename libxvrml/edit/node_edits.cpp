@@ -1,0 +1,161 @@
+#include "edit/node_edits.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "graph/field_access.h"
+#include "graph/node_kinds.h"
+#include "xvrml/walk.h"
+
+namespace xvrml {
+namespace {
+
+bool contains(const Node& root, const Node& searched) {
+  return !walk(std::vector<const Node*>{&root}, [&](const Node& node, auto& open) {
+    appendChildren(node, open);
+    return &node != &searched;
+  });
+}
+
+void insertAt(MFNode& list, size_t index, const NodeRef& node) {
+  list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
+}
+
+void eraseAt(MFNode& list, size_t index) {
+  if (index < list.size()) list.erase(list.begin() + std::ptrdiff_t(index));
+}
+
+// Puts a node into a list of the live world, or takes it out.
+void insertLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
+  if (!slot.field) return live.addRoot(node, slot.liveIndex);
+  MFNode list = *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field));
+  insertAt(list, slot.liveIndex, node);
+  live.set(*slot.parent.live, slot.field->name, std::move(list));
+}
+
+void eraseLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
+  if (!slot.field) return live.removeRoot(*node);
+  MFNode list = *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field));
+  size_t index = slot.liveIndex;
+  if (index >= list.size() || list[index] != node) // Scripts may have moved it
+    index = size_t(std::find(list.begin(), list.end(), node) - list.begin());
+  eraseAt(list, index);
+  live.set(*slot.parent.live, slot.field->name, std::move(list));
+}
+
+} // namespace
+
+void NodeEdits::setSingle(const Slot& slot, const Twin& node) {
+  const FieldInfo& own = *slot.parent.document->type().find(slot.field->name);
+  const Twin before{*static_cast<const NodeRef*>(slot.parent.live->storage(*slot.field)),
+                    *static_cast<const NodeRef*>(slot.parent.document->storage(own))};
+  const auto put = [this, slot, &own](const Twin& twin) {
+    file_.live().set(*slot.parent.live, slot.field->name, twin.live);
+    file_.document().setNode(*slot.parent.document, own, twin.document);
+  };
+  history_.perform({[put, node] { put(node); }, [put, before] { put(before); }});
+}
+
+void NodeEdits::place(const Slot& slot, const Twin& node) {
+  if (slot.isSingle()) return setSingle(slot, node);
+  history_.perform({[this, slot, node] {
+                      insertLive(file_.live(), slot, node.live);
+                      file_.document().insert(slot.parent.document.get(), slot.field, slot.index,
+                                              node.document);
+                    },
+                    [this, slot, node] {
+                      eraseLive(file_.live(), slot, node.live);
+                      file_.document().erase(slot.parent.document.get(), slot.field, slot.index);
+                    }});
+}
+
+Twin NodeEdits::take(const Slot& slot) {
+  Node* const found = file_.nodeAt(slot);
+  const Twin node = file_.twinOf(*found);
+  if (slot.isSingle()) {
+    setSingle(slot, {});
+    return node;
+  }
+  history_.perform({[this, slot, node] {
+                      eraseLive(file_.live(), slot, node.live);
+                      file_.document().erase(slot.parent.document.get(), slot.field, slot.index);
+                    },
+                    [this, slot, node] {
+                      insertLive(file_.live(), slot, node.live);
+                      file_.document().insert(slot.parent.document.get(), slot.field, slot.index,
+                                              node.document);
+                    }});
+  return node;
+}
+
+void NodeEdits::checkPlace(const Slot& slot, const Node& node) {
+  const NodeType* const type = effectiveType(node);
+  const std::string_view accepted =
+      slot.field ? std::string_view(slot.field->nodeTypes) : std::string_view("child");
+  if (type && !accepted.empty() && !typeAccepted(accepted, *type))
+    throw EditError(slot.field ? fmt::format("{} cannot be in field {} of {}: expected {}",
+                                             node.type().name, slot.field->name,
+                                             slot.parent.live->type().name, accepted)
+                               : fmt::format("{} cannot stand at the root of a file: expected a "
+                                             "child node",
+                                             node.type().name));
+  if (slot.parent.live && contains(node, *slot.parent.live))
+    throw EditError(fmt::format("this {} would become a part of itself", node.type().name));
+}
+
+void NodeEdits::nameFreshly(const Twin& root) {
+  std::vector<Twin> named;
+  walk(std::vector<Node*>{root.live.get()}, [&](Node& node, std::vector<Node*>& open) {
+    appendChildren(node, open);
+    Node* const own = file_.document().find(node.source);
+    if (own && !node.defName.empty()) named.push_back({NodeRef(&node), NodeRef(own)});
+  });
+  std::set<std::string, std::less<>> taken;
+  for (const Twin& one : named) taken.insert(one.live->defName);
+  for (const Twin& one : named) {
+    if (!file_.document().names().contains(one.live->defName)) continue;
+    one.live->defName = file_.document().freshName(one.live->defName, taken);
+    file_.document().rename(*one.document, one.live->defName);
+    taken.insert(one.live->defName);
+  }
+}
+
+void NodeEdits::rename(const Twin& node, const std::string& name) {
+  const auto give = [this, node](const std::string& from, const std::string& to) {
+    auto& names = file_.world().scope.names;
+    if (const auto found = names.find(from); found != names.end() && found->second == node.live)
+      names.erase(found);
+    node.live->defName = to;
+    file_.document().rename(*node.document, to);
+    if (!to.empty()) names[to] = node.live;
+  };
+  history_.perform({[give, before = node.live->defName, name] { give(before, name); },
+                    [give, before = node.live->defName, name] { give(name, before); }});
+}
+
+void NodeEdits::ensureName(const Twin& node) {
+  if (node.live->defName.empty()) rename(node, file_.document().freshName(node.live->type().name));
+}
+
+void NodeEdits::dropRoutes() {
+  const SeenNodes standing = file_.document().standing();
+  std::vector<Route>& routes = file_.document().scope().routes;
+  std::vector<std::pair<size_t, Route>> gone;
+  for (size_t i = 0; i < routes.size(); ++i)
+    if (!standing.contains(routes[i].from.get()) || !standing.contains(routes[i].to.get()))
+      gone.emplace_back(i, routes[i]);
+  if (gone.empty()) return;
+  history_.perform({[&routes, gone] {
+                      for (size_t i = gone.size(); i-- > 0;)
+                        routes.erase(routes.begin() + std::ptrdiff_t(gone[i].first));
+                    },
+                    [&routes, gone] {
+                      for (const auto& [index, route] : gone)
+                        routes.insert(routes.begin() + std::ptrdiff_t(index), route);
+                    }});
+}
+
+} // namespace xvrml

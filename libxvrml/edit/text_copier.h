@@ -1,0 +1,33 @@
+// text_copier.h: copies the text of a document from a place on, but for the parts that are replaced
+// or removed, and for the routes that have been edited. Internal; one thread at a time.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+
+#include "edit/document.h"
+
+namespace xvrml {
+
+class TextCopier {
+ public:
+  explicit TextCopier(const Document& document);
+
+  // Copies the text up to a byte.
+  void copy(const DocumentText& text, size_t end);
+  // Leaves a part of the text out, with its line if nothing else stands in it.
+  void remove(const DocumentText& text, const TextSpan& span);
+  // Copies the text up to the name of a node, and writes the name that it has now.
+  void replaceName(const DocumentText& text, const TextSpan& span, const Node& node);
+
+  std::string out; // what has been written
+  size_t at = 0;   // the first byte of the present text that has not been copied
+
+ private:
+  void raw(const DocumentText& text, size_t end);
+  void copyRoute(const DocumentText& text, const RouteText& place);
+
+  std::unordered_map<uint64_t, const Route*> routes_; // by their places in the file
+};
+
+} // namespace xvrml
