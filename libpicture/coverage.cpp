@@ -9,7 +9,7 @@ namespace picture {
 
 namespace {
 
-// Of fewer intervals of a tile a tenth misses by chance too often.
+// Fewer intervals of a tile miss too often by chance to say anything.
 constexpr uint64_t fewestOfTile = 100;
 
 double colour(const std::vector<float>& rgba, size_t k) { return double(rgba[k / 3 * 4 + k % 3]); }

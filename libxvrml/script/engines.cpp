@@ -29,7 +29,7 @@ const std::vector<XsEngine>& libraryEngines(const std::string& path) {
   Libraries& all = libraries();
   const std::scoped_lock lock(all.mutex);
   const auto known = all.byPath.find(path);
-  if (known != all.byPath.end()) return known->second.engines;
+  if (known != all.byPath.end()) return known->second;
   return all.byPath.emplace(path, loadScriptLibrary(path)).first->second;
 }
 
