@@ -25,14 +25,14 @@ EditedFile::FileState EditedFile::stateOf(const std::string& path) {
 std::string EditedFile::whyNot() {
   if (document_) return "";
   const std::string& path = world().path;
-  if (path.empty() || path == "-") return "the world does not come from a file";
+  const FileState state = stateOf(path);
+  if (state == FileState{}) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
   if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic)
     return fmt::format("{} is {}: VRML97 and X3D ClassicVRML can be edited in place; write it as "
                        "one of these first",
                        path, encodingName(encoding));
   try {
-    const FileState state = stateOf(path);
     const Source source = Source::open(path, world().options.limits, nullptr);
     if (source.isUtf16())
       return fmt::format("{} is in UTF-16, which is only read: write it anew first", path);

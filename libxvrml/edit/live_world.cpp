@@ -19,7 +19,13 @@ class RunningWorld : public LiveWorld {
   MFNode read(const std::string& text, const std::string& name) override {
     return browser_.createVrmlFromString(text, name);
   }
-  void addRoot(const NodeRef& node, size_t) override { browser_.addRoot(node); }
+  void addRoot(const NodeRef& node, size_t index) override {
+    MFNode& roots = world().scope.roots;
+    const size_t before = roots.size();
+    browser_.addRoot(node);
+    if (roots.size() > before && index < before) // the browser appends
+      std::rotate(roots.begin() + std::ptrdiff_t(index), roots.end() - 1, roots.end());
+  }
   void removeRoot(Node& node) override { browser_.removeRoot(node); }
   bool addRoute(Node& from, const std::string& out, Node& to, const std::string& in) override {
     return browser_.addRoute(from, out, to, in);
