@@ -1,6 +1,8 @@
 // editor.cpp: Implements the Python class Editor, which edits the file of a world. [GIL held]
 #include <fmt/format.h>
 
+#include <pybind11/stl.h>
+
 #include "libpicture/files/atomic_file.h"
 #include "objects.h"
 #include "xvrml/edit.h"

@@ -183,6 +183,10 @@ NodeRef Editor::duplicate(const NodeSlot& given) {
 
 NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
   const Slot slot = impl_->file.slotOf(given, true);
+  const NodeType* const known = findNodeType(type);
+  const FieldInfo* const children = known ? known->find("children") : nullptr;
+  if (!children || children->type != FieldType::MFNode || !holdsValue(*children))
+    throw EditError(fmt::format("'{}' is no node with children", type));
   OpenStep step(impl_->history, fmt::format("Wrap {}", impl_->file.nodeAt(slot)->type().name));
   const Twin inner = impl_->nodes.take(slot);
   const NodeRef outer = insert(given, fmt::format("{} {{\n  children [\n  ]\n}}", type));

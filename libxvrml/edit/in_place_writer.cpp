@@ -188,6 +188,10 @@ class InPlaceWriter {
       text_.copy(text, place.value.begin);
       text_.out += this->node(child, indentationAt(text.text, place.whole.begin));
       text_.at = place.value.end;
+    } else if (own && place.declared) {
+      text_.copy(text, place.value.begin);
+      text_.out += "NULL";
+      text_.at = place.value.end;
     } else if (own) {
       text_.remove(text, place.whole);
     }

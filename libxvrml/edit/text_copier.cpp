@@ -57,7 +57,7 @@ void TextCopier::remove(const DocumentText& text, const TextSpan& span) {
   }
   while (begin > at && isBlank(all[begin - 1])) --begin;
   copy(text, begin);
-  at = span.end;
+  at = startsLine(all, span.begin) ? end : span.end;
 }
 
 } // namespace xvrml

@@ -97,7 +97,10 @@ void LayoutRecorder::closeField(bool good) {
 FieldTarget LayoutRecorder::openDeclaration(Access access, FieldType type, const Name& name,
                                             bool hasValue) {
   const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
-  if (isRecording() && hasValue && target.known) beginField(std::string(name.text), name.at);
+  if (isRecording() && hasValue && target.known) {
+    beginField(std::string(name.text), name.at);
+    nodes_.back().field.declared = true;
+  }
   return target;
 }
 

@@ -26,9 +26,10 @@ struct NodePlace {
 
 struct FieldText {
   std::string name; // as the node's type has it
-  TextSpan whole;   // from its name, or from the access that a Script declares, to the value's end
+  TextSpan whole;   // from its name to the end of its value
   TextSpan value;
   std::vector<NodePlace> nodes; // what stands in the value of an SFNode or MFNode
+  bool declared = false;        // a Script declares the field: it has a value in any case
   bool readable = false;        // the whole value could be read
 };
 
