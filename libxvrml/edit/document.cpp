@@ -84,10 +84,15 @@ const NodeText& Document::placeOf(const Node& node) const {
   return textOf(node).layout.nodes.at(&node);
 }
 
-void Document::set(Node& node, const FieldInfo& field, Value value) {
+// Keeps the value of a field that is about to be changed.
+void Document::touch(Node& node, const FieldInfo& field) {
   originals_[&node].try_emplace(field.name, node.get(field));
-  node.set(field, std::move(value));
   if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
+}
+
+void Document::set(Node& node, const FieldInfo& field, Value value) {
+  touch(node, field);
+  node.set(field, std::move(value));
 }
 
 const Value* Document::originalOf(const Node& node, const FieldInfo& field) const {
@@ -97,8 +102,11 @@ const Value* Document::originalOf(const Node& node, const FieldInfo& field) cons
   return found == known->second.end() ? nullptr : &found->second;
 }
 
-MFNode& Document::list(Node* parent, const FieldInfo* field) {
-  return parent ? *static_cast<MFNode*>(parent->storage(*field)) : scope().roots;
+MFNode& Document::listToChange(Node* parent, const FieldInfo* field) {
+  namesAreOld_ = true;
+  if (!parent) return scope().roots;
+  touch(*parent, *field);
+  return *static_cast<MFNode*>(parent->storage(*field));
 }
 
 const MFNode& Document::listOf(const Node* parent, const FieldInfo* field) const {
@@ -106,22 +114,19 @@ const MFNode& Document::listOf(const Node* parent, const FieldInfo* field) const
 }
 
 void Document::insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node) {
-  MFNode& list = this->list(parent, field);
+  MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
-  if (auto* instance = nodeCast<ProtoInstance>(parent)) instance->give(*field);
-  namesAreOld_ = true;
 }
 
 void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
-  MFNode& list = this->list(parent, field);
+  MFNode& list = listToChange(parent, field);
   if (index < list.size()) list.erase(list.begin() + std::ptrdiff_t(index));
-  namesAreOld_ = true;
 }
 
 void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
-  *static_cast<NodeRef*>(parent.storage(field)) = std::move(child);
-  if (auto* instance = nodeCast<ProtoInstance>(&parent)) instance->give(field);
   namesAreOld_ = true;
+  touch(parent, field);
+  *static_cast<NodeRef*>(parent.storage(field)) = std::move(child);
 }
 
 void Document::rename(Node& node, const std::string& name) {

@@ -49,9 +49,9 @@ class Document {
   const DocumentText& textOf(const Node& node) const;
   const NodeText& placeOf(const Node& node) const;
 
-  // Sets a field that holds no nodes. Its value before the first change is kept.
+  // Sets a field that holds no nodes.
   void set(Node& node, const FieldInfo& field, Value value);
-  // Returns the value that the text has for a field; null if the field has not been changed.
+  // Returns the value that a field had before it was changed first; null: it has not been changed.
   const Value* originalOf(const Node& node, const FieldInfo& field) const;
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
@@ -71,7 +71,8 @@ class Document {
  private:
   void index(DocumentText& text);
 
-  MFNode& list(Node* parent, const FieldInfo* field);
+  void touch(Node& node, const FieldInfo& field);
+  MFNode& listToChange(Node* parent, const FieldInfo* field);
 
   const LoadOptions options_;
   bool namesAreOld_ = false;       // nodes or their names have changed

@@ -42,16 +42,31 @@ bool namesNode(std::string_view use, const std::string& name) {
 // The text is copied wherever nothing has been edited.
 class InPlaceWriter {
  public:
-  explicit InPlaceWriter(const Document& document)
-      : document_(document), feed_(lineFeedOf(document.file().text)), text_(document) {}
+  // lifted: prototypes that stand before all nodes.
+  explicit InPlaceWriter(const Document& document, std::vector<const PrototypeText*> lifted = {})
+      : document_(document), feed_(lineFeedOf(document.file().text)), text_(document, lifted),
+        lifted_(std::move(lifted)) {}
 
   std::string file() {
     const DocumentText& file = document_.file();
+    if (!lifted_.empty()) text_.copy(file, beginOfRoots());
+    for (const PrototypeText* one : lifted_)
+      text_.out += file.text.substr(one->whole.begin, one->whole.size()) + feed_;
     writeList({file, file.layout.roots, file.text.size(), "", ""}, document_.scope().roots);
     text_.copy(file, file.text.size());
     for (const Route& route : document_.scope().routes)
       if (route.source.line == 0) addRoute(route);
     return std::move(text_.out);
+  }
+
+  // Returns the prototypes that must be lifted, because instances have been written before them:
+  // those that were missing, and those before them, which they may use.
+  std::vector<const PrototypeText*> missing() const {
+    std::vector<const PrototypeText*> all;
+    const std::vector<PrototypeText>& prototypes = document_.file().layout.prototypes;
+    for (const PrototypeText& one : prototypes)
+      if (&one <= last_ && one.whole.begin >= beginOfRoots()) all.push_back(&one);
+    return all;
   }
 
   // Returns the text of a node with this indentation, or its USE if it has been written already.
@@ -69,6 +84,14 @@ class InPlaceWriter {
   }
 
  private:
+  // Returns where the first root stands, with its line if it begins one.
+  size_t beginOfRoots() const {
+    const DocumentText& file = document_.file();
+    if (file.layout.roots.empty()) return file.text.size();
+    const size_t begin = file.layout.roots.front().span.begin;
+    return startsLine(file.text, begin) ? lineBegin(file.text, begin) : begin;
+  }
+
   std::string_view spelled(const Node& node, std::string_view field) const {
     const FileVersion& version = document_.world().head.version;
     return version.isX3d() && node.type().index >= 0
@@ -89,6 +112,8 @@ class InPlaceWriter {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
     written_.insert(&node);
+    if (const auto* instance = nodeCast<ProtoInstance>(&node))
+      last_ = std::max(last_, text_.missingFor(*instance));
     if (place.name.size() > 0) {
       text_.copy(text, place.name.begin);
       text_.replaceName(text, place.name, node);
@@ -138,19 +163,14 @@ class InPlaceWriter {
     if (!inLines && at == brace) text_.out += ' ';
   }
 
-  // Returns the value of a field that the text does not have; empty if the field still has that of
-  // its type.
+  // Returns the value of a field that the text does not have; empty if it has not been edited.
   std::string addedValue(const Node& node, const FieldInfo& field, const std::string& indentation) {
-    if (field.type == FieldType::SFNode) {
-      const auto& child = *static_cast<const NodeRef*>(node.storage(field));
-      return child ? this->node(child.get(), indentation) : "";
-    }
-    if (field.type == FieldType::MFNode) {
-      const auto& children = *static_cast<const MFNode*>(node.storage(field));
-      return children.empty() ? "" : inBrackets(children, indentation);
-    }
     const Value* const original = document_.originalOf(node, field);
     if (!original || *original == node.get(field)) return "";
+    if (field.type == FieldType::SFNode)
+      return this->node(static_cast<const NodeRef*>(node.storage(field))->get(), indentation);
+    if (field.type == FieldType::MFNode)
+      return inBrackets(*static_cast<const MFNode*>(node.storage(field)), indentation);
     std::string value;
     writeValue(value, field.type, node.storage(field), indentation.size());
     return value;
@@ -296,12 +316,19 @@ class InPlaceWriter {
   const Document& document_;
   const std::string feed_;
   TextCopier text_;
+  const std::vector<const PrototypeText*> lifted_;
+  const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
   std::unordered_set<const Node*> written_;
 };
 
 } // namespace
 
-std::string writeInPlace(const Document& document) { return InPlaceWriter(document).file(); }
+std::string writeInPlace(const Document& document) {
+  InPlaceWriter writer(document);
+  std::string text = writer.file();
+  const std::vector<const PrototypeText*> missing = writer.missing();
+  return missing.empty() ? text : InPlaceWriter(document, missing).file();
+}
 
 std::string writeNode(const Document& document, const Node& node) {
   return InPlaceWriter(document).node(&node, "");

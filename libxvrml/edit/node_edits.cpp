@@ -20,19 +20,11 @@ bool contains(const Node& root, const Node& searched) {
   });
 }
 
-void insertAt(MFNode& list, size_t index, const NodeRef& node) {
-  list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
-}
-
-void eraseAt(MFNode& list, size_t index) {
-  if (index < list.size()) list.erase(list.begin() + std::ptrdiff_t(index));
-}
-
 // Puts a node into a list of the live world, or takes it out.
 void insertLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
   if (!slot.field) return live.addRoot(node, slot.liveIndex);
   MFNode list = *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field));
-  insertAt(list, slot.liveIndex, node);
+  list.insert(list.begin() + std::ptrdiff_t(std::min(slot.liveIndex, list.size())), node);
   live.set(*slot.parent.live, slot.field->name, std::move(list));
 }
 
@@ -42,52 +34,81 @@ void eraseLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
   size_t index = slot.liveIndex;
   if (index >= list.size() || list[index] != node) // Scripts may have moved it
     index = size_t(std::find(list.begin(), list.end(), node) - list.begin());
-  eraseAt(list, index);
+  if (index < list.size()) list.erase(list.begin() + std::ptrdiff_t(index));
   live.set(*slot.parent.live, slot.field->name, std::move(list));
 }
 
 } // namespace
 
+// Returns the nodes with names in a node that stands in the file, itself included.
+std::vector<Twin> NodeEdits::namedIn(const Twin& root) {
+  std::vector<Twin> named;
+  walk(std::vector<Node*>{root.live.get()}, [&](Node& node, std::vector<Node*>& open) {
+    appendChildren(node, open);
+    Node* const own = file_.document().find(node.source);
+    if (own && !node.defName.empty()) named.push_back({NodeRef(&node), NodeRef(own)});
+  });
+  return named;
+}
+
+// Brings the names of the live world up to date with the nodes that stand in the file.
+void NodeEdits::updateNames(const std::vector<Twin>& named) {
+  if (named.empty()) return;
+  const SeenNodes standing = file_.document().standing();
+  auto& names = file_.world().scope.names;
+  for (const Twin& one : named) {
+    const auto known = names.find(one.live->defName);
+    if (standing.contains(one.document.get()))
+      names[one.live->defName] = one.live;
+    else if (known != names.end() && known->second == one.live)
+      names.erase(known);
+  }
+}
+
 void NodeEdits::setSingle(const Slot& slot, const Twin& node) {
   const FieldInfo& own = *slot.parent.document->type().find(slot.field->name);
   const Twin before{*static_cast<const NodeRef*>(slot.parent.live->storage(*slot.field)),
                     *static_cast<const NodeRef*>(slot.parent.document->storage(own))};
-  const auto put = [this, slot, &own](const Twin& twin) {
+  std::vector<Twin> named = namedIn(node);
+  for (Twin& one : namedIn(before)) named.push_back(std::move(one));
+  const auto put = [this, slot, &own, named](const Twin& twin) {
     file_.live().set(*slot.parent.live, slot.field->name, twin.live);
     file_.document().setNode(*slot.parent.document, own, twin.document);
+    updateNames(named);
   };
   history_.perform({[put, node] { put(node); }, [put, before] { put(before); }});
 }
 
+void NodeEdits::insertAt(const Slot& slot, const Twin& node) {
+  insertLive(file_.live(), slot, node.live);
+  file_.document().insert(slot.parent.document.get(), slot.field, slot.index, node.document);
+}
+
+void NodeEdits::eraseAt(const Slot& slot, const Twin& node) {
+  eraseLive(file_.live(), slot, node.live);
+  file_.document().erase(slot.parent.document.get(), slot.field, slot.index);
+}
+
 void NodeEdits::place(const Slot& slot, const Twin& node) {
   if (slot.isSingle()) return setSingle(slot, node);
-  history_.perform({[this, slot, node] {
-                      insertLive(file_.live(), slot, node.live);
-                      file_.document().insert(slot.parent.document.get(), slot.field, slot.index,
-                                              node.document);
-                    },
-                    [this, slot, node] {
-                      eraseLive(file_.live(), slot, node.live);
-                      file_.document().erase(slot.parent.document.get(), slot.field, slot.index);
-                    }});
+  const auto change = [this, slot, node, named = namedIn(node)](bool inserts) {
+    inserts ? insertAt(slot, node) : eraseAt(slot, node);
+    updateNames(named);
+  };
+  history_.perform({[change] { change(true); }, [change] { change(false); }});
 }
 
 Twin NodeEdits::take(const Slot& slot) {
-  Node* const found = file_.nodeAt(slot);
-  const Twin node = file_.twinOf(*found);
+  const Twin node = file_.twinOf(*file_.nodeAt(slot));
   if (slot.isSingle()) {
     setSingle(slot, {});
     return node;
   }
-  history_.perform({[this, slot, node] {
-                      eraseLive(file_.live(), slot, node.live);
-                      file_.document().erase(slot.parent.document.get(), slot.field, slot.index);
-                    },
-                    [this, slot, node] {
-                      insertLive(file_.live(), slot, node.live);
-                      file_.document().insert(slot.parent.document.get(), slot.field, slot.index,
-                                              node.document);
-                    }});
+  const auto change = [this, slot, node, named = namedIn(node)](bool inserts) {
+    inserts ? insertAt(slot, node) : eraseAt(slot, node);
+    updateNames(named);
+  };
+  history_.perform({[change] { change(false); }, [change] { change(true); }});
   return node;
 }
 
@@ -107,18 +128,14 @@ void NodeEdits::checkPlace(const Slot& slot, const Node& node) {
 }
 
 void NodeEdits::nameFreshly(const Twin& root) {
-  std::vector<Twin> named;
-  walk(std::vector<Node*>{root.live.get()}, [&](Node& node, std::vector<Node*>& open) {
-    appendChildren(node, open);
-    Node* const own = file_.document().find(node.source);
-    if (own && !node.defName.empty()) named.push_back({NodeRef(&node), NodeRef(own)});
-  });
+  const std::vector<Twin> named = namedIn(root);
+  Document& document = file_.document();
   std::set<std::string, std::less<>> taken;
   for (const Twin& one : named) taken.insert(one.live->defName);
   for (const Twin& one : named) {
-    if (!file_.document().names().contains(one.live->defName)) continue;
-    one.live->defName = file_.document().freshName(one.live->defName, taken);
-    file_.document().rename(*one.document, one.live->defName);
+    if (!document.names().contains(one.live->defName)) continue;
+    one.live->defName = document.freshName(one.live->defName, taken);
+    document.rename(*one.document, one.live->defName);
     taken.insert(one.live->defName);
   }
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "edit/edited_file.h"
 #include "edit/history.h"
@@ -30,6 +31,10 @@ class NodeEdits {
 
  private:
   void setSingle(const Slot& slot, const Twin& node);
+  void insertAt(const Slot& slot, const Twin& node);
+  void eraseAt(const Slot& slot, const Twin& node);
+  std::vector<Twin> namedIn(const Twin& root);
+  void updateNames(const std::vector<Twin>& named);
 
   EditedFile& file_;
   History& history_;

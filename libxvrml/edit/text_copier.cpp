@@ -1,6 +1,7 @@
 #include "edit/text_copier.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "edit/lines.h"
 
@@ -11,9 +12,18 @@ uint64_t placeKey(uint32_t line, uint32_t column) { return uint64_t(line) << 32 
 
 } // namespace
 
-TextCopier::TextCopier(const Document& document) {
+TextCopier::TextCopier(const Document& document, std::vector<const PrototypeText*> lifted)
+    : document_(document), lifted_(std::move(lifted)), declared_(lifted_.begin(), lifted_.end()) {
   for (const Route& route : document.scope().routes)
     routes_.emplace(placeKey(route.source.line, route.source.column), &route);
+}
+
+const PrototypeText* TextCopier::missingFor(const ProtoInstance& instance) const {
+  const SourcePosition& place = instance.declaration->source;
+  for (const PrototypeText& one : document_.file().layout.prototypes)
+    if (one.line == place.line && one.column == place.column)
+      return declared_.contains(&one) ? nullptr : &one;
+  return nullptr;
 }
 
 void TextCopier::raw(const DocumentText& text, size_t end) {
@@ -23,12 +33,28 @@ void TextCopier::raw(const DocumentText& text, size_t end) {
 }
 
 void TextCopier::copy(const DocumentText& text, size_t end) {
-  const std::vector<RouteText>& routes = text.layout.routes;
-  auto route =
-      std::lower_bound(routes.begin(), routes.end(), at,
-                       [](const RouteText& one, size_t at) { return one.whole.begin < at; });
-  for (; route != routes.end() && route->whole.begin < end; ++route)
-    if (route->valid) copyRoute(text, *route);
+  const auto from = [this](const auto& statements) {
+    return std::lower_bound(statements.begin(), statements.end(), at,
+                            [](const auto& one, size_t begin) { return one.whole.begin < begin; });
+  };
+  const TextLayout& layout = text.layout;
+  for (;;) {
+    const auto route = from(layout.routes);
+    const auto prototype = from(layout.prototypes);
+    const size_t nextRoute = route == layout.routes.end() ? end : route->whole.begin,
+                 nextPrototype =
+                     prototype == layout.prototypes.end() ? end : prototype->whole.begin;
+    if (std::min(nextRoute, nextPrototype) >= end) break;
+    if (nextRoute < nextPrototype) {
+      if (route->valid) copyRoute(text, *route);
+      raw(text, route->whole.end);
+    } else if (std::find(lifted_.begin(), lifted_.end(), &*prototype) != lifted_.end()) {
+      remove(text, prototype->whole);
+    } else {
+      raw(text, prototype->whole.end);
+      declared_.insert(&*prototype);
+    }
+  }
   raw(text, end);
 }
 

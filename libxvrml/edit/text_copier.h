@@ -4,6 +4,8 @@
 
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
+#include <vector>
 
 #include "edit/document.h"
 
@@ -11,7 +13,8 @@ namespace xvrml {
 
 class TextCopier {
  public:
-  explicit TextCopier(const Document& document);
+  // lifted: prototypes of the file that are left out where they stand.
+  TextCopier(const Document& document, std::vector<const PrototypeText*> lifted);
 
   // Copies the text up to a byte.
   void copy(const DocumentText& text, size_t end);
@@ -20,6 +23,9 @@ class TextCopier {
   // Copies the text up to the name of a node, and writes the name that it has now.
   void replaceName(const DocumentText& text, const TextSpan& span, const Node& node);
 
+  // Returns the prototype of an instance if its text has not been copied yet; else null.
+  const PrototypeText* missingFor(const ProtoInstance& instance) const;
+
   std::string out; // what has been written
   size_t at = 0;   // the first byte of the present text that has not been copied
 
@@ -27,7 +33,10 @@ class TextCopier {
   void raw(const DocumentText& text, size_t end);
   void copyRoute(const DocumentText& text, const RouteText& place);
 
+  const Document& document_;
   std::unordered_map<uint64_t, const Route*> routes_; // by their places in the file
+  const std::vector<const PrototypeText*> lifted_;
+  std::unordered_set<const PrototypeText*> declared_; // those that have been copied or lifted
 };
 
 } // namespace xvrml

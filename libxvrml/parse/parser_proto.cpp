@@ -83,6 +83,7 @@ bool Parser::proto() {
   sink_.openProtoBody();
   statements(TokenKind::braceClose);
   if (!lexer_.accept(TokenKind::braceClose)) failAtEnd(id);
+  sink_.placed(id.at(), lexer_.consumed());
   sink_.closeProto(true);
   return true;
 }
@@ -94,6 +95,7 @@ bool Parser::externproto() {
   sink_.openExternProto(id);
   bool good = interfaceDeclarations(true);
   if (good) good = values_.parse(FieldType::MFString, &sink_.externUrls());
+  sink_.placed(id.at(), lexer_.consumed());
   sink_.closeExternProto(good);
   if (!good) sink_.lostName(id);
   return good;

@@ -27,9 +27,9 @@ class ParseSink {
  public:
   virtual ~ParseSink() = default;
 
-  // Says where the value of the open field, or the body of the open node, stands in the text: from
-  // its first byte to the one behind its last. The readers of VRML97 and of X3D ClassicVRML call it
-  // before closeField(), closeDeclaration() and closeNode().
+  // Says where the value of the open field, the body of the open node, or the open prototype from
+  // its name on stands in the text: from its first byte to the one behind its last. The readers of
+  // VRML97 and of X3D ClassicVRML call it before they close one of these.
   virtual void placed(const char* begin, const char* end) { (void)begin, (void)end; }
 
   // node ::= nodeTypeId { nodeBody }

@@ -109,23 +109,33 @@ void LayoutRecorder::closeDeclaration(bool good) {
   builder_.closeDeclaration(good);
 }
 
+void LayoutRecorder::beginPrototype(const Name& name, std::string_view keyword) {
+  if (prototypes_++ > 0) return;
+  const SourcePosition place = locator_.place(name.at);
+  layout_.prototypes.push_back({{keywordBefore(name, keyword), 0}, place.line, place.column});
+}
+
+void LayoutRecorder::endPrototype() {
+  if (--prototypes_ == 0) layout_.prototypes.back().whole.end = placed_.end;
+}
+
 void LayoutRecorder::openProto(const Name& name) {
-  ++prototypes_;
+  beginPrototype(name, "PROTO");
   builder_.openProto(name);
 }
 
 void LayoutRecorder::closeProto(bool good) {
-  --prototypes_;
+  endPrototype();
   builder_.closeProto(good);
 }
 
 void LayoutRecorder::openExternProto(const Name& name) {
-  ++prototypes_;
+  beginPrototype(name, "EXTERNPROTO");
   builder_.openExternProto(name);
 }
 
 void LayoutRecorder::closeExternProto(bool good) {
-  --prototypes_;
+  endPrototype();
   builder_.closeExternProto(good);
 }
 

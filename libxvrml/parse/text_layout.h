@@ -48,10 +48,17 @@ struct RouteText {
   bool valid = false; // the world has the route
 };
 
+// A PROTO or EXTERNPROTO outside of other prototypes.
+struct PrototypeText {
+  TextSpan whole;
+  uint32_t line = 0, column = 0; // of its name
+};
+
 struct TextLayout {
   std::unordered_map<const Node*, NodeText> nodes;
   std::vector<NodePlace> roots;
   std::vector<RouteText> routes;
+  std::vector<PrototypeText> prototypes;
 };
 
 // Passes everything on to a builder, and fills the layout meanwhile. Wide because there is one
@@ -129,6 +136,8 @@ class LayoutRecorder : public ParseSink {
   void beginField(std::string name, const char* at);
   void endField(bool good);
   void add(const NodePlace& place);
+  void beginPrototype(const Name& name, std::string_view keyword);
+  void endPrototype();
 
   Builder& builder_;
   Locator& locator_;

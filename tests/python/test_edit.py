@@ -123,7 +123,7 @@ def test_files_on_disk(lamp, tmp_path):
 
 
 def test_refusals(lamp):
-    with pytest.raises(xvrml.EditError, match=r"outside of \[0,1\]"):
+    with pytest.raises(ValueError, match="from 0 to 1"):
         lamp.edit.set(lamp["L"], "intensity", 2)
     with pytest.raises(TypeError):
         lamp.edit.set(lamp["L"], "intensity", "much")

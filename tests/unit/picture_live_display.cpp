@@ -43,7 +43,7 @@ LivePicture show(Display& display, const Picture& picture, const ShownFrame& fra
                  double seconds = 0) {
   LivePicture out;
   display.show(picture, frame, whole, seconds, out);
-  EXPECT_EQ(out.rgb.size(), size_t(3 * out.width * out.height));
+  EXPECT_EQ(out.rgb.size(), size_t(3 * out.shownWidth * out.shownHeight));
   return out;
 }
 

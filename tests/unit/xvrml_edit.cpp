@@ -326,6 +326,10 @@ TEST_P(Edited, RandomEditsCanBeUndone) {
         nodes.push_back(&one);
         appendChildren(one, open);
       });
+      if (nodes.empty()) {
+        editor->insert({nullptr, "", 0}, "Group { }");
+        continue;
+      }
       const auto any = [&]() -> Node& { return *nodes[below(nodes.size())]; };
       const auto slot = [&]() -> NodeSlot {
         if (below(4) == 0) return {nullptr, "", below(world().scope.roots.size() + 1)};
