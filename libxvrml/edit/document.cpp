@@ -141,7 +141,7 @@ const std::map<std::string, NodeRef, std::less<>>& Document::names() {
   // In the order of the file, so that the last node of a name has it.
   const std::vector<Node*> roots = rootsOf(scope());
   walk(std::vector<Node*>(roots.rbegin(), roots.rend()), [&](Node& node, std::vector<Node*>& open) {
-    if (!node.defName.empty()) names[node.defName] = NodeRef(&node);
+    if (!node.defName.empty() && hasText(node)) names[node.defName] = NodeRef(&node);
     std::vector<Node*> children;
     appendChildren(node, children);
     open.insert(open.end(), children.rbegin(), children.rend());

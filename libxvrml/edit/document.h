@@ -45,6 +45,8 @@ class Document {
   // Returns the node that stands at a place in the file or in one of these texts; null if there is
   // none, or it is part of a prototype.
   Node* find(const SourcePosition& place) const;
+  // Returns whether a node has a text: nodes in the default values of prototypes have none.
+  bool hasText(const Node& node) const { return owners_.contains(&node); }
   // Returns the text that a node of the document comes from, and where it stands there.
   const DocumentText& textOf(const Node& node) const;
   const NodeText& placeOf(const Node& node) const;

@@ -91,6 +91,11 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   if (given.index + (holds ? 1 : 0) > list.size())
     throw EditError(fmt::format("there is no place {} among {} nodes", given.index, list.size()));
   const MFNode& own = document().listOf(slot.parent.document.get(), slot.field);
+  for (const NodeRef& node : own)
+    if (node && !document().hasText(*node))
+      throw EditError(fmt::format("{} of this {} has the nodes of its prototype, which cannot be "
+                                  "edited here",
+                                  given.field, given.parent->type().name));
   if (holds) {
     const NodeRef& node = list[given.index];
     if (!node) throw EditError("NULL stands there");

@@ -54,6 +54,7 @@ class InPlaceWriter {
       text_.out += file.text.substr(one->whole.begin, one->whole.size()) + feed_;
     writeList({file, file.layout.roots, file.text.size(), "", ""}, document_.scope().roots);
     text_.copy(file, file.text.size());
+    for (const Route* route : text_.postponed) addRoute(*route);
     for (const Route& route : document_.scope().routes)
       if (route.source.line == 0) addRoute(route);
     return std::move(text_.out);
@@ -72,7 +73,7 @@ class InPlaceWriter {
   // Returns the text of a node with this indentation, or its USE if it has been written already.
   std::string node(const Node* node, std::string_view indentation) {
     if (!node) return "NULL";
-    if (written_.contains(node)) return "USE " + node->defName;
+    if (text_.written.contains(node)) return "USE " + node->defName;
     const std::string& text = document_.textOf(*node).text;
     const size_t begin = document_.placeOf(*node).whole.begin;
     std::string outer = std::exchange(text_.out, {});
@@ -111,7 +112,7 @@ class InPlaceWriter {
   void writeNode(const Node& node) {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
-    written_.insert(&node);
+    text_.written.insert(&node);
     if (const auto* instance = nodeCast<ProtoInstance>(&node))
       last_ = std::max(last_, text_.missingFor(*instance));
     if (place.name.size() > 0) {
@@ -238,8 +239,9 @@ class InPlaceWriter {
   // Writes what stays at its place in a field or list.
   void keep(const DocumentText& text, const NodePlace& place) {
     const std::string own = text.text.substr(place.span.begin, place.span.size());
-    if (place.node && !place.isUse && !written_.contains(place.node)) return writeNode(*place.node);
-    const bool stays = !place.node || (place.isUse && written_.contains(place.node) &&
+    if (place.node && !place.isUse && !text_.written.contains(place.node))
+      return writeNode(*place.node);
+    const bool stays = !place.node || (place.isUse && text_.written.contains(place.node) &&
                                        namesNode(own, place.node->defName));
     text_.out += stays ? own : node(place.node, indentationAt(text.text, place.span.begin));
     text_.at = place.span.end;
@@ -318,7 +320,6 @@ class InPlaceWriter {
   TextCopier text_;
   const std::vector<const PrototypeText*> lifted_;
   const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
-  std::unordered_set<const Node*> written_;
 };
 
 } // namespace

@@ -61,8 +61,13 @@ void TextCopier::copy(const DocumentText& text, size_t end) {
 void TextCopier::copyRoute(const DocumentText& text, const RouteText& place) {
   const auto found = routes_.find(placeKey(place.line, place.column));
   if (found == routes_.end()) return remove(text, place.whole);
-  replaceName(text, place.from, *found->second->from);
-  replaceName(text, place.to, *found->second->to);
+  const Route& route = *found->second;
+  if (!written.contains(route.from.get()) || !written.contains(route.to.get())) {
+    postponed.push_back(&route);
+    return remove(text, place.whole);
+  }
+  replaceName(text, place.from, *route.from);
+  replaceName(text, place.to, *route.to);
 }
 
 void TextCopier::replaceName(const DocumentText& text, const TextSpan& span, const Node& node) {

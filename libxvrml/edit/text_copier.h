@@ -27,7 +27,10 @@ class TextCopier {
   const PrototypeText* missingFor(const ProtoInstance& instance) const;
 
   std::string out; // what has been written
-  size_t at = 0;   // the first byte of the present text that has not been copied
+  std::unordered_set<const Node*> written;
+  // Routes that could not stay in their places, because their nodes were written behind them.
+  std::vector<const Route*> postponed;
+  size_t at = 0; // the first byte of the present text that has not been copied
 
  private:
   void raw(const DocumentText& text, size_t end);

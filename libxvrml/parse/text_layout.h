@@ -51,7 +51,7 @@ struct RouteText {
 // A PROTO or EXTERNPROTO outside of other prototypes.
 struct PrototypeText {
   TextSpan whole;
-  uint32_t line = 0, column = 0; // of its name
+  uint32_t line = 0, column = 0; // where its name stands
 };
 
 struct TextLayout {
