@@ -27,7 +27,7 @@ from ._camera import Pinhole
 from ._features import Feature, features
 from ._live import LiveView
 from ._world import loads
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, EditError, Editor, Film,
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, EditError, Editor, EditStep, Film,
                      Measurement, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo, Worker, World,
                      load_node_plugins, __version__)
 
@@ -47,7 +47,7 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "EditError", "Editor", "Feature", "Film",
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "EditError", "Editor", "EditStep", "Feature", "Film",
     "LiveView", "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
     "ViewpointInfo", "Worker", "World", "denoise", "features", "load", "load_node_plugins", "loads",
     "merge", "__version__", *nodes.__all__
