@@ -1,4 +1,6 @@
 // editor.cpp: Implements the Python class Editor, which edits the file of a world. [GIL held]
+#include <filesystem>
+
 #include <fmt/format.h>
 
 #include <pybind11/stl.h>
@@ -143,16 +145,19 @@ py::object step(const EditorObject& self, bool again) {
 void save(const EditorObject& self, const py::object& given, bool overwrite) {
   const std::string own = self.world->graph().path;
   const std::string path = given.is_none() ? own : toPath(given);
+  if (self.world->openSteps > 0) throw EditError("a step is open: save after its block");
+  std::error_code none;
+  const bool isOwn = path == own || std::filesystem::equivalent(path, own, none);
   std::string failure;
   edit(self, [&](Editor& editor) {
     const std::string bytes = editor.bytes();
-    if (path == own && !overwrite && editor.isChangedOnDisk())
+    if (isOwn && !overwrite && editor.isChangedOnDisk())
       throw EditError(fmt::format("{} has been written by another program since it was read: "
                                   "overwrite=True replaces it",
                                   path));
     try {
       picture::writeFile(path, bytes, picture::Wait::disk);
-      if (path == own) editor.saved();
+      if (isOwn) editor.saved();
     } catch (const std::runtime_error& error) { failure = error.what(); }
   });
   raiseOsError(failure);

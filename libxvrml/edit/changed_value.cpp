@@ -109,9 +109,10 @@ std::string elementsBetween(std::string_view text, const std::vector<std::string
   if (first < olds - last) { // some go
     out.append(text.data(), beginOf(first)).append(middle);
     if (!middle.empty()) return out.append(endOf(olds - last - 1), end);
-    // Nothing takes their place, so what separates them goes, too.
-    return last > 0 ? out.append(beginOf(olds - last), end)
-                    : std::string(text.data(), endOf(first - 1)) + " ]";
+    // Nothing takes their place; a comma behind them goes, too.
+    const char* rest = endOf(olds - last - 1);
+    while (rest < end && (*rest == ' ' || *rest == '\t' || *rest == ',')) ++rest;
+    return out.append(rest, end);
   }
   const std::string_view between = size > 1 ? ", " : " ";
   if (first > 0)

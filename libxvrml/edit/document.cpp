@@ -55,19 +55,36 @@ static void keepThoseIn(const MFNode& list, std::vector<NodePlace>& places) {
   });
 }
 
+// Returns whether a field holds what its text has, and nothing else.
+static bool isWhole(const Node& node, const FieldInfo& field,
+                    const std::vector<NodePlace>& places) {
+  if (field.type == FieldType::SFNode) {
+    const Node* const child = static_cast<const NodeRef*>(node.storage(field))->get();
+    return places.size() <= 1 && (places.empty() ? nullptr : places[0].node) == child;
+  }
+  const MFNode& list = *static_cast<const MFNode*>(node.storage(field));
+  return std::equal(
+      list.begin(), list.end(), places.begin(), places.end(),
+      [](const NodeRef& one, const NodePlace& place) { return one.get() == place.node; });
+}
+
 void Document::index(DocumentText& text) {
   std::unordered_set<uint64_t> routes;
   for (const Route& route : text.world->scope.routes) routes.insert(keyOf(route.source));
   for (RouteText& route : text.layout.routes)
     route.valid = routes.contains(uint64_t(route.line) << 32 | route.column);
   keepThoseIn(text.world->scope.roots, text.layout.roots);
+  std::set<std::string, std::less<>> names;
   for (auto& [node, place] : text.layout.nodes) {
-    for (FieldText& field : place.fields)
-      if (const FieldInfo* info = node->type().find(field.name);
-          info && info->type == FieldType::MFNode)
-        keepThoseIn(*static_cast<const MFNode*>(node->storage(*info)), field.nodes);
+    for (FieldText& field : place.fields) {
+      const FieldInfo* const info = node->type().find(field.name);
+      field.faithful =
+          info && (holdsNodes(*info) ? isWhole(*node, *info, field.nodes) : field.readable);
+    }
     text.byPlace.emplace(keyOf(node->source), const_cast<Node*>(node));
     owners_.emplace(node, &text);
+    if (!node->defName.empty() && !names.insert(node->defName).second)
+      repeated_.insert(node->defName);
   }
 }
 
@@ -80,6 +97,13 @@ Node* Document::find(const SourcePosition& place) const {
 }
 
 const DocumentText& Document::textOf(const Node& node) const { return *owners_.at(&node); }
+const FieldText* Document::textOf(const Node& node, const FieldInfo& field) const {
+  const std::vector<FieldText>& fields = placeOf(node).fields;
+  const auto last = std::find_if(fields.rbegin(), fields.rend(),
+                                 [&](const FieldText& one) { return one.name == field.name; });
+  return last == fields.rend() ? nullptr : &*last;
+}
+
 const NodeText& Document::placeOf(const Node& node) const {
   return textOf(node).layout.nodes.at(&node);
 }
@@ -103,7 +127,6 @@ const Value* Document::originalOf(const Node& node, const FieldInfo& field) cons
 }
 
 MFNode& Document::listToChange(Node* parent, const FieldInfo* field) {
-  namesAreOld_ = true;
   if (!parent) return scope().roots;
   touch(*parent, *field);
   return *static_cast<MFNode*>(parent->storage(*field));
@@ -124,34 +147,22 @@ void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
 }
 
 void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
-  namesAreOld_ = true;
   touch(parent, field);
   *static_cast<NodeRef*>(parent.storage(field)) = std::move(child);
 }
 
 void Document::rename(Node& node, const std::string& name) {
-  node.defName = name;
-  namesAreOld_ = true;
-}
-
-const std::map<std::string, NodeRef, std::less<>>& Document::names() {
   auto& names = scope().names;
-  if (!std::exchange(namesAreOld_, false)) return names;
-  names.clear();
-  // In the order of the file, so that the last node of a name has it.
-  const std::vector<Node*> roots = rootsOf(scope());
-  walk(std::vector<Node*>(roots.rbegin(), roots.rend()), [&](Node& node, std::vector<Node*>& open) {
-    if (!node.defName.empty() && hasText(node)) names[node.defName] = NodeRef(&node);
-    std::vector<Node*> children;
-    appendChildren(node, children);
-    open.insert(open.end(), children.rbegin(), children.rend());
-  });
-  return names;
+  const auto known = names.find(node.defName);
+  const bool isNamed = known != names.end() && known->second.get() == &node;
+  if (isNamed) names.erase(known);
+  if (!name.empty() && (isNamed || node.defName.empty())) names[name] = NodeRef(&node);
+  node.defName = name;
 }
 
 std::string Document::freshName(const std::string& wish,
                                 const std::set<std::string, std::less<>>& taken) {
-  const auto& known = names();
+  const auto& known = scope().names;
   std::string name = wish;
   for (size_t i = 2; known.contains(name) || taken.contains(name); ++i)
     name = fmt::format("{}_{}", wish, i);

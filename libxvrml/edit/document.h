@@ -45,8 +45,15 @@ class Document {
   // Returns the node that stands at a place in the file or in one of these texts; null if there is
   // none, or it is part of a prototype.
   Node* find(const SourcePosition& place) const;
+  // Returns whether several nodes of the file have this name, so that a reference depends on its
+  // place.
+  bool isRepeated(const std::string& name) const { return repeated_.contains(name); }
+  // Returns whether a node comes from the file itself.
+  bool isOwn(const Node& node) const { return &textOf(node) == &file(); }
   // Returns whether a node has a text: nodes in the default values of prototypes have none.
   bool hasText(const Node& node) const { return owners_.contains(&node); }
+  // Returns the text of a field of a node; null if the text does not have it.
+  const FieldText* textOf(const Node& node, const FieldInfo& field) const;
   // Returns the text that a node of the document comes from, and where it stands there.
   const DocumentText& textOf(const Node& node) const;
   const NodeText& placeOf(const Node& node) const;
@@ -60,9 +67,8 @@ class Document {
   void insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node);
   void erase(Node* parent, const FieldInfo* field, size_t index);
   void setNode(Node& parent, const FieldInfo& field, NodeRef child);
+  // Gives a node another name, also among the names of the file if it stands there.
   void rename(Node& node, const std::string& name);
-  // Returns the names of the file as it is now.
-  const std::map<std::string, NodeRef, std::less<>>& names();
   // Returns a name that no node has yet, and that is not in `taken`: `wish`, or the wish with a
   // number behind it.
   std::string freshName(const std::string& wish,
@@ -77,9 +83,9 @@ class Document {
   MFNode& listToChange(Node* parent, const FieldInfo* field);
 
   const LoadOptions options_;
-  bool namesAreOld_ = false;       // nodes or their names have changed
   std::deque<DocumentText> texts_; // the file first; a deque does not move its elements
   std::map<std::string, DocumentText*, std::less<>> byName_;
+  std::set<std::string, std::less<>> repeated_;
   std::unordered_map<const Node*, const DocumentText*> owners_;
   std::unordered_map<const Node*, std::map<std::string, Value, std::less<>>> originals_;
 };

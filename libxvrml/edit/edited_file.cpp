@@ -3,30 +3,20 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
+#include "edit/gzip.h"
 #include "edit/in_place_writer.h"
 #include "enough_stack.h"
 #include "graph/exchange.h"
 #include "graph/field_access.h"
 #include "parse/source.h"
-#include "system/files.h"
 
 namespace xvrml {
-
-EditedFile::FileState EditedFile::stateOf(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  const timespec time = os::modifiedTime(status);
-  return {int64_t(time.tv_sec), int64_t(time.tv_nsec), int64_t(status.st_size),
-          uint64_t(status.st_ino)};
-}
 
 std::string EditedFile::whyNot() {
   if (document_) return "";
   const std::string& path = world().path;
-  const FileState state = stateOf(path);
-  if (state == FileState{}) return "the world does not come from a file";
+  if (stampOf(path) == FileStamp()) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
   if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic)
     return fmt::format("{} is {}: VRML97 and X3D ClassicVRML can be edited in place; write it as "
@@ -36,15 +26,20 @@ std::string EditedFile::whyNot() {
     const Source source = Source::open(path, world().options.limits, nullptr);
     if (source.isUtf16())
       return fmt::format("{} is in UTF-16, which is only read: write it anew first", path);
+    for (const FileHead::Unit& unit : world().head.units)
+      if (unit.category == "angle")
+        return fmt::format("{} has a unit of its own for angles, which is only read", path);
     packed_ = source.isPacked();
     marked_ = source.hasByteOrderMark();
     document_ = std::make_unique<Document>(std::string(source.text()), path, world().options);
-    onDisk_ = state;
+    read_ = onDisk_ = source.stamp();
   } catch (const LoadError& error) { return error.diagnostic.text(); }
   return "";
 }
 
 Document& EditedFile::document() {
+  if (live_->isReplaced())
+    throw EditError("another world has taken the place of the one that was edited");
   if (const std::string reason = whyNot(); !reason.empty()) throw EditError(reason);
   return *document_;
 }
@@ -53,12 +48,10 @@ Twin EditedFile::twinOf(Node& node) {
   Document& document = this->document();
   Node* const found = document.find(node.source);
   const std::string& type = node.type().name;
-  if (found && found->type().name == type && found->defName == node.defName)
-    return {NodeRef(&node), NodeRef(found)};
-  if (found)
-    throw EditError(fmt::format("{} has changed since the world was loaded: line {} holds another "
-                                "node than this {}",
-                                world().path, node.source.line, type));
+  if (found && document.isOwn(*found) && fileStamp(node.source.file) != read_)
+    throw EditError(fmt::format("{} has been written to since the world was loaded: load it again",
+                                world().path));
+  if (found && found->type().name == type) return {NodeRef(&node), NodeRef(found)};
   if (!node.source.file)
     throw EditError(fmt::format("this {} stands in no file: a program has made it", type));
   if (*node.source.file != world().path)
@@ -77,6 +70,15 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
     if (!slot.field || !holdsNodes(*slot.field))
       throw EditError(fmt::format("{} has no field '{}' that holds nodes",
                                   given.parent->type().name, given.field));
+  }
+  if (const auto exchange = exchangeOf(document().world()); exchange && !exchange->imports.empty())
+    throw EditError(fmt::format("{} imports nodes: only values can be edited there", world().path));
+  if (slot.field) {
+    const FieldText* const text = document().textOf(*slot.parent.document, *slot.field);
+    if (text && !text->faithful)
+      throw EditError(fmt::format("a part of the field {} of line {} could not be read: mend it "
+                                  "first",
+                                  given.field, slot.parent.live->source.line));
   }
   if (slot.isSingle()) {
     if (given.index > 0 || (holds && !nodeAt(slot)))
@@ -109,11 +111,14 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
     slot.index = size_t(found - own.begin());
     return slot;
   }
-  // Behind the last node before the place that is in the file.
+  // Behind the last node before the place that is in the file, as often as it stands before it.
   for (size_t i = given.index; i-- > 0;) {
     const Node* const known = list[i] ? document().find(list[i]->source) : nullptr;
-    const auto found = std::find_if(
-        own.begin(), own.end(), [&](const NodeRef& one) { return known && one.get() == known; });
+    if (!known) continue;
+    auto before = std::count(list.begin(), list.begin() + std::ptrdiff_t(i), list[i]);
+    const auto found = std::find_if(own.begin(), own.end(), [&](const NodeRef& one) {
+      return one.get() == known && before-- == 0;
+    });
     if (found == own.end()) continue;
     slot.index = size_t(found - own.begin()) + 1;
     break;
@@ -132,7 +137,6 @@ Node* EditedFile::nodeAt(const Slot& slot) {
 
 std::string EditedFile::text() {
   Document& document = this->document();
-  document.names();
   if (const auto exchange = exchangeOf(document.world())) {
     const SeenNodes standing = document.standing();
     for (const Exchange::Export& one : exchange->exports)
@@ -142,6 +146,7 @@ std::string EditedFile::text() {
   }
   return onStackOf(deepestStack, [&]() -> std::string {
     std::string written = writeInPlace(document);
+    if (written == document.file().text) return written;
     LoadOptions options = world().options;
     options.loadInlines = false;
     std::string difference;
@@ -161,8 +166,8 @@ std::string EditedFile::bytes() {
   return packed_ ? packed(text) : text;
 }
 
-bool EditedFile::isChangedOnDisk() { return document_ && !(stateOf(world().path) == onDisk_); }
-void EditedFile::saved() { onDisk_ = stateOf(world().path); }
+bool EditedFile::isChangedOnDisk() { return document_ && stampOf(world().path) != onDisk_; }
+void EditedFile::saved() { onDisk_ = stampOf(world().path); }
 
 const MFNode& EditedFile::liveList(const Slot& slot) {
   return slot.field ? *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field))

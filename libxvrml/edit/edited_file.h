@@ -7,6 +7,7 @@
 
 #include "edit/document.h"
 #include "edit/live_world.h"
+#include "parse/source.h"
 #include "xvrml/edit.h"
 
 namespace xvrml {
@@ -34,6 +35,7 @@ class EditedFile {
 
   // Returns why the file cannot be edited. Reads it if it can.
   std::string whyNot();
+  // Throws EditError if the file cannot be edited, or another world has taken its place.
   Document& document();
   // Returns the node with its counterpart in the document. Throws EditError if it has none.
   Twin twinOf(Node& node);
@@ -47,19 +49,12 @@ class EditedFile {
   void saved();
 
  private:
-  // Tells a file that has been written to from one that has not.
-  struct FileState {
-    int64_t seconds = 0, nanoseconds = 0, bytes = 0;
-    uint64_t number = 0;
-    bool operator==(const FileState&) const = default;
-  };
-  static FileState stateOf(const std::string& path);
   const MFNode& liveList(const Slot& slot);
 
   std::unique_ptr<LiveWorld> live_;
   std::unique_ptr<Document> document_; // read at the first edit
   bool packed_ = false, marked_ = false;
-  FileState onDisk_;
+  FileStamp read_, onDisk_; // the file when it was read, and when it was read or saved
 };
 
 } // namespace xvrml

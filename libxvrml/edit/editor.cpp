@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/lexer.h"
 #include "base/rotation.h"
 #include "base/visit_storage.h"
 #include "edit/in_place_writer.h"
@@ -13,7 +14,6 @@
 #include "graph/exchange.h"
 #include "graph/field_access.h"
 #include "graph/range.h"
-#include "write/names.h"
 #include "xvrml/edit.h"
 #include "xvrml/walk.h"
 
@@ -38,6 +38,15 @@ bool isFinite(const FieldInfo& field, Value& value) {
                         else
                           return finite(stored);
                       });
+}
+
+// Returns whether a file may have a name behind DEF (Annex A.3).
+bool isNodeName(const std::string& name) {
+  constexpr std::string_view keywords[] = {"DEF",     "EXTERNPROTO", "FALSE", "IS",          "NULL",
+                                           "PROTO",   "ROUTE",       "TO",    "TRUE",        "USE",
+                                           "eventIn", "eventOut",    "field", "exposedField"};
+  return isIdentifier(name) &&
+         std::find(std::begin(keywords), std::end(keywords), name) == std::end(keywords);
 }
 
 } // namespace
@@ -82,8 +91,19 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
 void Editor::begin(std::string name) { impl_->history.begin(std::move(name)); }
 void Editor::end() { impl_->history.end(); }
 void Editor::cancel() { impl_->history.cancel(); }
-bool Editor::undo() { return impl_->history.undo(); }
-bool Editor::redo() { return impl_->history.redo(); }
+
+bool Editor::undo() {
+  if (undoName().empty()) return false;
+  impl_->file.document(); // throws if there is another world
+  return impl_->history.undo();
+}
+
+bool Editor::redo() {
+  if (redoName().empty()) return false;
+  impl_->file.document();
+  return impl_->history.redo();
+}
+
 std::string Editor::undoName() const { return impl_->history.undoName(); }
 std::string Editor::redoName() const { return impl_->history.redoName(); }
 
@@ -143,6 +163,9 @@ void Editor::use(const NodeSlot& given, Node& node) {
   const Twin twin = impl_->file.twinOf(node);
   const Slot slot = impl_->file.slotOf(given, false);
   impl_->nodes.checkPlace(slot, node);
+  if (impl_->file.document().isRepeated(node.defName))
+    throw EditError(
+        fmt::format("several nodes are named {}: give this one another name", node.defName));
   OpenStep step(impl_->history, fmt::format("Use {}", node.type().name));
   impl_->nodes.ensureName(twin);
   impl_->nodes.place(slot, twin);
@@ -199,19 +222,22 @@ NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
 
 void Editor::rename(Node& node, const std::string& name) {
   const Twin twin = impl_->file.twinOf(node);
-  Document& file = impl_->file.document();
-  if (nameText(name) != name) throw EditError(fmt::format("'{}' is no name for a node", name));
+  Scope& scope = impl_->file.document().scope();
+  if (!isNodeName(name)) throw EditError(fmt::format("'{}' is no name for a node", name));
   if (name == node.defName) return;
-  if (file.names().contains(name)) throw EditError(fmt::format("another node is named {}", name));
-  if (!node.defName.empty() && file.names().at(node.defName) != twin.document)
-    throw EditError(fmt::format("several nodes are named {}: what refers to it depends on the "
-                                "order of the file",
+  if (scope.names.contains(name)) throw EditError(fmt::format("another node is named {}", name));
+  if (impl_->file.document().isRepeated(node.defName))
+    throw EditError(fmt::format("several nodes are named {}: which one a USE means depends on its "
+                                "place",
                                 node.defName));
-  if (const auto exchange = exchangeOf(file.world()))
+  if (const auto exchange = exchangeOf(impl_->file.document().world())) {
+    if (!exchange->imports.empty())
+      throw EditError("the file imports nodes: only values can be edited there");
     for (const Exchange::Export& one : exchange->exports)
       if (one.node == twin.document)
         throw EditError(
             fmt::format("the file exports {}: other files may use its name", node.defName));
+  }
   OpenStep step(impl_->history, fmt::format("Rename {}", node.type().name));
   impl_->nodes.rename(twin, name);
   step.close();
@@ -235,14 +261,14 @@ void Editor::addRoute(Node& from, std::string_view out, Node& to, std::string_vi
   OpenStep step(impl_->history, "Add route");
   impl_->nodes.ensureName(source);
   impl_->nodes.ensureName(target);
-  LiveWorld& live = impl_->file.live();
+  EditedFile& file = impl_->file;
   impl_->history.perform(
-      {[&live, &routes, route, source, target] {
-         live.addRoute(*source.live, route.fromField, *target.live, route.toField);
+      {[&file, &routes, route, source, target] {
+         file.live().addRoute(*source.live, route.fromField, *target.live, route.toField);
          routes.push_back(route);
        },
-       [&live, &routes, route, source, target, same] {
-         live.removeRoute(*source.live, route.fromField, *target.live, route.toField);
+       [&file, &routes, route, source, target, same] {
+         file.live().removeRoute(*source.live, route.fromField, *target.live, route.toField);
          routes.erase(std::find_if(routes.begin(), routes.end(), same));
        }});
   step.close();
@@ -257,15 +283,15 @@ void Editor::removeRoute(Node& from, std::string_view out, Node& to, std::string
   });
   if (found == routes.end()) throw EditError("the file has no such route");
   OpenStep step(impl_->history, "Remove route");
-  LiveWorld& live = impl_->file.live();
+  EditedFile& file = impl_->file;
   const auto index = found - routes.begin();
   impl_->history.perform(
-      {[&live, &routes, index, source, target, route = *found] {
-         live.removeRoute(*source.live, route.fromField, *target.live, route.toField);
+      {[&file, &routes, index, source, target, route = *found] {
+         file.live().removeRoute(*source.live, route.fromField, *target.live, route.toField);
          routes.erase(routes.begin() + index);
        },
-       [&live, &routes, index, source, target, route = *found] {
-         live.addRoute(*source.live, route.fromField, *target.live, route.toField);
+       [&file, &routes, index, source, target, route = *found] {
+         file.live().addRoute(*source.live, route.fromField, *target.live, route.toField);
          routes.insert(routes.begin() + index, route);
        }});
   step.close();

@@ -6,11 +6,14 @@
 namespace xvrml {
 
 void History::begin(std::string name) {
-  if (depth_++ == 0) open_ = {std::move(name), {}};
+  if (begun_.empty()) open_ = {std::move(name), {}};
+  begun_.push_back(open_.edits.size());
 }
 
 void History::end() {
-  if (depth_ == 0 || --depth_ > 0 || open_.edits.empty()) return;
+  if (begun_.empty()) return;
+  begun_.pop_back();
+  if (!begun_.empty() || open_.edits.empty()) return;
   if (savedAt_ > done_) savedAt_ = ~size_t(0);
   steps_.resize(done_);
   steps_.push_back(std::exchange(open_, {}));
@@ -18,8 +21,9 @@ void History::end() {
 }
 
 void History::cancel() {
-  rollBack(0);
-  depth_ = 0;
+  if (begun_.empty()) return;
+  rollBack(begun_.back());
+  begun_.pop_back();
 }
 
 void History::rollBack(size_t edits) {
@@ -31,9 +35,10 @@ void History::rollBack(size_t edits) {
 
 void History::perform(Edit edit) {
   edit.redo();
-  const auto earlier = std::find_if(open_.edits.begin(), open_.edits.end(), [&](const Edit& one) {
-    return edit.node && one.node == edit.node && one.field == edit.field;
-  });
+  const auto earlier = std::find_if(
+      open_.edits.begin() + std::ptrdiff_t(begun_.back()), open_.edits.end(), [&](const Edit& one) {
+        return edit.node && one.node == edit.node && one.field == edit.field;
+      });
   if (earlier != open_.edits.end())
     earlier->redo = std::move(edit.redo);
   else
@@ -41,14 +46,14 @@ void History::perform(Edit edit) {
 }
 
 bool History::undo() {
-  if (depth_ > 0 || done_ == 0) return false;
+  if (isOpen() || done_ == 0) return false;
   Step& step = steps_[--done_];
   for (size_t i = step.edits.size(); i-- > 0;) step.edits[i].undo();
   return true;
 }
 
 bool History::redo() {
-  if (depth_ > 0 || done_ == steps_.size()) return false;
+  if (isOpen() || done_ == steps_.size()) return false;
   for (Edit& edit : steps_[done_++].edits) edit.redo();
   return true;
 }

@@ -19,7 +19,8 @@ struct Edit {
 
 class History {
  public:
-  // Edits from begin() to end() are one step; both may nest.
+  // Edits from begin() to end() are one step; both may nest. cancel() undoes what the innermost
+  // begin() has begun, and ends it.
   void begin(std::string name);
   void end();
   void cancel();
@@ -30,11 +31,11 @@ class History {
   std::string undoName() const;
   std::string redoName() const;
   // Returns whether the edits are others than when the file was saved.
-  bool isChanged() const { return done_ != savedAt_ || (depth_ > 0 && !open_.edits.empty()); }
+  bool isChanged() const { return done_ != savedAt_ || (isOpen() && !open_.edits.empty()); }
   void saved() { savedAt_ = done_; }
+  bool isOpen() const { return !begun_.empty(); }
 
  private:
-  friend class OpenStep;
   struct Step {
     std::string name;
     std::vector<Edit> edits;
@@ -46,20 +47,17 @@ class History {
   // Value of done_ at which the file was saved; ~0: it cannot be reached again.
   size_t savedAt_ = 0;
   Step open_;
-  size_t depth_ = 0; // number of begin() without end()
+  std::vector<size_t> begun_; // for each begin() without end(): the number of edits before
 };
 
 // A step, or a part of one, that is undone unless it is closed.
 class OpenStep {
  public:
-  OpenStep(History& history, std::string name)
-      : history_(history), edits_(history.depth_ > 0 ? history.open_.edits.size() : 0) {
+  OpenStep(History& history, std::string name) : history_(history) {
     history.begin(std::move(name));
   }
   ~OpenStep() {
-    if (closed_) return;
-    history_.rollBack(edits_);
-    --history_.depth_;
+    if (!closed_) history_.cancel();
   }
   OpenStep(const OpenStep&) = delete;
   OpenStep& operator=(const OpenStep&) = delete;
@@ -70,7 +68,6 @@ class OpenStep {
 
  private:
   History& history_;
-  const size_t edits_; // number of edits of the step before
   bool closed_ = false;
 };
 

@@ -125,12 +125,22 @@ class InPlaceWriter {
     std::unordered_map<std::string_view, const FieldText*> given; // the last one of a name counts
     for (const FieldText& field : place.fields) given[field.name] = &field;
     for (const FieldText& field : place.fields)
-      if (given[field.name] == &field) writeField(text, node, field);
+      if (given[field.name] == &field && field.faithful)
+        writeField(text, node, field);
+      else // its text stays as it is
+        for (const NodePlace& one : field.nodes) markWritten(one.node);
     std::vector<const FieldInfo*> absent;
     for (const FieldInfo& field : node.type().fields)
       if (holdsValue(field) && !given.contains(field.name)) absent.push_back(&field);
     addFields(text, node, place, absent);
     text_.copy(text, place.whole.end);
+  }
+
+  // Notes that a node has been written with all that its text has.
+  void markWritten(const Node* node) {
+    if (!node || !document_.hasText(*node) || !text_.written.insert(node).second) return;
+    for (const FieldText& field : document_.placeOf(*node).fields)
+      for (const NodePlace& one : field.nodes) markWritten(one.node);
   }
 
   // Adds fields that the text does not have, before the closing brace: in lines of their own if
@@ -222,6 +232,7 @@ class InPlaceWriter {
                      const FieldText& place) {
     const auto& children = *static_cast<const MFNode*>(node.storage(field));
     const std::string indentation(indentationAt(text.text, place.whole.begin));
+    if (place.nodes.empty() && children.empty()) return;
     text_.copy(text, place.value.begin);
     if (text.text[place.value.begin] == '[') {
       text_.copy(text, place.value.begin + 1);
@@ -309,7 +320,10 @@ class InPlaceWriter {
     } else if (startsLine(all, list.end)) { // a bracket in a line of its own
       text_.copy(list.text, lineBegin(all, list.end));
       text_.out += list.inner + nodes + feed_;
-    } else {
+    } else { // what could not be read stays
+      size_t rest = list.end;
+      while (rest > text_.at && isVrmlSpace(all[rest - 1])) --rest;
+      text_.copy(list.text, rest);
       text_.out += feed_ + list.inner + nodes + feed_ + list.outer;
       text_.at = list.end;
     }

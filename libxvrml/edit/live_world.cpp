@@ -9,6 +9,19 @@
 namespace xvrml {
 namespace {
 
+// Takes one of several equal roots out. Returns false if the node is no root, or the only one.
+bool removeOneOf(MFNode& roots, const NodeRef& node, size_t index) {
+  if (std::count(roots.begin(), roots.end(), node) < 2) return false;
+  if (index >= roots.size() || roots[index] != node)
+    index = size_t(std::find(roots.begin(), roots.end(), node) - roots.begin());
+  roots.erase(roots.begin() + std::ptrdiff_t(index));
+  return true;
+}
+
+void insertRoot(MFNode& roots, const NodeRef& node, size_t index) {
+  roots.insert(roots.begin() + std::ptrdiff_t(std::min(index, roots.size())), node);
+}
+
 class RunningWorld : public LiveWorld {
  public:
   explicit RunningWorld(Browser& browser) : browser_(browser) {}
@@ -21,12 +34,16 @@ class RunningWorld : public LiveWorld {
   }
   void addRoot(const NodeRef& node, size_t index) override {
     MFNode& roots = world().scope.roots;
-    const size_t before = roots.size();
-    browser_.addRoot(node);
-    if (roots.size() > before && index < before) // the browser appends
-      std::rotate(roots.begin() + std::ptrdiff_t(index), roots.end() - 1, roots.end());
+    if (std::find(roots.begin(), roots.end(), node) == roots.end()) {
+      browser_.addRoot(node); // appends it
+      std::erase(roots, node);
+    }
+    insertRoot(roots, node, index);
   }
-  void removeRoot(Node& node) override { browser_.removeRoot(node); }
+  void removeRoot(Node& node, size_t index) override {
+    if (!removeOneOf(world().scope.roots, NodeRef(&node), index)) browser_.removeRoot(node);
+  }
+  bool isReplaced() const override { return browser_.generation() != generation_; }
   bool addRoute(Node& from, const std::string& out, Node& to, const std::string& in) override {
     return browser_.addRoute(from, out, to, in);
   }
@@ -39,6 +56,7 @@ class RunningWorld : public LiveWorld {
 
  private:
   Browser& browser_;
+  const uint64_t generation_ = browser_.generation();
 };
 
 class RestingWorld : public LiveWorld {
@@ -57,10 +75,12 @@ class RestingWorld : public LiveWorld {
     return made->scope.roots;
   }
   void addRoot(const NodeRef& node, size_t index) override {
-    MFNode& roots = world_.scope.roots;
-    roots.insert(roots.begin() + std::ptrdiff_t(std::min(index, roots.size())), node);
+    insertRoot(world_.scope.roots, node, index);
   }
-  void removeRoot(Node& node) override { std::erase(world_.scope.roots, NodeRef(&node)); }
+  void removeRoot(Node& node, size_t index) override {
+    if (!removeOneOf(world_.scope.roots, NodeRef(&node), index))
+      std::erase(world_.scope.roots, NodeRef(&node));
+  }
   bool addRoute(Node& from, const std::string& out, Node& to, const std::string& in) override {
     world_.scope.routes.push_back({NodeRef(&from), out, NodeRef(&to), in, {}});
     return true;

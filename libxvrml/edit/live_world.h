@@ -19,7 +19,9 @@ class LiveWorld {
   // Makes nodes from a text without a header, as part of the world. name: for their places.
   virtual MFNode read(const std::string& text, const std::string& name) = 0;
   virtual void addRoot(const NodeRef& node, size_t index) = 0;
-  virtual void removeRoot(Node& node) = 0;
+  virtual void removeRoot(Node& node, size_t index) = 0;
+  // Returns whether another world has taken the place of this one.
+  virtual bool isReplaced() const { return false; }
   virtual bool addRoute(Node& from, const std::string& out, Node& to, const std::string& in) = 0;
   virtual void removeRoute(Node& from, const std::string& out, Node& to, const std::string& in) = 0;
   // Returns the name that nodes of read() have in their places.

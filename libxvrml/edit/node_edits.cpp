@@ -20,22 +20,29 @@ bool contains(const Node& root, const Node& searched) {
   });
 }
 
+// Sets the nodes of a field of the live world.
+void setLive(LiveWorld& live, const Slot& slot, Value value) {
+  if (!live.set(*slot.parent.live, slot.field->name, std::move(value)))
+    throw EditError(fmt::format("the world does not take the nodes of {}.{}",
+                                slot.parent.live->type().name, slot.field->name));
+}
+
 // Puts a node into a list of the live world, or takes it out.
 void insertLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
   if (!slot.field) return live.addRoot(node, slot.liveIndex);
   MFNode list = *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field));
   list.insert(list.begin() + std::ptrdiff_t(std::min(slot.liveIndex, list.size())), node);
-  live.set(*slot.parent.live, slot.field->name, std::move(list));
+  setLive(live, slot, std::move(list));
 }
 
 void eraseLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
-  if (!slot.field) return live.removeRoot(*node);
+  if (!slot.field) return live.removeRoot(*node, slot.liveIndex);
   MFNode list = *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field));
   size_t index = slot.liveIndex;
   if (index >= list.size() || list[index] != node) // Scripts may have moved it
     index = size_t(std::find(list.begin(), list.end(), node) - list.begin());
   if (index < list.size()) list.erase(list.begin() + std::ptrdiff_t(index));
-  live.set(*slot.parent.live, slot.field->name, std::move(list));
+  setLive(live, slot, std::move(list));
 }
 
 } // namespace
@@ -51,17 +58,22 @@ std::vector<Twin> NodeEdits::namedIn(const Twin& root) {
   return named;
 }
 
-// Brings the names of the live world up to date with the nodes that stand in the file.
+// Brings the names of the live world and of the document up to date with the nodes that stand in
+// the file.
 void NodeEdits::updateNames(const std::vector<Twin>& named) {
   if (named.empty()) return;
   const SeenNodes standing = file_.document().standing();
-  auto& names = file_.world().scope.names;
+  const auto update = [&](Scope& scope, const NodeRef& node, bool stands) {
+    const auto known = scope.names.find(node->defName);
+    if (stands && known == scope.names.end())
+      scope.names.emplace(node->defName, node);
+    else if (!stands && known != scope.names.end() && known->second == node)
+      scope.names.erase(known);
+  };
   for (const Twin& one : named) {
-    const auto known = names.find(one.live->defName);
-    if (standing.contains(one.document.get()))
-      names[one.live->defName] = one.live;
-    else if (known != names.end() && known->second == one.live)
-      names.erase(known);
+    const bool stands = standing.contains(one.document.get());
+    update(file_.world().scope, one.live, stands);
+    update(file_.document().scope(), one.document, stands);
   }
 }
 
@@ -72,7 +84,7 @@ void NodeEdits::setSingle(const Slot& slot, const Twin& node) {
   std::vector<Twin> named = namedIn(node);
   for (Twin& one : namedIn(before)) named.push_back(std::move(one));
   const auto put = [this, slot, &own, named](const Twin& twin) {
-    file_.live().set(*slot.parent.live, slot.field->name, twin.live);
+    setLive(file_.live(), slot, twin.live);
     file_.document().setNode(*slot.parent.document, own, twin.document);
     updateNames(named);
   };
@@ -133,7 +145,7 @@ void NodeEdits::nameFreshly(const Twin& root) {
   std::set<std::string, std::less<>> taken;
   for (const Twin& one : named) taken.insert(one.live->defName);
   for (const Twin& one : named) {
-    if (!document.names().contains(one.live->defName)) continue;
+    if (!document.scope().names.contains(one.live->defName)) continue;
     one.live->defName = document.freshName(one.live->defName, taken);
     document.rename(*one.document, one.live->defName);
     taken.insert(one.live->defName);

@@ -19,6 +19,7 @@
 #include "parse/other_formats.h"
 #include "parse/suffix.h"
 #include "parse/utf16.h"
+#include "system/files.h"
 #include "xvrml/comments.h"
 
 namespace xvrml {
@@ -123,34 +124,6 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
   out.fit();
 }
 
-} // namespace
-
-std::string packed(std::string_view text) {
-  z_stream stream{};
-  // 15 bits of window and a header of gzip.
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-  std::string out;
-  char buffer[1 << 15];
-  int status = Z_OK;
-  do {
-    const size_t step = std::min<size_t>(text.size(), size_t(1) << 30);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-    stream.avail_in = uInt(step);
-    text.remove_prefix(step);
-    do {
-      stream.next_out = reinterpret_cast<Bytef*>(buffer);
-      stream.avail_out = uInt(sizeof buffer);
-      status = deflate(&stream, text.empty() ? Z_FINISH : Z_NO_FLUSH);
-      out.append(buffer, sizeof buffer - stream.avail_out);
-    } while (stream.avail_out == 0);
-  } while (status != Z_STREAM_END);
-  deflateEnd(&stream);
-  return out;
-}
-
-namespace {
-
 bool isGzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
 std::string_view firstLine(std::string_view text) {
@@ -211,6 +184,17 @@ std::string TextBuffer::overLimitText() const {
          (share_.budget() ? share_.budget()->name() : std::string());
 }
 
+static FileStamp stampOf(const struct stat& status) {
+  const timespec time = os::modifiedTime(status);
+  return {int64_t(time.tv_sec), int64_t(time.tv_nsec), int64_t(status.st_size),
+          uint64_t(status.st_ino)};
+}
+
+FileStamp stampOf(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 ? stampOf(status) : FileStamp();
+}
+
 Source Source::open(const std::string& path, const Limits& limits, const BudgetPtr& budget) {
   Source source(budget);
   if (path == "-") {
@@ -225,6 +209,7 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
       refuse(path, fmt::format("this file cannot be read: {}", std::strerror(errno)));
     if (S_ISDIR(status.st_mode)) refuse(path, "this is a folder, not a world");
     if (!S_ISREG(status.st_mode)) refuse(path, "this is not a regular file");
+    source.stamp_ = stampOf(status);
     const auto size = static_cast<uint64_t>(status.st_size);
     if (size > limits.fileBytes)
       refuse(path, fmt::format("this file has {} bytes: more than limit fileBytes={}", size,
@@ -277,7 +262,8 @@ void Source::unpack(const std::string& name, const Limits& limits, const BudgetP
 Source::Source(Source&& other) noexcept
     : text_(other.text_), buffer_(std::move(other.buffer_)), damage_(std::move(other.damage_)),
       mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
-      packed_(other.packed_), byteOrderMark_(other.byteOrderMark_), utf16_(other.utf16_) {}
+      stamp_(other.stamp_), packed_(other.packed_), byteOrderMark_(other.byteOrderMark_),
+      utf16_(other.utf16_) {}
 
 Source::~Source() {
   if (mapping_) munmap(mapping_, mappedBytes_);
@@ -400,6 +386,7 @@ struct NameDeleter {
   uint64_t depth = 0;
   FileVersion version{};
   double metres = 1;
+  FileStamp stamp{};
   void operator()(const std::string* name) const { delete name; }
 };
 
@@ -430,6 +417,11 @@ double lengthUnit(const std::shared_ptr<const std::string>& file) {
 
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres) {
   if (NameDeleter* known = std::get_deleter<NameDeleter>(file)) known->metres = metres;
+}
+
+FileStamp fileStamp(const std::shared_ptr<const std::string>& file) {
+  const NameDeleter* known = std::get_deleter<NameDeleter>(file);
+  return known ? known->stamp : FileStamp();
 }
 
 FileVersion versionOf(const Node& node) { return fileVersion(node.source.file); }
@@ -468,7 +460,7 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
       comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   }
-  return {new std::string(name), NameDeleter{std::move(comments), depth, {}, 1}};
+  return {new std::string(name), NameDeleter{std::move(comments), depth, {}, 1, stamp_}};
 }
 
 std::string_view openingComments(const World& world) {

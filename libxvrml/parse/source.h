@@ -51,12 +51,20 @@ void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVe
 double lengthUnit(const std::shared_ptr<const std::string>& file);
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres);
 
+// Tells a file that has been written to since from one that has not; all 0: no file.
+struct FileStamp {
+  int64_t seconds = 0, nanoseconds = 0, bytes = 0;
+  uint64_t number = 0;
+  bool operator==(const FileStamp&) const = default;
+};
+// Returns the stamp of a file as it is now.
+FileStamp stampOf(const std::string& path);
+// Returns the stamp that the file of this name had when its world was loaded.
+FileStamp fileStamp(const std::shared_ptr<const std::string>& file);
+
 // Returns a text without what old systems put behind its end: the byte 0x1A, zeros up to the end of
 // a disk's sector, and the blanks around these.
 std::string_view withoutDosEnd(std::string_view text);
-
-// Returns the bytes of a gzip file with this text. Throws std::bad_alloc.
-std::string packed(std::string_view text);
 
 class Source {
  public:
@@ -83,6 +91,7 @@ class Source {
   bool isPacked() const { return packed_; } // gzip
   bool hasByteOrderMark() const { return byteOrderMark_; }
   bool isUtf16() const { return utf16_; }
+  const FileStamp& stamp() const { return stamp_; }
   // Finds out what the file is: by its content or, where that says nothing, by its suffix. The name
   // `file` then carries the version (fileVersion). Throws LoadError if this is no world that can be
   // read. Warns if its header is not exact (ISO/IEC 14772-1 4.2.2, ISO/IEC 19776-2 4.3.2.2).
@@ -99,6 +108,7 @@ class Source {
   std::string damage_; // error in gzip data that could be read in part
   void* mapping_ = nullptr;
   size_t mappedBytes_ = 0;
+  FileStamp stamp_;
   bool packed_ = false;
   bool byteOrderMark_ = false; // the text began with a byte-order mark, which text_ leaves out
   bool utf16_ = false;         // the bytes were in UTF-16, and text_ is their UTF-8

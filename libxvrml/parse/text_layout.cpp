@@ -6,13 +6,23 @@
 
 namespace xvrml {
 
-// Returns where the keyword before a name begins; the name's own place if something else stands
-// between them.
+// Returns where the keyword before a name begins, also if comments stand between them; the name's
+// own place if something else does.
 size_t LayoutRecorder::keywordBefore(const Name& name, std::string_view keyword) const {
   const std::string_view text = locator_.text();
   const size_t own = offset(name.at);
   size_t at = own;
-  while (at > 0 && isVrmlSpace(text[at - 1])) --at;
+  for (;;) {
+    const size_t line = at == 0 ? 0 : text.find_last_of("\r\n", at - 1) + 1; // npos + 1 is 0
+    while (at > line && isVrmlSpace(text[at - 1])) --at;
+    if (const size_t comment = text.substr(line, at - line).rfind('#'); comment != text.npos) {
+      size_t before = line + comment;
+      while (before > line && isVrmlSpace(text[before - 1])) --before;
+      if (before == line || text.substr(line, before - line).ends_with(keyword)) at = before;
+    }
+    if (at > line || line == 0) break;
+    at = line - 1; // nothing but a comment stands in this line
+  }
   return at >= keyword.size() && text.substr(at - keyword.size(), keyword.size()) == keyword
              ? at - keyword.size()
              : own;
@@ -115,8 +125,13 @@ void LayoutRecorder::beginPrototype(const Name& name, std::string_view keyword) 
   layout_.prototypes.push_back({{keywordBefore(name, keyword), 0}, place.line, place.column});
 }
 
-void LayoutRecorder::endPrototype() {
-  if (--prototypes_ == 0) layout_.prototypes.back().whole.end = placed_.end;
+// good: the world has the prototype; the text of another one is left as it is.
+void LayoutRecorder::endPrototype(bool good) {
+  if (--prototypes_ > 0) return;
+  if (good)
+    layout_.prototypes.back().whole.end = placed_.end;
+  else
+    layout_.prototypes.pop_back();
 }
 
 void LayoutRecorder::openProto(const Name& name) {
@@ -125,7 +140,7 @@ void LayoutRecorder::openProto(const Name& name) {
 }
 
 void LayoutRecorder::closeProto(bool good) {
-  endPrototype();
+  endPrototype(good);
   builder_.closeProto(good);
 }
 
@@ -135,7 +150,7 @@ void LayoutRecorder::openExternProto(const Name& name) {
 }
 
 void LayoutRecorder::closeExternProto(bool good) {
-  endPrototype();
+  endPrototype(good);
   builder_.closeExternProto(good);
 }
 

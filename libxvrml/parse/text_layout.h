@@ -31,6 +31,7 @@ struct FieldText {
   std::vector<NodePlace> nodes; // what stands in the value of an SFNode or MFNode
   bool declared = false;        // a Script declares the field: it has a value in any case
   bool readable = false;        // the whole value could be read
+  bool faithful = false;        // the world has taken all of it
 };
 
 struct NodeText {
@@ -137,7 +138,7 @@ class LayoutRecorder : public ParseSink {
   void endField(bool good);
   void add(const NodePlace& place);
   void beginPrototype(const Name& name, std::string_view keyword);
-  void endPrototype();
+  void endPrototype(bool good);
 
   Builder& builder_;
   Locator& locator_;

@@ -78,6 +78,55 @@ def test_an_exception_undoes_the_step(lamp):
     assert lamp.edit.text() == LAMP
 
 
+def test_steps_within_steps(lamp):
+    with lamp.edit("Outer"):
+        lamp["L"].intensity = .5
+        try:
+            with lamp.edit("Inner"):
+                lamp["L"].intensity = .25
+                raise KeyError
+        except KeyError:
+            pass
+        assert lamp["L"].intensity == .5
+        lamp["L"].on = False
+        with pytest.raises(xvrml.EditError, match="a step is open"):
+            lamp.edit.save()
+    assert lamp.edit.undo() == "Outer" and lamp.edit.text() == LAMP
+
+
+def test_a_route_is_undone_once_the_world_runs(lamp):
+    lamp.edit.add_route(lamp["L"], "on_changed", lamp["L"], "set_on")
+    lamp.time = 1
+    assert lamp.edit.undo() == "Add route" and lamp.edit.text() == LAMP
+
+
+def test_the_file_that_was_loaded_is_edited(lamp, tmp_path, monkeypatch):
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "l.wrl").write_text(LAMP)
+    monkeypatch.chdir(tmp_path)
+    world = xvrml.load("l.wrl")
+    monkeypatch.chdir(tmp_path / "sub")
+    with pytest.raises(xvrml.EditError, match="load it again"):
+        world.edit.set(world["L"], "on", False)
+    monkeypatch.chdir(tmp_path)
+    world = xvrml.load("l.wrl")
+    world.edit.set(world["L"], "on", False)
+    (tmp_path / "l.wrl").write_text(LAMP + "# others\n")
+    with pytest.raises(xvrml.EditError, match="another program"):
+        world.edit.save(tmp_path / "l.wrl")
+
+
+def test_another_world_is_not_saved_over(tmp_path):
+    (tmp_path / "next.wrl").write_text(HEAD + "DEF NEXT Group { }\n")
+    (tmp_path / "w.wrl").write_text(
+        HEAD + 'DEF L PointLight { }\nDEF A Anchor { url "next.wrl" children Shape { } }\n')
+    browser = xvrml.Browser(str(tmp_path / "w.wrl"))
+    browser.edit.set(browser["L"], "on", False)
+    browser.replace([xvrml.Group()]) if hasattr(browser, "replace") else browser.load_url(["next.wrl"])
+    with pytest.raises(xvrml.EditError, match="another world"):
+        browser.edit.save()
+
+
 def test_nodes(lamp):
     edit = lamp.edit
     box = edit.insert("Shape { geometry Box { } }", lamp["G"])

@@ -38,9 +38,9 @@ TEST(ChangedValue, ElementsAreInsertedAndRemovedInTheirPlace) {
             "[ 0 0, # a\n 1 1, # b\n 2 2, 3 3 ]");
   EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 9 9 0 0 1 1 2 2 ]"),
             "[ 9 9, 0 0, # a\n 1 1, # b\n 2 2 ]");
-  EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 0 0 2 2 ]"), "[ 0 0, # a\n 2 2 ]");
-  EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 0 0 1 1 ]"), "[ 0 0, # a\n 1 1 ]");
-  EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 1 1 2 2 ]"), "[ 1 1, # b\n 2 2 ]");
+  EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 0 0 2 2 ]"), "[ 0 0, # a\n # b\n 2 2 ]");
+  EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 0 0 1 1 ]"), "[ 0 0, # a\n 1 1, # b\n ]");
+  EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 1 1 2 2 ]"), "[ # a\n 1 1, # b\n 2 2 ]");
   EXPECT_EQ(changed(FieldType::MFVec2f, list, "[ 0 0 5 5 6 6 2 2 ]"),
             "[ 0 0, # a\n 5 5, 6 6, # b\n 2 2 ]");
   EXPECT_EQ(changed(FieldType::MFInt32, "[ 1 2 3 ]", "[ 1 3 ]"), "[ 1 3 ]");

@@ -2,7 +2,7 @@
 // refused.
 #include <random>
 
-#include "parse/source.h"
+#include "edit/gzip.h"
 #include "unit/xvrml_parser_support.h"
 #include "xvrml/edit.h"
 #include "xvrml/walk.h"
@@ -152,7 +152,9 @@ TEST_P(Edited, NamesChangeWithAllReferences) {
   EXPECT_EQ(&node("Clock"), world().scope.roots[0].get());
   undoAll();
   EXPECT_EQ(refusal([&] { editor->rename(node("Clock"), "I"); }), "another node is named I");
-  EXPECT_EQ(refusal([&] { editor->rename(node("Clock"), "1 2"); }), "'1 2' is no name for a node");
+  for (const char* name : {"1 2", "", "NULL", "1a", "-1", "a.b", "\x7f"})
+    EXPECT_EQ(refusal([&] { editor->rename(node("Clock"), name); }),
+              "'" + std::string(name) + "' is no name for a node");
 }
 
 TEST_P(Edited, RoutesAreAddedAndRemoved) {
@@ -305,6 +307,121 @@ TEST(Editor, FilesThatCannotBeEditedAreSaid) {
   EXPECT_NE(why("a.stl", "solid a\nendsolid\n").find("is STL"), std::string::npos);
   const auto world = loadWorldFromMemory("#VRML V2.0 utf8\n", "-");
   EXPECT_EQ(Editor(*world).whyReadOnly(), "the world does not come from a file");
+}
+
+TEST_P(Edited, WhatCouldNotBeReadStaysAsItIs) {
+  for (const char* body :
+       {"PROTO P [ Foo { x 1 } ] { Group { } }\nGroup { }\n", "PROTO P\n",
+        "PROTO P [ ] Group { }\n", "Shape { geometry DEF X Group { } }\n",
+        "Group { children Box { } }\n",
+        "Group { children [ Foo { a 1 } NULL DEF A Group { children USE A } ] }\n",
+        "DEF G Group { children\n}\n", "Group { children [ USE # c\n NONE ] }\n",
+        "Shape { appearance Appearance { texture DEF T ImageTexture { } texture USE T } }\n",
+        "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 foo 1 1 1 ] } } }\n",
+        "Group { children DEF C Shape { } children DEF D Shape { } }\n"}) {
+    const std::string text = "#VRML V2.0 utf8\nDEF L PointLight { }\n" + std::string(body);
+    const auto loaded = loadWorld(folder.write("f.wrl", text));
+    Editor faulty(*loaded);
+    EXPECT_EQ(faulty.text(), text);
+    faulty.remove({nullptr, "", 0});
+    EXPECT_TRUE(faulty.undo());
+    EXPECT_EQ(faulty.text(), text);
+  }
+  const auto loaded = loadWorld(
+      folder.write("f.wrl", "#VRML V2.0 utf8\nDEF G Group { children [ # c\n Foo { a 1 } ] }\n"
+                            "DEF H Group { children [ Box { } ] }\n"));
+  Editor faulty(*loaded);
+  faulty.insert({loaded->scope.names.at("G").get(), "children", 0}, "Group { }");
+  EXPECT_EQ(faulty.text(), "#VRML V2.0 utf8\nDEF G Group { children [ # c\n Foo { a 1 }\n"
+                           "  Group { }\n] }\nDEF H Group { children [ Box { } ] }\n");
+  EXPECT_THROW(faulty.insert({loaded->scope.names.at("H").get(), "children", 0}, "Group { }"),
+               EditError);
+}
+
+TEST_P(Edited, CommentsBetweenKeywordsAndNames) {
+  load("DEF # a\n A Group { }\nGroup { children [ USE # b\n A ] }\nGroup { children USE # c\n A "
+       "}\n");
+  EXPECT_EQ(text(), body());
+  editor->rename(node("A"), "B");
+  EXPECT_EQ(text(), "DEF # a\n B Group { }\nGroup { children [ USE B ] }\n"
+                    "Group { children USE B }\n");
+  undoAll();
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text().substr(0, 31), "Group { children [ DEF # a\n B G");
+}
+
+TEST_P(Edited, NodesThatStandSeveralTimes) {
+  load("DEF G Group { children [ DEF A Group { } DEF B Group { } USE A ] }\n");
+  editor->insert({&node("G"), "children", 3}, "PointLight { }");
+  EXPECT_EQ(text(),
+            "DEF G Group { children [ DEF A Group { } DEF B Group { } USE A PointLight { } ] }\n");
+  editor->use({nullptr, "", 1}, node("G"));
+  EXPECT_EQ(world().scope.roots.size(), 2u);
+  editor->undo();
+  EXPECT_EQ(world().scope.roots.size(), 1u);
+  EXPECT_EQ(world().scope.roots[0].get(), &node("G"));
+}
+
+TEST_P(Edited, NestedStepsAreCancelledAlone) {
+  load("DEF L PointLight { }\n");
+  editor->begin("Outer");
+  editor->set(node("L"), "intensity", .5f);
+  editor->begin("Inner");
+  editor->set(node("L"), "intensity", .25f);
+  editor->cancel();
+  EXPECT_EQ((field<SFFloat>(node("L"), "intensity")), .5f);
+  editor->end();
+  EXPECT_EQ(editor->undoName(), "Outer");
+  undoAll();
+}
+
+TEST(Editor, RoutesAreUndoneAlsoOnceTheWorldRuns) {
+  const Folder folder;
+  auto loaded = loadWorld(folder.write("w.wrl", "#VRML V2.0 utf8\nDEF L PointLight { }\n"));
+  Editor editor(*loaded);
+  Node& lamp = *loaded->scope.names.at("L");
+  editor.addRoute(lamp, "on_changed", lamp, "set_on");
+  Browser browser(std::move(loaded));
+  editor.run(browser);
+  EXPECT_TRUE(editor.undo());
+  EXPECT_TRUE(editor.redo());
+}
+
+TEST(Editor, AFileThatHasBeenWrittenToSinceIsNotEdited) {
+  const Folder folder;
+  const std::string path = folder.write(
+      "w.wrl", "#VRML V2.0 utf8\nDEF S Script { field SFFloat a 1 field SFFloat b 2 }\n");
+  const auto world = loadWorld(path);
+  folder.write("w.wrl", "#VRML V2.0 utf8\nDEF S Script { field SFFloat a 1 }\n");
+  Editor editor(*world);
+  try {
+    editor.set(*world->scope.names.at("S"), "b", 3.f);
+    FAIL();
+  } catch (const EditError& error) {
+    EXPECT_EQ(error.what(),
+              path + " has been written to since the world was loaded: load it again");
+  }
+}
+
+TEST(Editor, AnotherWorldIsNotEdited) {
+  const Folder folder;
+  Browser browser(loadWorld(folder.write("w.wrl", "#VRML V2.0 utf8\nDEF L PointLight { }\n")));
+  Editor editor(browser);
+  editor.set(*browser.node("L"), "on", false);
+  browser.replaceWorld({browser.createNode("Group")});
+  EXPECT_THROW(editor.text(), EditError);
+  EXPECT_THROW(editor.undo(), EditError);
+}
+
+TEST(Editor, FilesThatImportKeepTheirNodes) {
+  const Folder folder;
+  const auto world = loadWorld(folder.write(
+      "w.x3dv", "#X3D V3.3 utf8\nPROFILE Immersive\nDEF I Inline { }\nIMPORT I.A AS B\n"
+                "DEF L PointLight { }\n"));
+  Editor editor(*world);
+  editor.set(*world->scope.names.at("L"), "on", false);
+  EXPECT_THROW(editor.remove({nullptr, "", 0}), EditError);
+  EXPECT_THROW(editor.rename(*world->scope.names.at("L"), "B"), EditError);
 }
 
 // Random edits, all undone, give the file back; all done again, the edited one.

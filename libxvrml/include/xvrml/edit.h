@@ -50,7 +50,8 @@ class Editor {
   // --- Steps ---
   // Edits from begin() to end() are one step, which is undone as a whole; other edits are a step
   // each. Further values of a field within a step take the place of earlier ones. begin() and end()
-  // may nest; the outermost name counts. cancel() undoes the open step, if there is one.
+  // may nest; the outermost name counts. cancel() undoes and ends what the innermost
+  // begin() has begun.
   void begin(std::string name);
   void end();
   void cancel();
