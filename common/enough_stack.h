@@ -20,9 +20,21 @@ inline size_t stackLeft() {
   return lowest && &here > lowest ? size_t(&here - lowest) : 0;
 }
 
+// AddressSanitizer puts guards around the variables of functions, which then need a larger stack.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define OPENRT_GUARDED_STACK
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define OPENRT_GUARDED_STACK
+#endif
+
 // Runs work() on this thread if `bytes` of its stack are free, otherwise on another thread while
 // this one waits. Returns the result of work() and rethrows its exceptions.
 template <class Work> auto onStackOf(size_t bytes, const Work& work) -> decltype(work()) {
+#ifdef OPENRT_GUARDED_STACK
+  bytes *= 6;
+#endif
   const size_t left = stackLeft();
   if (left == 0 || left >= bytes) return work();
   struct Job {

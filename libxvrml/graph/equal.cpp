@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "enough_stack.h"
 #include "graph/field_access.h"
 #include "xvrml/world.h"
 
@@ -152,10 +153,13 @@ class Comparison {
 } // namespace
 
 bool equalScopes(const Scope& a, const Scope& b, std::string* difference) {
-  Comparison comparison;
-  const bool equal = comparison.scopes(a, b);
-  if (difference) *difference = std::move(comparison.difference);
-  return equal;
+  constexpr size_t deepestStack = size_t(6) << 20; // bytes; recursion follows the nodes
+  return onStackOf(deepestStack, [&] {
+    Comparison comparison;
+    const bool equal = comparison.scopes(a, b);
+    if (difference) *difference = std::move(comparison.difference);
+    return equal;
+  });
 }
 
 } // namespace xvrml
