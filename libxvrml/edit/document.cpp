@@ -10,11 +10,6 @@
 #include "parse/loader.h"
 
 namespace xvrml {
-namespace {
-
-uint64_t keyOf(const SourcePosition& place) { return uint64_t(place.line) << 32 | place.column; }
-
-} // namespace
 
 Document::Document(std::string text, const std::string& path, const LoadOptions& options)
     : options_([&] {
@@ -70,9 +65,10 @@ static bool isWhole(const Node& node, const FieldInfo& field,
 
 void Document::index(DocumentText& text) {
   std::unordered_set<uint64_t> routes;
-  for (const Route& route : text.world->scope.routes) routes.insert(keyOf(route.source));
+  for (const Route& route : text.world->scope.routes)
+    routes.insert(placeKey(route.source.line, route.source.column));
   for (RouteText& route : text.layout.routes)
-    route.valid = routes.contains(uint64_t(route.line) << 32 | route.column);
+    route.valid = routes.contains(placeKey(route.line, route.column));
   keepThoseIn(text.world->scope.roots, text.layout.roots);
   std::set<std::string, std::less<>> names;
   for (auto& [node, place] : text.layout.nodes) {
@@ -81,7 +77,7 @@ void Document::index(DocumentText& text) {
       field.faithful =
           info && (holdsNodes(*info) ? isWhole(*node, *info, field.nodes) : field.readable);
     }
-    text.byPlace.emplace(keyOf(node->source), const_cast<Node*>(node));
+    text.byPlace.emplace(placeKey(node->source.line, node->source.column), const_cast<Node*>(node));
     owners_.emplace(node, &text);
     if (!node->defName.empty() && !names.insert(node->defName).second)
       repeated_.insert(node->defName);
@@ -92,7 +88,7 @@ Node* Document::find(const SourcePosition& place) const {
   if (!place.file) return nullptr;
   const auto text = byName_.find(*place.file);
   if (text == byName_.end()) return nullptr;
-  const auto found = text->second->byPlace.find(keyOf(place));
+  const auto found = text->second->byPlace.find(placeKey(place.line, place.column));
   return found == text->second->byPlace.end() ? nullptr : found->second;
 }
 

@@ -86,9 +86,7 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
                                   given.index > 0 ? "one node" : "no node"));
     return slot;
   }
-  const MFNode& list = slot.field
-                           ? *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field))
-                           : world().scope.roots;
+  const MFNode& list = liveList(slot);
   slot.liveIndex = given.index;
   if (given.index + (holds ? 1 : 0) > list.size())
     throw EditError(fmt::format("there is no place {} among {} nodes", given.index, list.size()));
@@ -129,9 +127,7 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
 Node* EditedFile::nodeAt(const Slot& slot) {
   if (slot.isSingle())
     return static_cast<const NodeRef*>(slot.parent.live->storage(*slot.field))->get();
-  const MFNode& list = slot.field
-                           ? *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field))
-                           : world().scope.roots;
+  const MFNode& list = liveList(slot);
   return slot.liveIndex < list.size() ? list[slot.liveIndex].get() : nullptr;
 }
 

@@ -91,22 +91,24 @@ void NodeEdits::setSingle(const Slot& slot, const Twin& node) {
   history_.perform({[put, node] { put(node); }, [put, before] { put(before); }});
 }
 
-void NodeEdits::insertAt(const Slot& slot, const Twin& node) {
-  insertLive(file_.live(), slot, node.live);
-  file_.document().insert(slot.parent.document.get(), slot.field, slot.index, node.document);
-}
-
-void NodeEdits::eraseAt(const Slot& slot, const Twin& node) {
-  eraseLive(file_.live(), slot, node.live);
-  file_.document().erase(slot.parent.document.get(), slot.field, slot.index);
+// Returns a function that puts a node into a list (true) or takes it out (false), in both worlds.
+std::function<void(bool)> NodeEdits::listChange(const Slot& slot, const Twin& node) {
+  return [this, slot, node, named = namedIn(node)](bool inserts) {
+    Node* const parent = slot.parent.document.get();
+    if (inserts) {
+      insertLive(file_.live(), slot, node.live);
+      file_.document().insert(parent, slot.field, slot.index, node.document);
+    } else {
+      eraseLive(file_.live(), slot, node.live);
+      file_.document().erase(parent, slot.field, slot.index);
+    }
+    updateNames(named);
+  };
 }
 
 void NodeEdits::place(const Slot& slot, const Twin& node) {
   if (slot.isSingle()) return setSingle(slot, node);
-  const auto change = [this, slot, node, named = namedIn(node)](bool inserts) {
-    inserts ? insertAt(slot, node) : eraseAt(slot, node);
-    updateNames(named);
-  };
+  const auto change = listChange(slot, node);
   history_.perform({[change] { change(true); }, [change] { change(false); }});
 }
 
@@ -116,10 +118,7 @@ Twin NodeEdits::take(const Slot& slot) {
     setSingle(slot, {});
     return node;
   }
-  const auto change = [this, slot, node, named = namedIn(node)](bool inserts) {
-    inserts ? insertAt(slot, node) : eraseAt(slot, node);
-    updateNames(named);
-  };
+  const auto change = listChange(slot, node);
   history_.perform({[change] { change(false); }, [change] { change(true); }});
   return node;
 }

@@ -3,6 +3,7 @@
 // world.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,7 @@ class NodeEdits {
 
  private:
   void setSingle(const Slot& slot, const Twin& node);
-  void insertAt(const Slot& slot, const Twin& node);
-  void eraseAt(const Slot& slot, const Twin& node);
+  std::function<void(bool)> listChange(const Slot& slot, const Twin& node);
   std::vector<Twin> namedIn(const Twin& root);
   void updateNames(const std::vector<Twin>& named);
 

@@ -6,11 +6,6 @@
 #include "edit/lines.h"
 
 namespace xvrml {
-namespace {
-
-uint64_t placeKey(uint32_t line, uint32_t column) { return uint64_t(line) << 32 | column; }
-
-} // namespace
 
 TextCopier::TextCopier(const Document& document, std::vector<const PrototypeText*> lifted)
     : document_(document), lifted_(std::move(lifted)), declared_(lifted_.begin(), lifted_.end()) {

@@ -1,5 +1,6 @@
 // text_copier.h: copies the text of a document from a place on, but for the parts that are replaced
-// or removed, and for the routes that have been edited. Internal; one thread at a time.
+// or removed, for routes that have been edited, and for prototypes that must stand further up.
+// Internal; one thread at a time.
 #pragma once
 
 #include <string>

@@ -11,6 +11,9 @@
 
 namespace xvrml {
 
+// Returns a key for a place in a file.
+inline uint64_t placeKey(uint32_t line, uint32_t column) { return uint64_t(line) << 32 | column; }
+
 // A part of a text, in bytes from its beginning.
 struct TextSpan {
   size_t begin = 0, end = 0;
