@@ -1,11 +1,9 @@
 // editor.cpp: Implements the Python class Editor, which edits the file of a world. [GIL held]
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include <pybind11/stl.h>
 
-#include "libpicture/files/atomic_file.h"
+#include "libpicture/files/save_edits.h"
 #include "objects.h"
 #include "xvrml/edit.h"
 
@@ -143,22 +141,15 @@ py::object step(const EditorObject& self, bool again) {
 }
 
 void save(const EditorObject& self, const py::object& given, bool overwrite) {
-  const std::string own = self.world->graph().path;
-  const std::string path = given.is_none() ? own : toPath(given);
+  const std::string path = given.is_none() ? "" : toPath(given);
   if (self.world->openSteps > 0) throw EditError("a step is open: save after its block");
-  std::error_code none;
-  const bool isOwn = path == own || std::filesystem::equivalent(path, own, none);
   std::string failure;
   edit(self, [&](Editor& editor) {
-    const std::string bytes = editor.bytes();
-    if (isOwn && !overwrite && editor.isChangedOnDisk())
-      throw EditError(fmt::format("{} has been written by another program since it was read: "
-                                  "overwrite=True replaces it",
-                                  path));
     try {
-      picture::writeFile(path, bytes, picture::Wait::disk);
-      if (isOwn) editor.saved();
-    } catch (const std::runtime_error& error) { failure = error.what(); }
+      picture::saveEdits(editor, self.world->graph(), path, overwrite);
+    } catch (const EditError&) { throw; } catch (const std::runtime_error& error) {
+      failure = error.what();
+    }
   });
   raiseOsError(failure);
 }

@@ -1,0 +1,39 @@
+// world_editor.h: Edits the world of a session: the editor of its file, and the nodes that are
+// selected. All faces (the window, programs) edit through it, so they share one selection and one
+// history. Owned by a session. [the browser's thread, while the world can be used]
+#pragma once
+
+#include <string>
+
+#include "xvrml/edit.h"
+
+namespace vv {
+
+class WorldEditor {
+ public:
+  // The browser must outlive the editor. The file is read at the first edit.
+  explicit WorldEditor(xvrml::Browser& browser) : browser_(browser), editor_(browser) {}
+
+  xvrml::Editor& editor() { return editor_; }
+  xvrml::Browser& browser() { return browser_; }
+
+  // The nodes that are selected, in the order of their selection. A node stays selected when it has
+  // been removed from the world, until another is selected.
+  const xvrml::MFNode& selection() const { return selection_; }
+  void select(xvrml::MFNode nodes) { selection_ = std::move(nodes); }
+  // Returns the node that was selected last; null: none is selected.
+  xvrml::Node* selected() const { return selection_.empty() ? nullptr : selection_.back().get(); }
+
+  // Undo the last step, or do it again. Return its name; empty: there is none. Throw EditError.
+  std::string undo();
+  std::string redo();
+  // Writes the file. See picture::saveEdits.
+  void save(const std::string& path = "", bool overwrite = false);
+
+ private:
+  xvrml::Browser& browser_;
+  xvrml::Editor editor_;
+  xvrml::MFNode selection_;
+};
+
+} // namespace vv
