@@ -10,7 +10,7 @@
 namespace vv {
 
 struct PropertyRow {
-  const xvrml::FieldInfo* field = nullptr; // of the node's type
+  const xvrml::FieldInfo* field = nullptr; // a row of the node's type
   xvrml::Value value;                      // empty for lists that are too long to be shown
   size_t size = 0;                         // elements of a list
   bool isDefault = false;

@@ -16,6 +16,7 @@ std::string WorldEditor::redo() {
 
 void WorldEditor::save(const std::string& path, bool overwrite) {
   picture::saveEdits(editor_, browser_.world(), path, overwrite);
+  ++saves_;
 }
 
 } // namespace vv

@@ -3,7 +3,9 @@
 // history. Owned by a session. [the browser's thread, while the world can be used]
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include "xvrml/edit.h"
 
@@ -27,13 +29,18 @@ class WorldEditor {
   // Undo the last step, or do it again. Return its name; empty: there is none. Throw EditError.
   std::string undo();
   std::string redo();
+  // Tells whether there are edits that have not been saved.
+  bool isChanged() const { return editor_.isChanged(); }
   // Writes the file. See picture::saveEdits.
   void save(const std::string& path = "", bool overwrite = false);
+  // How often the file has been saved: it differs then from what was read.
+  uint64_t saves() const { return saves_; }
 
  private:
   xvrml::Browser& browser_;
   xvrml::Editor editor_;
   xvrml::MFNode selection_;
+  uint64_t saves_ = 0;
 };
 
 } // namespace vv

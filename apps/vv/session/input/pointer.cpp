@@ -39,7 +39,8 @@ void Pointer::press(const InputEvent& event) {
   if (drag_ != Drag::none) return;
   pressed_ = event;
   send();
-  drag_ = event.button == Button::left && isOverSensor() ? Drag::sensor : Drag::view;
+  drag_ =
+      event.button == Button::left && isOverSensor() && !event.forView ? Drag::sensor : Drag::view;
   if (drag_ == Drag::sensor) send();
 }
 
