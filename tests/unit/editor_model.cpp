@@ -90,6 +90,26 @@ TEST_F(Model, ASelectionIsRevealedAndFramed) {
   EXPECT_NEAR(most, 3 / (9 * std::tan(0.785398 / 2)), 1e-4);
 }
 
+TEST_F(Model, TheViewerGoesToTheSelection) {
+  model.select(world.node("LEG"), false);
+  update();
+  for (const double aspect : {0.5, 1.0, 2.0}) {
+    view.aspect = aspect;
+    view.camera = model.cameraAround(world.editor, view);
+    update();
+    double most = 0;
+    for (const EditModel::Line& line : model.frames())
+      for (const double place : {line.x0, line.y0, line.x1, line.y1})
+        most = std::max(most, std::abs(place));
+    EXPECT_LT(most, 1) << aspect;
+    EXPECT_GT(most, 0.4) << aspect;
+  }
+  model.select(nullptr, false);
+  update();
+  const CameraSettings same = model.cameraAround(world.editor, view);
+  EXPECT_TRUE(std::equal(same.matrix, same.matrix + 16, view.camera.matrix));
+}
+
 TEST_F(Model, ALampHasNoFrameOfItsNeighbours) {
   model.select(world.node("LAMP"), false);
   update();
@@ -119,7 +139,7 @@ TEST_F(Model, ADragIsOneStep) {
     model.drag(world.node("LAMP"), *intensity.field, value);
     update();
   }
-  model.endDrag();
+  model.setActive(false);
   update();
   EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.5f);
   EXPECT_EQ(model.undoName(), "Set PointLight.intensity");
@@ -138,7 +158,7 @@ TEST_F(Model, WrongValuesAreSaidAndChangeNothing) {
   const FieldInfo& field = *row(model, "intensity").field;
   for (const float value : {-1.f, 2.f, std::numeric_limits<float>::quiet_NaN()}) {
     model.drag(world.node("LAMP"), field, value);
-    model.endDrag();
+    model.setActive(false);
     update();
     EXPECT_NE(model.takeMessage().find("PointLight.intensity"), std::string::npos);
     EXPECT_EQ(model.takeMessage(), "");

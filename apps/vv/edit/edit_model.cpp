@@ -1,7 +1,9 @@
 #include "edit/edit_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,8 +58,9 @@ void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
   });
 }
 
-void EditModel::endDrag() {
-  if (std::exchange(isDragging_, false))
+void EditModel::setActive(bool active) {
+  if (std::exchange(isActive_, active) && !active) isStale_ = true;
+  if (!active && std::exchange(isDragging_, false))
     request([](WorldEditor& editor) { editor.editor().end(); });
 }
 
@@ -113,17 +116,43 @@ void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
   if (std::exchange(isStale_, false)) {
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
-    sheet_ = sheetOf(editor, NodeRef(editor.selected()));
+    if (!isActive_ || sheet_.node.get() != editor.selected())
+      sheet_ = sheetOf(editor, NodeRef(editor.selected()));
     undoName_ = editor.editor().undoName();
     redoName_ = editor.editor().redoName();
     unsaved_ = editor.isChanged();
-  } else if (sheet_.node) {
+  } else if (sheet_.node && !isActive_) {
     refresh(sheet_);
   }
   if (!shown_) return;
   const NodeRef wanted = std::exchange(shown_, NodeRef());
   for (size_t i = 0; i < rows_.size(); ++i)
     if (rows_[i].node == wanted) scroll_ = int(i);
+}
+
+CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view) const {
+  double low[3], high[3];
+  std::fill(low, low + 3, std::numeric_limits<double>::infinity());
+  std::fill(high, high + 3, -std::numeric_limits<double>::infinity());
+  std::array<std::array<double, 3>, 8> corners;
+  for (const NodeRef& node : selection_) {
+    if (!boxOf(editor.browser(), node, corners)) continue;
+    for (const std::array<double, 3>& corner : corners)
+      for (size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], corner[k]);
+        high[k] = std::max(high[k], corner[k]);
+      }
+  }
+  CameraSettings camera = view.camera;
+  const double radius = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2;
+  if (!std::isfinite(radius)) return camera;
+  // A sphere around the box fills nine tenths of the smaller side.
+  const double tangent = std::tan(camera.fovy / 2) * std::min(1.0, view.aspect);
+  const double distance = camera.fovy > 0 ? radius / std::sin(std::atan(tangent * .9)) : radius * 2;
+  for (size_t k = 0; k < 3; ++k)
+    camera.matrix[12 + k] =
+        (low[k] + high[k]) / 2 + camera.matrix[8 + k] * std::max(distance, 1e-6);
+  return camera;
 }
 
 std::vector<EditModel::Line> EditModel::framesOf(WorldEditor& editor, const EditView& view) const {

@@ -43,6 +43,9 @@ class EditModel {
   const std::string& readOnly() const { return readOnly_; }
   // The edges of a box around each node that is selected.
   const std::vector<Line>& frames() const { return frames_; }
+  // Returns the camera that looks as the viewer does and shows what is selected; the viewer's own
+  // if nothing is to be seen of it. [while the world can be used]
+  xvrml::CameraSettings cameraAround(WorldEditor& editor, const EditView& view) const;
   // The number of the row to scroll to; -1: none is new. It is given out once.
   int takeScroll() { return std::exchange(scroll_, -1); }
   // Returns, once, what is to be said to the user.
@@ -51,9 +54,10 @@ class EditModel {
   // --- What is asked for ---
   void request(Command command) { commands_.push_back(std::move(command)); }
   bool hasRequests() const { return !commands_.empty(); }
-  // Sets a field. All values between the first one and endDrag() are one step.
+  // Sets a field. All values until no widget is active any more are one step.
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
-  void endDrag();
+  // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
+  void setActive(bool active);
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
   const std::string& searched() const { return search_; }
@@ -76,7 +80,7 @@ class EditModel {
   xvrml::MFNode selection_;
   std::string undoName_, redoName_, readOnly_, message_, search_;
   std::vector<Line> frames_;
-  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isDragging_ = false;
+  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isDragging_ = false, isActive_ = false;
   int scroll_ = -1;
   xvrml::NodeRef shown_; // the node whose row is to be scrolled to
   double readAt_ = 0;

@@ -30,7 +30,7 @@ void Editing::open(bool open) {
     screen_.setGui([this] { panels_->draw(); });
   } else {
     screen_.setGui(nullptr);
-    if (model_) model_->endDrag();
+    if (model_) model_->setActive(false);
   }
 }
 
@@ -94,12 +94,15 @@ bool Editing::press(const InputEvent& event) {
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
   if (event.control && key == "S") return request([](WorldEditor& editor) { editor.save(); });
-  if (event.control || event.alt || !selects) {
-    if (event.control && key == "G" && selects) return request(wrapSelected);
-    return false;
+  if (event.control && key == "G" && selects) return request(wrapSelected);
+  if (key == "Escape" && !selects) {
+    open(false);
+    return true;
   }
+  if (event.control || event.alt || !selects) return false;
   if (event.shift && key == "D") return request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
+  if (key == ".") return wantsFrame_ = true;
   if (key == "G") return beginTool(TransformTool::Kind::move);
   if (key == "R") return beginTool(TransformTool::Kind::turn);
   if (key == "S") return beginTool(TransformTool::Kind::scale);
@@ -175,6 +178,8 @@ void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
   view_ = {session.pilot().camera(), session.pilot().aspect()};
   panels_->setView(view_);
+  if (std::exchange(wantsFrame_, false))
+    session.pilot().putAt(model_->cameraAround(session.editor(), view_));
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
 }

@@ -51,6 +51,7 @@ class Editing {
   InputEvent pointer_;                // where the pointer was last
   bool hasTool_ = false;              // the tool gets the events; it may still have to begin
   std::optional<TransformTool> tool_;
+  bool wantsFrame_ = false; // the viewer is to see what is selected
   std::string message_;
 };
 

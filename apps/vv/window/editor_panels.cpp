@@ -32,15 +32,17 @@ bool button(const char* label, bool active, const std::string& hint) {
   return pressed;
 }
 
-// Places a panel at an edge of the window, in the whole height. The user may change its width.
-void placePanel(float left, float width) {
+enum class Edge : uint8_t { left, right };
+
+// Places a panel at an edge of the window, in the whole height, with this part of its width. The
+// user may make it wider or narrower.
+void placePanel(Edge edge, float part) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float least = std::min(120.f, size.x / 2), width = std::clamp(part * size.x, least, 300.f);
   ImGui::SetNextWindowSize(ImVec2(width, size.y), ImGuiCond_Appearing);
-  ImGui::SetNextWindowSizeConstraints(ImVec2(120, size.y), ImVec2(size.x / 2, size.y));
-  if (left < 0)
-    ImGui::SetNextWindowPos(ImVec2(size.x, 0), ImGuiCond_Always, ImVec2(1, 0));
-  else
-    ImGui::SetNextWindowPos(ImVec2(left, 0), ImGuiCond_Always);
+  ImGui::SetNextWindowSizeConstraints(ImVec2(least, size.y), ImVec2(size.x / 2, size.y));
+  const float x = edge == Edge::left ? 0.f : 1.f;
+  ImGui::SetNextWindowPos(ImVec2(x * size.x, 0), ImGuiCond_Always, ImVec2(x, 0));
 }
 
 } // namespace
@@ -50,8 +52,7 @@ void EditorPanels::draw() {
   drawOutline();
   drawSheet();
   drawQuestion();
-  // A drag ends when its widget is released, or is gone.
-  if (!ImGui::IsAnyItemActive()) model_.endDrag();
+  model_.setActive(ImGui::IsAnyItemActive());
 }
 
 void EditorPanels::drawFrames() const {
@@ -91,7 +92,7 @@ void EditorPanels::drawTools() {
 }
 
 void EditorPanels::drawOutline() {
-  placePanel(0, 250);
+  placePanel(Edge::left, 0.26f);
   if (ImGui::Begin("##outline", nullptr, panelFlags)) {
     drawTools();
     if (!model_.readOnly().empty()) ImGui::TextWrapped("%s", model_.readOnly().c_str());
@@ -132,7 +133,7 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
 }
 
 void EditorPanels::drawSheet() {
-  placePanel(-1, 290);
+  placePanel(Edge::right, 0.3f);
   if (ImGui::Begin("##sheet", nullptr, panelFlags)) {
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {

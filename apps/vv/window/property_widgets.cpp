@@ -158,7 +158,7 @@ void showTooltip(const FieldInfo& field) {
 
 void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   const FieldInfo& field = *row.field;
-  ImGui::PushID(&row);
+  ImGui::PushID(&field);
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(
                                            row.isDefault ? ImGuiCol_TextDisabled : ImGuiCol_Text));
   ImGui::TextUnformatted(printable(field.name).c_str());
