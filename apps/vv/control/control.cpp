@@ -157,6 +157,8 @@ struct Control::Impl {
       perform(client, letter);
     } catch (const CommandError& error) {
       refuse(letter, error.code, error.what());
+    } catch (const xvrml::EditError& error) {
+      refuse(letter, "edit", error.what());
     } catch (const Failure& failure) {
       refuse(letter, "file", failure.text);
     } catch (const std::bad_alloc&) {

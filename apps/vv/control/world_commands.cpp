@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "control/field_json.h"
+#include "control/fields.h"
 #include "nearest.h"
 #include "xvrml/walk.h"
 
@@ -20,45 +21,6 @@ namespace vv::control {
 using namespace xvrml;
 
 namespace {
-
-// Returns the names of a node's fields and events that a test accepts, for messages.
-template <class Test> std::vector<std::string> fieldNames(const Node& node, const Test& test) {
-  std::vector<std::string> names;
-  for (const FieldInfo& field : node.type().fields)
-    if (test(field)) names.push_back(field.name);
-  return names;
-}
-
-[[noreturn]] void refuseField(const Node& node, const std::string& name, const char* use,
-                              const std::vector<std::string>& known) {
-  const std::string& type = node.type().name;
-  if (const FieldInfo* field = node.type().find(name))
-    throw CommandError("field", fmt::format("{}.{} is an {}: it cannot be {}", type, name,
-                                            accessName(field->access), use));
-  const std::string near = name.size() > 64 ? "" : nearest::word(name, known);
-  throw CommandError("field", fmt::format("{} has no field or event {}{}", type, jsonText(name),
-                                          near.empty() ? "" : "; did you mean " + near + "?"));
-}
-
-bool isReadable(const FieldInfo& field) { return field.access != Access::eventIn; }
-bool isWritable(const FieldInfo& field) { return field.access != Access::eventOut; }
-bool sends(const FieldInfo& field) {
-  return field.access == Access::eventOut || field.access == Access::exposedField;
-}
-
-const FieldInfo& readableField(const Node& node, const std::string& name) {
-  const FieldInfo* field = node.type().find(name);
-  if (!field || !isReadable(*field)) field = node.type().findEventOut(name);
-  if (!field) refuseField(node, name, "read", fieldNames(node, isReadable));
-  return *field;
-}
-
-const FieldInfo& writableField(const Node& node, const std::string& name) {
-  const FieldInfo* field = node.type().find(name);
-  if (!field || field->access != Access::field) field = node.type().findEventIn(name);
-  if (!field) refuseField(node, name, "set", fieldNames(node, isWritable));
-  return *field;
-}
 
 // A value that has been checked and is to be set.
 struct Checked {
@@ -140,21 +102,24 @@ template <class... F> Performer::Of<F...> choose(F... functions) { return {funct
 
 std::string WorldCommands::perform(const Command& command) {
   const auto other = [](const auto&) -> std::string { return "null"; };
-  return std::visit(choose([this](const Get& c) { return get(c); },
-                           [this](const Set& c) { return set(c); },
-                           [this](const Subscribe& c) { return subscribe(c); },
-                           [this](const Create& c) { return create(c); },
-                           [this](const ChangeRoots& c) { return changeRoots(c); },
-                           [this](const Release& c) { return release(c); },
-                           [this](const ChangeRoute& c) { return changeRoute(c); },
-                           [this](const Describe& c) { return describe(c); },
-                           [this](const ListNames&) { return listNames(); },
-                           [this](const ListViewpoints&) { return listViewpoints(); },
-                           [this](const Bind& c) { return bind(c); },
-                           [this](const Replace& c) { return replace(c); },
-                           [this](const PressKey& c) { return press(c); },
-                           [this](const Time& c) { return time(c); }, other),
-                    command.action);
+  return std::visit(
+      choose([this](const Get& c) { return get(c); }, [this](const Set& c) { return set(c); },
+             [this](const Subscribe& c) { return subscribe(c); },
+             [this](const Create& c) { return create(c); },
+             [this](const ChangeRoots& c) { return changeRoots(c); },
+             [this](const Release& c) { return release(c); },
+             [this](const ChangeRoute& c) { return changeRoute(c); },
+             [this](const Describe& c) { return describe(c); },
+             [this](const ListNames&) { return listNames(); },
+             [this](const ListViewpoints&) { return listViewpoints(); },
+             [this](const Bind& c) { return bind(c); },
+             [this](const Replace& c) { return replace(c); },
+             [this](const PressKey& c) { return press(c); },
+             [this](const Time& c) { return time(c); },
+             [this](const edits::Step& c) { return edit(c); },
+             [this](const Undo& c) { return undo(c); }, [this](const Save& c) { return save(c); },
+             [this](const ListEdits& c) { return listEdits(c); }, other),
+      command.action);
 }
 
 // --- Nodes and values ---
@@ -317,9 +282,10 @@ std::string WorldCommands::changeRoute(const ChangeRoute& change) {
   const FieldInfo* in = to->type().findEventIn(change.to.field);
   if (!out) refuseField(*from, change.from.field, "the start of a route", fieldNames(*from, sends));
   if (!in)
-    refuseField(*to, change.to.field, "the end of a route", fieldNames(*to, [](const auto& field) {
-      return field.access == Access::eventIn || field.access == Access::exposedField;
-    }));
+    refuseField(*to, change.to.field, "the end of a route",
+                fieldNames(*to, [](const FieldInfo& field) {
+                  return field.access == Access::eventIn || field.access == Access::exposedField;
+                }));
   if (out->type != in->type)
     throw CommandError("field", fmt::format("a route has one type: {}.{} is {}, {}.{} is {}",
                                             from->type().name, out->name, fieldTypeName(out->type),

@@ -1,5 +1,5 @@
-// world_commands.h: Does the commands that need only the running world. [the browser's thread,
-// while the session rests]
+// world_commands.h: Does the commands that need only the running world. Those that edit its file
+// are in world_edits.cpp. [the browser's thread, while the session rests]
 #pragma once
 
 #include <string>
@@ -38,6 +38,11 @@ class WorldCommands {
   std::string replace(const Replace& replace);
   std::string time(const Time& time);
   std::string press(const PressKey& press);
+
+  std::string edit(const edits::Step& step);
+  std::string undo(const Undo& undo);
+  std::string save(const Save& save);
+  std::string listEdits(const ListEdits& list);
 
   xvrml::NodeRef nodeOf(const NodeName& name) const;
   std::string valueText(const xvrml::Value& value);

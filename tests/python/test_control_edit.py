@@ -1,0 +1,269 @@
+"""Tests the commands of vv --control that edit the world's file: steps, undo, saving, and what hostile
+clients send."""
+import os
+import random
+
+import pytest
+
+from conftest import HEADER
+from control_server import SMALL, module, refused, start  # noqa: F401
+
+TABLE = HEADER + """# The table of the hall
+DEF LAMP PointLight { intensity 0.80 # by day
+}
+DEF TABLE Group {
+  children [
+    DEF LEG Shape { geometry DEF BLOCK Box { size .1 1 .1 } } # oak
+  ]
+}
+DEF SECOND Group { children USE LEG }
+DEF CLOCK TimeSensor { }
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / "table.wrl").write_text(TABLE)
+    return tmp_path / "table.wrl"
+
+
+@pytest.fixture
+def table(start, file):
+    return start("table.wrl", *SMALL).connect()
+
+
+def one(vv, edit, name="A step", **members):
+    """Does one edit. Returns the number of the node that it makes."""
+    return vv.call("edit", name=name, edits=[{"edit": edit, **members}])["nodes"][0]
+
+
+def text(vv):
+    return vv.edits(text=True)["text"]
+
+
+def test_steps_are_done_undone_and_saved(table, file):
+    state = table.edits()
+    assert state == {
+        "read_only": None,
+        "changed": False,
+        "changed_on_disk": False,
+        "undo": None,
+        "redo": None
+    }
+    with table.edit("Dim") as step:
+        step.set("LAMP", "intensity", 0.5)
+        step.set("LAMP", "color", (1, 0.9, 0.8))
+    assert table.get("LAMP", "intensity") == 0.5 and table.edits()["changed"]
+    assert table.undo() == "Dim" and table.undo() is None
+    assert table.get("LAMP", "intensity") == pytest.approx(0.8) and text(table) == TABLE
+    assert table.edits()["redo"] == "Dim"
+    assert table.redo() == "Dim" and table.redo() is None
+    table.save()
+    assert not table.edits()["changed"]
+    saved = file.read_text()
+    assert "intensity 0.5 # by day" in saved and "# oak" in saved
+    # what set does is not part of the file
+    table.set("LAMP", "intensity", 0.25)
+    assert text(table) == saved
+
+
+def test_nodes_are_made_and_named_within_a_step(table):
+    with table.edit("Build") as step:
+        place = step.wrap("LAMP")
+        step.set(place, "translation", (1, 2, 3))
+        step.rename(place, "STAND")
+        spot = step.insert("DEF SPOT SpotLight { }", place, index=0)
+        copy = step.duplicate("TABLE")
+        step.move("CLOCK", "TABLE", index=0)
+        step.use(spot, copy)
+        step.route("CLOCK", "isActive", spot, "set_on")
+    assert table.node(place.number)["name"] == "STAND"
+    assert table.get("STAND", "children") == [spot.number, table.node("LAMP")["node"]]
+    assert table.get(copy.number, "children")[-1] == spot.number
+    assert table.get("TABLE", "children")[0] == table.node("CLOCK")["node"]
+    assert "ROUTE CLOCK.isActive TO SPOT.set_on" in text(table)
+    with table.edit("Cut") as step:
+        step.unroute("CLOCK", "isActive", "SPOT", "set_on")
+    assert "ROUTE" not in text(table)
+    assert table.undo() == "Cut" and table.undo() == "Build" and text(table) == TABLE
+    assert table.node(place.number)["type"] == "Transform", "a number keeps its node"
+
+
+def test_a_step_is_done_as_a_whole_or_not(table):
+    with pytest.raises(module().ControlError) as error:
+        with table.edit("Fails") as step:
+            step.set("LAMP", "intensity", 0.5)
+            step.insert("Group { }")
+            step.remove("LEG")
+    assert error.value.code == "edit"
+    assert str(error.value) == "edit: edits[2]: this Shape stands in 2 places: say which one is meant"
+    assert text(table) == TABLE and table.edits()["undo"] is None
+    with pytest.raises(ZeroDivisionError):
+        with table.edit("Never sent") as step:
+            step.set("LAMP", "intensity", 1 / 0)
+    with table.edit("Empty"):
+        pass
+    assert table.edits()["undo"] is None
+
+
+def test_places(table):
+    with table.edit("Remove the second") as step:
+        step.remove("LEG", at={"parent": "SECOND"})
+    assert table.get("SECOND", "children") == []
+    assert table.undo() == "Remove the second"
+    with table.edit("Move to the top") as step:
+        step.move("LEG", at={"parent": "TABLE", "field": "children", "index": 0}, index=0)
+    assert text(table).index("Shape") < text(table).index("LAMP")
+    table.undo()
+    with table.edit("To the end of its own list") as step:
+        step.move("LAMP")
+    assert text(table).rstrip().endswith("}") and text(table).index("LAMP") > text(table).index("CLOCK")
+    table.undo()
+    assert text(table) == TABLE
+    refused("edit", "does not stand there", one, table, "remove", node="LEG", at={"parent": None})
+    refused("edit", "there is no place 9 among 4", one, table, "insert", vrml="Group {}", index=9)
+    refused("edit", "does not stand in the world's own file", one, table, "remove",
+            node=table.create("Group {}").nodes[0])
+
+
+def test_what_cannot_be_edited(table):
+    refused("node", "edits[0]: the world has no node \"LAMB\"; did you mean \"LAMP\"?", one, table,
+            "rename", node="LAMB", name="A")
+    refused("node", "there is no node 99", one, table, "set", node=99, field="on", value=True)
+    refused("field", "did you mean intensity?", one, table, "set", node="LAMP", field="intensty",
+            value=1)
+    refused("field", "it cannot be edited", one, table, "set", node="CLOCK", field="time", value=1)
+    refused("value", "numbers from 0 to 1", one, table, "set", node="LAMP", field="intensity",
+            value=2)
+    refused("value", "edits[0]: PointLight.on", one, table, "set", node="LAMP", field="on",
+            value=[[[]]])
+    refused("edit", "holds nodes", one, table, "set", node="TABLE", field="children", value=["LAMP"])
+    refused("edit", "is no name", one, table, "rename", node="LAMP", name="a b")
+    refused("edit", "another node is named", one, table, "rename", node="LAMP", name="LEG")
+    refused("edit", "would become a part of itself", one, table, "use", node="TABLE",
+            parent="TABLE")
+    refused("edit", "no node with children", one, table, "wrap", node="LAMP", type="Box")
+    refused("edit", "has no field", one, table, "insert", vrml="Group {}", parent="LAMP")
+    refused("edit", "Nonsense", one, table, "insert", vrml="Nonsense {}")
+    refused("edit", "one node", one, table, "insert", vrml="Group {} Group {}")
+    refused("edit", "no eventOut", one, table, "route", **{"from": ["LAMP", "x"], "to": ["LEG", "y"]})
+    refused("edit", "no such route", one, table, "unroute",
+            **{"from": ["CLOCK", "isActive"], "to": ["LAMP", "set_on"]})
+    with pytest.raises(ValueError):
+        one(table, "set", node="LAMP", field="intensity", value=float("nan"))
+    assert text(table) == TABLE and table.edits()["undo"] is None
+
+
+def test_nodes_that_are_gone(table):
+    number = table.node("LAMP")["node"]
+    one(table, "remove", node="LAMP")
+    refused("node", "no node \"LAMP\"", one, table, "set", node="LAMP", field="on", value=False)
+    refused("edit", "does not stand in the world's own file", one, table, "remove", node=number)
+    before = text(table)
+    # a node that is nowhere has values, which the file shows once it is back
+    one(table, "set", node=number, field="on", value=False)
+    assert text(table) == before
+    table.undo()
+    table.undo()
+    assert text(table) == TABLE
+    table.release(number)
+    refused("node", "has released it", one, table, "set", node=number, field="on", value=False)
+
+
+def test_files_that_save_refuses(table, file, tmp_path):
+    one(table, "set", node="LAMP", field="on", value=False)
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", "/dev/null"):
+        refused("file", "a pipe or a device", table.save, path)
+    refused("file", "nowhere", table.save, "nowhere/a.wrl")
+    refused("file", "directory", table.save, ".")
+    table.save("other.wrl")
+    assert "on FALSE" in (tmp_path / "other.wrl").read_text() and table.edits()["changed"]
+    file.write_text(TABLE + "# others\n")
+    assert table.edits()["changed_on_disk"]
+    refused("edit", "another program", table.save)
+    refused("edit", "another program", table.save, file)
+    table.save(overwrite=True)
+    assert "# others" not in file.read_text()
+
+
+def test_a_file_that_the_world_reads_is_not_saved_over(start, tmp_path):
+    (tmp_path / "part.wrl").write_text(HEADER + "Group { }\n")
+    (tmp_path / "whole.wrl").write_text(HEADER + 'Inline { url "part.wrl" }\nDEF G Group { }\n')
+    vv = start("whole.wrl", *SMALL).connect()
+    one(vv, "rename", node="G", name="H")
+    refused("file", "a file that the world is made of", vv.save, "part.wrl")
+    # Pictures do not replace the world's file, also when edits have.
+    for _ in range(2):
+        with pytest.raises(module().ControlError, match="whole.wrl"):
+            vv.render(file="whole.wrl", format="png")
+        vv.save()
+        assert (tmp_path / "whole.wrl").read_text().endswith("DEF H Group { }\n")
+        one(vv, "set", node="H", field="bboxSize", value=[1, 1, 1])
+        vv.undo()
+
+
+def test_files_that_are_only_read(start, tmp_path, file):
+    (tmp_path / "old.wrl").write_text("#VRML V1.0 ascii\nSeparator { Cube { } }\n")
+    vv = start("old.wrl", *SMALL).connect()
+    assert "VRML97 and X3D ClassicVRML" in vv.edits()["read_only"]
+    refused("edit", "can be edited", one, vv, "insert", vrml="Group {}")
+    refused("edit", "can be edited", vv.save)
+    vv.load("table.wrl")
+    one(vv, "set", node="LAMP", field="on", value=False)
+    vv.replace_world(vv.create("DEF NEW Group { }").nodes)
+    refused("edit", "another world", one, vv, "rename", node="NEW", name="A")
+    refused("edit", "another world", vv.undo)
+    refused("edit", "another world", vv.save)
+    assert file.read_text() == TABLE
+
+
+def test_clients_share_one_history(start, file):
+    server = start("table.wrl", *SMALL)
+    one_client, two = server.connect(), server.connect()
+    one(one_client, "set", "First", node="LAMP", field="on", value=False)
+    one(two, "set", "Second", node="LAMP", field="intensity", value=0)
+    assert one_client.undo() == "Second" and two.undo() == "First"
+    assert text(one_client) == TABLE
+
+
+def test_large_steps(table):
+    refused("limit", "edits=10000", table.call, "edit", name="x",
+            edits=[{"edit": "duplicate", "node": "LEG"}] * 100_000)
+    with table.edit("Many") as step:
+        for i in range(1000):
+            step.set(step.insert(f"DEF N{i} Transform {{ }}"), "translation", (i, 0, 0))
+    assert table.get("N999", "translation") == [999, 0, 0]
+    assert table.undo() == "Many" and text(table) == TABLE
+
+
+def test_random_steps_give_the_file_back(table):
+    choose = random.Random(45)
+    numbers = [table.node(name)["node"] for name in ("LAMP", "TABLE", "LEG", "SECOND", "CLOCK")]
+    done = 0
+    for i in range(200):
+        node, other = choose.choice(numbers), choose.choice(numbers)
+        edit = choose.choice([
+            {"edit": "wrap", "node": node},
+            {"edit": "duplicate", "node": node},
+            {"edit": "remove", "node": node, "at": {"parent": other}},
+            {"edit": "move", "node": node, "parent": other, "index": choose.randrange(3)},
+            {"edit": "use", "node": node, "parent": other},
+            {"edit": "insert", "vrml": "DEF N Transform { }", "parent": choose.choice([None, other])},
+            {"edit": "rename", "node": node, "name": f"R{i}"},
+        ])  # yapf: disable
+        try:
+            made, = table.call("edit", name=str(i), edits=[edit])["nodes"]
+            done += 1
+            if made is not None:
+                numbers.append(made)
+        except module().ControlError as error:
+            assert error.code == "edit", (edit, error)
+    assert done > 50
+    edited = text(table)
+    for _ in range(done):
+        assert table.undo() is not None
+    assert table.undo() is None and text(table) == TABLE
+    for _ in range(done):
+        assert table.redo() is not None
+    assert text(table) == edited
