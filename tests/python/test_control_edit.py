@@ -267,3 +267,71 @@ def test_random_steps_give_the_file_back(table):
     for _ in range(done):
         assert table.redo() is not None
     assert text(table) == edited
+
+
+# --- Nodes and places ---
+
+
+def test_roots_parents_and_selection(start, file):
+    server = start("table.wrl", *SMALL)
+    vv, other = server.connect(), server.connect()
+    roots = vv.roots()
+    assert [(r["type"], r["name"]) for r in roots] == [("PointLight", "LAMP"), ("Group", "TABLE"),
+                                                       ("Group", "SECOND"), ("TimeSensor", "CLOCK")]
+    lamp, table_, second, _ = (r["node"] for r in roots)
+    leg = vv.node("LEG")["node"]
+    assert vv.parents("LEG") == [{
+        "parent": table_,
+        "field": "children",
+        "index": 0
+    }, {
+        "parent": second,
+        "field": "children",
+        "index": 0
+    }]
+    assert vv.parents(lamp) == [{"parent": None, "field": None, "index": 0}]
+    for place in vv.parents("LEG"):  # places may be sent back
+        one(vv, "remove", node="LEG", at=place)
+    assert vv.parents(leg) == [] and vv.undo() == vv.undo() == "A step"
+    assert vv.selection() == []
+    vv.select("LAMP", leg)
+    assert [n["name"] for n in other.selection()] == ["LAMP", "LEG"]
+    other.select()
+    assert vv.selection() == []
+    refused("node", "no node", vv.select, "LAMP", "NOBODY")
+    refused("node", "there is no node 77", vv.parents, 77)
+
+
+PICKED = HEADER + """
+DEF V Viewpoint { position 0 0 5 fieldOfView 1.5707963 }
+DEF T Transform { translation 2 0 0 children DEF S Shape {
+  appearance DEF A ORTAppearance { shader DEF G ORTShader { name "Glass" file "glass" } }
+  geometry DEF B Box { size 2 2 2 }
+} }
+"""
+
+
+def test_pick(start, tmp_path):
+    (tmp_path / "picked.wrl").write_text(PICKED)
+    vv = start("picked.wrl", "--size", "40x20", "--spp", "1").connect()
+    hit = vv.pick(0.25, 0)  # aspect 2, tan(45 degrees) = 1: 0.5 to the right at distance 1
+    assert hit["point"] == pytest.approx([2, 0, 1]) and hit["normal"] == pytest.approx([0, 0, 1])
+    assert hit["distance"] == pytest.approx(4 * 1.25**.5)
+    assert [n["name"] for n in hit["path"]] == ["T", "S"]
+    named = {name: hit[name]["name"] for name in ("geometry", "appearance", "shader")}
+    assert named == {"geometry": "B", "appearance": "A", "shader": "G"}
+    vv.select(hit["path"][-1]["node"])
+    assert vv.selection()[0]["name"] == "S"
+    assert vv.pick(-1, 1) is None
+    vv.set("T", "translation", (-2, 0, 0))
+    assert vv.pick(0.25, 0) is None and vv.pick(-0.25, 0)["point"] == pytest.approx([-2, 0, 1])
+    refused("command", "from -1 to 1", vv.pick, 2, 0)
+
+
+def test_pick_waits_for_the_viewer(start, tmp_path):
+    (tmp_path / "plain.wrl").write_text(HEADER + "Transform { translation 30 0 0 children Shape { "
+                                        "geometry Sphere { } } }")
+    vv = start("plain.wrl", *SMALL).connect()
+    assert vv.pick(0, 0)["path"][0]["type"] == "Transform", "the first picture shows the whole world"
+    lens = start("plain.wrl", *SMALL, "--camera-shader", "Panorama").connect()
+    refused("failed", "camera shader", lens.pick, 0, 0)

@@ -183,6 +183,10 @@ TEST(ControlLine, MessagesOfStepsSayWhichEdit) {
           "an earlier edit that makes a node");
   bad(R"({"command":"save","path":"a\u0000b"})", "command", "save: path: the path of a file");
   bad(R"({"command":"save","overwrite":1})", "command", "save: overwrite: true or false");
+  bad(R"({"command":"select","nodes":"A"})", "command", "select: nodes: an array");
+  bad(R"({"command":"pick","x":0})", "command", "pick: the member \"y\" is missing");
+  bad(R"({"command":"pick","x":0,"y":1.001})", "command", "pick: y: a number from -1 to 1");
+  bad(R"({"command":"pick","x":"0","y":0})", "command", "pick: x: a number from -1 to 1");
   bad(R"({"command":"undo","name":"A step"})", "command", "undo: there is no member \"name\"");
   std::string many;
   for (size_t i = 0; i <= limits.edits; ++i) many += R"(,{"edit":"remove","node":"A"})";

@@ -75,6 +75,14 @@ Action readKey(Members& m) {
   return press;
 }
 
+// Reads x and y from -1 to 1.
+Pick readPick(Members& m) {
+  const auto read = [&](const char* name) {
+    return numberOf(m.at(name), m.need(name), "a number", -1, 1);
+  };
+  return {read("x"), read("y")};
+}
+
 Action readSave(Members& m) {
   Save save;
   if (m.has("path")) save.path = pathOf(m.at("path"), m.need("path"));
@@ -151,6 +159,15 @@ constexpr Row table[] = {
      [](Members& m) -> Action {
        return ListEdits{m.has("text") && switchOf(m.at("text"), m.need("text"))};
      }},
+    {"roots", [](Members&) -> Action { return ListRoots{}; }},
+    {"parents",
+     [](Members& m) -> Action { return ListParents{nodeOf(m.at("node"), m.need("node"))}; }},
+    {"select",
+     [](Members& m) -> Action {
+       return Select{listOf<NodeName>(m.at("nodes"), m.need("nodes"), nodeOf)};
+     }},
+    {"selection", [](Members&) -> Action { return ListSelection{}; }},
+    {"pick", [](Members& m) -> Action { return readPick(m); }},
     {"quit", [](Members&) -> Action { return Quit{}; }},
 };
 

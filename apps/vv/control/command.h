@@ -84,11 +84,23 @@ struct Save {
 struct ListEdits {
   bool withText = false;
 };
+struct ListRoots {};
+struct ListParents {
+  NodeName node;
+};
+struct Select {
+  std::vector<NodeName> nodes;
+};
+struct ListSelection {};
+struct Pick {
+  double x = 0, y = 0; // picture coordinates, as in InputEvent
+};
 struct Quit {};
 
 using Action = std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute,
                             Describe, ListNames, ListViewpoints, Bind, Load, Replace, Render, Time,
-                            Quit, PressKey, edits::Step, Undo, Save, ListEdits>;
+                            Quit, PressKey, edits::Step, Undo, Save, ListEdits, ListRoots,
+                            ListParents, Select, ListSelection, Pick>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

@@ -96,6 +96,9 @@ struct Control::Impl {
         continue;
       if (line.command && std::holds_alternative<Render>(line.command->action) && renderer != 0)
         continue;
+      if (line.command && session && !session->viewers().own().isPlaced() &&
+          std::holds_alternative<Pick>(line.command->action))
+        continue;
       if (!first || client.waiting.front().order < first->waiting.front().order) first = &client;
     }
     return first;
@@ -190,9 +193,17 @@ struct Control::Impl {
       client.busy = Client::Busy::rendering;
       client.underWay = std::move(letter);
     } else {
+      if (std::holds_alternative<Pick>(command.action)) refuseCameraShader();
       answer(letter, WorldCommands(*session, client, mailbox).perform(command));
       noticeOtherWorld();
     }
+  }
+
+  // A camera shader makes the rays of the picture, which no pick follows.
+  void refuseCameraShader() const {
+    if (options.view.shader || session->pilot().camera().shader)
+      throw CommandError("failed", "a camera shader makes the rays of the picture: nothing can be "
+                                   "picked in it");
   }
 
   std::string hello() const {

@@ -93,6 +93,19 @@ struct Sender {
   } catch (...) { mailbox.cut(client.id, "failed", "an event was lost: this client is cut off"); }
 };
 
+// Returns the node in an SFNode of a node, or of what a prototype instance stands for; null if
+// there is none.
+NodeRef childOf(Node* node, const char* field) {
+  const Node* const real = renderedNode(node);
+  const FieldInfo* const info = real ? real->type().find(field) : nullptr;
+  if (!info || info->type != FieldType::SFNode || !holdsValue(*info)) return {};
+  return *static_cast<const NodeRef*>(real->storage(*info));
+}
+
+std::string triple(const std::array<double, 3>& v) {
+  return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
+}
+
 struct Performer {
   template <class... F> struct Of : F... { using F::operator()...; };
 };
@@ -118,7 +131,12 @@ std::string WorldCommands::perform(const Command& command) {
              [this](const Time& c) { return time(c); },
              [this](const edits::Step& c) { return edit(c); },
              [this](const Undo& c) { return undo(c); }, [this](const Save& c) { return save(c); },
-             [this](const ListEdits& c) { return listEdits(c); }, other),
+             [this](const ListEdits& c) { return listEdits(c); },
+             [this](const ListRoots&) { return listRoots(); },
+             [this](const ListParents& c) { return listParents(c); },
+             [this](const Select& c) { return select(c); },
+             [this](const ListSelection&) { return listSelection(); },
+             [this](const Pick& c) { return pick(c); }, other),
       command.action);
 }
 
@@ -147,6 +165,18 @@ std::string WorldCommands::valueText(const Value& value) {
   std::string text;
   appendValue(text, value, [this](const NodeRef& node) { return client_.numbers.of(node); });
   return text;
+}
+
+std::string WorldCommands::factsOf(const NodeRef& node) {
+  if (!node) return "null";
+  return fmt::format(R"({{"node":{},"type":{},"name":{}}})", client_.numbers.of(node),
+                     jsonText(node->type().name), jsonText(node->defName));
+}
+
+std::string WorldCommands::factsOf(const MFNode& nodes) {
+  std::string list;
+  for (const NodeRef& node : nodes) list += (list.empty() ? "" : ",") + factsOf(node);
+  return "[" + list + "]";
 }
 
 std::string WorldCommands::get(const Get& get) {
@@ -308,6 +338,8 @@ std::string WorldCommands::describe(const Describe& describe) {
                      jsonText(node->type().name), jsonText(node->defName), fields);
 }
 
+std::string WorldCommands::listRoots() { return factsOf(browser_.world().scope.roots); }
+
 std::string WorldCommands::listNames() const {
   std::string names;
   for (const auto& [name, node] : browser_.world().scope.names)
@@ -327,6 +359,20 @@ std::string WorldCommands::listViewpoints() {
                         list.empty() ? "" : ",", client_.numbers.of(one.node), jsonText(one.name),
                         jsonText(one.description), one.node.get() == bound);
   return "[" + list + "]";
+}
+
+std::string WorldCommands::pick(const Pick& pick) {
+  PickHit hit;
+  if (!session_.pilot().pick(pick.x, pick.y, hit)) return "null";
+  MFNode path;
+  for (const PickHit::Step& step : hit.path) path.push_back(step.node);
+  Node* const shape = path.empty() ? nullptr : path.back().get();
+  const NodeRef appearance = childOf(shape, "appearance");
+  return fmt::format(
+      R"({{"point":{},"normal":{},"distance":{},"path":{},"geometry":{},"appearance":{},"shader":{}}})",
+      triple(hit.point), triple(hit.normal), hit.distance, factsOf(path),
+      factsOf(childOf(shape, "geometry")), factsOf(appearance),
+      factsOf(childOf(appearance.get(), "shader")));
 }
 
 std::string WorldCommands::press(const PressKey& press) {

@@ -43,9 +43,17 @@ class WorldCommands {
   std::string undo(const Undo& undo);
   std::string save(const Save& save);
   std::string listEdits(const ListEdits& list);
+  std::string listRoots();
+  std::string listParents(const ListParents& list);
+  std::string select(const Select& select);
+  std::string listSelection();
+  std::string pick(const Pick& pick);
 
   xvrml::NodeRef nodeOf(const NodeName& name) const;
   std::string valueText(const xvrml::Value& value);
+  // Returns number, type and DEF name of a node; "null" for null.
+  std::string factsOf(const xvrml::NodeRef& node);
+  std::string factsOf(const xvrml::MFNode& nodes);
 
   Session& session_;
   xvrml::Browser& browser_;

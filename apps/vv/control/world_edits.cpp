@@ -1,4 +1,4 @@
-// world_edits.cpp: the commands that edit the file of the world.
+// world_edits.cpp: the commands that edit the file of the world, and those about its selection.
 #include <utility>
 #include <vector>
 
@@ -159,5 +159,24 @@ std::string WorldCommands::listEdits(const ListEdits& list) {
   if (list.withText) all += ",\"text\":" + jsonText(editor.text());
   return all + "}";
 }
+
+std::string WorldCommands::listParents(const ListParents& list) {
+  std::string places;
+  for (const NodeSlot& place : session_.editor().editor().placesOf(*nodeOf(list.node)))
+    places += fmt::format(R"({}{{"parent":{},"field":{},"index":{}}})", places.empty() ? "" : ",",
+                          place.parent ? std::to_string(client_.numbers.of(NodeRef(place.parent)))
+                                       : "null",
+                          nameOrNull(place.field), place.index);
+  return "[" + places + "]";
+}
+
+std::string WorldCommands::select(const Select& select) {
+  MFNode nodes;
+  for (const NodeName& name : select.nodes) nodes.push_back(nodeOf(name));
+  session_.editor().select(std::move(nodes));
+  return "null";
+}
+
+std::string WorldCommands::listSelection() { return factsOf(session_.editor().selection()); }
 
 } // namespace vv::control

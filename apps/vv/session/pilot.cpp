@@ -96,6 +96,13 @@ void Pilot::step(double seconds) {
 
 // EXAMINE: the world follows the pointer. The other navigation types use the distance since the
 // press, in move().
+bool Pilot::pick(double x, double y, xvrml::PickHit& hit) const {
+  const Pointer::Ray ray = eye().rayAt(x, y);
+  if (!browser_.pick(ray.origin, ray.direction, {}, hit)) return false;
+  hit.distance *= std::hypot(ray.direction[0], ray.direction[1], ray.direction[2]);
+  return true;
+}
+
 void Pilot::drag(const Pointer::Way& way) {
   if (viewer_->navigation() != Navigation::examine) return;
   const double size = std::tan(camera().fovy / 2);

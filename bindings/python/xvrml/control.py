@@ -513,7 +513,34 @@ class Control:
         result: Dict[str, Any] = self.call("edits", text=text)
         return result
 
+    def roots(self) -> List[Dict[str, Any]]:
+        """Returns the outermost nodes: node, type, name."""
+        result: List[Dict[str, Any]] = self.call("roots")
+        return result
+
+    def parents(self, node: Node) -> List[Place]:
+        """Returns the places where a node stands: parent, field, index. At the top of the file
+        parent and field are None."""
+        result: List[Place] = self.call("parents", node=node)
+        return result
+
+    def select(self, *nodes: Node) -> None:
+        """Selects these nodes, for the window and all clients."""
+        self.call("select", nodes=nodes)
+
+    def selection(self) -> List[Dict[str, Any]]:
+        """Returns the selected nodes: node, type, name."""
+        result: List[Dict[str, Any]] = self.call("selection")
+        return result
+
     # --- The viewer, the world, pictures ---
+
+    def pick(self, x: float, y: float) -> Optional[Dict[str, Any]]:
+        """Returns what is seen at a place of the picture, which is (-1, -1) at the left and bottom
+        and (1, 1) at the right and top: point, normal, distance, path, geometry, appearance,
+        shader. None if nothing is there."""
+        hit: Optional[Dict[str, Any]] = self._call("pick", {"x": x, "y": y}, None)
+        return hit
 
     def viewpoints(self) -> List[Dict[str, Any]]:
         """Returns the viewpoints: node, name, description, bound."""

@@ -6,6 +6,19 @@ namespace vv {
 
 std::shared_ptr<SharedPointer> makeSharedPointer() { return std::make_shared<SharedPointer>(); }
 
+Pointer::Ray Pointer::Eye::rayAt(double x, double y) const {
+  const double* m = camera.matrix;
+  const double size = camera.fovy > 0 ? std::tan(camera.fovy / 2) : camera.height / 2;
+  const double across = x * size * aspect, along = y * size;
+  Ray ray;
+  for (int i = 0; i < 3; ++i) {
+    const double aside = m[i] * across + m[4 + i] * along;
+    ray.origin[i] = m[12 + i] + (camera.fovy > 0 ? 0 : aside);
+    ray.direction[i] = -m[8 + i] + (camera.fovy > 0 ? aside : 0);
+  }
+  return ray;
+}
+
 // The world may be gone already, so that it is told nothing.
 Pointer::~Pointer() {
   if (shared_->holder == this) shared_->holder = nullptr;
@@ -29,19 +42,9 @@ Pointer::Way Pointer::moveTo(double x, double y) {
 
 void Pointer::send() {
   if (shared_->holder != this) return;
-  const Eye eye = eye_();
-  const xvrml::CameraSettings& c = eye.camera;
-  const double* m = c.matrix;
-  const double size = c.fovy > 0 ? std::tan(c.fovy / 2) : c.height / 2;
-  const double across = x_ * size * eye.aspect, along = y_ * size;
-  double origin[3], direction[3];
-  for (int i = 0; i < 3; ++i) {
-    const double aside = m[i] * across + m[4 + i] * along;
-    origin[i] = m[12 + i] + (c.fovy > 0 ? 0 : aside);
-    direction[i] = -m[8 + i] + (c.fovy > 0 ? aside : 0);
-  }
+  const Ray ray = eye_().rayAt(x_, y_);
   const uint64_t before = browser_.generation();
-  browser_.pointerRay(origin, direction, drag_ == Drag::sensor);
+  browser_.pointerRay(ray.origin, ray.direction, drag_ == Drag::sensor);
   if (browser_.generation() != before) drag_ = Drag::none;
   place_ = browser_.sensorsAtPointer().empty() ? Place::inside : Place::overSensor;
 }

@@ -32,9 +32,14 @@ class Pointer {
     view    // the viewer moves; the sensors get nothing
   };
   // The camera that the pointer's rays start from.
+  struct Ray {
+    double origin[3], direction[3];
+  };
   struct Eye {
     xvrml::CameraSettings camera;
     double aspect = 1;
+    // Returns the ray to a place of the picture. A camera shader may have others.
+    Ray rayAt(double x, double y) const;
   };
   struct Way {
     double x = 0, y = 0; // in picture coordinates
