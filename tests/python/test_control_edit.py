@@ -2,10 +2,11 @@
 clients send."""
 import os
 import random
+import subprocess
 
 import pytest
 
-from conftest import HEADER
+from conftest import HEADER, find_vv
 from control_server import SMALL, module, refused, start  # noqa: F401
 
 TABLE = HEADER + """# The table of the hall
@@ -335,3 +336,96 @@ def test_pick_waits_for_the_viewer(start, tmp_path):
     assert vv.pick(0, 0)["path"][0]["type"] == "Transform", "the first picture shows the whole world"
     lens = start("plain.wrl", *SMALL, "--camera-shader", "Panorama").connect()
     refused("failed", "camera shader", lens.pick, 0, 0)
+
+
+# --- Light ---
+
+LIT = HEADER + """
+DEF V Viewpoint { position 0 0 4 }
+DEF GLOW Shape {
+  appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+    options [ "color emission 5 10 20", "color reflectance 0 0 0" ] } }
+  geometry Sphere { }
+}
+Transform { translation 0 -3 0 children DEF FLOOR Shape {
+  appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+    options [ "color reflectance .5 .5 .5" ] } }
+  geometry Box { size 20 .1 20 }
+} }
+"""
+SIZE = (48, 32)
+
+
+def pixel_of(picture, x, y):
+    """Returns the values of each channel of an EXR picture at a place."""
+    exr_tools = pytest.importorskip("exr_tools")
+    _, planes = exr_tools.read_exr(picture)
+    column, row = int((x + 1) / 2 * SIZE[0]), int((1 - y) / 2 * SIZE[1])
+    return {name: float(plane[row][column]) for name, plane in planes.items()}
+
+
+@pytest.fixture
+def lit(start, tmp_path):
+    (tmp_path / "lit.wrl").write_text(LIT)
+    return start("lit.wrl", "--size", "48x32", "--spp", "64").connect()
+
+
+def test_probe_reads_a_pixel_of_the_true_picture(lit, tmp_path):
+    subprocess.run([
+        find_vv(), "lit.wrl", "-o", "lit.exr", "--size", "48x32", "--spp", "64", "--channels",
+        "rgba,error,trust,samples", "-q"
+    ],
+                   cwd=tmp_path,
+                   check=True)
+    picture = (tmp_path / "lit.exr").read_bytes()
+    for x, y in ((0, 0), (0.3, -0.8), (-0.9, 0.7), (-1, -1), (1, 1)):
+        got, want = lit.probe(x, y), pixel_of(picture, min(x, 0.999), max(y, -0.999))
+        assert got["samples"] == 64
+        for k, colour in enumerate("RGB"):
+            assert got["radiance"][k] == pytest.approx(want[colour], rel=1e-6), (x, y)
+            assert got["radiance_half_width"][k] == pytest.approx(want[f"error.{colour}"], rel=1e-6)
+        assert got["trusted"] == (want["trust.Y"] > 0)
+        r, g, b = got["radiance"]
+        assert got["luminance"] == pytest.approx(.2126 * r + .7152 * g + .0722 * b, rel=1e-6)
+    glow = lit.probe(0, 0)
+    assert glow["radiance"] == [5, 10, 20] and glow["half_width"] < .1
+    assert glow["hit"]["path"][-1]["name"] == "GLOW"
+    assert lit.probe(0, 0) == glow
+    assert lit.probe(-0.9, 0.9)["hit"] is None
+
+
+def test_probe_follows_edits(lit):
+    before = lit.probe(0.3, -0.8, samples=256)
+    assert before["hit"]["path"][-1]["name"] == "FLOOR"
+    assert before["trusted"] and 0 < before["half_width"] < before["luminance"] / 4
+    shader = lit.probe(0, 0)["hit"]["shader"]["node"]
+    one(lit, "set", node=shader, field="options",
+        value=["color emission 10 20 40", "color reflectance 0 0 0"])
+    after = lit.probe(0.3, -0.8, samples=256)
+    assert abs(after["luminance"] - 2 * before["luminance"]) < 2 * before["half_width"] + after["half_width"]
+    lit.undo()
+    assert lit.probe(0.3, -0.8, samples=256) == before
+    # pictures are whole again
+    assert len(lit.render(format="ppm")) > 48 * 32 * 3
+
+
+def test_probes_and_pictures_take_turns(start, tmp_path):
+    (tmp_path / "lit.wrl").write_text(LIT)
+    server = start("lit.wrl", "--size", "48x32", "--spp", "16")
+    one_, two = server.raw(), server.raw()
+    for i in range(5):
+        one_.send({"id": i, "command": "probe", "x": 0, "y": -0.8})
+        two.send({"id": i, "command": "render", "format": "ppm"})
+    probes = [one_.receive() for _ in range(5)]
+    pictures = [two.receive() for _ in range(5)]
+    assert [p["id"] for p in probes] == [p["id"] for p in pictures] == list(range(5))
+    assert len({p["result"]["luminance"] for p in probes}) == 1
+    assert len({p["result"]["data"] for p in pictures}) == 1
+    assert probes[0]["result"]["trusted"] is False, "16 samples make no replicates"
+
+
+def test_worlds_without_light_units(start, tmp_path):
+    (tmp_path / "lit.wrl").write_text(LIT)
+    vv = start("lit.wrl", *SMALL, "--colour", "vrml97").connect()
+    refused("failed", "not light", vv.probe, 0, 0)
+    vv.call("hello")

@@ -187,6 +187,9 @@ TEST(ControlLine, MessagesOfStepsSayWhichEdit) {
   bad(R"({"command":"pick","x":0})", "command", "pick: the member \"y\" is missing");
   bad(R"({"command":"pick","x":0,"y":1.001})", "command", "pick: y: a number from -1 to 1");
   bad(R"({"command":"pick","x":"0","y":0})", "command", "pick: x: a number from -1 to 1");
+  bad(R"({"command":"probe","x":0,"y":0,"samples":0})", "command",
+      "probe: samples: a whole number");
+  bad(R"({"command":"probe","x":0,"y":0,"samples":65537})", "command", "probe: samples");
   bad(R"({"command":"undo","name":"A step"})", "command", "undo: there is no member \"name\"");
   std::string many;
   for (size_t i = 0; i <= limits.edits; ++i) many += R"(,{"edit":"remove","node":"A"})";

@@ -37,6 +37,11 @@ Action readSet(Members& m) {
   return set;
 }
 
+std::optional<int> readSamples(Members& m) {
+  if (!m.has("samples")) return {};
+  return wholeNumberOf(m.at("samples"), m.need("samples"), 1, limits.samples);
+}
+
 Action readRender(Members& m) {
   Render render;
   if (m.has("size")) {
@@ -49,8 +54,7 @@ Action readRender(Members& m) {
       throw CommandError("limit", fmt::format("{}: a picture has at most pixels={} pixels",
                                               m.at("size"), limits.pixels));
   }
-  if (m.has("samples"))
-    render.samples = wholeNumberOf(m.at("samples"), m.need("samples"), 1, limits.samples);
+  render.samples = readSamples(m);
   if (m.has("channels")) render.channels = textsOf(m.at("channels"), m.need("channels"));
   if (m.has("file")) render.file = pathOf(m.at("file"), m.need("file"));
   if (m.has("format")) render.format = m.text("format");
@@ -168,6 +172,10 @@ constexpr Row table[] = {
      }},
     {"selection", [](Members&) -> Action { return ListSelection{}; }},
     {"pick", [](Members& m) -> Action { return readPick(m); }},
+    {"probe",
+     [](Members& m) -> Action {
+       return Probe{readPick(m), readSamples(m)};
+     }},
     {"quit", [](Members&) -> Action { return Quit{}; }},
 };
 

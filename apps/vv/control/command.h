@@ -95,12 +95,16 @@ struct ListSelection {};
 struct Pick {
   double x = 0, y = 0; // picture coordinates, as in InputEvent
 };
+struct Probe {
+  Pick place;
+  std::optional<int> samples;
+};
 struct Quit {};
 
 using Action = std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute,
                             Describe, ListNames, ListViewpoints, Bind, Load, Replace, Render, Time,
                             Quit, PressKey, edits::Step, Undo, Save, ListEdits, ListRoots,
-                            ListParents, Select, ListSelection, Pick>;
+                            ListParents, Select, ListSelection, Pick, Probe>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

@@ -17,8 +17,10 @@ class WorldCommands {
       : session_(session), browser_(session.browser()), client_(client), mailbox_(mailbox) {}
 
   // Does a command and returns its result as JSON. Throws CommandError, and what the library
-  // throws. Hello, Load, Render and Quit are not commands of the world.
+  // throws. Hello, Load, Render, Probe and Quit are not commands of the world.
   std::string perform(const Command& command);
+  // Returns what is seen at a place of the picture, or "null".
+  std::string pick(const Pick& pick);
 
   // Ends the subscriptions of a client.
   static void unsubscribeAll(xvrml::Browser& browser, Client& client);
@@ -47,7 +49,6 @@ class WorldCommands {
   std::string listParents(const ListParents& list);
   std::string select(const Select& select);
   std::string listSelection();
-  std::string pick(const Pick& pick);
 
   xvrml::NodeRef nodeOf(const NodeName& name) const;
   std::string valueText(const xvrml::Value& value);

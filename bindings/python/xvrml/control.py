@@ -547,6 +547,20 @@ class Control:
         result: List[Dict[str, Any]] = self.call("viewpoints")
         return result
 
+    def probe(self,
+              x: float,
+              y: float,
+              *,
+              samples: Optional[int] = None,
+              timeout: Optional[float] = None) -> Dict[str, Any]:
+        """Measures the light of a pixel of the true picture. Returns its luminance in cd/m2,
+        half_width of the 95 % interval, radiance and radiance_half_width of the three colours,
+        samples, trusted: whether the intervals can be trusted, which takes 32 samples or more, and
+        hit: what pick returns. samples: of the pixel; None: as many as the window takes."""
+        given = {} if samples is None else {"samples": samples}
+        result: Dict[str, Any] = self._call("probe", {"x": x, "y": y, **given}, timeout)
+        return result
+
     def bind(self, viewpoint: Union[str, int]) -> None:
         """Jumps to a viewpoint, named by DEF name, description or number from 0."""
         self.call("bind", viewpoint=viewpoint)
