@@ -29,28 +29,6 @@ constexpr NewNode table[] = {
     {"DirectionalLight", "DirectionalLight { }", "<DirectionalLight/>"},
 };
 
-// Begins a step, and takes it back if the edits within it fail.
-template <class Edits> void inOneStep(Editor& editor, std::string name, const Edits& edits) {
-  editor.begin(std::move(name));
-  try {
-    edits();
-  } catch (...) {
-    editor.cancel();
-    throw;
-  }
-  editor.end();
-}
-
-// Returns the place of a node that an action is for.
-NodeSlot onlyPlaceOf(Editor& editor, const Node& node) {
-  const std::vector<NodeSlot> places = editor.placesOf(node);
-  if (places.size() == 1) return places.front();
-  throw EditError(places.empty() ? fmt::format("{} is not in the world's file", labelOf(node))
-                                 : fmt::format("{} stands in {} places: this is possible only for "
-                                               "a node that stands in one",
-                                               labelOf(node), places.size()));
-}
-
 MFNode selectionOf(WorldEditor& editor) {
   if (editor.selection().empty()) throw EditError("nothing is selected");
   return editor.selection();
@@ -70,15 +48,15 @@ const FieldInfo* childrenOf(const Node& node) {
 // Returns the place for a new node: at the end of the group that is selected, behind the selected
 // node, or at the end of the world.
 NodeSlot placeForNew(WorldEditor& editor) {
-  if (Node* const selected = editor.selected()) {
-    if (const FieldInfo* field = childrenOf(*selected))
-      return {selected, field->name, static_cast<const MFNode*>(selected->storage(*field))->size()};
-    const std::vector<NodeSlot> places = editor.editor().placesOf(*selected);
-    if (!places.empty() && (!places.front().parent || childrenOf(*places.front().parent)) &&
-        (places.front().field.empty() || places.front().field == "children"))
-      return {places.front().parent, places.front().field, places.front().index + 1};
-  }
-  return {nullptr, "", editor.browser().world().scope.roots.size()};
+  Node* const selected = editor.selected();
+  if (selected && childrenOf(*selected)) return editor.endOf(selected, "children");
+  if (selected)
+    for (NodeSlot place : editor.editor().placesOf(*selected))
+      if (!place.parent || place.field == "children") {
+        ++place.index;
+        return place;
+      }
+  return editor.endOf(nullptr, "");
 }
 
 void addText(WorldEditor& editor, const std::string& text) {
@@ -113,8 +91,8 @@ void selectAt(WorldEditor& editor, const EditView& view, double x, double y, boo
 
 void removeSelected(WorldEditor& editor) {
   const MFNode nodes = selectionOf(editor);
-  inOneStep(editor.editor(), nameOf("Remove", nodes), [&] {
-    for (const NodeRef& node : nodes) editor.editor().remove(onlyPlaceOf(editor.editor(), *node));
+  editor.step(nameOf("Remove", nodes), [&] {
+    for (const NodeRef& node : nodes) editor.editor().remove(editor.placeOf(*node));
   });
   editor.select({});
 }
@@ -122,9 +100,9 @@ void removeSelected(WorldEditor& editor) {
 void duplicateSelected(WorldEditor& editor) {
   const MFNode nodes = selectionOf(editor);
   MFNode copies;
-  inOneStep(editor.editor(), nameOf("Duplicate", nodes), [&] {
+  editor.step(nameOf("Duplicate", nodes), [&] {
     for (const NodeRef& node : nodes)
-      copies.push_back(editor.editor().duplicate(onlyPlaceOf(editor.editor(), *node)));
+      copies.push_back(editor.editor().duplicate(editor.placeOf(*node)));
   });
   editor.select(std::move(copies));
 }
@@ -132,9 +110,8 @@ void duplicateSelected(WorldEditor& editor) {
 void wrapSelected(WorldEditor& editor) {
   const MFNode nodes = selectionOf(editor);
   MFNode groups;
-  inOneStep(editor.editor(), nameOf("Wrap", nodes), [&] {
-    for (const NodeRef& node : nodes)
-      groups.push_back(editor.editor().wrap(onlyPlaceOf(editor.editor(), *node)));
+  editor.step(nameOf("Wrap", nodes), [&] {
+    for (const NodeRef& node : nodes) groups.push_back(editor.editor().wrap(editor.placeOf(*node)));
   });
   editor.select(std::move(groups));
 }
