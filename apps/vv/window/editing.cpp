@@ -7,6 +7,8 @@
 
 namespace vv {
 
+using namespace xvrml;
+
 namespace {
 
 // How far the pointer may move between press and release of a click, as a part of the picture.
@@ -21,7 +23,7 @@ void Editing::open(bool open) {
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_);
+    panels_.emplace(*model_, probes_);
   }
   if (hasTool_) endTool(false);
   isOpen_ = open;
@@ -39,6 +41,7 @@ void Editing::reset() {
   tool_.reset();
   panels_.reset();
   model_.reset();
+  probes_.clear();
   if (isOpen_) open(true);
 }
 
@@ -94,6 +97,19 @@ bool Editing::press(const InputEvent& event) {
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
   if (event.control && key == "S") return request([](WorldEditor& editor) { editor.save(); });
+  if (!event.control && !event.alt && key == "V")
+    return request([this, view = view_, at = pointer_](WorldEditor& editor) {
+      const CameraRay ray = rayThrough(view.camera, view.aspect, at.x, at.y);
+      PickHit hit;
+      if (!editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit))
+        throw EditError("there is nothing here to be measured");
+      probes_.add(hit.point);
+    });
+  if (!event.control && !event.alt && key == "B" && !probes_.all().empty()) {
+    probes_.keep();
+    screen_.redraw();
+    return true;
+  }
   if (event.control && key == "G" && selects) return request(wrapSelected);
   if (key == "Escape" && !selects) {
     open(false);
@@ -180,8 +196,23 @@ void Editing::update(Session& session, double seconds) {
   panels_->setView(view_);
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_));
+  readProbes(session, seconds);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
+}
+
+// Reads the probes from the still picture of the world as it is, a few times a second.
+void Editing::readProbes(Session& session, double seconds) {
+  constexpr double interval = 0.25;
+  if (probes_.all().empty() || seconds < probesRead_ + interval) return;
+  session.pictures().wantReadings();
+  picture::Picture picture;
+  if (session.viewers().own().isOutdated() || !session.pictures().copyStill(picture) ||
+      !picture.planes.contains(RT_ERROR))
+    return;
+  probesRead_ = seconds;
+  probes_.read(session.browser(), picture, view_);
+  screen_.redraw();
 }
 
 } // namespace vv

@@ -41,10 +41,13 @@ class Editing {
   void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
   void endTool(bool accept);
   bool takeForTool(const InputEvent& event);
+  void readProbes(Session& session, double seconds);
 
   Screen& screen_;
   bool isOpen_ = false;
   std::optional<EditModel> model_; // one for each world
+  Probes probes_;
+  double probesRead_ = 0; // when
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then

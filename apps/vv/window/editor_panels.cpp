@@ -51,6 +51,7 @@ void EditorPanels::draw() {
   drawFrames();
   drawOutline();
   drawSheet();
+  drawProbes();
   drawQuestion();
   model_.setActive(ImGui::IsAnyItemActive());
 }
@@ -148,6 +149,39 @@ void EditorPanels::drawSheet() {
       ImGui::EndDisabled();
       ImGui::PopID();
     }
+  }
+  ImGui::End();
+}
+
+void EditorPanels::drawProbes() {
+  if (probes_.all().empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  for (const Probe& probe : probes_.all()) {
+    double x = 0, y = 0;
+    if (!projectPoint(view_.camera, view_.aspect, probe.point.data(), x, y)) continue;
+    const ImVec2 at(float(1 + x) / 2 * size.x, float(1 - y) / 2 * size.y);
+    list.AddCircle(at, 4, frameColour, 12, 1.5f);
+    list.AddText(ImVec2(at.x + 6, at.y - 8), frameColour, std::to_string(probe.number).c_str());
+  }
+  ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y - 30), ImGuiCond_Appearing, ImVec2(0.5f, 1));
+  if (ImGui::Begin("Probes", nullptr,
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+    const std::vector<std::optional<Difference>> changes = probes_.differences();
+    for (size_t i = 0; i < changes.size(); ++i) {
+      const std::string text = probeText(probes_.all()[i], changes[i]);
+      const bool certain = changes[i] && changes[i]->isSignificant;
+      ImGui::PushStyleColor(
+          ImGuiCol_Text,
+          ImGui::GetStyleColorVec4(!changes[i] || certain ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+      ImGui::TextUnformatted(text.c_str());
+      ImGui::PopStyleColor();
+    }
+    if (button("Keep as A", true, "Compare what follows with the light of now (B)")) probes_.keep();
+    if (button("Copy", true, "Copy all as a table (CSV)"))
+      ImGui::SetClipboardText(probes_.csv().c_str());
+    if (button("Clear", true, "Remove all probes")) probes_.clear();
+    ImGui::NewLine();
   }
   ImGui::End();
 }

@@ -8,12 +8,13 @@
 
 #include "edit/actions.h"
 #include "edit/edit_model.h"
+#include "edit/probes.h"
 
 namespace vv {
 
 class EditorPanels {
  public:
-  explicit EditorPanels(EditModel& model) : model_(model) {}
+  EditorPanels(EditModel& model, Probes& probes) : model_(model), probes_(probes) {}
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
@@ -28,9 +29,11 @@ class EditorPanels {
   void drawRow(const OutlineRow& row, int number);
   void drawSheet();
   void drawFrames() const;
+  void drawProbes();
   void drawQuestion();
 
   EditModel& model_;
+  Probes& probes_;
   EditView view_;
   std::string search_;
   std::function<void()> go_; // null: nothing is asked
