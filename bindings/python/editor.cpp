@@ -203,8 +203,9 @@ void defineEditor(py::module_& module, py::object worldClass) {
           },
           py::arg("node"), py::arg("field"), py::arg("value"), "Sets a field that holds no nodes.")
       .def("insert", insert, py::arg("text"), parent, children, index,
-           "Inserts a node that is given as text, such as 'Shape { geometry Box { } }', and "
-           "returns it. parent: None for the top of the file. index: None for the end.")
+           "Inserts a node that is given as text, such as 'Shape { geometry Box { } }' or, in a "
+           "file of XML, '<Shape><Box/></Shape>', and returns it. parent: None for the top of the "
+           "file. index: None for the end.")
       .def("use", use, py::arg("node"), parent, children, index,
            "Lets a node stand at a further place (USE).")
       .def("remove", removeNode, py::arg("node"), parent, py::arg("field") = "",

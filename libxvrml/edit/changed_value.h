@@ -14,5 +14,11 @@ namespace xvrml {
 // line, for long lists that are written anew.
 std::string changedValue(std::string_view text, FieldType type, const Value& before,
                          const Value& after, size_t indent);
+// Does the same for the value of an attribute of XML, which stands in these quotes. Values with
+// entities are written anew.
+std::string changedAttribute(std::string_view text, FieldType type, const Value& before,
+                             const Value& after, size_t indent, char quote);
+// Returns the text of a value as an attribute of XML in these quotes has it.
+std::string attributeText(FieldType type, const Value& value, size_t indent, char quote);
 
 } // namespace xvrml

@@ -79,6 +79,7 @@ void Document::index(DocumentText& text) {
     }
     text.byPlace.emplace(placeKey(node->source.line, node->source.column), const_cast<Node*>(node));
     owners_.emplace(node, &text);
+    names_.emplace(node, node->defName);
     if (!node->defName.empty() && !names.insert(node->defName).second)
       repeated_.insert(node->defName);
   }

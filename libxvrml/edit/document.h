@@ -39,7 +39,7 @@ class Document {
   const DocumentText& file() const { return texts_.front(); }
   DocumentText& file() { return texts_.front(); }
 
-  // Reads nodes from a text of VRML97 or X3D ClassicVRML without a header. name: for the places of
+  // Reads nodes from a text in the encoding of the file, without a header. name: for the places of
   // its nodes, different from all others. Throws LoadError.
   const DocumentText& read(const std::string& text, const std::string& name);
   // Returns the node that stands at a place in the file or in one of these texts; null if there is
@@ -54,6 +54,9 @@ class Document {
   bool hasText(const Node& node) const { return owners_.contains(&node); }
   // Returns the text of a field of a node; null if the text does not have it.
   const FieldText* textOf(const Node& node, const FieldInfo& field) const;
+  // Returns the name behind a node's DEF, and in references to it, in the text that it comes from.
+  const std::string& nameInText(const Node& node) const { return names_.at(&node); }
+  bool isXml() const { return world().head.version.encoding == Encoding::x3dXml; }
   // Returns the text that a node of the document comes from, and where it stands there.
   const DocumentText& textOf(const Node& node) const;
   const NodeText& placeOf(const Node& node) const;
@@ -87,6 +90,7 @@ class Document {
   std::map<std::string, DocumentText*, std::less<>> byName_;
   std::set<std::string, std::less<>> repeated_;
   std::unordered_map<const Node*, const DocumentText*> owners_;
+  std::unordered_map<const Node*, std::string> names_;
   std::unordered_map<const Node*, std::map<std::string, Value, std::less<>>> originals_;
 };
 

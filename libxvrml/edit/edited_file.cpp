@@ -18,9 +18,10 @@ std::string EditedFile::whyNot() {
   const std::string& path = world().path;
   if (stampOf(path) == FileStamp()) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
-  if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic)
-    return fmt::format("{} is {}: VRML97 and X3D ClassicVRML can be edited in place; write it as "
-                       "one of these first",
+  if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic &&
+      encoding != Encoding::x3dXml)
+    return fmt::format("{} is {}: VRML97, X3D ClassicVRML and X3D XML can be edited in place; "
+                       "write it as one of these first",
                        path, encodingName(encoding));
   try {
     const Source source = Source::open(path, world().options.limits, nullptr);
@@ -31,7 +32,10 @@ std::string EditedFile::whyNot() {
         return fmt::format("{} has a unit of its own for angles, which is only read", path);
     packed_ = source.isPacked();
     marked_ = source.hasByteOrderMark();
-    document_ = std::make_unique<Document>(std::string(source.text()), path, world().options);
+    auto document = std::make_unique<Document>(std::string(source.text()), path, world().options);
+    if (const std::string& reason = document->file().layout.whyNot; !reason.empty())
+      return fmt::format("{} {}", path, reason);
+    document_ = std::move(document);
     read_ = onDisk_ = source.stamp();
   } catch (const LoadError& error) { return error.diagnostic.text(); }
   return "";
@@ -73,13 +77,7 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   }
   if (const auto exchange = exchangeOf(document().world()); exchange && !exchange->imports.empty())
     throw EditError(fmt::format("{} imports nodes: only values can be edited there", world().path));
-  if (slot.field) {
-    const FieldText* const text = document().textOf(*slot.parent.document, *slot.field);
-    if (text && !text->faithful)
-      throw EditError(fmt::format("a part of the field {} of line {} could not be read: mend it "
-                                  "first",
-                                  given.field, slot.parent.live->source.line));
-  }
+  if (slot.field) checkReadable(*slot.parent.document, *slot.field);
   if (slot.isSingle()) {
     if (given.index > 0 || (holds && !nodeAt(slot)))
       throw EditError(fmt::format("{} of {} holds {}", slot.field->name, given.parent->type().name,
@@ -122,6 +120,17 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
     break;
   }
   return slot;
+}
+
+void EditedFile::checkReadable(const Node& node, const FieldInfo& field) {
+  const FieldText* const text = document().textOf(node, field);
+  if (!text || text->faithful) return;
+  if (text->form == FieldForm::program)
+    throw EditError(fmt::format("the program of this Script of line {} stands between its tags: "
+                                "edit it there",
+                                node.source.line));
+  throw EditError(fmt::format("a part of the field {} of line {} could not be read: mend it first",
+                              field.name, node.source.line));
 }
 
 Node* EditedFile::nodeAt(const Slot& slot) {

@@ -42,6 +42,8 @@ class EditedFile {
   // holds: there must be a node at the place.
   Slot slotOf(const NodeSlot& given, bool holds);
   Node* nodeAt(const Slot& slot);
+  // Throws EditError if the text of a field could not be read.
+  void checkReadable(const Node& node, const FieldInfo& field);
 
   std::string text();
   std::string bytes();

@@ -123,6 +123,7 @@ void Editor::set(Node& node, std::string_view field, Value value) {
   if (hasNormalizedAxes(*info))
     normalizeAxes(info->type, std::visit([](auto& v) -> void* { return &v; }, value));
   const FieldInfo& own = *twin.document->type().find(field);
+  impl_->file.checkReadable(*twin.document, own);
   const auto put = [this, twin, &own](const Value& live, const Value& inFile) {
     impl_->file.live().set(*twin.live, own.name, live);
     impl_->file.document().set(*twin.document, own, inFile);
@@ -143,6 +144,8 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
   try {
     read = &file.read(std::string(text), impl_->file.live().placeName(name));
   } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
+  if (const std::string& reason = read->layout.whyNot; !reason.empty())
+    throw EditError("the text " + reason);
   const Scope& scope = read->world->scope;
   for (const Diagnostic& one : read->world->diagnostics.list())
     if (one.severity == Severity::error) throw EditError(one.text());
@@ -212,7 +215,7 @@ NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
     throw EditError(fmt::format("'{}' is no node with children", type));
   OpenStep step(impl_->history, fmt::format("Wrap {}", impl_->file.nodeAt(slot)->type().name));
   const Twin inner = impl_->nodes.take(slot);
-  const NodeRef outer = insert(given, fmt::format("{} {{\n  children [\n  ]\n}}", type));
+  const NodeRef outer = insert(given, emptyNode(impl_->file.document(), type));
   const Slot within = impl_->file.slotOf({outer.get(), "children", 0}, false);
   impl_->nodes.checkPlace(within, *inner.live);
   impl_->nodes.place(within, inner);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "edit/document.h"
 
@@ -18,5 +19,8 @@ std::string writeInPlace(const Document& document);
 // Returns the text of a node with all that is in it, as the document has it, without indentation of
 // its own. A node with a name that stands further up in the file is written in full.
 std::string writeNode(const Document& document, const Node& node);
+
+// Returns the text of a grouping node of a type, without children.
+std::string emptyNode(const Document& document, std::string_view type);
 
 } // namespace xvrml

@@ -1,5 +1,7 @@
 #include "edit/lines.h"
 
+#include <algorithm>
+
 namespace xvrml {
 
 std::string_view indentationAt(std::string_view text, size_t at) {
@@ -17,6 +19,22 @@ bool startsLine(std::string_view text, size_t at) {
 bool endsLine(std::string_view text, size_t at) {
   while (at < text.size() && (isBlank(text[at]) || text[at] == ',')) ++at;
   return at == text.size() || text[at] == '\n' || text[at] == '\r' || text[at] == '#';
+}
+
+bool endsXmlLine(std::string_view text, size_t at) {
+  const size_t end = lineEnd(text, at);
+  std::string_view rest = text.substr(at, end - at);
+  const auto skipBlanks = [&] {
+    while (!rest.empty() && isBlank(rest[0])) rest.remove_prefix(1);
+  };
+  skipBlanks();
+  if (rest.starts_with("<!--")) {
+    const size_t close = rest.find("-->");
+    if (close == rest.npos) return false;
+    rest.remove_prefix(close + 3);
+    skipBlanks();
+  }
+  return rest.empty();
 }
 
 std::string_view lineFeedOf(std::string_view text) {
@@ -48,6 +66,45 @@ std::string indented(std::string_view text, std::string_view from, std::string_v
     } else if (!inComment) {
       inString = c == '"';
       inComment = c == '#';
+    }
+  }
+  return out;
+}
+
+std::string indentedXml(std::string_view text, std::string_view from, std::string_view to) {
+  std::string out;
+  bool inTag = false;
+  char quote = 0;     // around the value that the byte stands in
+  size_t comment = 0; // where the comment ends that the byte stands in
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (!inTag && i >= comment && text.substr(i).starts_with("<![CDATA[")) {
+      const size_t end = std::min(text.find("]]>", i), text.size());
+      out += text.substr(i, end - i);
+      i = end - 1;
+      continue;
+    }
+    if (!inTag && i >= comment && text.substr(i).starts_with("<!--"))
+      comment = std::min(text.find("-->", i + 4), text.size());
+    out += c;
+    if (i < comment) {
+      // Quotes and brackets mean nothing.
+    } else if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (inTag) {
+      if (c == '"' || c == '\'') quote = c;
+      if (c == '>') inTag = false;
+    } else if (c == '<') {
+      inTag = true;
+    }
+    const bool ends = c == '\n' || (c == '\r' && text.substr(i + 1, 1) != "\n");
+    if (!ends || quote != 0) continue;
+    const std::string_view rest = text.substr(i + 1);
+    const size_t word = rest.find_first_not_of(" \t");
+    const bool isText = i >= comment && !inTag && word != rest.npos && rest[word] != '<';
+    if (!isText && rest.starts_with(from)) {
+      out += to;
+      i += from.size();
     }
   }
   return out;

@@ -1,4 +1,4 @@
-// lines.h: lines of a text of VRML97 and their indentation. [any thread]
+// lines.h: lines of a text of VRML97 or XML and their indentation. [any thread]
 #pragma once
 
 #include <string>
@@ -28,13 +28,15 @@ inline size_t nextLine(std::string_view text, size_t end) {
 std::string_view indentationAt(std::string_view text, size_t at);
 // Returns whether nothing but blanks stands before the byte `at` in its line.
 bool startsLine(std::string_view text, size_t at);
-// Returns whether nothing but blanks and commas, and perhaps a comment, stands behind the byte `at`
+// Return whether nothing but blanks and commas, and perhaps a comment, stands behind the byte `at`
 // in its line.
 bool endsLine(std::string_view text, size_t at);
+bool endsXmlLine(std::string_view text, size_t at);
 // Returns the end of lines that the text uses: that of its first line; "\n" for a single line.
 std::string_view lineFeedOf(std::string_view text);
-// Returns the text of a node with another indentation: lines that begin with `from` begin with `to`
-// instead. The first line, and lines within strings, stay.
+// Return the text of a node with another indentation: lines that begin with `from` begin with `to`
+// instead. The first line, and lines within strings, values and texts, stay.
 std::string indented(std::string_view text, std::string_view from, std::string_view to);
+std::string indentedXml(std::string_view text, std::string_view from, std::string_view to);
 
 } // namespace xvrml

@@ -42,19 +42,24 @@ std::vector<ListStep> listSteps(const std::vector<NodePlace>& places, const MFNo
   using Kind = ListStep::Kind;
   const std::vector<size_t> kept = keptPlaces(places, list);
   std::vector<ListStep> steps;
-  size_t next = 0;  // the next place of the text
-  size_t fresh = 0; // the next node of the list
+  bool begun = false; // a place of the text has been passed that has a node
+  size_t next = 0;    // the next place of the text
+  size_t fresh = 0;   // the next node of the list
   // Writes the nodes and places before a node that is kept.
   const auto between = [&](size_t place, size_t node) {
-    for (; next < place && fresh < node; ++next, ++fresh)
-      steps.push_back({Kind::replace, next, list[fresh].get()});
-    for (; fresh < node; ++fresh) steps.push_back({Kind::insert, none, list[fresh].get()});
-    for (; next < place; ++next) steps.push_back({Kind::remove, next, nullptr});
+    for (; next < place && fresh < node; ++next, ++fresh) {
+      steps.push_back({Kind::replace, &places[next], list[fresh].get()});
+      begun = true;
+    }
+    const Kind kind = begun || places.empty() ? Kind::behind : Kind::before;
+    for (; fresh < node; ++fresh) steps.push_back({kind, nullptr, list[fresh].get()});
+    for (; next < place; ++next) steps.push_back({Kind::remove, &places[next], nullptr});
   };
   for (size_t i = 0; i < list.size(); ++i) {
     if (kept[i] == none) continue;
     between(kept[i], i);
-    steps.push_back({Kind::keep, next++, list[fresh++].get()});
+    steps.push_back({Kind::keep, &places[next++], list[fresh++].get()});
+    begun = true;
   }
   between(places.size(), list.size());
   return steps;

@@ -9,11 +9,11 @@
 namespace xvrml {
 
 struct ListStep {
-  // replace: the node takes the place of another one. insert: it gets a place of its own behind
-  // what has been written; if nothing has, before the next place that is kept.
-  enum class Kind : uint8_t { keep, replace, remove, insert } kind;
-  size_t place;     // index of the place in the text; not for insert
-  const Node* node; // null: NULL; not for remove
+  // replace: the node takes the place of another one. before, behind: it gets a place of its own,
+  // before the next place or behind the last one.
+  enum class Kind : uint8_t { keep, replace, remove, before, behind } kind;
+  const NodePlace* place; // in the text; null for before and behind
+  const Node* node;       // null: NULL; not for remove
 };
 
 // Returns the steps in the order of the text.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "edit/lines.h"
+#include "write/xml_escape.h"
 
 namespace xvrml {
 
@@ -57,18 +58,20 @@ void TextCopier::copyRoute(const DocumentText& text, const RouteText& place) {
   const auto found = routes_.find(placeKey(place.line, place.column));
   if (found == routes_.end()) return remove(text, place.whole);
   const Route& route = *found->second;
-  if (!written.contains(route.from.get()) || !written.contains(route.to.get())) {
-    postponed.push_back(&route);
+  if (!written.contains(route.from.get()) || !written.contains(route.to.get()))
     return remove(text, place.whole);
-  }
+  copied.insert(&route);
   replaceName(text, place.from, *route.from);
   replaceName(text, place.to, *route.to);
 }
 
 void TextCopier::replaceName(const DocumentText& text, const TextSpan& span, const Node& node) {
-  if (text.text.compare(span.begin, span.size(), node.defName) == 0) return;
+  if (document_.nameInText(node) == node.defName) return;
   raw(text, span.begin);
-  out += node.defName;
+  if (document_.isXml())
+    escapeXml(out, node.defName, "'\"");
+  else
+    out += node.defName;
   at = span.end;
 }
 
@@ -81,9 +84,14 @@ void TextCopier::remove(const DocumentText& text, const TextSpan& span) {
     at = nextLine(all, end);
     return;
   }
+  if (startsLine(all, begin)) { // the rest of the line stands where it began
+    copy(text, begin);
+    at = end;
+    return;
+  }
   while (begin > at && isBlank(all[begin - 1])) --begin;
   copy(text, begin);
-  at = startsLine(all, span.begin) ? end : span.end;
+  at = span.end;
 }
 
 } // namespace xvrml

@@ -21,7 +21,8 @@ class TextCopier {
   void copy(const DocumentText& text, size_t end);
   // Leaves a part of the text out, with its line if nothing else stands in it.
   void remove(const DocumentText& text, const TextSpan& span);
-  // Copies the text up to the name of a node, and writes the name that it has now.
+  // Copies the text up to the name of a node, and writes the name that it has now. Does nothing if
+  // that is the name of the text.
   void replaceName(const DocumentText& text, const TextSpan& span, const Node& node);
 
   // Returns the prototype of an instance if its text has not been copied yet; else null.
@@ -29,8 +30,9 @@ class TextCopier {
 
   std::string out; // what has been written
   std::unordered_set<const Node*> written;
-  // Routes that could not stay in their places, because their nodes were written behind them.
-  std::vector<const Route*> postponed;
+  // Routes that have been copied. Those whose nodes were written behind them cannot stay in their
+  // places.
+  std::unordered_set<const Route*> copied;
   size_t at = 0; // the first byte of the present text that has not been copied
 
  private:

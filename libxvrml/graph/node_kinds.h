@@ -16,5 +16,11 @@ const Node* firstNode(const ProtoDeclaration* declaration);
 const NodeType* effectiveType(const Node& node);
 // Returns whether a type is one of a field's nodeTypes.
 bool typeAccepted(std::string_view nodeTypes, const NodeType& type);
+// Returns the field of a node that holds a node of the type `child` where a file of XML does not
+// say which (containerField, ISO/IEC 19776-1 5.2), as the file or our table spells it. child: null
+// if it is not known. The child's own containerField counts, then the first field that takes it.
+// Where none does, it is a field that a message can name.
+std::string_view usualField(const NodeType& parent, const NodeType* child,
+                            const FileVersion& version);
 
 } // namespace xvrml

@@ -196,28 +196,9 @@ bool Builder::wouldAccept(size_t nodeTarget, std::string_view name, bool use) co
   return acceptsType(nodeTargets_[nodeTarget - 1], typeOf(name, use));
 }
 
-// The node type's own containerField counts (ISO/IEC 19776-1 5.2), then the first field that takes
-// the node. Where none does, a field that the message about it can name.
 std::string_view Builder::fieldFor(std::string_view name, bool use) const {
   if (use ? !scopes_.back().scope->names.contains(name) : !typeNamed(name)) return {};
-  const NodeType* const type = typeOf(name, use);
-  const NodeType& parent = nodes_.back().node->type();
-  std::string_view usual = type ? containerOf(*type) : "children";
-  // In X3D 4 the parts of a MetadataSet need not say that they are its value.
-  if (usual == "metadata" && file_.head.version.major >= 4 &&
-      parent.index == nodes::MetadataSet::typeIndex)
-    usual = "value";
-  const auto takes = [&](const FieldInfo& field) {
-    return holdsValue(field) && holdsNodes(field) &&
-           (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type));
-  };
-  const FieldInfo* const field = parent.find(spelled(parent, usual));
-  if (field && takes(*field)) return usual;
-  auto first = std::find_if(parent.fields.begin(), parent.fields.end(), takes);
-  if (first == parent.fields.end() && !field)
-    first = std::find_if(parent.fields.begin(), parent.fields.end(),
-                         [](const FieldInfo& one) { return holdsValue(one) && holdsNodes(one); });
-  return first == parent.fields.end() ? usual : std::string_view(first->name);
+  return usualField(nodes_.back().node->type(), typeOf(name, use), file_.head.version);
 }
 
 // Returns the node types that may be added here; "" means all.

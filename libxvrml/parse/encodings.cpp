@@ -9,9 +9,9 @@
 
 #include "lower_case.h"
 #include "parse/builder.h"
+#include "parse/classic_recorder.h"
 #include "parse/parser.h"
 #include "parse/source.h"
-#include "parse/text_layout.h"
 #include "parse/vrml1/vrml1.h"
 
 namespace xvrml {
@@ -60,7 +60,7 @@ void readVrml(const WorldFile& file) {
   Locator locator(file.bytes, file.name, file.state.diagnostics);
   Builder builder(locator, file.state, file.content);
   Lexer lexer(locator);
-  std::optional<LayoutRecorder> recorder;
+  std::optional<ClassicRecorder> recorder;
   if (file.state.layout) recorder.emplace(builder, locator, *file.state.layout);
   ParseSink& sink = recorder ? static_cast<ParseSink&>(*recorder) : builder;
   Parser(lexer, file.state.options.limits, sink, file.budget.get(),

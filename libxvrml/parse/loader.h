@@ -76,7 +76,7 @@ std::unique_ptr<World> loadFragment(std::string_view text, const std::string& na
                                     const LoadOptions& options, const BudgetPtr& budget,
                                     uint64_t depth, const FileVersion& version);
 // Does the same as loadWorldFromMemory(), or as loadFragment() with a version, and fills the
-// layout, which stays empty for encodings other than VRML97 and X3D ClassicVRML.
+// layout, which stays empty for encodings other than VRML97, X3D ClassicVRML and X3D XML.
 std::unique_ptr<World> loadWithLayout(std::string_view text, const std::string& name,
                                       const LoadOptions& options, TextLayout& layout,
                                       const std::optional<FileVersion>& fragment = {});

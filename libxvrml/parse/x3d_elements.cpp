@@ -24,9 +24,10 @@ constexpr std::string_view statements[] = {
 
 } // namespace
 
-X3dElements::X3dElements(Locator& locator, const Limits& limits, ParseSink& sink, Budget* budget)
+X3dElements::X3dElements(Locator& locator, const Limits& limits, ParseSink& sink, Budget* budget,
+                         bool isFragment)
     : locator_(locator), limits_(limits), sink_(sink), values_(locator, limits, budget),
-      nesting_(std::min(limits.nesting, Parser::maximumNesting)) {
+      nesting_(std::min(limits.nesting, Parser::maximumNesting)), isFragment_(isFragment) {
   push(Kind::file, {});
   for (const std::string_view name : statements) lowerCase_.emplace(lowerCase(name), name);
   for (const NodeType* type : nodeTypes()) lowerCase_.emplace(lowerCase(type->name), type->name);
@@ -177,6 +178,11 @@ bool X3dElements::nameOf(Name& out, const Name& element, Attributes attributes,
 
 void X3dElements::openRoot(const Name& element, Attributes attributes) {
   if (element.text == "X3D") return openX3d(element, attributes);
+  if (isFragment_ && element.text != "Scene") {
+    top().kind = Kind::statements;
+    sawScene_ = true;
+    return openStatement(element, attributes);
+  }
   if (element.text != "Scene") return refuse(element, "X3D", attributes);
   locator_.warn(element.at, "there is no X3D around this Scene");
   sawScene_ = true;

@@ -16,7 +16,9 @@ namespace xvrml {
 // Wide because there is one function for each kind of element.
 class X3dElements {
  public:
-  X3dElements(Locator& locator, const Limits& limits, ParseSink& sink, Budget* budget);
+  // isFragment: the text may also be a single node, without X3D and Scene.
+  X3dElements(Locator& locator, const Limits& limits, ParseSink& sink, Budget* budget,
+              bool isFragment = false);
   // The reader calls these in the order of the file. Names and values need to live only as long as
   // the call lasts.
   void open(const Name& element, Attributes attributes);
@@ -107,6 +109,7 @@ class X3dElements {
   ParseSink& sink_;
   AttributeReader values_;
   const uint64_t nesting_;
+  const bool isFragment_;
   uint64_t depth_ = 0; // number of open nodes and prototypes
   std::vector<Frame> frames_;
   // Elements that are open within one that is left out, with it.

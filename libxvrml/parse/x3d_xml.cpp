@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <optional>
 
 #include <expat.h>
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "parse/builder.h"
 #include "parse/suffix.h"
 #include "parse/x3d_elements.h"
+#include "parse/xml_recorder.h"
 #include "parse/xml_text.h"
 
 namespace xvrml {
@@ -21,8 +23,9 @@ namespace {
 
 class Reader {
  public:
-  Reader(const XmlText& text, Locator& locator, X3dElements& elements)
-      : text_(text), locator_(locator), elements_(elements),
+  // layout: gets the outline of the text; null: nothing does.
+  Reader(const XmlText& text, Locator& locator, X3dElements& elements, TextLayout* layout)
+      : text_(text), locator_(locator), elements_(elements), layout_(layout),
         // The text is in UTF-8, whatever its declaration says.
         parser_(XML_ParserCreate("UTF-8")) {
     if (!parser_) throw std::bad_alloc();
@@ -72,7 +75,10 @@ class Reader {
     guarded(data, [&](Reader& reader) { reader.open(name, attributes); });
   }
   static void XMLCALL closeElement(void* data, const XML_Char*) {
-    guarded(data, [](Reader& reader) { reader.elements_.close(); });
+    guarded(data, [](Reader& reader) {
+      reader.elements_.close();
+      if (reader.layout_) reader.layout_->xml.close(reader.place(), reader.placeBehind());
+    });
   }
   static void XMLCALL readCharacters(void* data, const XML_Char* text, int size) {
     guarded(data, [&](Reader& reader) {
@@ -105,6 +111,11 @@ class Reader {
     return static_cast<size_t>(std::max<XML_Index>(XML_GetCurrentByteIndex(parser_.get()), 0));
   }
   const char* place() const { return text_.place(offset()); }
+  // Returns the place behind the tag that has been read.
+  const char* placeBehind() const {
+    const int bytes = XML_GetCurrentByteCount(parser_.get());
+    return text_.place(offset() + static_cast<size_t>(std::max(bytes, 0)));
+  }
 
   void open(const char* name, const char** given) {
     const char* const at = place();
@@ -113,9 +124,12 @@ class Reader {
     const bool hasTag = XmlText::findAttributes(text_.text(), at, attributes_) &&
                         attributes_.size() == specified && tagIs(at, name);
     if (!hasTag) attributes_.clear();
+    if (layout_) layout_->xml.open(at, placeBehind(), attributes_);
+    if (!hasTag) refuseEdits("has elements within entities of its document type");
     for (size_t i = 0; given[2 * i]; ++i) {
       const std::string_view decoded = given[2 * i + 1];
       if (i >= attributes_.size()) { // the document type gives it
+        refuseEdits("gets values of attributes from its document type");
         attributes_.push_back({{given[2 * i], at}, decoded, at, true});
       } else if (attributes_[i].value.find('&') != std::string_view::npos) {
         attributes_[i].value = decoded;
@@ -132,8 +146,13 @@ class Reader {
     return text.substr(static_cast<size_t>(at + 1 - text.data())).starts_with(name);
   }
 
+  void refuseEdits(std::string_view reason) {
+    if (layout_ && layout_->whyNot.empty()) layout_->whyNot = reason;
+  }
+
   void reportError() {
     const XML_Error code = XML_GetErrorCode(parser_.get());
+    refuseEdits("is not well-formed XML: mend it first");
     const char* const known = XML_ErrorString(code);
     locator_.error(place(), fmt::format("this is not well-formed XML: {}; what follows is left out",
                                         known ? known : "unknown error"));
@@ -142,6 +161,7 @@ class Reader {
   const XmlText& text_;
   Locator& locator_;
   X3dElements& elements_;
+  TextLayout* const layout_;
   std::unique_ptr<XML_ParserStruct, Free> parser_;
   std::vector<Attribute> attributes_;
   std::string whole_;
@@ -175,11 +195,30 @@ void readX3dXml(const WorldFile& file) {
   const XmlText text(file.bytes, *file.name, file.budget);
   Locator locator(text.text(), file.name, file.state.diagnostics);
   Builder builder(locator, file.state, file.content);
-  X3dElements elements(locator, file.state.options.limits, builder, file.budget.get());
+  TextLayout* const layout = file.state.layout;
+  std::optional<XmlRecorder> recorder;
+  if (layout) {
+    if (text.encoding() != "UTF-8")
+      layout->whyNot =
+          fmt::format("is in {}: only XML in UTF-8 can be edited", shortened(text.encoding()));
+    // A text that is not in UTF-8 is a copy.
+    layout->xml.begin(layout->whyNot.empty() ? file.bytes : text.text());
+    recorder.emplace(builder, locator, *layout);
+  }
+  ParseSink& sink = recorder ? static_cast<ParseSink&>(*recorder) : builder;
+  X3dElements elements(locator, file.state.options.limits, sink, file.budget.get(),
+                       file.state.anyRoots);
   if (!text.complaint().empty()) locator.warn(text.text().data(), text.complaint());
-  Reader(text, locator, elements).read();
+  Reader(text, locator, elements, layout).read();
   elements.finish();
   builder.finish();
+  if (!layout) return;
+  if (layout->whyNot.empty() && !file.state.anyRoots && !layout->xml.scene())
+    layout->whyNot = "has no Scene";
+  if (layout->whyNot.empty())
+    recorder->finish();
+  else // the places may be those of a copy, or within entities
+    *layout = {.whyNot = layout->whyNot};
 }
 
 } // namespace xvrml

@@ -128,8 +128,12 @@ void XmlText::convert(std::string_view bytes, const std::string& name) {
     text_ = converted_.text();
   }
   while (!text_.empty() && isBlank(text_[0])) text_.remove_prefix(1);
-  if (bigEndian || littleEndian) return;
+  if (bigEndian || littleEndian) {
+    encoding_ = "UTF-16";
+    return;
+  }
   const std::string encoding = declaredEncoding(text_);
+  if (!encoding.empty()) encoding_ = encoding;
   if (encoding == "ISO-8859-1" || encoding == "WINDOWS-1252") {
     char* out = room(text_.size() * 3 + 4);
     const char* const start = out;

@@ -19,6 +19,8 @@ class XmlText {
   // Returns the file in UTF-8, from its first element on. It is the file itself, if that is in
   // UTF-8.
   std::string_view text() const { return text_; }
+  // Returns the encoding of the file, in upper case: "UTF-8" where it names none.
+  const std::string& encoding() const { return encoding_; }
   // Returns why the text may not be what the file means; "" if it is.
   const std::string& complaint() const { return complaint_; }
 
@@ -47,6 +49,7 @@ class XmlText {
   TextBuffer converted_, shortened_;
   std::vector<Run> runs_;
   std::vector<size_t> skippedBefore_; // bytes of the runs up to each, with it
+  std::string encoding_ = "UTF-8";
   std::string complaint_;
 };
 

@@ -7,33 +7,10 @@
 #include "printable.h"
 #include "write/value_writer.h"
 #include "write/writer.h"
+#include "write/xml_escape.h"
 
 namespace xvrml {
 namespace {
-
-// Appends text as the value of an attribute in single quotes, or as character data. Bytes that are
-// not UTF-8 are taken for ISO 8859-1, and characters that XML 1.0 cannot hold become U+FFFD.
-void escape(std::string& out, std::string_view text) {
-  while (!text.empty()) {
-    const size_t length = printable_text::utf8Length(text);
-    const auto byte = static_cast<unsigned char>(text[0]);
-    if (length == 0) {
-      fmt::format_to(std::back_inserter(out), "&#{};", byte);
-    } else if (length == 1 && byte < 0x20) {
-      if (byte == '\n' || byte == '\t' || byte == '\r')
-        fmt::format_to(std::back_inserter(out), "&#{};", byte);
-      else
-        out += "\xef\xbf\xbd";
-    } else if (text.starts_with("\xef\xbf\xbe") || text.starts_with("\xef\xbf\xbf")) {
-      out += "\xef\xbf\xbd"; // U+FFFE and U+FFFF
-    } else if (byte == '&' || byte == '<' || byte == '>' || byte == '\'') {
-      out += byte == '&' ? "&amp;" : byte == '<' ? "&lt;" : byte == '>' ? "&gt;" : "&apos;";
-    } else {
-      out += text.substr(0, length);
-    }
-    text.remove_prefix(std::max<size_t>(length, 1));
-  }
-}
 
 bool holdsText(FieldType type) {
   return type == FieldType::SFString || type == FieldType::MFString;
@@ -136,7 +113,7 @@ class XmlWriter : public Writer {
 
   void attribute(std::string_view name, std::string_view text) {
     text_ += fmt::format(" {}='", name);
-    escape(text_, text);
+    escapeXml(text_, text);
     text_ += '\'';
   }
 
@@ -148,7 +125,7 @@ class XmlWriter : public Writer {
         plain = *static_cast<const std::string*>(value);
       else
         writeXmlValue(plain, type, value, indent_);
-      escape(text_, plain);
+      escapeXml(text_, plain);
     } else {
       writeXmlValue(text_, type, value, indent_);
     }

@@ -11,7 +11,16 @@ xvrml = pytest.importorskip("xvrml")
 
 HEAD = "#VRML V2.0 utf8\n"
 LAMP = HEAD + "# by day\nDEF L PointLight { intensity 0.80 # bright\n}\nDEF G Group { }\n"
-CORPUS = pathlib.Path(__file__).resolve().parents[2].parent / "shared" / "corpus"
+XML = """<?xml version="1.0" encoding="UTF-8"?>
+<X3D profile='Immersive' version='3.3'>
+  <Scene>
+    <!-- by day -->
+    <PointLight DEF='L' intensity='0.80'/> <!-- bright -->
+    <Group DEF='G'/>
+  </Scene>
+</X3D>
+"""
+SHARED = pathlib.Path(__file__).resolve().parents[2].parent / "shared"
 
 
 @pytest.fixture
@@ -149,6 +158,33 @@ def test_nodes(lamp):
     assert edit.text() == LAMP and list(lamp.names) == ["G", "L"]
 
 
+def test_xml(tmp_path):
+    path = tmp_path / "l.x3d"
+    path.write_text(XML)
+    world = xvrml.load(path)
+    with world.edit("Dim"):
+        world["L"].intensity = .5
+        world["L"].on = False
+    world.edit.save()
+    dimmed = XML.replace("0.80'", "0.5' on='false'")
+    assert path.read_text() == dimmed
+    world.edit.insert("<Shape DEF='S'><Box/></Shape>", world["G"])
+    world.edit.use(world["S"], world["G"])
+    world.edit.add_route(world["L"], "on", world["L"], "on")
+    assert world.edit.text() == dimmed.replace(
+        "<Group DEF='G'/>\n", """<Group DEF='G'>
+      <Shape DEF='S'><Box/></Shape>
+      <Shape USE='S'/>
+    </Group>
+    <ROUTE fromNode='L' fromField='on' toNode='L' toField='on'/>
+""")
+    while world.edit.undo():
+        pass
+    assert world.edit.text() == XML
+    with pytest.raises(xvrml.EditError):
+        world.edit.insert("Shape { }", world["G"])
+
+
 def test_routes(lamp):
     lamp.edit.add_route(lamp["L"], "on_changed", lamp["L"], "set_on")
     assert lamp.edit.text().endswith("ROUTE L.on_changed TO L.set_on\n")
@@ -263,18 +299,23 @@ def edit_one(path, seed):
         gone, come = difference(before, after)
         if len(gone) > 60 or len(come) > 120:
             return "%d bytes became %d" % (len(gone), len(come))
+        if path.suffix.lower() in (".x3d", ".x3dz") and set(gone + come) & set("<>"):
+            return "%r became %r" % (gone, come)
         world.edit.undo()
         return "" if world.edit.text() == before else "undo gives another text"
     return None
 
 
-@pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not here")
-def test_real_files_change_within_the_field():
-    files = sorted(p for p in CORPUS.rglob("*") if p.suffix.lower() in (".wrl", ".wrz", ".x3dv")
-                   and p.stat().st_size < 300_000)
+@pytest.mark.parametrize("corpus, suffixes, step",
+                         [("corpus", (".wrl", ".wrz", ".x3dv"), 4), ("corpus-x3d", (".x3d", ".x3dz"), 2)])
+def test_real_files_change_within_the_field(corpus, suffixes, step):
+    if not (SHARED / corpus).is_dir():
+        pytest.skip("the corpus is not here")
+    files = sorted(p for p in (SHARED / corpus).rglob("*")
+                   if p.suffix.lower() in suffixes and p.stat().st_size < 300_000)
     assert files
     tried, wrong = 0, {}
-    for number, path in enumerate(files[::4]):
+    for number, path in enumerate(files[::step]):
         problem = edit_one(path, number)
         if problem is None:
             continue

@@ -5,9 +5,9 @@
 // began: of a field that an interpolator moves, only a value that was edited is written. Undo
 // restores what the edit has changed, and nothing else.
 //
-// Files of VRML97 and of X3D ClassicVRML can be edited, also packed with gzip. Nodes that stand in
-// the world's own file can be edited, and what has been inserted there; nodes in the bodies of
-// prototypes, of Inlines and of Scripts cannot.
+// Files of VRML97, X3D ClassicVRML and X3D in XML can be edited, also packed with gzip. Nodes that
+// stand in the world's own file can be edited, and what has been inserted there; nodes in the
+// bodies of prototypes, of Inlines and of Scripts cannot.
 //
 // All functions are for the thread that owns the world. A function that throws EditError has
 // changed nothing.
@@ -71,7 +71,8 @@ class Editor {
   // Sets a field that holds no nodes. Throws EditError for a value of another type, out of the
   // field's range, or with a number that is not finite.
   void set(Node& node, std::string_view field, Value value);
-  // Inserts a node that is given as text in the encoding of the file, with all that is in it.
+  // Inserts a node that is given as text in the encoding of the file, with all that is in it: in
+  // XML as one element.
   // Returns the node. In an SFNode it takes the place of the present one. Names that the file has
   // already get a number behind them. Throws EditError if the text cannot be read as one node
   // without routes and prototypes, or the node cannot stand there.

@@ -1,0 +1,205 @@
+#include "edit/node_writer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/lexer.h"
+#include "base/x3d.h"
+#include "edit/lines.h"
+
+namespace xvrml {
+
+using Kind = ListStep::Kind;
+
+NodeWriter::NodeWriter(const Document& document, std::vector<const PrototypeText*> lifted)
+    : document_(document), feed_(lineFeedOf(document.file().text)), text_(document, lifted),
+      lifted_(std::move(lifted)) {}
+
+std::string NodeWriter::file() {
+  const DocumentText& file = document_.file();
+  if (!lifted_.empty()) {
+    text_.copy(file, beginOfRoots());
+    const bool inLines = startsLine(file.text, text_.at) && text_.at < file.text.size();
+    const std::string indentation(inLines ? indentationAt(file.text, text_.at) : "");
+    for (const PrototypeText* one : lifted_)
+      text_.out += indentation + file.text.substr(one->whole.begin, one->whole.size()) + feed_;
+  }
+  writeRoots(file);
+  text_.copy(file, file.text.size());
+  return std::move(text_.out);
+}
+
+std::vector<const PrototypeText*> NodeWriter::missing() const {
+  std::vector<const PrototypeText*> all;
+  const std::vector<PrototypeText>& prototypes = document_.file().layout.prototypes;
+  for (const PrototypeText& one : prototypes)
+    if (&one <= last_ && one.whole.begin >= beginOfRoots()) all.push_back(&one);
+  return all;
+}
+
+// Returns where the first root stands, with its line if it begins one.
+size_t NodeWriter::beginOfRoots() const {
+  const DocumentText& file = document_.file();
+  if (file.layout.roots.empty()) return file.text.size();
+  const size_t begin = file.layout.roots.front().span.begin;
+  return startsLine(file.text, begin) ? lineBegin(file.text, begin) : begin;
+}
+
+std::string NodeWriter::node(const Node* node, std::string_view indentation, const Holder& holder) {
+  if (!node) return "NULL";
+  if (text_.written.contains(node)) return useOf(*node, holder);
+  const std::string& text = document_.textOf(*node).text;
+  const size_t begin = document_.placeOf(*node).whole.begin;
+  std::string outer = std::exchange(text_.out, {});
+  const size_t at = std::exchange(text_.at, begin);
+  writeNode(*node, &holder);
+  const std::string own = std::exchange(text_.out, std::move(outer));
+  text_.at = at;
+  return indented(own, indentationAt(text, begin), indentation);
+}
+
+void NodeWriter::begin(const Node& node) {
+  text_.written.insert(&node);
+  if (const auto* instance = nodeCast<ProtoInstance>(&node))
+    last_ = std::max(last_, text_.missingFor(*instance));
+}
+
+void NodeWriter::markWritten(const Node* node) {
+  if (!node || !document_.hasText(*node) || !text_.written.insert(node).second) return;
+  for (const FieldText& field : document_.placeOf(*node).fields)
+    for (const NodePlace& one : field.nodes) markWritten(one.node);
+}
+
+std::vector<const Route*> NodeWriter::routesToAdd() const {
+  std::vector<const Route*> routes;
+  for (const Route& route : document_.scope().routes)
+    if (!text_.copied.contains(&route)) routes.push_back(&route);
+  return routes;
+}
+
+std::unordered_map<std::string_view, const FieldText*> NodeWriter::lastOf(const NodeText& place) {
+  std::unordered_map<std::string_view, const FieldText*> last;
+  for (const FieldText& field : place.fields) last[field.name] = &field;
+  return last;
+}
+
+const Value* NodeWriter::editedFrom(const Node& node, const FieldInfo& field) const {
+  const Value* const original = document_.originalOf(node, field);
+  return original && *original != node.get(field) ? original : nullptr;
+}
+
+std::string_view NodeWriter::spelled(const Node& node, std::string_view field) const {
+  const FileVersion& version = document_.world().head.version;
+  return version.isX3d() && node.type().index >= 0 ? x3dName(node.type().name, field, version.major)
+                                                   : field;
+}
+
+std::string NodeWriter::deeper(std::string_view indentation) {
+  return std::string(indentation) + (indentation.ends_with('\t') ? "\t" : "  ");
+}
+
+std::vector<ListItem> NodeWriter::itemsOf(const DocumentText& text,
+                                          const std::vector<NodePlace>& places, const MFNode& nodes,
+                                          const Holder& holder) {
+  std::vector<ListItem> items;
+  for (const ListStep& step : listSteps(places, nodes)) {
+    ListItem& item = items.emplace_back();
+    item.kind = step.kind;
+    if (step.place) item.span = step.place->span;
+    if (step.kind == Kind::keep)
+      item.copy = [this, &text, holder, place = step.place] { keep(text, *place, holder); };
+    else
+      item.make = [this, holder, fresh = step.node](std::string_view indentation) {
+        return node(fresh, indentation, holder);
+      };
+  }
+  return items;
+}
+
+void NodeWriter::keep(const DocumentText& text, const NodePlace& place, const Holder& holder) {
+  if (!place.node)
+    text_.copy(text, place.span.end);
+  else if (place.isUse == text_.written.contains(place.node))
+    place.isUse ? keepUse(text, place) : writeNode(*place.node, nullptr);
+  else
+    text_.out += node(place.node, indentationAt(text.text, place.span.begin), holder);
+  text_.at = place.span.end;
+}
+
+const ListItem* NodeWriter::inLine(std::string_view text, const std::vector<ListItem>& items) {
+  const auto found = std::find_if(items.begin(), items.end(), [&](const ListItem& item) {
+    return item.hasPlace() && startsLine(text, item.span.begin);
+  });
+  return found == items.end() ? nullptr : &*found;
+}
+
+void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
+  const std::string_view all = list.text.text;
+  const ListItem* const first = inLine(all, items);
+  if (first) list.inner = indentationAt(all, first->span.begin);
+  const bool hasPlaces =
+      std::any_of(items.begin(), items.end(), [](const ListItem& item) { return item.hasPlace(); });
+  std::string waiting; // nodes to insert before the next place that is kept, or into an empty list
+  bool begun = false;  // a node has been written
+  for (const ListItem& item : items) {
+    switch (item.kind) {
+    case Kind::remove: text_.remove(list.text, item.span); break;
+    case Kind::replace:
+      text_.copy(list.text, item.span.begin);
+      text_.out += item.make(indentationAt(all, item.span.begin));
+      text_.at = item.span.end;
+      begun = true;
+      break;
+    case Kind::keep:
+      text_.copy(list.text, item.span.begin);
+      text_.out += std::exchange(waiting, {});
+      item.copy();
+      begun = true;
+      break;
+    case Kind::before:
+    case Kind::behind:
+      if (begun && item.kind == Kind::behind)
+        insertBehind(list, item.make(list.inner));
+      else
+        waiting += item.make(list.inner) +
+                   (first || !hasPlaces || item.kind == Kind::behind ? feed_ + list.inner : " ");
+      break;
+    }
+  }
+  if (!waiting.empty()) fill(list, waiting);
+}
+
+// Inserts a node behind the one that has been written: in the next line if nothing but a comment
+// follows in this one.
+void NodeWriter::insertBehind(const ListText& list, const std::string& node) {
+  const size_t end = lineEnd(list.text.text, text_.at);
+  if (endsLine(list.text.text, text_.at) && end <= list.end) {
+    text_.copy(list.text, end);
+    text_.out += feed_ + list.inner + node;
+  } else {
+    text_.out += " " + node;
+  }
+}
+
+// Fills a list that is empty in the text. nodes: each with the beginning of the next line.
+void NodeWriter::fill(const ListText& list, std::string nodes) {
+  nodes.resize(nodes.size() - list.inner.size() - feed_.size());
+  const std::string_view all = list.text.text;
+  if (list.end == all.size()) { // the roots of a file
+    text_.copy(list.text, list.end);
+    if (!text_.out.empty() && text_.out.back() != '\n' && text_.out.back() != '\r')
+      text_.out += feed_;
+    text_.out += nodes + feed_;
+  } else if (startsLine(all, list.end)) { // a bracket or end tag in a line of its own
+    text_.copy(list.text, lineBegin(all, list.end));
+    text_.out += list.inner + nodes + feed_;
+  } else { // what could not be read stays
+    size_t rest = list.end;
+    while (rest > text_.at && isVrmlSpace(all[rest - 1])) --rest;
+    text_.copy(list.text, rest);
+    text_.out += feed_ + list.inner + nodes + feed_ + list.outer;
+    text_.at = list.end;
+  }
+}
+
+} // namespace xvrml

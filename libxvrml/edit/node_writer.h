@@ -1,0 +1,112 @@
+// node_writer.h: writes the nodes of a document with the text that they have, but for what has been
+// edited. A class from it for each syntax says how nodes, fields and references are written.
+// Internal; one thread at a time.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "edit/list_steps.h"
+#include "edit/text_copier.h"
+
+namespace xvrml {
+
+// A field that nodes are written into; empty: the roots, or a place that says by itself which field
+// it is.
+struct Holder {
+  const Node* parent = nullptr;
+  const FieldInfo* field = nullptr;
+};
+
+// A list of nodes in a text, up to the byte `end`.
+struct ListText {
+  const DocumentText& text;
+  size_t end;
+  std::string outer; // the indentation of the line that ends the list
+  std::string inner; // that of the nodes, if none of them begins a line
+};
+
+// The new content of a place of a list, or between places (ListStep).
+struct ListItem {
+  ListStep::Kind kind;
+  TextSpan span;              // the place; not for before and behind
+  std::function<void()> copy; // keep: writes what stands there
+  // replace, before, behind: returns the text with an indentation.
+  std::function<std::string(std::string_view indentation)> make;
+
+  bool hasPlace() const { return kind != ListStep::Kind::before && kind != ListStep::Kind::behind; }
+};
+
+class NodeWriter {
+ public:
+  // lifted: prototypes that stand before all nodes.
+  NodeWriter(const Document& document, std::vector<const PrototypeText*> lifted);
+  virtual ~NodeWriter() = default;
+
+  // Return the text of the file, or of a node. Only one of them is called, once.
+  std::string file();
+  std::string node(const Node& node) { return this->node(&node, "", {}); }
+  // Returns the prototypes that must be lifted, because instances have been written before them:
+  // those that were missing, and those before them, which they may use.
+  std::vector<const PrototypeText*> missing() const;
+
+ protected:
+  // Writes the roots and, behind them, the routes that routesToAdd() returns then.
+  virtual void writeRoots(const DocumentText& file) = 0;
+  // Writes a node at its place in its text. holder: where it stands now; null: where it stood.
+  virtual void writeNode(const Node& node, const Holder* holder) = 0;
+  // Returns the text of a reference to a node.
+  virtual std::string useOf(const Node& node, const Holder& holder) const = 0;
+  // Writes a reference that stays at its place.
+  virtual void keepUse(const DocumentText& text, const NodePlace& place) = 0;
+  virtual bool endsLine(std::string_view text, size_t at) const = 0;
+  virtual std::string indented(std::string_view text, std::string_view from,
+                               std::string_view to) const = 0;
+
+  // Returns the text of a node with this indentation, or a reference if it has been written.
+  std::string node(const Node* node, std::string_view indentation, const Holder& holder);
+  // Returns what a list has of the places that a text has for it.
+  std::vector<ListItem> itemsOf(const DocumentText& text, const std::vector<NodePlace>& places,
+                                const MFNode& nodes, const Holder& holder);
+  void writeList(ListText list, const std::vector<ListItem>& items);
+  // Writes what stays at its place in a field or list.
+  void keep(const DocumentText& text, const NodePlace& place, const Holder& holder);
+  // Notes that a node is being written, or has been with all that its text has.
+  void begin(const Node& node);
+  void markWritten(const Node* node);
+  // Returns the routes of the document that have not been written with the text.
+  std::vector<const Route*> routesToAdd() const;
+  // Returns the last text of each field that a node's text gives.
+  static std::unordered_map<std::string_view, const FieldText*> lastOf(const NodeText& place);
+  // Returns the value that a field had in the file; null if it has not been edited.
+  const Value* editedFrom(const Node& node, const FieldInfo& field) const;
+  // Returns the name of a field or event in the file's standard.
+  std::string_view spelled(const Node& node, std::string_view field) const;
+  static std::string deeper(std::string_view indentation);
+  // Returns the first item of a list that begins a line; null if none does.
+  static const ListItem* inLine(std::string_view text, const std::vector<ListItem>& items);
+
+  const Document& document_;
+  const std::string feed_;
+  TextCopier text_;
+
+ private:
+  size_t beginOfRoots() const;
+  void insertBehind(const ListText& list, const std::string& node);
+  void fill(const ListText& list, std::string nodes);
+
+  const std::vector<const PrototypeText*> lifted_;
+  const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
+};
+
+// Return the writer of a syntax.
+std::unique_ptr<NodeWriter> makeClassicWriter(const Document& document,
+                                              std::vector<const PrototypeText*> lifted);
+std::unique_ptr<NodeWriter> makeElementWriter(const Document& document,
+                                              std::vector<const PrototypeText*> lifted);
+
+} // namespace xvrml
