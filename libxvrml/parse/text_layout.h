@@ -32,7 +32,7 @@ struct FieldText {
   TextSpan whole;   // from its name to the end of its value
   TextSpan value;
   std::vector<NodePlace> nodes; // what stands in the value of an SFNode or MFNode
-  bool declared = false;        // a Script declares the field: it has a value in any case
+  bool declared = false;        // the node declares the field: it has a value in any case
   bool readable = false;        // the whole value could be read
   bool faithful = false;        // the world has taken all of it
 };
@@ -96,7 +96,7 @@ class LayoutRecorder : public ParseSink {
   bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const override {
     return builder_.wouldAccept(nodeTarget, name, use);
   }
-  bool isScript() const override { return builder_.isScript(); }
+  bool declaresFields() const override { return builder_.declaresFields(); }
   void lostName(const Name& name) override { builder_.lostName(name); }
   FieldTarget resumeField(const Name& name) override { return builder_.resumeField(name); }
   bool hasField(std::string_view name) const override { return builder_.hasField(name); }
