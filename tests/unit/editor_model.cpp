@@ -177,6 +177,17 @@ TEST_F(Model, WhatRoutesAndScriptsChangeIsShownLater) {
   EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.25f);
 }
 
+TEST_F(Model, EditsOfOthersAreShown) {
+  update();
+  world.editor.editor().remove({nullptr, "", 1});
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().size(), 2u);
+  EXPECT_EQ(model.undoName(), "Remove PointLight");
+  world.editor.undo();
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().size(), 3u);
+}
+
 TEST_F(Model, AClickSelectsWhatIsThere) {
   const double x = 2 / (9 * std::tan(0.785398 / 2));
   selectAt(world.editor, view, x, 0, false, false);

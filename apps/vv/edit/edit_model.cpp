@@ -96,6 +96,8 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
       command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
   }
+  const uint64_t changes = editor.editor().changes();
+  if (std::exchange(changes_, changes) != changes) isStale_ = true;
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
     isStale_ = true;

@@ -70,6 +70,11 @@ void Probes::add(const std::array<double, 3>& point) {
   probes_.push_back(probe);
 }
 
+bool Probes::isWaiting() const {
+  return std::any_of(probes_.begin(), probes_.end(),
+                     [](const Probe& one) { return one.state == Probe::State::waiting; });
+}
+
 void Probes::clear() {
   probes_.clear();
   last_ = 0;

@@ -35,6 +35,8 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
 class Probes {
  public:
   const std::vector<Probe>& all() const { return probes_; }
+  // Tells whether a probe has not been read yet.
+  bool isWaiting() const;
   void add(const std::array<double, 3>& point);
   void clear();
   // Reads all probes from a picture of this view, which has picture::readingChannels and only

@@ -206,11 +206,15 @@ void Editing::readProbes(Session& session, double seconds) {
   constexpr double interval = 0.25;
   if (probes_.all().empty() || seconds < probesRead_ + interval) return;
   session.pictures().wantReadings();
+  const uint64_t finished =
+      session.pictures().isFinished(session.pilot()) ? session.pictures().number() : 0;
+  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting()) return;
   picture::Picture picture;
   if (session.viewers().own().isOutdated() || !session.pictures().copyStill(picture) ||
       !picture.planes.contains(RT_ERROR))
     return;
   probesRead_ = seconds;
+  finishedRead_ = finished;
   probes_.read(session.browser(), picture, view_);
   screen_.redraw();
 }

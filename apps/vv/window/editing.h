@@ -47,7 +47,8 @@ class Editing {
   bool isOpen_ = false;
   std::optional<EditModel> model_; // one for each world
   Probes probes_;
-  double probesRead_ = 0; // when
+  double probesRead_ = 0;     // when
+  uint64_t finishedRead_ = 0; // the number of the finished frame that they were read from
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then
