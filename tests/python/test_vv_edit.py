@@ -105,6 +105,11 @@ def test_edits_of_a_recording_are_refused(window, vv):
     assert text(vv) == WORLD
 
 
-def test_vv_edit_needs_a_file(vv):
-    done = vv("edit")
-    assert done.returncode == 2 and "edit" in done.talk
+@pytest.mark.parametrize("arguments, why", [((), "a world"), (("box.wrl", "-o", "x.png"), "vv edit"),
+                                            (("box.wrl", "--check"), "vv edit"),
+                                            (("box.wrl", "--info"), "vv edit"),
+                                            (("box.wrl", "--no-window"), "--no-window")])
+def test_vv_edit_is_for_a_file_in_a_window(vv, arguments, why):
+    done = vv("edit", *arguments)
+    assert done.returncode == 2 and why in done.talk, done.talk
+    assert len(done.talk.splitlines()) == 1

@@ -119,7 +119,7 @@ TEST_F(Model, ALampHasNoFrameOfItsNeighbours) {
 TEST_F(Model, SearchesFindNamesTypesAndFields) {
   update();
   for (const auto& [text, found] :
-       {std::pair("wood", 1u), {"SHAPE", 1u}, {"intensity", 1u}, {"transl", 1u}, {"nothing", 0u}}) {
+       {std::pair("wood", 1u), {"SHAPE", 1u}, {"intensity", 2u}, {"transl", 1u}, {"nothing", 0u}}) {
     model.search(text);
     update();
     EXPECT_EQ(model.rows().size(), found) << text;
@@ -132,11 +132,11 @@ TEST_F(Model, SearchesFindNamesTypesAndFields) {
 TEST_F(Model, ADragIsOneStep) {
   model.select(world.node("LAMP"), false);
   update();
-  const PropertyRow& intensity = row(model, "intensity");
-  EXPECT_FALSE(intensity.isDefault);
+  const FieldInfo& intensity = *row(model, "intensity").field;
+  EXPECT_FALSE(row(model, "intensity").isDefault);
   EXPECT_TRUE(row(model, "color").isDefault);
   for (const float value : {0.7f, 0.6f, 0.5f}) {
-    model.drag(world.node("LAMP"), *intensity.field, value);
+    model.drag(world.node("LAMP"), intensity, value);
     update();
   }
   model.setActive(false);

@@ -140,9 +140,11 @@ std::vector<Node*> pathTo(const World& world, const Node& node) {
   while (!open.empty() && !parents.contains(&node)) {
     const Open place = std::move(open.back());
     open.pop_back();
+    const auto first = std::ptrdiff_t(open.size());
     forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
       if (parents.emplace(child.get(), slot.parent).second) open.push_back({slot, child, 0});
     });
+    std::reverse(open.begin() + first, open.end());
   }
   std::vector<Node*> path;
   if (!parents.contains(&node)) return path;

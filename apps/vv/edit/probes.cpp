@@ -59,7 +59,9 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
   text += probe.now.trusted ? "  trusted" : "  not trusted";
   if (change)
     text += fmt::format("   B - A: {:+.3g} +- {:.2g}, {}", change->value, change->halfWidth,
-                        change->isSignificant ? "significant" : "not yet certain");
+                        change->isSignificant                          ? "significant"
+                        : change->value == 0 && change->halfWidth == 0 ? "unchanged"
+                                                                       : "not yet certain");
   return text;
 }
 

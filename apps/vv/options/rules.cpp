@@ -158,6 +158,12 @@ const Rule rules[] = {
      "--viewpoint all and several sides of --from need file names, not standard output"},
     // the page
     {[](const Options& o) {
+       return o.has(Job::edit) && (!o.opensWindow() || o.noWindow || inspectionsOf(o) > 0);
+     },
+     "vv edit opens a window: it cannot be used with --no-window, -o, --compare, --audit, "
+     "--measure, "
+     "--check, --write or a list"},
+    {[](const Options& o) {
        return o.has(Job::serve) &&
               (o.makesPictures() || o.check || !o.write.empty() || inspectionsOf(o) > 0);
      },
@@ -170,7 +176,7 @@ const Rule rules[] = {
      "only one of --input and --time can be used in the window"},
     {[](const Options& o) {
        const JobInfo* job = o.job();
-       return o.input.empty() && !o.opensWindow() && (!job || job->needsWorld);
+       return o.input.empty() && (job ? job->needsWorld : !o.opensWindow());
      },
      "a world (a .wrl file, or - for standard input) was expected; vv --help tells more"},
 };

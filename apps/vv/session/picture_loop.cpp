@@ -120,7 +120,9 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
 }
 
 void PictureLoop::wantReadings() {
-  if (std::exchange(readings_, picture::readingChannels) == 0) cancelled_ = true; // another frame
+  if (std::exchange(readings_, picture::readingChannels) != 0) return;
+  shared_.cancel(); // the frame in flight, or the last one, does not have them
+  cancelled_ = true;
 }
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {

@@ -17,10 +17,6 @@ constexpr ImGuiWindowFlags panelFlags =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar;
 constexpr ImU32 frameColour = IM_COL32(255, 170, 40, 220);
 
-void tooltip(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-}
-
 // A button that can be pressed only if `active`.
 bool button(const char* label, bool active, const std::string& hint) {
   ImGui::BeginDisabled(!active);
@@ -164,9 +160,12 @@ void EditorPanels::drawProbes() {
     list.AddCircle(at, 4, frameColour, 12, 1.5f);
     list.AddText(ImVec2(at.x + 6, at.y - 8), frameColour, std::to_string(probe.number).c_str());
   }
-  ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y - 30), ImGuiCond_Appearing, ImVec2(0.5f, 1));
+  // Between the panels; the user may put it elsewhere.
+  const float width = 0.42f * size.x;
+  ImGui::SetNextWindowPos(ImVec2(0.27f * size.x, size.y - 30), ImGuiCond_Appearing, ImVec2(0, 1));
   if (ImGui::Begin("Probes", nullptr,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+    ImGui::PushTextWrapPos(width);
     const std::vector<std::optional<Difference>> changes = probes_.differences();
     for (size_t i = 0; i < changes.size(); ++i) {
       const std::string text = probeText(probes_.all()[i], changes[i]);
@@ -177,6 +176,7 @@ void EditorPanels::drawProbes() {
       ImGui::TextUnformatted(text.c_str());
       ImGui::PopStyleColor();
     }
+    ImGui::PopTextWrapPos();
     if (button("Keep as A", true, "Compare what follows with the light of now (B)")) probes_.keep();
     if (button("Copy", true, "Copy all as a table (CSV)"))
       ImGui::SetClipboardText(probes_.csv().c_str());

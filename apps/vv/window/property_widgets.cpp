@@ -21,7 +21,6 @@ using namespace xvrml;
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
-constexpr const char* numberForm = "%.6g";
 
 template <class Number> constexpr ImGuiDataType dataType =
     std::is_same_v<Number, float>    ? ImGuiDataType_Float
@@ -33,15 +32,22 @@ template <class Number> float speedOf(const Number* numbers, int count) {
   if constexpr (std::is_integral_v<Number>) return 0.1f;
   double most = 0;
   for (int i = 0; i < count; ++i) most = std::max(most, std::abs(double(numbers[i])));
-  return float(most > 0 && std::isfinite(most) ? std::max(most * 0.01, 0.002) : 0.01);
+  return float(most > 0 && std::isfinite(most) ? most * 0.01 : 0.01);
+}
+
+// Returns how numbers are shown. A drag rounds to this, so that files get short numbers.
+template <class Number> const char* formOf(const Number* numbers, int count) {
+  if constexpr (std::is_integral_v<Number>) return "%d";
+  const bool large = std::any_of(numbers, numbers + count,
+                                 [](Number one) { return std::abs(double(one)) >= 1e4; });
+  return large ? "%.7g" : "%.4g";
 }
 
 // The functions edit() draw the widget of a value, and return whether the user has changed it.
 
 template <class Number> bool dragNumbers(Number* numbers, int count) {
-  const char* const form = std::is_integral_v<Number> ? "%d" : numberForm;
   return ImGui::DragScalarN("##value", dataType<Number>, numbers, count, speedOf(numbers, count),
-                            nullptr, nullptr, form);
+                            nullptr, nullptr, formOf(numbers, count));
 }
 
 bool edit(bool& value) { return ImGui::Checkbox("##value", &value); }
@@ -61,10 +67,10 @@ bool edit(ColorRGBA& value) {
 }
 
 bool edit(Rotation& value) {
-  bool changes = ImGui::DragFloat3("##axis", &value.x, 0.01f, 0, 0, numberForm);
+  bool changes = ImGui::DragFloat3("##axis", &value.x, 0.01f, 0, 0, "%.4g");
   auto angle = float(double(value.angle) * degrees);
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::DragFloat("##angle", &angle, 0.5f, 0, 0, "%.5g degrees")) {
+  if (ImGui::DragFloat("##angle", &angle, 0.5f, 0, 0, "%.4g degrees")) {
     value.angle = float(double(angle) / degrees);
     changes = true;
   }

@@ -288,6 +288,7 @@ void Screen::present() {
   if (impl_->picture.texture) SDL_RenderCopy(r, impl_->picture.texture, nullptr, nullptr);
   const int w = width(), h = height();
   for (int place = 0; place < places; ++place) {
+    if (place == bottom && impl_->gui) impl_->gui->draw(); // messages stand before the widgets
     const Texture& panel = impl_->panels[size_t(place)];
     if (!panel.texture) continue;
     SDL_Rect at{0, 0, panel.width, panel.height};
@@ -299,7 +300,6 @@ void Screen::present() {
     }
     SDL_RenderCopy(r, panel.texture, nullptr, &at);
   }
-  if (impl_->gui) impl_->gui->draw();
   SDL_RenderPresent(r);
 }
 

@@ -32,8 +32,8 @@ class Screen {
   void setPicture(int width, int height, const std::vector<uint8_t>& rgb);
   enum Place : uint8_t { right, top, bottom, middle, places }; // each covers those before it
   void setPanel(Place place, const Panel& panel);
-  // Shows panels of widgets over all of that, which get the events that are for them first; null:
-  // hides them. See Gui.
+  // Shows panels of widgets over the picture, below the texts at the bottom and in the middle. They
+  // get the events that are for them first. null: hides them. See Gui.
   void setGui(std::function<void()> panels);
   void redraw();  // lets present() draw, because the widgets show something else
   void present(); // draws if anything has changed
