@@ -160,9 +160,9 @@ void EditorPanels::drawProbes() {
     list.AddCircle(at, 4, frameColour, 12, 1.5f);
     list.AddText(ImVec2(at.x + 6, at.y - 8), frameColour, std::to_string(probe.number).c_str());
   }
-  // Between the panels; the user may put it elsewhere.
+  // Between the panels.
   const float width = 0.42f * size.x;
-  ImGui::SetNextWindowPos(ImVec2(0.27f * size.x, size.y - 30), ImGuiCond_Appearing, ImVec2(0, 1));
+  ImGui::SetNextWindowPos(ImVec2(0.27f * size.x, size.y - 30), ImGuiCond_Always, ImVec2(0, 1));
   if (ImGui::Begin("Probes", nullptr,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
     ImGui::PushTextWrapPos(width);
