@@ -53,7 +53,7 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
   }
   const auto luminance = double(probe.now.luminance),
              halfWidth = double(probe.now.luminanceHalfWidth);
-  text += luminance > 0
+  text += luminance > halfWidth
               ? fmt::format("{:.4g} cd/m2 +- {:.2g} %", luminance, 100 * halfWidth / luminance)
               : fmt::format("{:.4g} +- {:.2g} cd/m2", luminance, halfWidth);
   text += probe.now.trusted ? "  trusted" : "  not trusted";
