@@ -84,7 +84,7 @@ class EditModel {
   int scroll_ = -1;
   xvrml::NodeRef shown_; // the node whose row is to be scrolled to
   double readAt_ = 0;
-  uint64_t changes_ = 0; // of the editor, when it was read
+  uint64_t changes_ = 0; // Editor::changes() when it was read
 };
 
 } // namespace vv
