@@ -43,6 +43,7 @@ endif()
 pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp)
 if(OPENRT_WINDOW)
   pkg_check_modules(SDL2 IMPORTED_TARGET sdl2) # without it vv opens no window
+  pkg_check_modules(IMGUI IMPORTED_TARGET imgui) # without it the window has no editor
 endif()
 if(OPENRT_SERVER)
   pkg_check_modules(WEBSOCKETS IMPORTED_TARGET libwebsockets>=4.1) # without it vv serves no page

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/luminance.h"
 #include "openrt/openrt.h"
 #include "parallel_for.h"
 
@@ -102,7 +103,7 @@ std::vector<float> luminancesOf(const Picture& picture) {
   std::vector<float> out(rgba.size() / 4);
   eachRow(picture.height, [&](int row) {
     for (size_t i = size_t(row) * width; i < (size_t(row) + 1) * width; i++) {
-      const float y = .2126f * rgba[4 * i] + .7152f * rgba[4 * i + 1] + .0722f * rgba[4 * i + 2];
+      const float y = luminanceOf(&rgba[4 * i]);
       out[i] = std::isfinite(y) ? y : 0;
     }
   });

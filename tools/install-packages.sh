@@ -19,7 +19,7 @@ build=(
   python3 python3-dev python3-numpy python3-venv pybind11-dev
   # script engines, each built if its library is installed; their sandbox
   duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev
-  libsdl2-dev                                          # the window
+  libsdl2-dev libimgui-dev                             # the window and its editor
   libwebsockets-dev                                    # the page of vv serve
 )
 tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy chromium chromium-driver)

@@ -27,6 +27,8 @@ std::vector<Feature> rowsOf(const std::string& scriptPath) {
   std::vector<Feature> rows = picture::listFeatures(scriptPath);
   rows.push_back(built("window", "the window", windowLibrary(),
                        "build with SDL 2 (Debian: libsdl2-dev); -o makes pictures without it"));
+  rows.push_back(built("edit", "vv edit, which changes a world and keeps its file", editorLibrary(),
+                       "build with Dear ImGui (Debian: libimgui-dev)"));
   rows.push_back(built("serve", "vv serve, which shows a world on a page", serverLibrary(),
                        "build with libwebsockets 4.1 or newer (Debian: libwebsockets-dev)"));
   return rows;

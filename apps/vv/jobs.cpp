@@ -96,6 +96,7 @@ constexpr JobRow rows[] = {
     {Job::version, printVersion},
     {Job::merge, merge},
     {Job::serve, serve},
+    {Job::edit, showWorld},
     {Job::listKeys, printKeys},
     {Job::info, withoutWindow, {nullptr, inspectWorld}},
     {Job::explain, withoutWindow, {nullptr, inspectObjects}},

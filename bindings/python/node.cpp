@@ -166,6 +166,7 @@ std::string description(const NodeType& type) {
 
 PyTypeObject* classOf(const NodeType& type) {
   if (type.index < 0) return nodeClass; // nodes of prototypes and Scripts have the class Node
+  if (!type.create) return classOf(*nodeTypes()[size_t(type.index)]); // a node's own type
   PyTypeObject*& known = classes()[&type];
   if (known) return known;
   py::dict members;

@@ -106,18 +106,10 @@ bool Viewer::point(double x, double y, bool button) {
   const auto lock = world_->lock();
   const auto camera = shownCamera();
   if (!camera) return false;
-  const double* m = camera->matrix;
-  const bool perspective = camera->fovy > 0;
-  const double size = perspective ? std::tan(camera->fovy / 2) : camera->height / 2;
-  double origin[3], direction[3];
-  for (size_t i = 0; i < 3; ++i) {
-    const double aside = m[i] * x * size * aspect() + m[4 + i] * y * size;
-    origin[i] = m[12 + i] + (perspective ? 0 : aside);
-    direction[i] = -m[8 + i] + (perspective ? aside : 0);
-  }
+  const CameraRay ray = rayThrough(*camera, aspect(), x, y);
   world_->change([&] {
     browser().setAspect(aspect());
-    browser().pointerRay(origin, direction, button);
+    browser().pointerRay(ray.origin, ray.direction, button);
   });
   return !browser().sensorsAtPointer().empty();
 }

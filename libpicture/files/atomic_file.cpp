@@ -40,6 +40,16 @@ std::string whyProtected(const std::string& path, const struct stat& info) {
              : "cannot write " + path + ": it is " + found->second + "; another name is needed";
 }
 
+// Lets the file that now has this name inherit the protection of the one that had it before.
+void passProtection(const struct stat& before, const std::string& path) {
+  struct stat info;
+  const std::lock_guard lock(keptMutex);
+  auto found = kept.extract({before.st_dev, before.st_ino});
+  if (found.empty() || ::stat(path.c_str(), &info) != 0) return;
+  found.key() = {info.st_dev, info.st_ino};
+  kept.insert(std::move(found));
+}
+
 [[noreturn]] void fail(const std::string& path, int reason) {
   throw std::runtime_error("cannot write " + path + ": " + std::strerror(reason));
 }
@@ -155,7 +165,11 @@ void writeDescriptor(int descriptor, std::string_view bytes, const std::string& 
 
 namespace {
 
-enum class Targets : uint8_t { any, regular };
+enum class Targets : uint8_t {
+  any,
+  regular, // no devices and no pipes
+  edited   // regular files, also protected ones
+};
 
 void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Targets targets) {
   const std::string target = followLinks(path);
@@ -163,10 +177,10 @@ void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Tar
   const bool exists = ::stat(target.c_str(), &info) == 0;
   if (isLink(target)) fail(path, ELOOP);
   if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
-  if (exists && !S_ISREG(info.st_mode) && targets == Targets::regular)
+  if (exists && !S_ISREG(info.st_mode) && targets != Targets::any)
     throw std::runtime_error(whyNotRegular(path));
   if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
-  if (exists)
+  if (exists && targets != Targets::edited)
     if (const std::string why = whyProtected(path, info); !why.empty())
       throw std::runtime_error(why);
   if (exists && ::access(target.c_str(), W_OK) != 0) fail(path, errno);
@@ -176,6 +190,7 @@ void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Tar
   writeDescriptor(temporary.descriptor(), bytes, path);
   if (wait == Wait::disk) temporary.sync();
   temporary.moveTo(target);
+  if (exists && targets == Targets::edited) passProtection(info, target);
 }
 
 } // namespace
@@ -190,8 +205,12 @@ std::string whyNotRegular(const std::string& path) {
   return "cannot write " + path + ": it is a pipe or a device; a regular file was expected";
 }
 
-void writeRegularFile(const std::string& path, std::string_view bytes) {
-  replaceFile(path, bytes, Wait::no, Targets::regular);
+void writeRegularFile(const std::string& path, std::string_view bytes, Wait wait) {
+  replaceFile(path, bytes, wait, Targets::regular);
+}
+
+void writeEditedFile(const std::string& path, std::string_view bytes) {
+  replaceFile(path, bytes, Wait::disk, Targets::edited);
 }
 
 void protectFile(const std::string& path, const std::string& what) {

@@ -20,7 +20,11 @@ void writeFile(const std::string& path, std::string_view bytes, Wait wait = Wait
 
 // Writes a file as writeFile() does, but no device and no pipe: opening or writing one may block
 // for ever. It is for writes that a program or a script asks for while others wait.
-void writeRegularFile(const std::string& path, std::string_view bytes);
+void writeRegularFile(const std::string& path, std::string_view bytes, Wait wait = Wait::no);
+
+// Does the same for a file that has been read and edited: protectFile() does not hinder it, and
+// protects the new file instead of the old one. Waits until the bytes are on the disk.
+void writeEditedFile(const std::string& path, std::string_view bytes);
 
 // Returns why writeRegularFile() would refuse a path that is no regular file; empty if it is one,
 // or does not exist.

@@ -19,8 +19,9 @@ void saveEdits(xvrml::Editor& editor, const xvrml::World& world, const std::stri
     throw xvrml::EditError(fmt::format("{} has been written by another program since it was read: "
                                        "save with overwrite to replace it",
                                        target));
-  writeFile(target, bytes, Wait::disk);
-  if (isOwn) editor.saved();
+  if (!isOwn) return writeRegularFile(target, bytes, Wait::disk);
+  writeEditedFile(target, bytes);
+  editor.saved();
 }
 
 } // namespace picture

@@ -8,10 +8,11 @@
 
 namespace picture {
 
-// Writes a world's file with all edits, atomically. path: where to; "" or the world's own path
-// saves the edits. overwrite: also replaces the world's file if another program has written to it
-// since it was read. Throws xvrml::EditError if there is no right text or the file was written to,
-// and std::runtime_error, which names the file and the reason, if it cannot be written.
+// Writes a world's file with all edits, atomically, to a regular file. path: where to; "" or the
+// world's own path saves the edits. overwrite: also replaces the world's file if another program
+// has written to it since it was read. Throws xvrml::EditError if there is no right text or the
+// file was written to, and std::runtime_error, which names the file and the reason, if it cannot be
+// written.
 void saveEdits(xvrml::Editor& editor, const xvrml::World& world, const std::string& path,
                bool overwrite);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libpicture/files/picture.h"
+#include "libpicture/luminance.h"
 #include "srgb.h"
 
 namespace picture {
@@ -68,7 +69,7 @@ std::vector<float> logLuminances(const Picture& picture) {
   std::vector<float> out;
   out.reserve(rgba.size() / 4);
   for (size_t i = 0; i + 3 < rgba.size(); i += 4) {
-    const float y = .2126f * rgba[i] + .7152f * rgba[i + 1] + .0722f * rgba[i + 2];
+    const float y = luminanceOf(&rgba[i]);
     if (y > 0 && std::isfinite(y)) out.push_back(std::log2(y));
   }
   return out;

@@ -153,4 +153,16 @@ void* DynamicNode::storage(const FieldInfo& field) {
   return std::visit([](auto& value) -> void* { return &value; }, values[field.offset]);
 }
 
+void* DeclaringNode::storage(const FieldInfo& field) {
+  if (!field.declared) return Node::storage(field);
+  return std::visit([](auto& value) -> void* { return &value; }, values[field.offset]);
+}
+
+void DeclaringNode::setOwnType(NodeTypePtr type) {
+  ownType_ = std::move(type);
+  type_ = ownType_.get();
+  for (const FieldInfo& field : ownType_->fields)
+    if (field.declared && hasStorage(field)) values.push_back(field.defaultValue);
+}
+
 } // namespace xvrml

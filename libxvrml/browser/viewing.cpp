@@ -5,6 +5,7 @@
 #include "behaviour/inline.h"
 #include "behaviour/viewer/interaction.h"
 #include "browser/state.h"
+#include "event/hierarchy.h"
 #include "nodes/viewpoint.h"
 #include "xvrml/nodes.h"
 
@@ -82,6 +83,27 @@ bool Browser::pick(const double origin[3], const double direction[3], const Pick
   return true;
 }
 
+bool Browser::locate(Node& node, NodePlacement& placement) {
+  const std::vector<Path> paths = pathsTo(node, 1);
+  if (paths.empty()) return false;
+  Interaction& interaction = interactionOf(*impl_->engine);
+  placement = {};
+  Path above;
+  for (Node* one : paths.front()) {
+    above.push_back(one);
+    PickHit::Step& step = placement.path.emplace_back(PickHit::Step{NodeRef(one), {}});
+    toArray(Picker::toWorld(above, interaction.viewer.view()), step.toWorld.data());
+  }
+  const PickBox box = interaction.picker.bounds({NodeRef(&node)});
+  placement.bounds.empty = box.empty();
+  if (!box.empty())
+    for (int i = 0; i < 3; ++i) {
+      placement.bounds.minimum[i] = box.low[i];
+      placement.bounds.maximum[i] = box.high[i];
+    }
+  return true;
+}
+
 void Browser::setAspect(double aspect) {
   if (std::isfinite(aspect) && aspect > 0) interactionOf(*impl_->engine).aspect = aspect;
 }
@@ -89,13 +111,8 @@ void Browser::setAspect(double aspect) {
 void Browser::pointer(double x, double y, bool button) {
   Interaction& interaction = interactionOf(*impl_->engine);
   const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
-  const Matrix view = fromArray(camera.matrix);
-  const bool parallel = camera.fovy == 0;
-  const double size = parallel ? camera.height / 2 : std::tan(camera.fovy / 2);
-  const Vector aside(x * size * interaction.aspect, y * size, 0), ahead(0, 0, -1);
-  interaction.pointer.point({transformPoint(view, parallel ? aside : Vector(0)),
-                             transformDirection(view, parallel ? ahead : aside + ahead)},
-                            button);
+  const CameraRay ray = rayThrough(camera, interaction.aspect, x, y);
+  interaction.pointer.point(rayOf(ray.origin, ray.direction), button);
   impl_->runJobs(); // a Script may have requested another world
 }
 

@@ -86,7 +86,7 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   }
   const MFNode& list = liveList(slot);
   slot.liveIndex = given.index;
-  if (given.index + (holds ? 1 : 0) > list.size())
+  if (given.index > list.size() || (holds && given.index == list.size()))
     throw EditError(fmt::format("there is no place {} among {} nodes", given.index, list.size()));
   const MFNode& own = document().listOf(slot.parent.document.get(), slot.field);
   for (const NodeRef& node : own)

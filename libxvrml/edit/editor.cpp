@@ -106,6 +106,7 @@ bool Editor::redo() {
 
 std::string Editor::undoName() const { return impl_->history.undoName(); }
 std::string Editor::redoName() const { return impl_->history.redoName(); }
+uint64_t Editor::changes() const { return impl_->history.changes(); }
 
 void Editor::set(Node& node, std::string_view field, Value value) {
   const Twin twin = impl_->file.twinOf(node);

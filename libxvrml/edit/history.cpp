@@ -12,12 +12,25 @@ void History::begin(std::string name) {
 
 void History::end() {
   if (begun_.empty()) return;
+  const size_t first = begun_.back();
   begun_.pop_back();
-  if (!begun_.empty() || open_.edits.empty()) return;
+  if (!begun_.empty()) return joinLast(first);
+  if (open_.edits.empty()) return;
   if (savedAt_ > done_) savedAt_ = ~size_t(0);
   steps_.resize(done_);
   steps_.push_back(std::exchange(open_, {}));
   ++done_;
+}
+
+// Lets one edit that has been done alone since `first` take the place of the one before if that set
+// the same field of the same node.
+void History::joinLast(size_t first) {
+  std::vector<Edit>& edits = open_.edits;
+  if (first <= begun_.back() || edits.size() != first + 1) return;
+  Edit &before = edits[first - 1], &last = edits[first];
+  if (!last.node || before.node != last.node || before.field != last.field) return;
+  before.redo = std::move(last.redo);
+  edits.pop_back();
 }
 
 void History::cancel() {
@@ -27,6 +40,7 @@ void History::cancel() {
 }
 
 void History::rollBack(size_t edits) {
+  ++changes_;
   while (open_.edits.size() > edits) {
     open_.edits.back().undo();
     open_.edits.pop_back();
@@ -35,18 +49,13 @@ void History::rollBack(size_t edits) {
 
 void History::perform(Edit edit) {
   edit.redo();
-  const auto earlier = std::find_if(
-      open_.edits.begin() + std::ptrdiff_t(begun_.back()), open_.edits.end(), [&](const Edit& one) {
-        return edit.node && one.node == edit.node && one.field == edit.field;
-      });
-  if (earlier != open_.edits.end())
-    earlier->redo = std::move(edit.redo);
-  else
-    open_.edits.push_back(std::move(edit));
+  ++changes_;
+  open_.edits.push_back(std::move(edit));
 }
 
 bool History::undo() {
   if (isOpen() || done_ == 0) return false;
+  ++changes_;
   Step& step = steps_[--done_];
   for (size_t i = step.edits.size(); i-- > 0;) step.edits[i].undo();
   return true;
@@ -54,6 +63,7 @@ bool History::undo() {
 
 bool History::redo() {
   if (isOpen() || done_ == steps_.size()) return false;
+  ++changes_;
   for (Edit& edit : steps_[done_++].edits) edit.redo();
   return true;
 }

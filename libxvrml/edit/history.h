@@ -1,6 +1,7 @@
 // history.h: the steps of an editor, and undo. Internal; the thread that owns the world.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ class History {
   bool redo();
   std::string undoName() const;
   std::string redoName() const;
+  uint64_t changes() const { return changes_; }
   // Returns whether the edits are others than when the file was saved.
   bool isChanged() const { return done_ != savedAt_ || (isOpen() && !open_.edits.empty()); }
   void saved() { savedAt_ = done_; }
@@ -41,9 +43,11 @@ class History {
     std::vector<Edit> edits;
   };
   void rollBack(size_t edits);
+  void joinLast(size_t first);
 
   std::vector<Step> steps_; // those that have been done first, then those that have been undone
   size_t done_ = 0;
+  uint64_t changes_ = 0; // edits that were done or undone so far
   // Value of done_ at which the file was saved; ~0: it cannot be reached again.
   size_t savedAt_ = 0;
   Step open_;

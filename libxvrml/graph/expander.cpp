@@ -55,7 +55,8 @@ uint64_t nodeBytes(Node& node) {
   uint64_t bytes = dynamic ? 600 : 300;
   for (const FieldInfo& field : node.type().fields) {
     if (!holdsValue(field)) continue;
-    bytes += valueBytes(field.type, node.storage(field)) + (dynamic ? sizeof(Value) : 0);
+    bytes += valueBytes(field.type, node.storage(field)) +
+             (dynamic || field.declared ? sizeof(Value) : 0);
   }
   return bytes;
 }
@@ -211,7 +212,7 @@ NodeRef Expander::copyNode(Node& original) {
     copy = NodeRef(made);
     made->urlLines = script->urlLines;
   } else {
-    copy = makeStaticNode(original.type());
+    copy = makeLike(original);
   }
   copy->defName = original.defName;
   copy->source = original.source;

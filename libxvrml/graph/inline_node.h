@@ -1,5 +1,6 @@
-// inline_node.h: makes nodes while a world is loaded. Inline nodes store their content, Scripts
-// have a type of their own. Used by the builder, the prototype expander and the loader.
+// inline_node.h: makes nodes while a world is loaded. Inline nodes store their content, nodes that
+// declare fields have a type of their own. Used by the builder, the prototype expander and the
+// loader.
 #pragma once
 
 #include "base/budget.h"
@@ -26,9 +27,13 @@ template <> inline InlineNode* nodeCast<InlineNode>(Node* node) {
 
 // Makes a node of a registered type other than Script.
 NodeRef makeStaticNode(const NodeType& type);
-// Returns the type of a Script that has not declared any field of its own yet.
-std::shared_ptr<NodeType> scriptType(const NodeType& script);
+// Makes a node of the same type as a static node; it shares the type that this one has of its own.
+NodeRef makeLike(const Node& staticNode);
+// Returns a type for one node of a registered type that is `declaring`. Fields can be added to it.
+std::shared_ptr<NodeType> makeOwnType(const NodeType& type);
 // Appends a field, exposedField or event to a run-time type. Returns it with its offset set.
 const FieldInfo& addField(NodeType& type, FieldInfo field);
+// Returns where a Script or a DeclaringNode keeps the values of the fields that it declares.
+std::vector<Value>& declaredValues(Node& node);
 
 } // namespace xvrml

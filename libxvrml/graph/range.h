@@ -7,6 +7,7 @@
 #include <string>
 
 #include "xvrml/node.h"
+#include "xvrml/value_text.h"
 
 namespace xvrml {
 
@@ -23,7 +24,6 @@ struct RangeFault {
   std::string given, used; // the first one as it was, and as it is now
 };
 bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault = nullptr);
-std::string describe(const FieldRange& range); // "[0,1]", "(0,inf) or -1", "(0,pi/2]"
 // Returns "SpotLight.cutOffAngle: 1.9 is outside of its range (0,pi/2] and becomes 1.5707964".
 std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault);
 

@@ -1,5 +1,6 @@
 // write_cpp.cpp: writes the generated C++: a header of structs, one source of constant tables per
 // component, and the list of types.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -54,8 +55,11 @@ constexpr std::string_view pluginMembers =
     "  NodeRef* expansion() override { return &standsFor_; }\n";
 
 std::string writeStruct(const TypeSpec& type, bool plugin) {
-  std::string text =
-      fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseSentence(type), type.name);
+  const bool declares =
+      std::find(type.roles.begin(), type.roles.end(), "declaring") != type.roles.end();
+  const std::string_view base = declares ? "DeclaringNode" : "Node";
+  std::string text = fmt::format("/// {}{}\nstruct {} : {} {{\n", type.text, clauseSentence(type),
+                                 type.name, base);
   if (plugin)
     text += pluginMembers;
   else
@@ -63,8 +67,8 @@ std::string writeStruct(const TypeSpec& type, bool plugin) {
         "  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n",
         type.number);
   text += fmt::format(
-      "  {0}() : Node(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : Node(t) {{}}\n",
-      type.name);
+      "  {0}() : {1}(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : {1}(t) {{}}\n",
+      type.name, base);
   std::string members;
   for (const FieldSpec& field : type.fields)
     if (field.hasStorage()) members += writeMember(field);

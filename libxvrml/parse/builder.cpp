@@ -49,8 +49,8 @@ void Builder::rollBack(const Mark& mark) {
   if (frame.proto) frame.proto->is.resize(mark.connections);
 }
 
-bool Builder::isScript() const {
-  return nodes_.size() > scopes_.back().outerNodes && nodes_.back().scriptType;
+bool Builder::declaresFields() const {
+  return nodes_.size() > scopes_.back().outerNodes && nodes_.back().declares;
 }
 
 // Makes a node of a type. Returns false, with a message, if it cannot.
@@ -77,8 +77,8 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
   warnOfX3d(*known, type);
   if (known->name == "Script") {
     ++state_.scripts;
-    frame.scriptType = scriptType(*known);
-    frame.node = NodeRef(new ScriptNode(frame.scriptType));
+    frame.ownType = makeOwnType(*known);
+    frame.node = NodeRef(new ScriptNode(frame.ownType));
   } else {
     frame.node = makeStaticNode(*known);
     if (isX3d())
@@ -86,6 +86,7 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
         if (const Value* other = x3dDefault(known->name, field.name))
           frame.node->set(field, *other);
   }
+  frame.declares = known->is("declaring");
   return true;
 }
 
@@ -100,7 +101,7 @@ bool Builder::reserveMemory(uint64_t bytes, const Name& at) {
 }
 
 bool Builder::openNode(const Name& type, const Name* def) {
-  NodeFrame frame{{}, type, {}, mark(), 1, {}, nullptr, nullptr};
+  NodeFrame frame{{}, type, {}, mark(), 1, {}, nullptr, nullptr, false};
   const uint64_t limit = state_.options.limits.expandedNodes;
   bool made = false;
   if (state_.world.nodeCount >= limit) {
@@ -336,8 +337,8 @@ FieldTarget Builder::targetOf(const FieldInfo& field, bool resumed) {
     nodeTargets_.push_back({NodeTarget::Kind::multiple, storage, &field, &node});
   }
   FieldTarget target{true, field.type, storage};
-  if (frame.scriptType && field.name == "url")
-    target.stringLines = &nodeCast<ScriptNode>(&node)->urlLines;
+  if (auto* script = nodeCast<ScriptNode>(&node); script && field.name == "url")
+    target.stringLines = &script->urlLines;
   return target;
 }
 

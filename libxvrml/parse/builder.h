@@ -29,7 +29,7 @@ class Builder : public ParseSink {
   const NodeType* typeNamed(std::string_view name) const override;
   size_t nodeTarget() const override { return nodeTargets_.size(); }
   bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const override;
-  bool isScript() const override;
+  bool declaresFields() const override;
   void useNode(const Name& name) override;
   void nullNode(const Name& token) override;
   void lostName(const Name& name) override;
@@ -66,13 +66,15 @@ class Builder : public ParseSink {
   struct NodeFrame {
     NodeRef node;
     Name type;
-    std::shared_ptr<NodeType> scriptType; // a Script's own type grows while it is read
+    // The node's own type, which grows while it is read; null: it has none (yet).
+    std::shared_ptr<NodeType> ownType;
     Mark mark;
     // Number of nodes in the open node, shared ones counted at each use.
     uint64_t expanded = 1;
     std::vector<std::string_view> given; // fields read so far
     const FieldInfo* field = nullptr;    // the field that is being read
     const char* fieldAt = nullptr;
+    bool declares = false; // the node may declare fields
   };
   // The place to which the next complete node is added.
   struct NodeTarget {
@@ -147,7 +149,8 @@ class Builder : public ParseSink {
   bool isBeingDeclared(std::string_view name) const;
   bool isLost(std::string_view name) const;
   bool declarationConflicts(const NodeType& type, const FieldInfo& field, const Name& name);
-  NodeType* declaringType();
+  NodeType& declaringType();
+  bool mayDeclare(const NodeType& type, Access access, const Name& name);
   NodeRef findName(const Name& name);
   bool isOpen(const Node* node) const;
 

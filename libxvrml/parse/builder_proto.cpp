@@ -1,5 +1,5 @@
-// builder_proto.cpp: PROTO and EXTERNPROTO declarations, and the interfaces of Scripts (ISO/IEC
-// 14772-1 4.8, 4.9, 6.40).
+// builder_proto.cpp: PROTO and EXTERNPROTO declarations (ISO/IEC 14772-1 4.8, 4.9), and the fields
+// that nodes declare: Scripts (6.40) and shaders.
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,11 +11,18 @@
 namespace xvrml {
 namespace {
 
-// Returns whether a field that a Script declares holds URLs, by its name `...Url`. There is no
-// other way to know, if no field beside it IS the same one: the Script's program alone decides what
-// it does with the strings.
-bool scriptFieldNamedForUrls(const FieldInfo& field) {
-  return field.type == FieldType::MFString && holdsValue(field) && field.name.ends_with("Url");
+// Fills in what a field is for the node that declares it. A field of a shader is one of its
+// parameters. Whether a field of a Script holds URLs, its name `...Url` says. There is no other way
+// to know, if no field beside it IS the same one: the Script's program alone decides what it does
+// with the strings.
+void describeDeclared(const NodeType& type, FieldInfo& field) {
+  const bool isShader = type.is("shader"), strings = field.type == FieldType::MFString;
+  field.declared = true;
+  field.holdsUrls = strings && holdsValue(field) && (isShader || field.name.ends_with("Url"));
+  if (!isShader) return;
+  field.change = Change::shader;
+  if (field.type == FieldType::SFNode || field.type == FieldType::MFNode)
+    field.nodeTypes = "texture";
 }
 
 } // namespace
@@ -36,11 +43,36 @@ bool Builder::isBeingDeclared(std::string_view name) const {
   });
 }
 
-// Returns the type that gets interface declarations: that of the innermost open Script or
-// prototype.
-NodeType* Builder::declaringType() {
-  if (isScript()) return nodes_.back().scriptType.get();
-  return scope().protoType.get();
+// Returns the type that gets interface declarations: that of the innermost open node, if it
+// declares fields, or prototype.
+NodeType& Builder::declaringType() {
+  if (!declaresFields()) return *scope().protoType;
+  NodeFrame& frame = nodes_.back();
+  if (!frame.ownType) {
+    frame.ownType = makeOwnType(frame.node->type());
+    static_cast<DeclaringNode&>(*frame.node).setOwnType(frame.ownType);
+  }
+  return *frame.ownType;
+}
+
+// Reports a declaration that a node of the type should not have. Returns false if it is left out.
+bool Builder::mayDeclare(const NodeType& type, Access access, const Name& name) {
+  const bool hasValue = access == Access::field || access == Access::exposedField;
+  if (type.is("shader")) {
+    if (!hasValue)
+      locator_.error(name.at,
+                     fmt::format("{0} declares its parameters as {1} or {2}, not as {3}: {4} is "
+                                 "left out ({2} x has the events set_x and x_changed)",
+                                 type.name, word(Access::field), word(Access::exposedField),
+                                 word(access), describe(name)));
+    return hasValue;
+  }
+  if (access == Access::exposedField && !isX3d())
+    locator_.error(name.at, fmt::format("a Script declares field, eventIn and eventOut, not "
+                                        "exposedField (6.40): {} works as in X3D, but other "
+                                        "browsers refuse it",
+                                        describe(name)));
+  return true;
 }
 
 // Reports a declaration whose name is taken. An exposedField x also occupies set_x and x_changed
@@ -79,7 +111,8 @@ bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
 
 FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& name,
                                      bool hasValue) {
-  NodeType& target = *declaringType();
+  const bool inNode = declaresFields();
+  NodeType& target = declaringType();
   Declaration& declaration = declarations_.emplace_back();
   declaration.at = name.at;
   declaration.hasValue = hasValue;
@@ -89,11 +122,11 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& 
   field.type = type;
   field.access = access;
   field.change = Change::none;
-  field.holdsUrls = isScript() && scriptFieldNamedForUrls(field);
+  if (inNode) describeDeclared(target, field);
   field.offset = 0;
   field.defaultValue = defaultValue(type);
   // A Script of VRML97 may declare a field of that name, which X3D gives to every node.
-  if (isScript() && isVrml97() && field.name == "metadata")
+  if (inNode && isVrml97() && field.name == "metadata")
     std::erase_if(target.fields, [](const FieldInfo& own) { return own.isMetadata; });
   const uint64_t limit = state_.options.limits.interfaceFields;
   declaration.accepted = target.fields.size() < limit;
@@ -102,23 +135,26 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& 
         name.at,
         fmt::format("{} declares more than limit interfaceFields={}; those from {} on are left out",
                     target.name, limit, describe(name)));
-  declaration.accepted = declaration.accepted && !declarationConflicts(target, field, name);
+  declaration.accepted = declaration.accepted && !declarationConflicts(target, field, name) &&
+                         (!inNode || mayDeclare(target, access, name));
   if (declaration.accepted) declaration.accepted = reserveMemory(bytesOfDeclaration, name);
   void* storage = std::visit([](auto& value) -> void* { return &value; }, field.defaultValue);
   const bool nodeValue = type == FieldType::SFNode || type == FieldType::MFNode;
   const auto kind =
       type == FieldType::SFNode ? NodeTarget::Kind::single : NodeTarget::Kind::multiple;
-  if (isScript()) {
-    auto& script = *nodeCast<ScriptNode>(nodes_.back().node);
+  if (inNode) {
+    Node& node = *nodes_.back().node;
     if (declaration.accepted) {
       // A reference to an element of the type's fields.
       const FieldInfo* added = &addField(target, field);
       if (holdsValue(*added)) {
-        script.values.push_back(defaultValue(type));
-        storage = script.storage(*added);
+        declaredValues(node).push_back(defaultValue(type));
+        storage = node.storage(*added);
+        if (node.type().index >= 0)
+          static_cast<DeclaringNode&>(node).places.push_back(locator_.place(name.at));
       }
     }
-    if (hasValue && nodeValue) nodeTargets_.push_back({kind, storage, nullptr, &script});
+    if (hasValue && nodeValue) nodeTargets_.push_back({kind, storage, &field, &node});
   } else if (hasValue && nodeValue) {
     declaration.scoped = true;
     pushScope(nullptr, nullptr, nullptr);
@@ -142,26 +178,24 @@ void Builder::closeDeclaration(bool good) {
     outer.insert(outer.end(), local.begin(), local.end());
   }
   if (!good && declaration.hasValue && !nodeValue) { // the rest of the interface is as declared
-    NodeFrame* const script = isScript() ? &nodes_.back() : nullptr;
-    const FieldInfo* const own = script && declaration.accepted
-                                     ? script->node->type().find(declaration.field.name)
-                                     : nullptr;
-    if (own) script->node->set(*own, defaultValue(own->type));
+    Node* const node = declaresFields() ? nodes_.back().node.get() : nullptr;
+    const FieldInfo* const own =
+        node && declaration.accepted ? node->type().find(declaration.field.name) : nullptr;
+    if (own) node->set(*own, defaultValue(own->type));
     declaration.field.defaultValue = defaultValue(declaration.field.type);
   }
   const bool rotation = declaration.field.type == FieldType::SFRotation ||
                         declaration.field.type == FieldType::MFRotation;
   if (angle_ != 1 && rotation && declaration.hasValue && good) {
-    NodeFrame* const script = isScript() ? &nodes_.back() : nullptr;
-    const FieldInfo* const own =
-        script ? script->node->type().find(declaration.field.name) : nullptr;
+    Node* const node = declaresFields() ? nodes_.back().node.get() : nullptr;
+    const FieldInfo* const own = node ? node->type().find(declaration.field.name) : nullptr;
     if (own && own->type == declaration.field.type && declaration.accepted)
-      convertAngles(own->type, script->node->storage(*own));
-    else if (!script)
+      convertAngles(own->type, node->storage(*own));
+    else if (!node)
       convertAngles(declaration.field.type, std::visit([](auto& value) -> void* { return &value; },
                                                        declaration.field.defaultValue));
   }
-  if ((good || !nodeValue) && declaration.accepted && !isScript())
+  if ((good || !nodeValue) && declaration.accepted && !declaresFields())
     addField(*scope().protoType, std::move(declaration.field));
 }
 

@@ -36,7 +36,7 @@ class LayoutRecorder : public ParseSink {
   bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const override {
     return builder_.wouldAccept(nodeTarget, name, use);
   }
-  bool isScript() const override { return builder_.isScript(); }
+  bool declaresFields() const override { return builder_.declaresFields(); }
   void nullNode(const Name& token) override { builder_.nullNode(token); }
   void lostName(const Name& name) override { builder_.lostName(name); }
   FieldTarget resumeField(const Name& name) override { return builder_.resumeField(name); }

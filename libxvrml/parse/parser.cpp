@@ -67,7 +67,7 @@ bool Parser::nodeStatement() {
   return node(nullptr);
 }
 
-// node ::= nodeTypeId { nodeBody } | Script { scriptBody }
+// node ::= nodeTypeId { nodeBody } | Script { scriptBody }; an ORTShader has a scriptBody, too.
 bool Parser::node(const Name* def) {
   const Token type = lexer_.peek();
   if (!type.is(TokenKind::identifier)) return fail(type, "a node");
@@ -142,7 +142,7 @@ bool Parser::nodeBodyElement() {
   if (!token.is(TokenKind::identifier)) return strayInBody(token);
   if (token.text == "ROUTE") return routeStatement();
   if (token.text == "PROTO" || token.text == "EXTERNPROTO") return protoStatement();
-  if (sink_.isScript() && declares(token)) return scriptBodyElement();
+  if (sink_.declaresFields() && declares(token)) return scriptBodyElement();
   return field();
 }
 

@@ -159,7 +159,8 @@ bool Parser::interfaceDeclaration(bool isExtern) {
 //                     | eventIn fieldType eventInId IS eventInId
 //                     | eventOut fieldType eventOutId IS eventOutId
 //                     | field fieldType fieldId IS fieldId
-// X3D also has exposedField, which it calls inputOutput (29.2.2).
+// X3D also has exposedField, which it calls inputOutput (29.2.2). The sink says what a node may
+// declare.
 bool Parser::scriptBodyElement() {
   const Token keyword = lexer_.next();
   Access access{};
@@ -171,11 +172,6 @@ bool Parser::scriptBodyElement() {
   }
   Token id;
   if (!name(id, "a name for the interface")) return false;
-  if (access == Access::exposedField && !x3d_)
-    lexer_.error(keyword.at(), fmt::format("a Script declares field, eventIn and eventOut, not "
-                                           "exposedField (6.40): {} works as in X3D, but other "
-                                           "browsers refuse it",
-                                           describe(id)));
   const bool isConnection = lexer_.peek().is("IS");
   const bool hasValue =
       (access == Access::field || access == Access::exposedField) && !isConnection;

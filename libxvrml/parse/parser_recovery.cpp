@@ -260,7 +260,7 @@ void Parser::passBrace(bool inNode) {
   if (inNode)
     here = here || next.is(TokenKind::braceClose) ||
            (next.is(TokenKind::identifier) && sink_.hasField(next.text)) ||
-           (sink_.isScript() && declares(next));
+           (sink_.declaresFields() && declares(next));
   else
     here = here || next.is("USE") || (next.is(TokenKind::identifier) && nodeAhead(type));
   if (!here) return skipBlock();

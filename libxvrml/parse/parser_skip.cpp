@@ -141,7 +141,7 @@ void Parser::skipToField() {
     if (token.is(TokenKind::identifier)) {
       Token type;
       if (token.is("ROUTE") || token.is("PROTO") || token.is("EXTERNPROTO") ||
-          sink_.hasField(token.text) || (sink_.isScript() && declares(token)))
+          sink_.hasField(token.text) || (sink_.declaresFields() && declares(token)))
         return;
       if (endsValue(previous) && nodeAhead(type)) return;
     }
@@ -166,8 +166,8 @@ void Parser::skipInterfaceValue() {
   }
 }
 
-// Skips a declaration of unknown type in a Script: up to the Script's next declaration or field, or
-// its end. The rest of the Script still runs.
+// Skips a declaration of unknown type in a node: up to the node's next declaration or field, or its
+// end. The rest of a Script still runs.
 void Parser::skipDeclaration() {
   const bool inList = recoveryPoints_.back().kind != RecoveryPoint::Kind::statements;
   for (;;) {

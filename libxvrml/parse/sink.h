@@ -47,7 +47,8 @@ class ParseSink {
   // node of the named type or, with `use`, the node with that DEF name.
   virtual size_t nodeTarget() const = 0;
   virtual bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const = 0;
-  virtual bool isScript() const = 0; // whether the open node may have scriptBodyElements
+  // Returns whether the open node may declare fields (scriptBodyElements).
+  virtual bool declaresFields() const = 0;
   virtual void useNode(const Name& name) = 0;
   virtual void nullNode(const Name& token) = 0;
   // Reports the DEF name of a node that was left out.
@@ -68,8 +69,8 @@ class ParseSink {
   // id IS interfaceId in the open node
   virtual void connect(const Name& field, const Name& interfaceName) = 0;
 
-  // A declaration in the interface of the open PROTO, EXTERNPROTO or Script. With hasValue, a value
-  // follows as after openField.
+  // A declaration in the interface of the open PROTO or EXTERNPROTO, or in a node that declares
+  // fields. With hasValue, a value follows as after openField.
   virtual FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
                                       bool hasValue) = 0;
   virtual void closeDeclaration(bool good) = 0;

@@ -37,7 +37,7 @@ struct FieldText {
   TextSpan whole; // from its name to the end of its value; an element; empty for `children`
   TextSpan value; // between the quotes of an attribute
   std::vector<NodePlace> nodes; // what stands in the value of an SFNode or MFNode
-  bool declared = false;        // a Script declares the field: it has a value in any case
+  bool declared = false;        // the node declares the field: it has a value in any case
   bool readable = false;        // the whole value could be read
   bool faithful = false;        // the world has taken all of it
 };

@@ -58,7 +58,7 @@ void X3dElements::openNode(const Name& element, Attributes attributes) {
     return skip(attributes);
   ++depth_;
   push(Kind::node, type);
-  top().isScript = sink_.isScript();
+  top().hasProgram = sink_.declaresFields() && sink_.hasField("url"); // a Script
   for (const Attribute& attribute : attributes) {
     const std::string_view name = attribute.name.text;
     const bool field = !isNoField(name) || (name == "style" && sink_.hasField(name)); // FontStyle
@@ -141,8 +141,8 @@ void X3dElements::appendSource(Frame& frame) {
 
 void X3dElements::closeNode(Frame& frame) {
   leaveField();
-  if (frame.isScript) appendSource(frame);
-  // Declarations of a Script may follow its connections.
+  if (frame.hasProgram) appendSource(frame);
+  // Declarations of a node may follow its connections.
   for (const Connection& one : frame.connections) sink_.connect(one.field, one.interfaceName);
   --depth_;
   sink_.closeNode(true);

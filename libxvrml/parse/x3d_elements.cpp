@@ -81,7 +81,7 @@ void X3dElements::characters(std::string_view text, const char* at) {
   if (skipped_ > 0) return;
   Frame& frame = top();
   const bool isValue = frame.kind == Kind::text;
-  if (frame.isScript || isValue) {
+  if (frame.hasProgram || isValue) {
     const std::string_view rest = trimmed(text);
     if (frame.sourceAt == nullptr && rest.empty()) return;
     if (frame.sourceAt == nullptr) {
@@ -382,9 +382,9 @@ bool X3dElements::readAccess(const Attribute& attribute, Access& access) {
 }
 
 void X3dElements::openDeclaration(const Name& element, Attributes attributes) {
-  const bool script = top().kind == Kind::node;
+  const bool inNode = top().kind == Kind::node;
   const bool isExtern = top().kind == Kind::externProto;
-  if (script && !sink_.isScript()) return refuse(element, "a node", attributes);
+  if (inNode && !sink_.declaresFields()) return refuse(element, "a node", attributes);
   const Attribute* const word = findAttribute(attributes, "accessType");
   const Attribute* const typeName = findAttribute(attributes, "type");
   Name name;

@@ -51,7 +51,7 @@ class X3dElements {
     Kind kind;
     Name element;
     bool good = true;
-    bool isScript = false;
+    bool hasProgram = false;     // node: the text between its tags is a program
     bool holdsNodes = false;     // declaration: its value is made of nodes
     std::string_view nodesField; // node: the field that its child nodes are in, while it is open
     // node: that field is an MFNode. declaration, value: its type is MFNode.

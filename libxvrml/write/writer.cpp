@@ -39,13 +39,6 @@ size_t lastPrototypeOf(Node* root,
   return last;
 }
 
-// Returns whether the Script itself declares the field.
-bool isDeclared(const Node& node, const FieldInfo& field) {
-  if (!nodeCast<ScriptNode>(&node)) return false;
-  const NodeType* script = findNodeType("Script");
-  return !script || !script->find(field.name);
-}
-
 // x3d: the file is X3D, which has other defaults for some fields.
 bool hasOwnValue(Node& node, const FieldInfo& field, bool x3d) {
   const Value* standard = x3d ? x3dDefault(node.type().name, field.name) : nullptr;
@@ -200,7 +193,7 @@ Writer::Content Writer::contentOf(Node& node, const std::string* name) const {
 }
 
 Writer::Field Writer::fieldOf(Node& node, const FieldInfo& info) const {
-  Field field{&info, isDeclared(node, info), nullptr, nullptr, {}};
+  Field field{&info, info.declared, nullptr, nullptr, {}};
   for (const IsConnection* connection : connectionsOf(node))
     if (connection->field == info.name) field.interfaces.push_back(connection->interfaceName);
   const bool value = holdsValue(info) &&

@@ -27,7 +27,7 @@ class Writer {
   std::string write();
 
  protected:
-  // A field of a node, an argument of an instance, or a field that a Script or prototype declares.
+  // A field of a node, an argument of an instance, or a field that a node or prototype declares.
   struct Field {
     const FieldInfo* info = nullptr;
     bool declared = false;       // the node declares the field: access and type belong to the text

@@ -290,6 +290,7 @@ NAMES = {
     "libffi-dev": ("libffi", ""),
     "libseccomp-dev": ("", "libseccomp"),
     "libsdl2-dev": ("sdl2", "sdl2"),
+    "libimgui-dev": ("", ""),
     "libwebsockets-dev": ("libwebsockets", "libwebsockets"),
 }
 packages = run(root / "tools/install-packages.sh", "--list").stdout.split()

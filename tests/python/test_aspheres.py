@@ -3,7 +3,7 @@ matrices that shear and mirror; the points of unusual lenses and mirrors are sha
 import numpy as np
 import pytest
 
-from xvrml import rt
+rt = pytest.importorskip("xvrml").rt
 
 MATRICES = {
     "plain": np.eye(4),

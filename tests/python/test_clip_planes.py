@@ -3,7 +3,7 @@ did before, and meshes, bounds and rays see the same as pictures."""
 import numpy as np
 import pytest
 
-import xvrml
+xvrml = pytest.importorskip("xvrml")
 
 HEAD = "#X3D V3.3 utf8\nViewpoint { position 0 0 8 }\nNavigationInfo { headlight FALSE }\n"
 LIGHT = "DirectionalLight { direction 0 0 -1 }\n"

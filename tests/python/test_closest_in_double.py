@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from xvrml import rt
+rt = pytest.importorskip("xvrml").rt
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from rational_rays import cross, dot, minus, moved, rational  # noqa: E402

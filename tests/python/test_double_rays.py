@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from exact_geometry import soup
 
-from xvrml import rt
+rt = pytest.importorskip("xvrml").rt
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from rational_rays import cross, crossings, dot, minus, moved, rational  # noqa: E402

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("PIL")
+pytest.importorskip("xvrml")
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "tools"))
 import compare_gltf  # noqa: E402
 from gltf import models, reference, scene  # noqa: E402

@@ -3,7 +3,7 @@ exact in single precision, so that the compared lines are parts of each other.""
 import numpy as np
 import pytest
 
-import xvrml
+xvrml = pytest.importorskip("xvrml")
 
 BESIDE = np.array([-.25, -.25, 10])  # where the lines pass the eye
 AHEAD = np.array([1 / 64, 1 / 128, -1])

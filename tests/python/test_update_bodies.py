@@ -6,8 +6,8 @@ import threading
 import numpy as np
 import pytest
 
-import xvrml
-from xvrml import rt
+xvrml = pytest.importorskip("xvrml")
+rt = xvrml.rt
 
 TETRA = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-import xvrml
+xvrml = pytest.importorskip("xvrml")
 
 OLD = """#VRML V1.0 ascii
 Separator {

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import read_pfm
 
-import xvrml
+xvrml = pytest.importorskip("xvrml")
 
 ROOM = """#VRML V2.0 utf8
 NavigationInfo { headlight FALSE }

@@ -6,7 +6,7 @@ import struct
 import numpy as np
 import pytest
 
-import xvrml
+xvrml = pytest.importorskip("xvrml")
 
 HEAD = "#X3D V3.3 utf8\nPROFILE Immersive\nNavigationInfo { headlight FALSE }\n"
 HEAD4 = HEAD.replace("3.3", "4.0")

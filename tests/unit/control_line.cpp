@@ -126,6 +126,76 @@ TEST(ControlLine, MessagesSayWhereAndWhat) {
   bad(R"({"command":"hello","quiet":1})", "command", "hello: quiet: true or false was expected");
 }
 
+// Reads a step with these edits.
+edits::Step step(const std::string& edits) {
+  const Line line = good(R"({"command":"edit","name":"A step","edits":[)" + edits + "]}");
+  return line.command ? std::get<edits::Step>(line.command->action) : edits::Step();
+}
+void badEdit(const std::string& edits, const std::string& words) {
+  bad(R"({"command":"edit","name":"A step","edits":[)" + edits + "]}", "command", words);
+}
+
+TEST(ControlLine, StepsAreRead) {
+  const edits::Step all = step(R"({"edit":"wrap","node":"A"},
+      {"edit":"set","node":{"edit":0},"field":"scale","value":[1,2,3]},
+      {"edit":"insert","vrml":"Group {}","parent":{"edit":0},"index":2},
+      {"edit":"move","node":7,"at":{"parent":null,"field":null,"index":0},"parent":"B"},
+      {"edit":"remove","node":"A","at":{"parent":"B"}},
+      {"edit":"unroute","from":[{"edit":2},"a"],"to":["B","b"]})");
+  ASSERT_EQ(all.edits.size(), 6u);
+  EXPECT_EQ(all.name, "A step");
+  EXPECT_EQ(std::get<edits::Wrap>(all.edits[0]).type, "Transform");
+  EXPECT_EQ(std::get<edits::Made>(std::get<edits::SetField>(all.edits[1]).node).by, 0u);
+  const auto& insert = std::get<edits::Insert>(all.edits[2]);
+  EXPECT_EQ(insert.to.field, "children");
+  EXPECT_EQ(insert.to.index, std::optional(2u));
+  const auto& move = std::get<edits::Move>(all.edits[3]);
+  ASSERT_TRUE(move.at);
+  EXPECT_FALSE(move.at->parent);
+  EXPECT_EQ(move.at->field, "");
+  EXPECT_FALSE(move.to.index);
+  EXPECT_EQ(std::get<edits::Remove>(all.edits[4]).at->field, "");
+  EXPECT_FALSE(std::get<edits::Route>(all.edits[5]).add);
+}
+
+TEST(ControlLine, MessagesOfStepsSayWhichEdit) {
+  const std::string edit = R"({"edit":"wrap","node":"A"},)";
+  bad(R"({"command":"edit","edits":[]})", "command", "\"name\" is missing");
+  bad(R"({"command":"edit","name":"","edits":[]})", "command", "name: a name was expected");
+  bad(R"({"command":"edit","name":"x","edits":{}})", "command", "edits: an array of objects");
+  badEdit("", "edit: edits: an array of objects");
+  badEdit("7", "edit: edits[0]: an object was expected, not 7");
+  badEdit(R"({"edit":"removed","node":"A"})", "there is no edit \"removed\"; did you mean remove?");
+  badEdit(edit + R"({"edit":"set","node":"A","field":"x"})",
+          "edit: edits[1]: the member \"value\" is missing");
+  badEdit(R"({"edit":"remove","node":"A","index":1})", "there is no member \"index\"");
+  badEdit(R"({"edit":"remove","node":"A","at":{"index":1}})", "at: the member \"parent\"");
+  badEdit(R"({"edit":"remove","node":"A","at":[]})", "at: an object was expected");
+  badEdit(R"({"edit":"insert","vrml":"Group {}","index":-1})", "index: a whole number from 0 to");
+  badEdit(R"({"edit":"insert","vrml":"Group {}","index":18446744073709551615})", "index");
+  badEdit(R"({"edit":"insert","vrml":"Group {}","index":1.5})", "index");
+  badEdit(R"({"edit":"insert","vrml":["Group {}"]})", "vrml: a text was expected");
+  badEdit(R"({"edit":"rename","node":[["A"]],"name":"B"})", "node: the DEF name or the number");
+  for (const char* const made : {"1", "18446744073709551615", "-1", "\"0\"", "0,\"a\":1"})
+    badEdit(edit + R"({"edit":"remove","node":{"edit":)" + made + "}}",
+            "edits[1]: node: \"edit\" with the index of an earlier edit");
+  badEdit(R"({"edit":"remove","node":"A"},{"edit":"remove","node":{"edit":0}})",
+          "an earlier edit that makes a node");
+  bad(R"({"command":"save","path":"a\u0000b"})", "command", "save: path: the path of a file");
+  bad(R"({"command":"save","overwrite":1})", "command", "save: overwrite: true or false");
+  bad(R"({"command":"select","nodes":"A"})", "command", "select: nodes: an array");
+  bad(R"({"command":"pick","x":0})", "command", "pick: the member \"y\" is missing");
+  bad(R"({"command":"pick","x":0,"y":1.001})", "command", "pick: y: a number from -1 to 1");
+  bad(R"({"command":"pick","x":"0","y":0})", "command", "pick: x: a number from -1 to 1");
+  bad(R"({"command":"probe","x":0,"y":0,"samples":0})", "command",
+      "probe: samples: a whole number");
+  bad(R"({"command":"probe","x":0,"y":0,"samples":65537})", "command", "probe: samples");
+  bad(R"({"command":"undo","name":"A step"})", "command", "undo: there is no member \"name\"");
+  std::string many;
+  for (size_t i = 0; i <= limits.edits; ++i) many += R"(,{"edit":"remove","node":"A"})";
+  bad(R"({"command":"edit","name":"x","edits":[)" + many.substr(1) + "]}", "limit", "edits=");
+}
+
 TEST(ControlLine, ErrorsKeepTheId) {
   const Line line = readLine(R"({"id":"x\"y","command":"nothing"})");
   EXPECT_EQ(line.id, R"("x\"y")");
@@ -168,6 +238,7 @@ TEST(ControlLine, LimitsAreThoseOfThePage) {
       {"clients", limits.clients},
       {"nodes", limits.nodes},
       {"subscriptions", limits.subscriptions},
+      {"edits", limits.edits},
       {"pixels", limits.pixels},
       {"samples", size_t(limits.samples)},
       {"skip", size_t(limits.skip)},

@@ -103,6 +103,18 @@ TEST_F(AtomicFile, AFileIsProtectedWhileOthersAreWritten) {
   EXPECT_EQ(contentOf("world"), "a world");
 }
 
+TEST_F(AtomicFile, AnEditedFileIsReplacedAndStaysProtected) {
+  writeFile(pathOf("edited"), "a world");
+  ASSERT_NE(std::fopen(pathOf("edited").c_str(), "r"), nullptr); // as above
+  protectFile(pathOf("edited"), "the world that is read");
+  for (const char* const text : {"one edit", "another edit"}) {
+    writeEditedFile(pathOf("edited"), text);
+    EXPECT_EQ(contentOf("edited"), text);
+    EXPECT_THROW(writeRegularFile(pathOf("edited"), "a picture"), std::runtime_error);
+  }
+  EXPECT_THROW(writeEditedFile("/dev/null", "a world"), std::runtime_error);
+}
+
 TEST_F(AtomicFile, AFailedWriteLeavesNothingBehind) {
   fs::create_directory(folder_ / "folder");
   EXPECT_THROW(writeFile(pathOf("folder"), "text"), std::runtime_error);

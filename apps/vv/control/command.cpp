@@ -7,80 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "nearest.h"
+#include "control/members.h"
 
 namespace vv::control {
 
 namespace {
-
-[[noreturn]] void refuse(const std::string& where, const std::string& expected, const Json& got) {
-  throw CommandError("command",
-                     fmt::format("{}: {} was expected, not {}", where, expected, shownJson(got)));
-}
-
-std::string nearTo(const std::string& name, const std::vector<std::string>& known) {
-  constexpr size_t longest = 64; // the search takes time that grows with the name
-  const std::string near = name.size() > longest ? "" : nearest::word(name, known);
-  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
-}
-
-// --- Values of members ---
-
-std::string textOf(const std::string& where, const Json& json) {
-  if (!json.is_string()) refuse(where, "a text", json);
-  return json.get<std::string>();
-}
-
-bool switchOf(const std::string& where, const Json& json) {
-  if (!json.is_boolean()) refuse(where, "true or false", json);
-  return json.get<bool>();
-}
-
-int wholeNumberOf(const std::string& where, const Json& json, int most) {
-  const std::string expected = fmt::format("a whole number from 1 to {}", most);
-  if (!json.is_number_integer() || json < 1 || json > most) refuse(where, expected, json);
-  return json.get<int>();
-}
-
-double secondsOf(const std::string& where, const Json& json, double most) {
-  if (!json.is_number() || !(json.get<double>() >= 0 && json.get<double>() <= most))
-    refuse(where, fmt::format("seconds from 0 to {}", most), json);
-  return json.get<double>();
-}
-
-NodeName nodeOf(const std::string& where, const Json& json) {
-  if (json.is_number_unsigned()) return json.get<uint64_t>();
-  if (json.is_string()) return json.get<std::string>();
-  refuse(where, "the DEF name or the number of a node", json);
-}
-
-template <class T, class Read>
-std::vector<T> listOf(const std::string& where, const Json& json, const Read& read) {
-  if (!json.is_array()) refuse(where, "an array", json);
-  std::vector<T> list;
-  for (size_t i = 0; i < json.size(); ++i)
-    list.push_back(read(fmt::format("{}[{}]", where, i), json[i]));
-  return list;
-}
-
-// Reads the path of a file. The system would cut it off at a zero byte.
-std::string pathOf(const std::string& where, const Json& json) {
-  std::string path = textOf(where, json);
-  if (path.empty() || path.find('\0') != path.npos) refuse(where, "the path of a file", json);
-  return path;
-}
-
-// Reads one path, or an array of them.
-std::vector<std::string> pathsOf(const std::string& where, const Json& json) {
-  if (json.is_string()) return {pathOf(where, json)};
-  return listOf<std::string>(where, json, pathOf);
-}
-
-// Reads one text, or an array of them.
-std::vector<std::string> textsOf(const std::string& where, const Json& json) {
-  if (json.is_string()) return {json.get<std::string>()};
-  return listOf<std::string>(where, json, textOf);
-}
 
 // Reads ["Clock", "fraction_changed"].
 FieldName endOf(const std::string& where, const Json& json) {
@@ -88,44 +19,6 @@ FieldName endOf(const std::string& where, const Json& json) {
     refuse(where, "an array of a node and the name of its event", json);
   return {nodeOf(where + "[0]", json[0]), textOf(where + "[1]", json[1])};
 }
-
-// --- Commands ---
-
-// Takes the members of an object one by one. rest() refuses those that nobody has asked for.
-class Members {
- public:
-  Members(std::string where, Json object) : where_(std::move(where)), object_(std::move(object)) {}
-
-  bool has(const char* name) {
-    known_.emplace_back(name);
-    return object_.contains(name);
-  }
-  // Throws if the member is missing.
-  Json& need(const char* name) {
-    if (!has(name))
-      throw CommandError("command", fmt::format("{}: the member \"{}\" is missing", where_, name));
-    return object_[name];
-  }
-  std::string at(const char* name) const { return fmt::format("{}: {}", where_, name); }
-  FieldName field() {
-    return {nodeOf(at("node"), need("node")), textOf(at("field"), need("field"))};
-  }
-  std::string text(const char* name) { return textOf(at(name), need(name)); }
-  Json& object() { return object_; }
-  const std::string& where() const { return where_; }
-
-  void rest() {
-    for (const auto& [name, value] : object_.items())
-      if (std::find(known_.begin(), known_.end(), name) == known_.end())
-        throw CommandError("command", fmt::format("{}: there is no member {}{}", where_,
-                                                  shownJson(name), nearTo(name, known_)));
-  }
-
- private:
-  std::string where_;
-  Json object_;
-  std::vector<std::string> known_;
-};
 
 Action readSet(Members& m) {
   Set set;
@@ -137,12 +30,16 @@ Action readSet(Members& m) {
   if (!values.is_array() || values.empty()) refuse(m.at("values"), "an array of objects", values);
   for (size_t i = 0; i < values.size(); ++i) {
     const std::string where = fmt::format("{}[{}]", m.at("values"), i);
-    if (!values[i].is_object()) refuse(where, "an object", values[i]);
     Members one(where, std::move(values[i]));
     set.values.push_back({one.field(), std::move(one.need("value"))});
     one.rest();
   }
   return set;
+}
+
+std::optional<int> readSamples(Members& m) {
+  if (!m.has("samples")) return {};
+  return wholeNumberOf(m.at("samples"), m.need("samples"), 1, limits.samples);
 }
 
 Action readRender(Members& m) {
@@ -151,14 +48,13 @@ Action readRender(Members& m) {
     const Json& size = m.need("size");
     if (!size.is_array() || size.size() != 2)
       refuse(m.at("size"), "an array of width and height", size);
-    render.width = wholeNumberOf(m.at("size[0]"), size[0], limits.side);
-    render.height = wholeNumberOf(m.at("size[1]"), size[1], limits.side);
+    render.width = wholeNumberOf(m.at("size[0]"), size[0], 1, limits.side);
+    render.height = wholeNumberOf(m.at("size[1]"), size[1], 1, limits.side);
     if (size_t(*render.width) * size_t(*render.height) > limits.pixels)
       throw CommandError("limit", fmt::format("{}: a picture has at most pixels={} pixels",
                                               m.at("size"), limits.pixels));
   }
-  if (m.has("samples"))
-    render.samples = wholeNumberOf(m.at("samples"), m.need("samples"), limits.samples);
+  render.samples = readSamples(m);
   if (m.has("channels")) render.channels = textsOf(m.at("channels"), m.need("channels"));
   if (m.has("file")) render.file = pathOf(m.at("file"), m.need("file"));
   if (m.has("format")) render.format = m.text("format");
@@ -168,7 +64,7 @@ Action readRender(Members& m) {
 Action readTime(Members& m) {
   Time time;
   if (m.has("paused")) time.paused = switchOf(m.at("paused"), m.need("paused"));
-  if (m.has("skip")) time.skip = secondsOf(m.at("skip"), m.need("skip"), limits.skip);
+  if (m.has("skip")) time.skip = numberOf(m.at("skip"), m.need("skip"), "seconds", 0, limits.skip);
   return time;
 }
 
@@ -181,6 +77,21 @@ Action readKey(Members& m) {
   press.key = m.text("key");
   if (m.has("pressed")) press.pressed = switchOf(m.at("pressed"), m.need("pressed"));
   return press;
+}
+
+// Reads x and y from -1 to 1.
+Pick readPick(Members& m) {
+  const auto read = [&](const char* name) {
+    return numberOf(m.at(name), m.need(name), "a number", -1, 1);
+  };
+  return {read("x"), read("y")};
+}
+
+Action readSave(Members& m) {
+  Save save;
+  if (m.has("path")) save.path = pathOf(m.at("path"), m.need("path"));
+  if (m.has("overwrite")) save.overwrite = switchOf(m.at("overwrite"), m.need("overwrite"));
+  return save;
 }
 
 Action readBind(Members& m) {
@@ -244,6 +155,27 @@ constexpr Row table[] = {
     {"render", readRender},
     {"time", readTime},
     {"key", readKey},
+    {"edit", [](Members& m) -> Action { return edits::readStep(m, limits.edits); }},
+    {"undo", [](Members&) -> Action { return Undo{false}; }},
+    {"redo", [](Members&) -> Action { return Undo{true}; }},
+    {"save", readSave},
+    {"edits",
+     [](Members& m) -> Action {
+       return ListEdits{m.has("text") && switchOf(m.at("text"), m.need("text"))};
+     }},
+    {"roots", [](Members&) -> Action { return ListRoots{}; }},
+    {"parents",
+     [](Members& m) -> Action { return ListParents{nodeOf(m.at("node"), m.need("node"))}; }},
+    {"select",
+     [](Members& m) -> Action {
+       return Select{listOf<NodeName>(m.at("nodes"), m.need("nodes"), nodeOf)};
+     }},
+    {"selection", [](Members&) -> Action { return ListSelection{}; }},
+    {"pick", [](Members& m) -> Action { return readPick(m); }},
+    {"probe",
+     [](Members& m) -> Action {
+       return Probe{readPick(m), readSamples(m)};
+     }},
     {"quit", [](Members&) -> Action { return Quit{}; }},
 };
 
@@ -285,11 +217,6 @@ std::string idOf(const Json& object) {
 }
 
 } // namespace
-
-std::string shownNode(const NodeName& name) {
-  if (const auto* number = std::get_if<uint64_t>(&name)) return fmt::format("node {}", *number);
-  return "node " + shownJson(std::get<std::string>(name));
-}
 
 Line readLine(std::string_view line, const Limits& allowed) {
   Line read;

@@ -10,18 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "control/json_line.h"
+#include "control/edit_step.h"
+#include "control/node_name.h"
 
 namespace vv::control {
-
-// A node as a client names it: a DEF name of the world, or a number that the client was given.
-using NodeName = std::variant<std::string, uint64_t>;
-std::string shownNode(const NodeName& name);
-
-struct FieldName {
-  NodeName node;
-  std::string field;
-};
 
 struct Assignment {
   FieldName to;
@@ -82,11 +74,37 @@ struct PressKey {
   std::optional<bool> pressed; // nothing: pressed and released
   std::string text;
 };
+struct Undo {
+  bool again = false; // redo
+};
+struct Save {
+  std::string path; // "": the world's own file
+  bool overwrite = false;
+};
+struct ListEdits {
+  bool withText = false;
+};
+struct ListRoots {};
+struct ListParents {
+  NodeName node;
+};
+struct Select {
+  std::vector<NodeName> nodes;
+};
+struct ListSelection {};
+struct Pick {
+  double x = 0, y = 0; // picture coordinates, as in InputEvent
+};
+struct Probe {
+  Pick place;
+  std::optional<int> samples;
+};
 struct Quit {};
 
-using Action =
-    std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute, Describe,
-                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit, PressKey>;
+using Action = std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute,
+                            Describe, ListNames, ListViewpoints, Bind, Load, Replace, Render, Time,
+                            Quit, PressKey, edits::Step, Undo, Save, ListEdits, ListRoots,
+                            ListParents, Select, ListSelection, Pick, Probe>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

@@ -12,11 +12,13 @@
 #include "control/client.h"
 #include "control/listener.h"
 #include "control/pictures_sent.h"
+#include "control/probing.h"
 #include "control/world_commands.h"
 #include "libpicture/files/atomic_file.h"
 #include "process/messages.h"
 #include "report/describe.h"
 #include "run/outputs.h"
+#include "session/saving.h"
 
 namespace vv::control {
 
@@ -33,6 +35,32 @@ KeyRing keysOf(const Options& options) {
                                      : readKeys(options.cluster.key, options.cluster.allow);
 }
 
+template <class... Actions> bool isOneOf(const Command& command) {
+  return (std::holds_alternative<Actions>(command.action) || ...);
+}
+bool needsWorld(const Command& command) { return !isOneOf<Hello, Load, Quit>(command); }
+bool makesPicture(const Command& command) { return isOneOf<Render, Probe>(command); }
+bool picks(const Command& command) { return isOneOf<Pick, Probe>(command); }
+
+// A camera shader makes the rays of the picture, which no pick follows.
+void refuseCameraShader(const Options& options, Session& session) {
+  if (options.view.shader || session.pilot().camera().shader)
+    throw CommandError("failed", "a camera shader makes the rays of the picture: nothing can be "
+                                 "picked in it");
+}
+
+// Returns the settings of a picture that a probe reads: those of the picture that is shown, with
+// the samples of a finished one unless the probe says how many.
+picture::RenderSettings settingsOf(const Probe& probe, const Options& options, Session& session) {
+  picture::RenderSettings settings = options.render;
+  if (!settings.linear)
+    throw CommandError("failed", "--colour vrml97 makes colours for screens, not light");
+  settings.width = std::max(session.pictures().width(), 1);
+  settings.height = std::max(session.pictures().height(), 1);
+  settings.samples = probe.samples.value_or(samplesInWindow(options));
+  return settings;
+}
+
 } // namespace
 
 struct Control::Impl {
@@ -46,7 +74,8 @@ struct Control::Impl {
   uint64_t generation = 0; // the browser's generation in the session
   // The client whose picture is rendered or encoded; 0: none. Others wait for their turn.
   ClientId renderer = 0;
-  uint32_t channels = 0; // the channels of its picture
+  std::optional<Probing> probing; // that picture is read at one pixel
+  uint32_t channels = 0;          // the channels of its picture
   // A world is being read. Commands that load others wait, so that only one is read at a time.
   bool loading = false;
   std::optional<Encoding> encoding;
@@ -94,17 +123,12 @@ struct Control::Impl {
           (std::holds_alternative<Load>(line.command->action) ||
            (!session && needsWorld(*line.command))))
         continue;
-      if (line.command && std::holds_alternative<Render>(line.command->action) && renderer != 0)
+      if (line.command && makesPicture(*line.command) && renderer != 0) continue;
+      if (line.command && picks(*line.command) && session && !session->viewers().own().isPlaced())
         continue;
       if (!first || client.waiting.front().order < first->waiting.front().order) first = &client;
     }
     return first;
-  }
-
-  static bool needsWorld(const Command& command) {
-    return !std::holds_alternative<Hello>(command.action) &&
-           !std::holds_alternative<Load>(command.action) &&
-           !std::holds_alternative<Quit>(command.action);
   }
 
   // --- Answers ---
@@ -157,6 +181,8 @@ struct Control::Impl {
       perform(client, letter);
     } catch (const CommandError& error) {
       refuse(letter, error.code, error.what());
+    } catch (const xvrml::EditError& error) {
+      refuse(letter, "edit", error.what());
     } catch (const Failure& failure) {
       refuse(letter, "file", failure.text);
     } catch (const std::bad_alloc&) {
@@ -168,6 +194,7 @@ struct Control::Impl {
     const Command& command = *letter.line.command;
     if (needsWorld(command) && !session)
       throw CommandError("world", "no world is loaded; \"load\" loads one");
+    if (picks(command)) refuseCameraShader(options, *session);
     if (std::holds_alternative<Hello>(command.action)) {
       answer(letter, hello());
     } else if (std::holds_alternative<Quit>(command.action)) {
@@ -182,8 +209,11 @@ struct Control::Impl {
       loading = true;
       client.busy = Client::Busy::loading;
       client.underWay = std::move(letter);
-    } else if (const auto* render = std::get_if<Render>(&command.action)) {
-      beginPicture(*render);
+    } else if (makesPicture(command)) {
+      if (const auto* render = std::get_if<Render>(&command.action))
+        beginPicture(*render);
+      else
+        beginProbe(client, std::get<Probe>(command.action));
       renderer = client.id;
       client.busy = Client::Busy::rendering;
       client.underWay = std::move(letter);
@@ -215,6 +245,13 @@ struct Control::Impl {
     session->pictures().requestStill(still);
   }
 
+  void beginProbe(Client& client, const Probe& probe) {
+    Probing next = probingAt(probe, settingsOf(probe, options, *session));
+    next.hit = WorldCommands(*session, client, mailbox).pick(probe.place);
+    session->pictures().requestStill(next.still);
+    probing = std::move(next);
+  }
+
   void followPicture() {
     if (renderer == 0) return;
     Client& client = clients.at(renderer); // busy clients stay
@@ -227,11 +264,17 @@ struct Control::Impl {
     }
     std::optional<StillAnswer> still = session ? session->pictures().takeStill() : std::nullopt;
     if (!still) return;
+    const std::optional<Probing> probed = std::exchange(probing, {});
     if (!still->failure.empty()) {
       renderer = 0;
       return finish(client, "", "render", still->failure);
     }
     try {
+      if (probed) {
+        const std::string result = resultOf(*probed, still->picture);
+        renderer = 0;
+        return finish(client, result, "", "");
+      }
       encoding.emplace(std::move(still->picture), channels,
                        std::get<Render>(client.underWay.line.command->action));
     } catch (const std::exception& error) {
@@ -273,6 +316,7 @@ struct Control::Impl {
     if (renderer != 0 && !encoding)
       finish(clients.at(std::exchange(renderer, 0)), "", "render",
              fmt::format("{} before the picture was finished", why));
+    probing.reset();
     for (auto& [id, client] : clients) {
       if (session) WorldCommands::unsubscribeAll(session->browser(), client);
       client.numbers.releaseAll();

@@ -14,6 +14,7 @@ struct Limits {
   size_t clients = 32;                    // clients at a time
   size_t nodes = 100'000;                 // numbers of nodes that a client has not released
   size_t subscriptions = 10'000;          // subscriptions of a client
+  size_t edits = 10'000;                  // edits of one step
   size_t pixels = size_t(64) << 20;       // pixels of one picture
   int side = 65'536;                      // pixels of a picture's side
   int samples = 65'536;                   // samples of each pixel

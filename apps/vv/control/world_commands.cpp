@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "control/field_json.h"
+#include "control/fields.h"
 #include "nearest.h"
 #include "xvrml/walk.h"
 
@@ -20,45 +21,6 @@ namespace vv::control {
 using namespace xvrml;
 
 namespace {
-
-// Returns the names of a node's fields and events that a test accepts, for messages.
-template <class Test> std::vector<std::string> fieldNames(const Node& node, const Test& test) {
-  std::vector<std::string> names;
-  for (const FieldInfo& field : node.type().fields)
-    if (test(field)) names.push_back(field.name);
-  return names;
-}
-
-[[noreturn]] void refuseField(const Node& node, const std::string& name, const char* use,
-                              const std::vector<std::string>& known) {
-  const std::string& type = node.type().name;
-  if (const FieldInfo* field = node.type().find(name))
-    throw CommandError("field", fmt::format("{}.{} is an {}: it cannot be {}", type, name,
-                                            accessName(field->access), use));
-  const std::string near = name.size() > 64 ? "" : nearest::word(name, known);
-  throw CommandError("field", fmt::format("{} has no field or event {}{}", type, jsonText(name),
-                                          near.empty() ? "" : "; did you mean " + near + "?"));
-}
-
-bool isReadable(const FieldInfo& field) { return field.access != Access::eventIn; }
-bool isWritable(const FieldInfo& field) { return field.access != Access::eventOut; }
-bool sends(const FieldInfo& field) {
-  return field.access == Access::eventOut || field.access == Access::exposedField;
-}
-
-const FieldInfo& readableField(const Node& node, const std::string& name) {
-  const FieldInfo* field = node.type().find(name);
-  if (!field || !isReadable(*field)) field = node.type().findEventOut(name);
-  if (!field) refuseField(node, name, "read", fieldNames(node, isReadable));
-  return *field;
-}
-
-const FieldInfo& writableField(const Node& node, const std::string& name) {
-  const FieldInfo* field = node.type().find(name);
-  if (!field || field->access != Access::field) field = node.type().findEventIn(name);
-  if (!field) refuseField(node, name, "set", fieldNames(node, isWritable));
-  return *field;
-}
 
 // A value that has been checked and is to be set.
 struct Checked {
@@ -131,6 +93,19 @@ struct Sender {
   } catch (...) { mailbox.cut(client.id, "failed", "an event was lost: this client is cut off"); }
 };
 
+// Returns the node in an SFNode of a node, or of what a prototype instance stands for; null if
+// there is none.
+NodeRef childOf(Node* node, const char* field) {
+  const Node* const real = renderedNode(node);
+  const FieldInfo* const info = real ? real->type().find(field) : nullptr;
+  if (!info || info->type != FieldType::SFNode || !holdsValue(*info)) return {};
+  return *static_cast<const NodeRef*>(real->storage(*info));
+}
+
+std::string triple(const std::array<double, 3>& v) {
+  return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
+}
+
 struct Performer {
   template <class... F> struct Of : F... { using F::operator()...; };
 };
@@ -140,21 +115,29 @@ template <class... F> Performer::Of<F...> choose(F... functions) { return {funct
 
 std::string WorldCommands::perform(const Command& command) {
   const auto other = [](const auto&) -> std::string { return "null"; };
-  return std::visit(choose([this](const Get& c) { return get(c); },
-                           [this](const Set& c) { return set(c); },
-                           [this](const Subscribe& c) { return subscribe(c); },
-                           [this](const Create& c) { return create(c); },
-                           [this](const ChangeRoots& c) { return changeRoots(c); },
-                           [this](const Release& c) { return release(c); },
-                           [this](const ChangeRoute& c) { return changeRoute(c); },
-                           [this](const Describe& c) { return describe(c); },
-                           [this](const ListNames&) { return listNames(); },
-                           [this](const ListViewpoints&) { return listViewpoints(); },
-                           [this](const Bind& c) { return bind(c); },
-                           [this](const Replace& c) { return replace(c); },
-                           [this](const PressKey& c) { return press(c); },
-                           [this](const Time& c) { return time(c); }, other),
-                    command.action);
+  return std::visit(
+      choose([this](const Get& c) { return get(c); }, [this](const Set& c) { return set(c); },
+             [this](const Subscribe& c) { return subscribe(c); },
+             [this](const Create& c) { return create(c); },
+             [this](const ChangeRoots& c) { return changeRoots(c); },
+             [this](const Release& c) { return release(c); },
+             [this](const ChangeRoute& c) { return changeRoute(c); },
+             [this](const Describe& c) { return describe(c); },
+             [this](const ListNames&) { return listNames(); },
+             [this](const ListViewpoints&) { return listViewpoints(); },
+             [this](const Bind& c) { return bind(c); },
+             [this](const Replace& c) { return replace(c); },
+             [this](const PressKey& c) { return press(c); },
+             [this](const Time& c) { return time(c); },
+             [this](const edits::Step& c) { return edit(c); },
+             [this](const Undo& c) { return undo(c); }, [this](const Save& c) { return save(c); },
+             [this](const ListEdits& c) { return listEdits(c); },
+             [this](const ListRoots&) { return listRoots(); },
+             [this](const ListParents& c) { return listParents(c); },
+             [this](const Select& c) { return select(c); },
+             [this](const ListSelection&) { return listSelection(); },
+             [this](const Pick& c) { return pick(c); }, other),
+      command.action);
 }
 
 // --- Nodes and values ---
@@ -182,6 +165,18 @@ std::string WorldCommands::valueText(const Value& value) {
   std::string text;
   appendValue(text, value, [this](const NodeRef& node) { return client_.numbers.of(node); });
   return text;
+}
+
+std::string WorldCommands::factsOf(const NodeRef& node) {
+  if (!node) return "null";
+  return fmt::format(R"({{"node":{},"type":{},"name":{}}})", client_.numbers.of(node),
+                     jsonText(node->type().name), jsonText(node->defName));
+}
+
+std::string WorldCommands::factsOf(const MFNode& nodes) {
+  std::string list;
+  for (const NodeRef& node : nodes) list += (list.empty() ? "" : ",") + factsOf(node);
+  return "[" + list + "]";
 }
 
 std::string WorldCommands::get(const Get& get) {
@@ -317,9 +312,10 @@ std::string WorldCommands::changeRoute(const ChangeRoute& change) {
   const FieldInfo* in = to->type().findEventIn(change.to.field);
   if (!out) refuseField(*from, change.from.field, "the start of a route", fieldNames(*from, sends));
   if (!in)
-    refuseField(*to, change.to.field, "the end of a route", fieldNames(*to, [](const auto& field) {
-      return field.access == Access::eventIn || field.access == Access::exposedField;
-    }));
+    refuseField(*to, change.to.field, "the end of a route",
+                fieldNames(*to, [](const FieldInfo& field) {
+                  return field.access == Access::eventIn || field.access == Access::exposedField;
+                }));
   if (out->type != in->type)
     throw CommandError("field", fmt::format("a route has one type: {}.{} is {}, {}.{} is {}",
                                             from->type().name, out->name, fieldTypeName(out->type),
@@ -342,6 +338,8 @@ std::string WorldCommands::describe(const Describe& describe) {
                      jsonText(node->type().name), jsonText(node->defName), fields);
 }
 
+std::string WorldCommands::listRoots() { return factsOf(browser_.world().scope.roots); }
+
 std::string WorldCommands::listNames() const {
   std::string names;
   for (const auto& [name, node] : browser_.world().scope.names)
@@ -361,6 +359,20 @@ std::string WorldCommands::listViewpoints() {
                         list.empty() ? "" : ",", client_.numbers.of(one.node), jsonText(one.name),
                         jsonText(one.description), one.node.get() == bound);
   return "[" + list + "]";
+}
+
+std::string WorldCommands::pick(const Pick& pick) {
+  PickHit hit;
+  if (!session_.pilot().pick(pick.x, pick.y, hit)) return "null";
+  MFNode path;
+  for (const PickHit::Step& step : hit.path) path.push_back(step.node);
+  Node* const shape = path.empty() ? nullptr : path.back().get();
+  const NodeRef appearance = childOf(shape, "appearance");
+  return fmt::format(
+      R"({{"point":{},"normal":{},"distance":{},"path":{},"geometry":{},"appearance":{},"shader":{}}})",
+      triple(hit.point), triple(hit.normal), hit.distance, factsOf(path),
+      factsOf(childOf(shape, "geometry")), factsOf(appearance),
+      factsOf(childOf(appearance.get(), "shader")));
 }
 
 std::string WorldCommands::press(const PressKey& press) {

@@ -3,7 +3,10 @@
 // history. Owned by a session. [the browser's thread, while the world can be used]
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "xvrml/edit.h"
 
@@ -24,16 +27,30 @@ class WorldEditor {
   // Returns the node that was selected last; null: none is selected.
   xvrml::Node* selected() const { return selection_.empty() ? nullptr : selection_.back().get(); }
 
+  // Does edits as one step with this name. If they throw, what they have done is undone.
+  void step(const std::string& name, const std::function<void()>& edits);
+  // Returns the place of a node, if it stands in one place of the file, or in one that `accepts`
+  // accepts. Throws EditError.
+  using Accepts = std::function<bool(const xvrml::NodeSlot& place)>;
+  xvrml::NodeSlot placeOf(const xvrml::Node& node, const Accepts& accepts = {});
+  // Returns the place behind the last node of a field, or behind the last root for null; in an
+  // SFNode the only place.
+  xvrml::NodeSlot endOf(xvrml::Node* parent, const std::string& field) const;
   // Undo the last step, or do it again. Return its name; empty: there is none. Throw EditError.
   std::string undo();
   std::string redo();
+  // Tells whether there are edits that have not been saved.
+  bool isChanged() const { return editor_.isChanged(); }
   // Writes the file. See picture::saveEdits.
   void save(const std::string& path = "", bool overwrite = false);
+  // How often the file has been saved: it differs then from what was read.
+  uint64_t saves() const { return saves_; }
 
  private:
   xvrml::Browser& browser_;
   xvrml::Editor editor_;
   xvrml::MFNode selection_;
+  uint64_t saves_ = 0;
 };
 
 } // namespace vv

@@ -33,12 +33,14 @@ struct Output {
 };
 
 // A job that is done instead of making a picture or opening the window: it prints something, adds
-// pictures, or serves a page. If several are asked for, the first of these is done.
+// pictures, serves a page, or opens the window with the editor. If several are asked for, the first
+// of these is done.
 enum class Job : uint8_t {
   help,
   version,
   merge,
   serve,
+  edit,
   listKeys,
   info,
   explain,
@@ -59,6 +61,7 @@ inline constexpr JobInfo jobTable[] = {
     {Job::version, "--version", false, false},
     {Job::merge, "merge", false, false},
     {Job::serve, "serve", false, true},
+    {Job::edit, "edit", false, true},
     {Job::listKeys, "--list-keys", false, false},
     {Job::info, "--info", true, true},
     {Job::explain, "--explain", true, true},

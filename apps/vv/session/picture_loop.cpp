@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "libpicture/live/denoise_choice.h"
+#include "libpicture/pixel_reading.h"
 
 namespace vv {
 
@@ -118,6 +119,10 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
   return hasStill() && renderer_.copy(picture, &number) && number == number_;
 }
 
+void PictureLoop::wantReadings() {
+  if (std::exchange(readings_, picture::readingChannels) == 0) cancelled_ = true; // another frame
+}
+
 bool PictureLoop::isFinished(const Pilot& pilot) const {
   return isRefining() && still_ == Progress::finished && !shared_.isOutdated(world_) &&
          equal(pilot.camera(), camera_);
@@ -159,6 +164,7 @@ void PictureLoop::followHeadlight(const Pilot& pilot) {
   exposure_ = pilot.exposure();
   renderer_.change([&](picture::RenderSettings& s) {
     s.headlight = headlightOf(pilot);
+    s.channels |= readings_;
     s.view = transformOf(pilot);
   });
 }

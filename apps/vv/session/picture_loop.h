@@ -70,6 +70,8 @@ class PictureLoop {
   // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
   // still one with samples everywhere, or for a moment while it ends.
   bool copyStill(picture::Picture& picture);
+  // Lets further frames have the channels that copyStill() needs for a reading of pixels, too.
+  void wantReadings();
   // Asks for a picture of its own for a program; the frames wait meanwhile. takeStill() returns it
   // once it is finished. One at a time.
   void requestStill(const Still& still) { taker_.request(still); }
@@ -144,6 +146,7 @@ class PictureLoop {
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
+  uint32_t readings_ = 0;             // channels beside those of the settings
   double exposure_ = 0;               // the exposure of the pilot
   std::optional<double> falseColour_; // the scale of the pilot
   picture::FrameSize frame_;

@@ -94,6 +94,13 @@ void Pilot::step(double seconds) {
 
 // --- The pointer ---
 
+bool Pilot::pick(double x, double y, xvrml::PickHit& hit) const {
+  const xvrml::CameraRay ray = xvrml::rayThrough(camera(), aspect_, x, y);
+  if (!browser_.pick(ray.origin, ray.direction, {}, hit)) return false;
+  hit.distance *= std::hypot(ray.direction[0], ray.direction[1], ray.direction[2]);
+  return true;
+}
+
 // EXAMINE: the world follows the pointer. The other navigation types use the distance since the
 // press, in move().
 void Pilot::drag(const Pointer::Way& way) {

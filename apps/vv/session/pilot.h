@@ -76,6 +76,9 @@ class Pilot {
 
   xvrml::CameraSettings camera() const { return camera(aspect_); }
   xvrml::CameraSettings camera(double aspect) const; // the same for a picture of another shape
+  // Finds what is seen at a place of the picture. hit.distance: in metres. Returns false if nothing
+  // is there. Camera shaders have rays of their own, which this does not follow.
+  bool pick(double x, double y, xvrml::PickHit& hit) const;
   bool paused() const { return time_.isPaused(); }
   // the user's choice; none: not switched
   std::optional<bool> headlight() const { return headlight_; }

@@ -89,13 +89,9 @@ class Session {
   Pilot& pilot() { return own_.pilot; }
   PictureLoop& pictures() { return own_.pictures; }
   const PictureLoop& pictures() const { return own_.pictures; }
+  WorldEditor& editor() { return editor_; }
 
   // --- [while the world can be used] ---
-  // Returns the editor of the world's file. It costs nothing before its first use.
-  WorldEditor& editor() {
-    if (!editor_) editor_.emplace(*browser_);
-    return *editor_;
-  }
   // Adds a guest who stands where viewer 0 stands. number: one that no other viewer has, not 0.
   void addGuest(uint32_t number, int width, int height);
   // Frees the pictures of all viewers, because nobody looks. Returns false if that cannot be now.
@@ -147,7 +143,7 @@ class Session {
   Problems& problems_;
   Callbacks callbacks_;
   std::unique_ptr<xvrml::Browser> browser_;
-  std::optional<WorldEditor> editor_; // none: nothing has been edited
+  WorldEditor editor_{*browser_};
   SharedRenderer shared_;
   SessionViewers viewers_;
   SessionViewer& own_ = viewers_.own();

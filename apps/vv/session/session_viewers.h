@@ -29,6 +29,8 @@ struct SessionViewer {
   void resize(int width, int height);
   // Tells whether the last frame does not show the world as it is now.
   bool isOutdated() const { return pictures.isOutdated(pilot, fit); }
+  // Returns whether the viewer stands where the first picture, or one of the whole world, shows it.
+  bool isPlaced() const { return !fit.isPending(); }
   PictureLoop::Urgency urgency() const { return pictures.urgency(pilot, fit); }
   // Tells whether nothing moves or is to be drawn for this viewer.
   bool isQuiet() const {

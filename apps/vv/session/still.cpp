@@ -23,6 +23,7 @@ void StillTaker::start(const std::function<picture::View(double aspect)>& viewOf
   static_cast<void>(renderer_.takeFailure());
   renderer_.change([this](picture::RenderSettings& settings) {
     usualChannels_ = std::exchange(settings.channels, still_.channels);
+    settings.crop = still_.crop;
   });
   picture::LiveFrame frame;
   frame.view = viewOf(double(still_.width) / still_.height);
@@ -47,8 +48,10 @@ void StillTaker::look() {
   else if (answer_.failure.empty() &&
            (!renderer_.copy(answer_.picture, &copied) || copied != number_))
     answer_.failure = "there is no picture";
-  renderer_.change(
-      [this](picture::RenderSettings& settings) { settings.channels = usualChannels_; });
+  renderer_.change([this](picture::RenderSettings& settings) {
+    settings.channels = usualChannels_;
+    settings.crop = {}; // frames that are shown are whole
+  });
   state_ = State::finished;
 }
 

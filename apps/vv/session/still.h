@@ -16,6 +16,7 @@ struct Still {
   int width = 0, height = 0;
   int samples = 1;
   uint32_t channels = RT_RGBA;
+  picture::Crop crop; // the part that is made; see RenderSettings
 };
 
 struct StillAnswer {

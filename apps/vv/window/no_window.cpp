@@ -9,5 +9,6 @@ int runWindow(const Options&, const std::vector<std::string>&) {
 }
 
 std::string windowLibrary() { return ""; }
+std::string editorLibrary() { return ""; }
 
 } // namespace vv

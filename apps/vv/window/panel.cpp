@@ -10,9 +10,6 @@
 
 namespace vv {
 
-namespace {
-
-// Returns the file of a family's font; empty if there is none.
 std::string findFontFile(const char* family) {
   FcPattern* wanted = FcNameParse(reinterpret_cast<const FcChar8*>(family));
   if (!wanted) return {};
@@ -28,6 +25,8 @@ std::string findFontFile(const char* family) {
   FcPatternDestroy(wanted);
   return path;
 }
+
+namespace {
 
 // Decodes the next character; a byte that is not valid UTF-8 becomes U+FFFD.
 uint32_t nextCharacter(std::string_view& text) {

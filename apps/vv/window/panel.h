@@ -9,6 +9,9 @@
 
 namespace vv {
 
+// Returns the file of a family's font; empty if there is none.
+std::string findFontFile(const char* family);
+
 struct Panel {
   int width = 0, height = 0;
   std::vector<uint8_t> rgba; // first row at the top, colours not premultiplied

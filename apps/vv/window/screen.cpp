@@ -13,6 +13,7 @@
 #include "options/values.h"
 #include "printable.h"
 #include "session/input/world_keys.h"
+#include "window/gui.h"
 #include "window/window.h"
 
 namespace vv {
@@ -73,11 +74,13 @@ struct Screen::Impl {
   SDL_Cursor *arrow = nullptr, *hand = nullptr;
   Texture picture;
   std::array<Texture, places> panels;
+  std::unique_ptr<Gui> gui;     // null: there are no widgets
   std::vector<uint32_t> pixels; // scratch storage for the picture
   bool changed = true, isHand = false, pressed = false;
   std::string typed; // what the last key types by its name
 
   ~Impl() {
+    gui.reset();
     picture.drop();
     for (Texture& panel : panels) panel.drop();
     if (arrow) SDL_FreeCursor(arrow);
@@ -117,6 +120,7 @@ struct Screen::Impl {
 
   void take(const SDL_Event& e, std::vector<InputEvent>& out) {
     using Kind = InputEvent::Kind;
+    if (gui && gui->take(e)) return;
     switch (e.type) {
     case SDL_QUIT: out.push_back(pointer(Kind::quit, 0, 0)); break;
     case SDL_WINDOWEVENT: windowEvent(e.window, out); break;
@@ -266,8 +270,18 @@ void Screen::setPanel(Place place, const Panel& panel) {
   SDL_UpdateTexture(texture.texture, nullptr, panel.rgba.data(), panel.width * 4);
 }
 
+void Screen::setGui(std::function<void()> panels) {
+  impl_->gui =
+      panels ? std::make_unique<Gui>(impl_->window, impl_->renderer, scale(), std::move(panels))
+             : nullptr;
+  impl_->changed = true;
+}
+
+void Screen::redraw() { impl_->changed = true; }
+
 void Screen::present() {
-  if (!std::exchange(impl_->changed, false)) return;
+  const bool guiChanged = impl_->gui && impl_->gui->hasChanged();
+  if (!std::exchange(impl_->changed, false) && !guiChanged) return;
   SDL_Renderer* const r = impl_->renderer;
   SDL_SetRenderDrawColor(r, 24, 24, 28, 255);
   SDL_RenderClear(r);
@@ -285,6 +299,7 @@ void Screen::present() {
     }
     SDL_RenderCopy(r, panel.texture, nullptr, &at);
   }
+  if (impl_->gui) impl_->gui->draw();
   SDL_RenderPresent(r);
 }
 

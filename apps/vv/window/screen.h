@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,7 +32,11 @@ class Screen {
   void setPicture(int width, int height, const std::vector<uint8_t>& rgb);
   enum Place : uint8_t { right, top, bottom, middle, places }; // each covers those before it
   void setPanel(Place place, const Panel& panel);
-  void present(); // redraws if anything has changed
+  // Shows panels of widgets over all of that, which get the events that are for them first; null:
+  // hides them. See Gui.
+  void setGui(std::function<void()> panels);
+  void redraw();  // lets present() draw, because the widgets show something else
+  void present(); // draws if anything has changed
   void setHand(bool hand);
   void setTitle(const std::string& title);
   void toggleFullScreen();

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <set>
 #include <utility>
@@ -27,6 +28,7 @@
 #include "session/world_loader.h"
 #include "session/world_watch.h"
 #include "start/world_start.h"
+#include "window/editing.h"
 #include "window/screen.h"
 #include "window/sound/speaker.h"
 #include "xvrml/node_plugin.h"
@@ -99,6 +101,8 @@ class Window {
   std::string endRecording();
   void recordingFailed(int reason);
   void reload();
+  // Goes on at once, or when the user has decided what becomes of edits that are not saved.
+  void leaveWorld(std::function<void()> go);
 
   // --- Keys ---
   void onAction(const InputEvent& event, Action action);
@@ -108,6 +112,7 @@ class Window {
   void switchMotion();
   void command();
   void showHelp(bool shown);
+  void edit();
 
   // --- Reports ---
   void message(const std::string& text, double time);
@@ -131,6 +136,8 @@ class Window {
   std::unique_ptr<Session> session_;          // null: no world has been loaded yet
   std::unique_ptr<control::Control> control_; // null: no program controls the world
   WorldWatch watch_{options_};
+  Editing editing_{screen_};
+  uint64_t saves_ = 0; // times that the file of the world has been saved
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;
   const Clock::time_point start_ = Clock::now();
@@ -151,6 +158,7 @@ class Window {
 };
 
 int Window::run() {
+  if (options_.has(Job::edit)) edit();
   if (!options_.input.empty()) open({{options_.input}, "", {}}, false);
   double next = 0;
   while (!ended_ && !interrupted()) {
@@ -189,9 +197,11 @@ bool Window::isTime(double time, double next, double period) const {
 
 void Window::passOn() {
   for (InputEvent& event : std::exchange(events_, {})) {
-    if (event.kind == InputEvent::Kind::quit) ended_ = true;
-    if (event.kind == InputEvent::Kind::open) open({{event.text}, "", {}}, false);
+    if (event.kind == InputEvent::Kind::quit) leaveWorld([this] { ended_ = true; });
+    if (event.kind == InputEvent::Kind::open)
+      leaveWorld([this, file = event.text] { open({{file}, "", {}}, false); });
     if (event.kind == InputEvent::Kind::quit || event.kind == InputEvent::Kind::open) continue;
+    if (editing_.take(event)) continue;
     if (session_)
       input_.push_back(std::move(event));
     else if (event.kind == InputEvent::Kind::down)
@@ -232,9 +242,12 @@ void Window::advanceSession() {
   try {
     session_->advance(seconds());
   } catch (const std::exception& error) { say(fmt::format("vv: error: {}", error.what())); }
+  if (session_->isFree()) editing_.update(*session_, seconds());
   if (session_->resting()) {
     screen_.setHand(session_->pilot().overSensor());
     sound();
+    if (std::exchange(saves_, session_->editor().saves()) != saves_)
+      watch_.follow(session_->browser().world());
     if (watch_.changed(seconds())) reload();
   }
 }
@@ -289,6 +302,8 @@ void Window::begin(std::unique_ptr<xvrml::World> world, const std::string& fragm
   const std::string saved = session_ ? session_->saver().end() : "";
   const std::string recorded = session_ ? endRecording() : "";
   if (control_) control_->detach();
+  editing_.reset();
+  saves_ = 0;
   session_ = std::move(fresh); // ends the previous session
   failed_ = exitDone;
   first_ = true;
@@ -329,7 +344,12 @@ void Window::reload() {
   if (!session_) return;
   const std::string path = session_->browser().world().path;
   if (path == "-") return message("standard input cannot be read again", 3);
-  open({{path}, "", {}}, true);
+  leaveWorld([this, path] { open({{path}, "", {}}, true); });
+}
+
+void Window::leaveWorld(std::function<void()> go) {
+  if (session_ && session_->editor().isChanged()) return editing_.askToSave(std::move(go));
+  go();
 }
 
 void Window::onAction(const InputEvent& event, Action action) {
@@ -343,13 +363,14 @@ void Window::onAction(const InputEvent& event, Action action) {
     level_ = OverlayLevel((int(level_) + 1) % 3);
     shownAt_ = -1;
     break;
+  case Action::edit: edit(); break;
   case Action::help: showHelp(!help_); break;
   case Action::fullScreen: screen_.toggleFullScreen(); break;
   case Action::quit:
     if (help_ && event.text == "Escape")
       showHelp(false);
     else if (event.text != "Escape" || !session_ || !session_->saver().giveUp())
-      ended_ = true;
+      leaveWorld([this] { ended_ = true; });
     break;
   default: break;
   }
@@ -385,6 +406,13 @@ void Window::showHelp(bool shown) {
                    shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
 }
 
+// A recording would not have the edits, and its replay would show another world.
+void Window::edit() {
+  if (record_.is_open() || options_.script)
+    return message("no editor here: recordings and scripts of input have no edits", 4);
+  editing_.open(!editing_.isOpen());
+}
+
 void Window::message(const std::string& text, double time) {
   message_ = text;
   messageEnds_ = seconds() + time;
@@ -417,6 +445,7 @@ void Window::tell() {
   reportClusterMessages();
   if (session_ && session_->resting())
     if (const std::string text = session_->takeMessage(); !text.empty()) message(text, 3);
+  if (const std::string text = editing_.takeMessage(); !text.empty()) message(text, 6);
   const std::string bottom = bottomLine();
   if (bottom != bottom_ || shownAt_ < 0) {
     bottom_ = bottom;

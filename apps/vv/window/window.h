@@ -16,4 +16,7 @@ int runWindow(const Options& options, const std::vector<std::string>& arguments)
 // Returns the library that opens the window, with its version; "": vv was built without windows.
 std::string windowLibrary();
 
+// Returns the library that draws the editor, with its version; "": vv was built without it.
+std::string editorLibrary();
+
 } // namespace vv

@@ -11,6 +11,8 @@ Nodes are DEF names of the world, or numbers that vv has given out. Values have 
 numbers, texts, lists; tuples and numpy arrays are accepted, too. docs/control.md describes the
 protocol. The module needs only Python's own library (and pyzmq to connect with a key), and its file
 works without the rest of the package. A connection belongs to one thread.
+
+Longer than 500 lines because programs may copy the file as it is.
 """
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ from typing import Any, Callable, Deque, Dict, Iterable, List, NamedTuple, Optio
 Node = Union[str, int]
 Callback = Callable[[Any, float], Any]
 
-__all__ = ["Control", "ControlError", "Created", "connect", "launch"]
+__all__ = ["Control", "ControlError", "Created", "EditStep", "Made", "connect", "launch"]
 
 
 class ControlError(Exception):
@@ -47,6 +49,116 @@ class Created(NamedTuple):
     nodes: List[int]
     names: Dict[str, int]
     problems: List[str]
+
+
+class Made(Dict[str, int]):
+    """The node that an edit of a step makes. Within the step, later edits may name it; `number` is
+    its number once the step is done."""
+    number: int = 0
+
+
+#: A node, also one that the same step makes; and a place of a node: parent, and perhaps field and
+#: index, as Control.parents returns them.
+EditedNode = Union[Node, Made]
+Place = Dict[str, Any]
+
+
+class EditStep:
+    """Collects the edits of one step (Control.edit). vv does them when the `with` block ends: all
+    or, if one is refused, none. An exception within the block does none."""
+
+    def __init__(self, control: Control, name: str) -> None:
+        self.name = name
+        self._control = control
+        self._edits: List[Dict[str, Any]] = []
+        self._made: Dict[int, Made] = {}
+
+    def __enter__(self) -> EditStep:
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        if kind is not None or not self._edits:
+            return
+        nodes = self._control.call("edit", name=self.name, edits=self._edits)["nodes"]
+        for index, made in self._made.items():
+            made.number = nodes[index]
+
+    def _add(self, edit: str, **members: Any) -> None:
+        self._edits.append({"edit": edit, **members})
+
+    def _add_node(self, edit: str, **members: Any) -> Made:
+        made = self._made[len(self._edits)] = Made(edit=len(self._edits))
+        self._add(edit, **members)
+        return made
+
+    def set(self, node: EditedNode, field: str, value: Any) -> None:
+        """Sets a field that holds no nodes."""
+        self._add("set", node=node, field=field, value=value)
+
+    def insert(self,
+               vrml: str,
+               parent: Optional[EditedNode] = None,
+               field: str = "children",
+               index: Optional[int] = None) -> Made:
+        """Inserts one node that is given as text. parent: None for the top of the file. index:
+        None for the end."""
+        return self._add_node("insert", vrml=vrml, **_target(parent, field, index))
+
+    def use(self,
+            node: EditedNode,
+            parent: Optional[EditedNode] = None,
+            field: str = "children",
+            index: Optional[int] = None) -> None:
+        """Lets a node stand at a further place (USE)."""
+        self._add("use", node=node, **_target(parent, field, index))
+
+    def remove(self, node: EditedNode, at: Optional[Place] = None) -> None:
+        """Removes a node. at: which of several places."""
+        self._add("remove", node=node, **_at(at))
+
+    def move(self,
+             node: EditedNode,
+             parent: Optional[EditedNode] = None,
+             field: str = "children",
+             index: Optional[int] = None,
+             at: Optional[Place] = None) -> None:
+        """Moves a node. The index is counted without it. at: which of several places."""
+        self._add("move", node=node, **_target(parent, field, index), **_at(at))
+
+    def duplicate(self, node: EditedNode, at: Optional[Place] = None) -> Made:
+        """Inserts a copy of a node behind it."""
+        return self._add_node("duplicate", node=node, **_at(at))
+
+    def wrap(self,
+             node: EditedNode,
+             type: str = "Transform",
+             at: Optional[Place] = None) -> Made:
+        """Puts a grouping node around a node."""
+        return self._add_node("wrap", node=node, type=type, **_at(at))
+
+    def rename(self, node: EditedNode, name: str) -> None:
+        """Gives a node a DEF name, or another one."""
+        self._add("rename", node=node, name=name)
+
+    def route(self, source: EditedNode, output: str, target: EditedNode, input: str) -> None:
+        """Adds a ROUTE to the file."""
+        self._add("route", **{"from": (source, output), "to": (target, input)})
+
+    def unroute(self, source: EditedNode, output: str, target: EditedNode, input: str) -> None:
+        """Removes a ROUTE of the file."""
+        self._add("unroute", **{"from": (source, output), "to": (target, input)})
+
+
+def _target(parent: Optional[EditedNode], field: str, index: Optional[int]) -> Dict[str, Any]:
+    place: Dict[str, Any] = {"parent": parent, "field": field}
+    if index is not None:
+        place["index"] = index
+    return place
+
+
+def _at(at: Optional[Place]) -> Dict[str, Any]:
+    return {} if at is None else {"at": at}
 
 
 class _Stream:
@@ -366,11 +478,87 @@ class Control:
         result: Dict[str, str] = self.call("names")
         return result
 
+    # --- The file ---
+
+    def edit(self, name: str) -> EditStep:
+        """Edits the world's file in one step, which can be undone:
+
+        >>> with vv.edit("Dim the lamp") as step:
+        ...     step.set("LAMP", "intensity", 0.5)
+        """
+        return EditStep(self, name)
+
+    def undo(self) -> Optional[str]:
+        """Undoes the last step. Returns its name, None if there is none."""
+        name: Optional[str] = self.call("undo")
+        return name
+
+    def redo(self) -> Optional[str]:
+        """Does the step again that was undone last. Returns its name, None if there is none."""
+        name: Optional[str] = self.call("redo")
+        return name
+
+    def save(self,
+             path: Union[str, os.PathLike[str], None] = None,
+             *,
+             overwrite: bool = False) -> None:
+        """Writes the edited file; with a path, another one. overwrite: also if another program has
+        written to the file since it was read."""
+        given = {} if path is None else {"path": os.fspath(path)}
+        self.call("save", overwrite=overwrite, **given)
+
+    def edits(self, *, text: bool = False) -> Dict[str, Any]:
+        """Returns the state of the file: read_only (why, or None), changed, changed_on_disk, the
+        names of the steps to undo and redo; with text=True also the edited text."""
+        result: Dict[str, Any] = self.call("edits", text=text)
+        return result
+
+    def roots(self) -> List[Dict[str, Any]]:
+        """Returns the outermost nodes: node, type, name."""
+        result: List[Dict[str, Any]] = self.call("roots")
+        return result
+
+    def parents(self, node: Node) -> List[Place]:
+        """Returns the places where a node stands: parent, field, index. At the top of the file
+        parent and field are None."""
+        result: List[Place] = self.call("parents", node=node)
+        return result
+
+    def select(self, *nodes: Node) -> None:
+        """Selects these nodes, for the window and all clients."""
+        self.call("select", nodes=nodes)
+
+    def selection(self) -> List[Dict[str, Any]]:
+        """Returns the selected nodes: node, type, name."""
+        result: List[Dict[str, Any]] = self.call("selection")
+        return result
+
     # --- The viewer, the world, pictures ---
+
+    def pick(self, x: float, y: float) -> Optional[Dict[str, Any]]:
+        """Returns what is seen at a place of the picture, which is (-1, -1) at the left and bottom
+        and (1, 1) at the right and top: point, normal, distance, path, geometry, appearance,
+        shader. None if nothing is there."""
+        hit: Optional[Dict[str, Any]] = self._call("pick", {"x": x, "y": y}, None)
+        return hit
 
     def viewpoints(self) -> List[Dict[str, Any]]:
         """Returns the viewpoints: node, name, description, bound."""
         result: List[Dict[str, Any]] = self.call("viewpoints")
+        return result
+
+    def probe(self,
+              x: float,
+              y: float,
+              *,
+              samples: Optional[int] = None,
+              timeout: Optional[float] = None) -> Dict[str, Any]:
+        """Measures the light of a pixel of the true picture. Returns its luminance in cd/m2,
+        half_width of the 95 % interval, radiance and radiance_half_width of the three colours,
+        samples, trusted: whether the intervals can be trusted, which takes 32 samples or more, and
+        hit: what pick returns. samples: of the pixel; None: as many as the window takes."""
+        given = {} if samples is None else {"samples": samples}
+        result: Dict[str, Any] = self._call("probe", {"x": x, "y": y, **given}, timeout)
         return result
 
     def bind(self, viewpoint: Union[str, int]) -> None:

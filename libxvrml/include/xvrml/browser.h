@@ -159,6 +159,8 @@ class Browser {
   // Finds the nearest thing along a ray. Returns false if the ray hits nothing.
   bool pick(const double origin[3], const double direction[3], const PickOptions& options,
             PickHit& hit);
+  // Finds the first place of a node in the scene. Returns false if it has none.
+  bool locate(Node& node, NodePlacement& placement);
   // Places the pointer at (x, y) of the picture, from -1 at the left and bottom to 1 at the right
   // and top. button: it is pressed. Pointing sensors send at now().
   void pointer(double x, double y, bool button);

@@ -1,4 +1,4 @@
-// camera.h: the camera, bounds and bound nodes of a world.
+// camera.h: the camera, bounds and bound nodes of a world. [any thread]
 #pragma once
 
 namespace xvrml {
@@ -15,6 +15,17 @@ struct CameraSettings {
   // settings.
   Node* shader = nullptr;
 };
+
+// The ray through a place of the picture, from -1 at its left and bottom to 1 at its right and top.
+struct CameraRay {
+  double origin[3], direction[3]; // in the world; the direction is not normalised
+};
+// aspect: width / height of the picture. A camera with a shader is taken as the built-in one.
+CameraRay rayThrough(const CameraSettings& camera, double aspect, double x, double y);
+// Finds the place of the picture where a point of the world appears. Returns false if the point is
+// not in front of the camera.
+bool projectPoint(const CameraSettings& camera, double aspect, const double point[3], double& x,
+                  double& y);
 
 struct Bounds {
   double minimum[3], maximum[3];

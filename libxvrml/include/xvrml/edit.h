@@ -49,7 +49,7 @@ class Editor {
 
   // --- Steps ---
   // Edits from begin() to end() are one step, which is undone as a whole; other edits are a step
-  // each. Further values of a field within a step take the place of earlier ones. begin() and end()
+  // each. Values of a field that follow each other within a step are one edit. begin() and end()
   // may nest; the outermost name counts. cancel() undoes and ends what the innermost
   // begin() has begun.
   void begin(std::string name);
@@ -62,6 +62,9 @@ class Editor {
   // Return the names of these steps; empty if there is none.
   std::string undoName() const;
   std::string redoName() const;
+
+  // Grows with each edit, undo and redo, so that who shows the world knows when to look again.
+  uint64_t changes() const;
 
   // Returns the places where a node stands in the world now: once where it is defined, and once for
   // each USE. Places in Inlines and in the bodies of prototypes are left out.

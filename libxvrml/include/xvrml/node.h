@@ -76,8 +76,8 @@ struct FieldInfo {
   bool holdsUrls : 1 = false;
   // X3D adds the field to a node of VRML97. It works in files of VRML97, too, with a warning.
   bool ofX3d : 1 = false;
-  // Static nodes: bytes from the start of the Node. Dynamic nodes: index of the value. Events:
-  // unused.
+  // Static nodes: bytes from the start of the Node. Dynamic nodes and declared fields: index of the
+  // value. Events: unused.
   uint32_t offset;
   Value defaultValue; // for fields and exposedFields
   FieldRange range;   // range of each number; finite ends are rounded to float for float fields
@@ -89,6 +89,9 @@ struct FieldInfo {
   int sets = -1;
   // The SFNode that X3D gives to every node. It has no effect on its node (ISO/IEC 19775-1 7.3.3).
   bool isMetadata = false;
+  // The node declares the field itself, beside those of its built-in type (`declaring` in the .node
+  // files: Scripts and shaders).
+  bool declared = false;
 };
 // Returns whether nodes store a value of the field: a field or an exposedField, not an event.
 inline bool holdsValue(const FieldInfo& field) {
@@ -109,6 +112,7 @@ struct NodeType {
   std::string component; // .node file that describes it: grouping, geometry, lighting ...
   std::string text;
   std::vector<FieldInfo> fields;
+  // Null for types that a world declares, and for a node's own type.
   Node* (*create)(const NodeType& type);
   std::string clause; // clause of the standard, "6.6"; empty: not a standard node
   // Returns the nodes that a plug-in's node stands for (xvrml/node_plugin.h). Null: the node itself
@@ -169,6 +173,7 @@ class Node {
 
  private:
   friend class NodeRef;
+  friend class DeclaringNode;
   // Not recursive, so that a deep graph cannot overflow the stack.
   static void destroy(Node* node) noexcept;
   const NodeType* type_;
@@ -203,6 +208,29 @@ class DynamicNode : public Node {
   void* storage(const FieldInfo& field) override;
   std::vector<Value> values; // indexed by FieldInfo::offset
   const NodeTypePtr typePtr;
+};
+
+// A built-in node that can declare fields of its own: the base of the generated structs of type
+// `declaring`. Its type is the built-in one until it declares the first field.
+class DeclaringNode : public Node {
+ public:
+  using Node::Node;
+  using Node::storage;
+  void* storage(const FieldInfo& field) override;
+  // Gives the node a type of its own: a copy of its built-in type with declared fields. Each of
+  // these has its default. Called once.
+  void setOwnType(NodeTypePtr type);
+  const NodeTypePtr& ownType() const { return ownType_; } // null: the type is the built-in one
+  // Returns where the node declares the field.
+  const SourcePosition& placeOf(const FieldInfo& field) const {
+    return field.offset < places.size() ? places[field.offset] : source;
+  }
+  // Values and places of the declared fields, indexed by FieldInfo::offset.
+  std::vector<Value> values;
+  std::vector<SourcePosition> places;
+
+ private:
+  NodeTypePtr ownType_;
 };
 
 // Returns the built-in types in the order of their typeIndex, then those of plug-ins as they were

@@ -1,4 +1,5 @@
-// value_text.h: converts VRML97 text to field values, for programs that take values from a user.
+// value_text.h: converts VRML97 text to field values, for programs that take values from a user,
+// and describes ranges.
 // [any thread]
 #pragma once
 
@@ -7,7 +8,7 @@
 #include <string_view>
 
 #include "xvrml/limits.h"
-#include "xvrml/types.h"
+#include "xvrml/node.h"
 
 namespace xvrml {
 
@@ -16,5 +17,8 @@ namespace xvrml {
 // then says what was found and what was expected.
 std::optional<Value> parseValue(FieldType type, std::string_view text, std::string& problem,
                                 const Limits& limits = {});
+
+// Returns the range of a field as the standard prints it: "[0,1]", "(0,inf) or -1", "(0,pi/2]".
+std::string describe(const FieldRange& range);
 
 } // namespace xvrml

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "xvrml/camera.h"
 #include "xvrml/node.h"
 
 namespace xvrml {
@@ -51,6 +52,15 @@ struct PickHit {
   };
   // Nodes from a root of the world to the Shape, prototype instances and Inlines included.
   std::vector<Step> path;
+};
+
+// Where a node stands in the scene.
+struct NodePlacement {
+  // Nodes from a root of the world to the node, prototype instances and Inlines included.
+  std::vector<PickHit::Step> path;
+  // Bounds of what is drawn of the node, in the coordinate system of its parent. Empty for nodes
+  // that draw nothing by themselves.
+  Bounds bounds{};
 };
 
 struct ViewpointName {

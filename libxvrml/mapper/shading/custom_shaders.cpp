@@ -18,6 +18,20 @@ const char* roleName(RTenum role) {
   }
 }
 
+// Returns how messages name an option or field, and the place that they tell.
+std::string wordFor(const ShaderOption& option) {
+  return (option.field ? "field " : "option ") + option.name;
+}
+const SourcePosition& placeOf(const Node& node, const FieldInfo* field) {
+  return field ? static_cast<const nodes::ORTShader&>(node).placeOf(*field) : node.source;
+}
+
+MFString urlsOf(const ShaderOption& option) {
+  MFString urls{option.text};
+  urls.insert(urls.end(), option.otherUrls.begin(), option.otherUrls.end());
+  return urls;
+}
+
 // Reads a whole regular text file into `text`. Returns the error, or "".
 std::string readText(const std::string& path, uint64_t limit, std::string& text) {
   try {
@@ -38,11 +52,29 @@ bool CustomShaders::take(ShaderEntry& made, uint64_t bytes) {
   return true;
 }
 
+// Reports each problem of a node's fields once.
+void CustomShaders::say(const Node& node, const std::vector<FieldProblem>& problems) {
+  const std::string& name = static_cast<const nodes::ORTShader&>(node).name;
+  for (const FieldProblem& one : problems) {
+    const std::string text = "ORTShader " + name + ", field " + one.field->name + ": " + one.text;
+    if (!said_.emplace(&node, text).second) continue;
+    const SourcePosition& place = placeOf(node, one.field);
+    if (one.isError)
+      world_.diagnostics.error(place, text);
+    else
+      world_.diagnostics.warn(place, text);
+  }
+}
+
 std::vector<ShaderOption> CustomShaders::optionsOf(ShaderEntry& made,
+                                                   const ShaderClass& shaderClass,
                                                    std::vector<std::string>& errors) {
   quota_.give(std::exchange(made.bytes, 0));
-  std::vector<ShaderOption> options =
-      parseShaderOptions(static_cast<const nodes::ORTShader&>(*made.node).options, errors);
+  const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
+  std::vector<ShaderOption> options = parseShaderOptions(node.options, errors);
+  std::vector<FieldProblem> problems;
+  addDeclaredFields(node, shaderClass, options, problems);
+  say(node, problems);
   uint64_t bytes = 0;
   for (const ShaderOption& option : options)
     bytes += bytesOfOption + option.name.size() +
@@ -60,8 +92,11 @@ void CustomShaders::setOption(const ShaderOption& option, ShaderEntry& made, RTe
   case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
   case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
   // The picture is clamped in t: the zenith of an environment map must not blend with its nadir.
-  case ShaderOption::Type::texture: {
-    const RTid texture = textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT);
+  case ShaderOption::Type::texture:
+  case ShaderOption::Type::node: {
+    const RTid texture = option.picture
+                             ? textures_.ofNode(renderedNode(option.picture.get()))
+                             : textures_.ofUrls(urlsOf(option), node, true, role != RT_ENVIRONMENT);
     return rtParameterTexture(handle,
                               texture == 0 && role == RT_ENVIRONMENT ? textures_.black() : texture);
   }
@@ -69,13 +104,18 @@ void CustomShaders::setOption(const ShaderOption& option, ShaderEntry& made, RTe
   case ShaderOption::Type::file: {
     constexpr uint64_t longest = 1 << 24; // bytes of text that a parameter may hold
     const std::string& base = node.source.file ? *node.source.file : world_.path;
-    const ResolvedUrl resolved = resolveUrl(option.text, base, world_.options);
-    std::string text, why = resolved.error;
-    if (why.empty())
-      why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
+    std::string text, why;
+    for (const std::string& url : urlsOf(option)) {
+      const ResolvedUrl resolved = resolveUrl(url, base, world_.options);
+      why = resolved.error;
+      if (why.empty())
+        why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
+      if (why.empty()) break;
+    }
     made.unreadable |= !why.empty();
     if (!why.empty())
-      return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
+      return world_.diagnostics.error(placeOf(node, option.field),
+                                      "ORTShader: " + wordFor(option) + ": " + why);
     if (take(made, copiesOfOption * text.size())) rtParameterString(handle, text.c_str());
     return;
   }
@@ -121,7 +161,7 @@ void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
     return;
   }
   std::vector<std::string> errors;
-  const std::vector<ShaderOption> options = optionsOf(made, errors);
+  const std::vector<ShaderOption> options = optionsOf(made, shaderClass, errors);
   if (reported_.insert(&node).second)
     for (const std::string& error : errors)
       world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
@@ -132,7 +172,8 @@ void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
   for (const ShaderOption& option : options) {
     made.options.push_back(option.name);
     setOption(option, made, role);
-    report(world_.diagnostics, node.source, "ORTShader " + node.name + ", option " + option.name);
+    report(world_.diagnostics, placeOf(node, option.field),
+           "ORTShader " + node.name + ", " + wordFor(option));
   }
   // A light without its profile is dark. Leave it out, so that it does not complain as well.
   if (made.unreadable && role == RT_LIGHT) {
@@ -146,7 +187,8 @@ void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
 void CustomShaders::refresh(ShaderEntry& made, RTenum role, const Preset& preset) {
   const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
   std::vector<std::string> errors, names;
-  const std::vector<ShaderOption> options = optionsOf(made, errors);
+  const std::vector<ShaderOption> options =
+      optionsOf(made, classes_.find(node.name, node.file), errors);
   for (const ShaderOption& option : options) names.push_back(option.name);
   if (made.shader != 0 && made.name == node.name && made.file == node.file &&
       names == made.options && errors.empty() && change(made, options, role, preset))
@@ -201,6 +243,7 @@ void CustomShaders::clear() {
   for (const auto& [key, made] : entries_)
     if (made.shader != 0) rtDeleteShader(made.shader);
   entries_.clear();
+  said_.clear();
   quota_.clear();
 }
 

@@ -11,7 +11,7 @@
 
 #include "mapper/ration.h"
 #include "mapper/rt.h"
-#include "mapper/shading/shader_options.h"
+#include "mapper/shading/shader_fields.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
@@ -46,8 +46,9 @@ class CustomShaders {
     NodeRef node;
     RTid shader = 0;
     std::string name, file;
-    std::vector<std::string> options; // names of the parameters that have been set from options
-    uint64_t bytes = 0;               // taken from the world's budget for the options
+    // Names of the parameters that have been set from options and declared fields.
+    std::vector<std::string> options;
+    uint64_t bytes = 0; // taken from the world's budget for the options
     bool stale = false;
     bool unreadable = false; // the file of an option could not be read
   };
@@ -55,9 +56,12 @@ class CustomShaders {
   void refresh(ShaderEntry& made, RTenum role, const Preset& preset);
   bool change(ShaderEntry& made, const std::vector<ShaderOption>& options, RTenum role,
               const Preset& preset);
-  // Returns the node's current options and charges them to this shader. Returns none, after a
-  // message, if the world's budget does not allow them.
-  std::vector<ShaderOption> optionsOf(ShaderEntry& made, std::vector<std::string>& errors);
+  // Returns the node's current options and declared fields, and charges them to this shader.
+  // Returns none, after a message, if the world's budget does not allow them. `errors` gets those
+  // of options.
+  std::vector<ShaderOption> optionsOf(ShaderEntry& made, const ShaderClass& shaderClass,
+                                      std::vector<std::string>& errors);
+  void say(const Node& node, const std::vector<FieldProblem>& problems);
   bool take(ShaderEntry& made, uint64_t bytes);
   void setOption(const ShaderOption& option, ShaderEntry& made, RTenum role);
 
@@ -68,6 +72,9 @@ class CustomShaders {
   Quota quota_;
   std::vector<RTid> replaced_;
   std::set<const Node*> reported_; // nodes whose option errors have been reported
+  // Problems of the fields of nodes that have been reported. A route may change the values in every
+  // picture.
+  std::set<std::pair<const Node*, std::string>> said_;
   uint64_t sets_ = 0;
 };
 

@@ -1,12 +1,12 @@
-// shader_options.h: parses the options of an ORTShader node: "3f reflectance .9 .9 .9", one or
-// several in a string. Pure, any thread.
+// shader_options.h: the parameters that an ORTShader node sets, in its options ("3f reflectance .9
+// .9 .9", one or several in a string) or in fields that it declares. Pure, any thread.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "xvrml/types.h"
+#include "xvrml/node.h"
 
 namespace xvrml::mapper {
 
@@ -19,12 +19,16 @@ struct ShaderOption {
     text,
     texture,
     list,
-    file
+    file,
+    node
   } type = Type::floats;
   std::string name;
   std::vector<float> numbers; // for 1f 2f 3f 4f 16f color floats; 1i and bool use `integer`
   int integer = 0;
-  std::string text; // for string, texture, file
+  std::string text;   // for string, texture, file
+  MFString otherUrls; // for texture, file: tried in turn where `text` does not lead to one
+  NodeRef picture;    // for node: a texture
+  const FieldInfo* field = nullptr; // not null: the node declares it
 };
 
 // More than any shader has parameters. An option takes twenty times the memory of its text.

@@ -31,6 +31,7 @@ struct InputEvent {
   double amount = 0;
   std::string text; // name of a key: "PageUp", "Left", "A", "["
   bool shift = false, control = false, alt = false;
+  bool forView = false; // the button moves the viewer, although it is pressed over a sensor
 };
 
 } // namespace vv

@@ -31,6 +31,7 @@ constexpr KeyInfo keys[] = {
     {Action::command, "C", "print the vv command that makes a picture of this view"},
     {Action::reload, "R", "reload the world and keep the view"},
     {Action::overlay, "I", "information about the picture: none, brief, all"},
+    {Action::edit, "E", "editor: open or close its panels"},
     {Action::help, "F1 ?", "this text"},
     {Action::fullScreen, "F11", "full screen"},
     {Action::quit, "Q Escape", "quit"},

@@ -35,6 +35,7 @@ enum class Action : uint8_t {
   command,
   reload,
   overlay,
+  edit,
   help,
   fullScreen,
   quit

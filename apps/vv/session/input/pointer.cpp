@@ -1,7 +1,5 @@
 #include "session/input/pointer.h"
 
-#include <cmath>
-
 namespace vv {
 
 std::shared_ptr<SharedPointer> makeSharedPointer() { return std::make_shared<SharedPointer>(); }
@@ -30,18 +28,9 @@ Pointer::Way Pointer::moveTo(double x, double y) {
 void Pointer::send() {
   if (shared_->holder != this) return;
   const Eye eye = eye_();
-  const xvrml::CameraSettings& c = eye.camera;
-  const double* m = c.matrix;
-  const double size = c.fovy > 0 ? std::tan(c.fovy / 2) : c.height / 2;
-  const double across = x_ * size * eye.aspect, along = y_ * size;
-  double origin[3], direction[3];
-  for (int i = 0; i < 3; ++i) {
-    const double aside = m[i] * across + m[4 + i] * along;
-    origin[i] = m[12 + i] + (c.fovy > 0 ? 0 : aside);
-    direction[i] = -m[8 + i] + (c.fovy > 0 ? aside : 0);
-  }
+  const xvrml::CameraRay ray = xvrml::rayThrough(eye.camera, eye.aspect, x_, y_);
   const uint64_t before = browser_.generation();
-  browser_.pointerRay(origin, direction, drag_ == Drag::sensor);
+  browser_.pointerRay(ray.origin, ray.direction, drag_ == Drag::sensor);
   if (browser_.generation() != before) drag_ = Drag::none;
   place_ = browser_.sensorsAtPointer().empty() ? Place::inside : Place::overSensor;
 }
@@ -50,7 +39,8 @@ void Pointer::press(const InputEvent& event) {
   if (drag_ != Drag::none) return;
   pressed_ = event;
   send();
-  drag_ = event.button == Button::left && isOverSensor() ? Drag::sensor : Drag::view;
+  drag_ =
+      event.button == Button::left && isOverSensor() && !event.forView ? Drag::sensor : Drag::view;
   if (drag_ == Drag::sensor) send();
 }
 

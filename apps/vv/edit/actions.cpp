@@ -1,0 +1,145 @@
+#include "edit/actions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include <Imath/ImathMatrixAlgo.h>
+#include <fmt/format.h>
+
+namespace vv {
+
+using namespace xvrml;
+
+namespace {
+
+constexpr NewNode table[] = {
+    {"Box", "Shape { appearance Appearance { material Material { } } geometry Box { } }",
+     "<Shape><Appearance><Material/></Appearance><Box/></Shape>"},
+    {"Sphere", "Shape { appearance Appearance { material Material { } } geometry Sphere { } }",
+     "<Shape><Appearance><Material/></Appearance><Sphere/></Shape>"},
+    {"Cylinder", "Shape { appearance Appearance { material Material { } } geometry Cylinder { } }",
+     "<Shape><Appearance><Material/></Appearance><Cylinder/></Shape>"},
+    {"Cone", "Shape { appearance Appearance { material Material { } } geometry Cone { } }",
+     "<Shape><Appearance><Material/></Appearance><Cone/></Shape>"},
+    {"Transform", "Transform { children [ ] }", "<Transform></Transform>"},
+    {"PointLight", "PointLight { }", "<PointLight/>"},
+    {"SpotLight", "SpotLight { }", "<SpotLight/>"},
+    {"DirectionalLight", "DirectionalLight { }", "<DirectionalLight/>"},
+};
+
+MFNode selectionOf(WorldEditor& editor) {
+  if (editor.selection().empty()) throw EditError("nothing is selected");
+  return editor.selection();
+}
+
+// Returns "Remove Box", or "Remove 3 nodes".
+std::string nameOf(const char* verb, const MFNode& nodes) {
+  return nodes.size() == 1 ? fmt::format("{} {}", verb, nodes.front()->type().name)
+                           : fmt::format("{} {} nodes", verb, nodes.size());
+}
+
+const FieldInfo* childrenOf(const Node& node) {
+  const FieldInfo* const field = node.type().find("children");
+  return field && field->type == FieldType::MFNode && holdsValue(*field) ? field : nullptr;
+}
+
+// Returns the place for a new node: at the end of the group that is selected, behind the selected
+// node, or at the end of the world.
+NodeSlot placeForNew(WorldEditor& editor) {
+  Node* const selected = editor.selected();
+  if (selected && childrenOf(*selected)) return editor.endOf(selected, "children");
+  if (selected)
+    for (NodeSlot place : editor.editor().placesOf(*selected))
+      if (!place.parent || place.field == "children") {
+        ++place.index;
+        return place;
+      }
+  return editor.endOf(nullptr, "");
+}
+
+void addText(WorldEditor& editor, const std::string& text) {
+  editor.select({editor.editor().insert(placeForNew(editor), text)});
+}
+
+bool isXml(WorldEditor& editor) {
+  return editor.browser().world().head.version.encoding == Encoding::x3dXml;
+}
+
+} // namespace
+
+void selectAt(WorldEditor& editor, const EditView& view, double x, double y, bool group, bool add) {
+  const CameraRay ray = rayThrough(view.camera, view.aspect, x, y);
+  PickHit hit;
+  MFNode selection = add ? editor.selection() : MFNode();
+  if (editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit)) {
+    // From the Shape upwards: what stands in the file, and is a group if one is wanted.
+    bool isShape = true;
+    for (auto step = hit.path.rbegin(); step != hit.path.rend(); ++step, isShape = false) {
+      if ((group && isShape) || editor.editor().placesOf(*step->node).empty()) continue;
+      const auto known = std::find(selection.begin(), selection.end(), step->node);
+      if (known != selection.end())
+        selection.erase(known);
+      else
+        selection.push_back(step->node);
+      break;
+    }
+  }
+  editor.select(std::move(selection));
+}
+
+void removeSelected(WorldEditor& editor) {
+  const MFNode nodes = selectionOf(editor);
+  editor.step(nameOf("Remove", nodes), [&] {
+    for (const NodeRef& node : nodes) editor.editor().remove(editor.placeOf(*node));
+  });
+  editor.select({});
+}
+
+void duplicateSelected(WorldEditor& editor) {
+  const MFNode nodes = selectionOf(editor);
+  MFNode copies;
+  editor.step(nameOf("Duplicate", nodes), [&] {
+    for (const NodeRef& node : nodes)
+      copies.push_back(editor.editor().duplicate(editor.placeOf(*node)));
+  });
+  editor.select(std::move(copies));
+}
+
+void wrapSelected(WorldEditor& editor) {
+  const MFNode nodes = selectionOf(editor);
+  MFNode groups;
+  editor.step(nameOf("Wrap", nodes), [&] {
+    for (const NodeRef& node : nodes) groups.push_back(editor.editor().wrap(editor.placeOf(*node)));
+  });
+  editor.select(std::move(groups));
+}
+
+std::span<const NewNode> newNodes() { return table; }
+
+void add(WorldEditor& editor, const NewNode& node) {
+  addText(editor, isXml(editor) ? node.xml : node.classic);
+}
+
+void addViewpoint(WorldEditor& editor, const EditView& view) {
+  const double* const m = view.camera.matrix;
+  Imath::M44d matrix;
+  std::copy(m, m + 16, &matrix.x[0][0]);
+  const Imath::Quatd turn = Imath::extractQuat(matrix);
+  const Imath::V3d axis = turn.angle() > 1e-9 ? turn.axis() : Imath::V3d(0, 0, 1);
+  const std::string position = fmt::format("{:.7g} {:.7g} {:.7g}", m[12], m[13], m[14]),
+                    orientation = fmt::format("{:.7g} {:.7g} {:.7g} {:.7g}", axis.x, axis.y, axis.z,
+                                              turn.angle());
+  if (view.camera.fovy == 0) throw EditError("a parallel view cannot be added as a Viewpoint");
+  const double angle = view.aspect >= 1
+                           ? view.camera.fovy
+                           : 2 * std::atan(std::tan(view.camera.fovy / 2) * view.aspect);
+  const char* const form =
+      isXml(editor)
+          ? "<Viewpoint description='view' position='{}' orientation='{}' fieldOfView='{:.7g}'/>"
+          : "Viewpoint {{ description \"view\" position {} orientation {} fieldOfView {:.7g} }}";
+  addText(editor, fmt::format(fmt::runtime(form), position, orientation, angle));
+}
+
+} // namespace vv

@@ -1,0 +1,34 @@
+// actions.h: The actions of a user on the nodes that are selected. Each action is one step. They
+// throw xvrml::EditError. [the browser's thread, while the world can be used]
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "edit/edit_model.h"
+
+namespace vv {
+
+// Selects the node at a place of the picture: the Shape there, or with `group` the nearest group
+// above it. Selects nothing if there is nothing. Nodes that are not in the world's file stand for
+// the node of the file that they belong to: an Inline, or an instance of a prototype.
+void selectAt(WorldEditor& editor, const EditView& view, double x, double y, bool group, bool add);
+
+void removeSelected(WorldEditor& editor);
+void duplicateSelected(WorldEditor& editor); // selects the copies
+void wrapSelected(WorldEditor& editor);      // puts a Transform around each, and selects it
+
+// A node that a user can add.
+struct NewNode {
+  const char* name;
+  const char* classic; // as text of VRML97 and of X3D ClassicVRML
+  const char* xml;     // as text of X3D in XML
+};
+std::span<const NewNode> newNodes();
+// Adds a node to the group that is selected, or else behind what is selected, or else at the end of
+// the world. Selects it.
+void add(WorldEditor& editor, const NewNode& node);
+// Adds a Viewpoint that looks as the viewer does.
+void addViewpoint(WorldEditor& editor, const EditView& view);
+
+} // namespace vv

@@ -1,0 +1,179 @@
+#include "edit/edit_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace vv {
+
+using namespace xvrml;
+
+namespace {
+
+constexpr double refreshInterval = 0.2; // seconds
+constexpr size_t mostFound = 1000;      // rows of a search
+
+// Returns the box of a node, or of the Shape or group that it belongs to, in the world.
+bool boxOf(Browser& browser, const NodeRef& node, std::array<std::array<double, 3>, 8>& corners) {
+  NodePlacement placement;
+  if (!browser.locate(*node, placement)) return false;
+  while (placement.bounds.empty && placement.path.size() > 1) {
+    const NodeRef above = placement.path[placement.path.size() - 2].node;
+    if (above->type().is("grouping")) return false; // the box would be that of its neighbours
+    if (!browser.locate(*above, placement)) return false;
+  }
+  if (placement.bounds.empty) return false;
+  const size_t depth = placement.path.size();
+  for (size_t i = 0; i < corners.size(); ++i) {
+    double own[3];
+    for (size_t k = 0; k < 3; ++k)
+      own[k] = i >> k & 1 ? placement.bounds.maximum[k] : placement.bounds.minimum[k];
+    std::copy(std::begin(own), std::end(own), corners[i].begin());
+    if (depth < 2) continue; // a root: its parent is the world
+    const std::array<double, 16>& m = placement.path[depth - 2].toWorld;
+    for (size_t k = 0; k < 3; ++k)
+      corners[i][k] = m[k] * own[0] + m[4 + k] * own[1] + m[8 + k] * own[2] + m[12 + k];
+  }
+  return true;
+}
+
+} // namespace
+
+bool EditModel::isSelected(const Node& node) const {
+  return std::any_of(selection_.begin(), selection_.end(),
+                     [&node](const NodeRef& one) { return one.get() == &node; });
+}
+
+void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
+  if (!std::exchange(isDragging_, true))
+    request([name = fmt::format("Set {}.{}", node->type().name, field.name)](WorldEditor& editor) {
+      editor.editor().begin(name);
+    });
+  request([node, name = field.name, value = std::move(value)](WorldEditor& editor) {
+    editor.editor().set(*node, name, value);
+  });
+}
+
+void EditModel::setActive(bool active) {
+  if (std::exchange(isActive_, active) && !active) isStale_ = true;
+  if (!active && std::exchange(isDragging_, false))
+    request([](WorldEditor& editor) { editor.editor().end(); });
+}
+
+void EditModel::setOpen(const NodeRef& node, bool open) {
+  outline_.setOpen(node, open);
+  isStale_ = true;
+}
+
+void EditModel::search(std::string text) {
+  if (text == search_) return;
+  search_ = std::move(text);
+  isStale_ = true;
+}
+
+void EditModel::select(const NodeRef& node, bool add) {
+  request([this, node, add](WorldEditor& editor) {
+    MFNode selection = add ? editor.selection() : MFNode();
+    const auto known = std::find(selection.begin(), selection.end(), node);
+    if (known != selection.end())
+      selection.erase(known);
+    else if (node)
+      selection.push_back(node);
+    editor.select(std::move(selection));
+  });
+}
+
+bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, double seconds) {
+  while (!commands_.empty()) {
+    const Command command = std::move(commands_.front());
+    commands_.pop_front();
+    isStale_ = true;
+    try {
+      command(editor);
+    } catch (const std::exception& error) { message_ = error.what(); }
+  }
+  const uint64_t changes = editor.editor().changes();
+  if (std::exchange(changes_, changes) != changes) isStale_ = true;
+  if (selection_ != editor.selection()) {
+    selection_ = editor.selection();
+    isStale_ = true;
+    if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
+      shown_ = NodeRef(node);
+  }
+  if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
+  const bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  if (reads) {
+    readAt_ = seconds;
+    read(editor);
+  }
+  std::vector<Line> frames = framesOf(editor, view);
+  return std::exchange(frames_, frames) != frames || reads;
+}
+
+void EditModel::read(WorldEditor& editor) {
+  const World& world = editor.browser().world();
+  if (std::exchange(isStale_, false)) {
+    rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
+    if (!isActive_ || sheet_.node.get() != editor.selected())
+      sheet_ = sheetOf(editor, NodeRef(editor.selected()));
+    undoName_ = editor.editor().undoName();
+    redoName_ = editor.editor().redoName();
+    unsaved_ = editor.isChanged();
+  } else if (sheet_.node && !isActive_) {
+    refresh(sheet_);
+  }
+  if (!shown_) return;
+  const NodeRef wanted = std::exchange(shown_, NodeRef());
+  for (size_t i = 0; i < rows_.size(); ++i)
+    if (rows_[i].node == wanted) scroll_ = int(i);
+}
+
+CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view) const {
+  double low[3], high[3];
+  std::fill(low, low + 3, std::numeric_limits<double>::infinity());
+  std::fill(high, high + 3, -std::numeric_limits<double>::infinity());
+  std::array<std::array<double, 3>, 8> corners;
+  for (const NodeRef& node : selection_) {
+    if (!boxOf(editor.browser(), node, corners)) continue;
+    for (const std::array<double, 3>& corner : corners)
+      for (size_t k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], corner[k]);
+        high[k] = std::max(high[k], corner[k]);
+      }
+  }
+  CameraSettings camera = view.camera;
+  const double radius = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2;
+  if (!std::isfinite(radius)) return camera;
+  // A sphere around the box fills nine tenths of the smaller side.
+  const double tangent = std::tan(camera.fovy / 2) * std::min(1.0, view.aspect);
+  const double distance = camera.fovy > 0 ? radius / std::sin(std::atan(tangent * .9)) : radius * 2;
+  for (size_t k = 0; k < 3; ++k)
+    camera.matrix[12 + k] =
+        (low[k] + high[k]) / 2 + camera.matrix[8 + k] * std::max(distance, 1e-6);
+  return camera;
+}
+
+std::vector<EditModel::Line> EditModel::framesOf(WorldEditor& editor, const EditView& view) const {
+  std::vector<Line> lines;
+  std::array<std::array<double, 3>, 8> corners;
+  for (const NodeRef& node : selection_) {
+    if (!boxOf(editor.browser(), node, corners)) continue;
+    std::array<std::array<double, 2>, 8> places;
+    bool inFront = true;
+    for (size_t i = 0; i < corners.size() && inFront; ++i)
+      inFront =
+          projectPoint(view.camera, view.aspect, corners[i].data(), places[i][0], places[i][1]);
+    if (!inFront) continue;
+    for (size_t i = 0; i < corners.size(); ++i)
+      for (size_t k = 0; k < 3; ++k)
+        if (const size_t j = i | size_t(1) << k; j != i)
+          lines.push_back({places[i][0], places[i][1], places[j][0], places[j][1]});
+  }
+  return lines;
+}
+
+} // namespace vv

@@ -1,0 +1,90 @@
+// edit_model.h: Stands between the editor of a world and a face that shows it. A face may be drawn
+// at any time, also while the world is read for a picture; so it draws copies, and its commands
+// wait until the world can be used. [the browser's thread]
+#pragma once
+
+#include <array>
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "edit/outline.h"
+#include "edit/properties.h"
+#include "edit/world_editor.h"
+
+namespace vv {
+
+// Where the viewer stands, and the shape of the picture.
+struct EditView {
+  xvrml::CameraSettings camera{};
+  double aspect = 1;
+};
+
+class EditModel {
+ public:
+  using Command = std::function<void(WorldEditor& editor)>;
+  // A line of the picture, from -1 to 1 each way, as the pointer is.
+  struct Line {
+    double x0, y0, x1, y1;
+    bool operator==(const Line&) const = default;
+  };
+
+  // --- What is shown ---
+  const std::vector<OutlineRow>& rows() const { return rows_; }
+  bool isSelected(const xvrml::Node& node) const;
+  // The fields of the node that was selected last. A face may change the values of its rows, which
+  // are read again when the world can be used.
+  PropertySheet& sheet() { return sheet_; }
+  const std::string& undoName() const { return undoName_; }
+  const std::string& redoName() const { return redoName_; }
+  bool hasUnsaved() const { return unsaved_; }
+  // Why the file cannot be edited; "": it can, or this is not known yet.
+  const std::string& readOnly() const { return readOnly_; }
+  // The edges of a box around each node that is selected.
+  const std::vector<Line>& frames() const { return frames_; }
+  // Returns the camera that looks as the viewer does and shows what is selected; the viewer's own
+  // if nothing is to be seen of it. [while the world can be used]
+  xvrml::CameraSettings cameraAround(WorldEditor& editor, const EditView& view) const;
+  // The number of the row to scroll to; -1: none is new. It is given out once.
+  int takeScroll() { return std::exchange(scroll_, -1); }
+  // Returns, once, what is to be said to the user.
+  std::string takeMessage() { return std::exchange(message_, {}); }
+
+  // --- What is asked for ---
+  void request(Command command) { commands_.push_back(std::move(command)); }
+  bool hasRequests() const { return !commands_.empty(); }
+  // Sets a field. All values until no widget is active any more are one step.
+  void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
+  // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
+  void setActive(bool active);
+  void setOpen(const xvrml::NodeRef& node, bool open);
+  void search(std::string text); // "": shows the tree
+  const std::string& searched() const { return search_; }
+  // Selects a node, shows its row, and adds to the selection or replaces it.
+  void select(const xvrml::NodeRef& node, bool add);
+
+  // Does what was asked for, and reads what is shown. moves: the world changes by itself, and is
+  // read a few times a second. seconds: time of any clock. Returns whether something else is shown
+  // now. [while the world can be used]
+  bool update(WorldEditor& editor, const EditView& view, bool moves, double seconds);
+
+ private:
+  void read(WorldEditor& editor);
+  std::vector<Line> framesOf(WorldEditor& editor, const EditView& view) const;
+
+  std::deque<Command> commands_;
+  Outline outline_;
+  std::vector<OutlineRow> rows_;
+  PropertySheet sheet_;
+  xvrml::MFNode selection_;
+  std::string undoName_, redoName_, readOnly_, message_, search_;
+  std::vector<Line> frames_;
+  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isDragging_ = false, isActive_ = false;
+  int scroll_ = -1;
+  xvrml::NodeRef shown_; // the node whose row is to be scrolled to
+  double readAt_ = 0;
+  uint64_t changes_ = 0; // of the editor, when it was read
+};
+
+} // namespace vv

@@ -1,0 +1,154 @@
+#include "edit/outline.h"
+
+#include <algorithm>
+#include <cctype>
+#include <unordered_map>
+
+#include "printable.h"
+#include "xvrml/walk.h"
+
+namespace vv {
+
+using namespace xvrml;
+
+namespace {
+
+// Calls visit(slot, child) for each node that a node's fields hold. Metadata has no effect and is
+// left out.
+template <class Visit> void forEachChild(Node& parent, const Visit& visit) {
+  for (const FieldInfo& field : parent.type().fields) {
+    if (!holdsValue(field) || field.isMetadata) continue;
+    if (field.type == FieldType::SFNode) {
+      const NodeRef& child = *static_cast<const SFNode*>(parent.storage(field));
+      if (child) visit(NodeSlot{&parent, field.name, 0}, child);
+    } else if (field.type == FieldType::MFNode) {
+      const MFNode& list = *static_cast<const MFNode*>(parent.storage(field));
+      for (size_t i = 0; i < list.size(); ++i)
+        if (list[i]) visit(NodeSlot{&parent, field.name, i}, list[i]);
+    }
+  }
+}
+
+bool hasChildren(Node& node) {
+  bool any = false;
+  forEachChild(node, [&any](const NodeSlot&, const NodeRef&) { any = true; });
+  return any;
+}
+
+bool contains(std::string_view text, std::string_view part) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) ==
+           std::tolower(static_cast<unsigned char>(b));
+  };
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
+}
+
+bool matches(const Node& node, std::string_view text) {
+  if (contains(node.defName, text) || contains(node.type().name, text)) return true;
+  return std::any_of(
+      node.type().fields.begin(), node.type().fields.end(),
+      [text](const FieldInfo& field) { return holdsValue(field) && contains(field.name, text); });
+}
+
+// A place that is still to be visited.
+struct Open {
+  NodeSlot slot;
+  NodeRef node;
+  int depth;
+};
+
+std::vector<Open> rootPlaces(const World& world) {
+  std::vector<Open> places;
+  const std::vector<NodeRef>& roots = world.scope.roots;
+  for (size_t i = roots.size(); i-- > 0;)
+    if (roots[i]) places.push_back({{nullptr, "", i}, roots[i], 0});
+  return places;
+}
+
+} // namespace
+
+std::string labelOf(const Node& node) {
+  // Names may be long, and hold anything.
+  constexpr size_t longest = 64;
+  std::string name = node.defName.substr(0, longest);
+  if (name.size() < node.defName.size()) name += "...";
+  return name.empty() ? node.type().name : printable(name) + "  " + node.type().name;
+}
+
+std::vector<OutlineRow> Outline::rows(const World& world) const {
+  std::vector<OutlineRow> rows;
+  SeenNodes seen;
+  std::vector<Open> open = rootPlaces(world);
+  while (!open.empty()) {
+    const Open place = std::move(open.back());
+    open.pop_back();
+    OutlineRow row{place.node, place.slot, place.depth, labelOf(*place.node), false, false, false};
+    if (place.slot.parent && !place.slot.field.empty() && place.slot.field != "children")
+      row.label = place.slot.field + ": " + row.label;
+    row.isUse = !seen.insert(place.node.get());
+    row.canOpen = hasChildren(*place.node);
+    row.isOpen = row.canOpen && !row.isUse && open_.contains(place.node.get());
+    if (row.isOpen) {
+      const auto first = std::ptrdiff_t(open.size());
+      forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
+        open.push_back({slot, child, place.depth + 1});
+      });
+      std::reverse(open.begin() + first, open.end());
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void Outline::setOpen(const NodeRef& node, bool open) {
+  if (open)
+    open_.emplace(node.get(), node);
+  else
+    open_.erase(node.get());
+}
+
+bool Outline::reveal(const World& world, const Node& node) {
+  const std::vector<Node*> path = pathTo(world, node);
+  for (Node* one : path)
+    if (one != &node) setOpen(NodeRef(one), true);
+  return !path.empty();
+}
+
+std::vector<OutlineRow> Outline::find(const World& world, std::string_view text, size_t most) {
+  std::vector<OutlineRow> found;
+  SeenNodes seen;
+  std::vector<Open> open = rootPlaces(world);
+  while (!open.empty() && found.size() < most) {
+    const Open place = std::move(open.back());
+    open.pop_back();
+    if (!seen.insert(place.node.get())) continue;
+    if (matches(*place.node, text))
+      found.push_back({place.node, place.slot, 0, labelOf(*place.node), false, false, false});
+    const auto first = std::ptrdiff_t(open.size());
+    forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
+      open.push_back({slot, child, 0});
+    });
+    std::reverse(open.begin() + first, open.end());
+  }
+  return found;
+}
+
+std::vector<Node*> pathTo(const World& world, const Node& node) {
+  std::unordered_map<const Node*, Node*> parents;
+  std::vector<Open> open = rootPlaces(world);
+  for (const Open& root : open) parents.emplace(root.node.get(), nullptr);
+  while (!open.empty() && !parents.contains(&node)) {
+    const Open place = std::move(open.back());
+    open.pop_back();
+    forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
+      if (parents.emplace(child.get(), slot.parent).second) open.push_back({slot, child, 0});
+    });
+  }
+  std::vector<Node*> path;
+  if (!parents.contains(&node)) return path;
+  for (Node* at = const_cast<Node*>(&node); at; at = parents[at]) path.push_back(at);
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+} // namespace vv

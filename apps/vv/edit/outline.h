@@ -1,0 +1,52 @@
+// outline.h: The nodes of a world's file as rows of a tree. A face draws the rows that it shows.
+// Only nodes that are open are walked, so that a world of a million nodes costs no more than what
+// is to be seen of it. [the browser's thread, while the world can be used]
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "xvrml/edit.h"
+#include "xvrml/world.h"
+
+namespace vv {
+
+struct OutlineRow {
+  xvrml::NodeRef node;
+  xvrml::NodeSlot slot; // where the node stands
+  int depth = 0;
+  std::string label; // "LAMP  PointLight"
+  bool canOpen = false, isOpen = false;
+  bool isUse = false; // the node stands further up, too
+};
+
+class Outline {
+ public:
+  // Returns the rows that are to be seen, from the top.
+  std::vector<OutlineRow> rows(const xvrml::World& world) const;
+  // Opens a node, so that its children are to be seen, or closes it.
+  void setOpen(const xvrml::NodeRef& node, bool open);
+  // Opens all nodes on the way from a root to this one. Returns false if it is not in the file.
+  bool reveal(const xvrml::World& world, const xvrml::Node& node);
+  // Forgets which nodes are open.
+  void clear() { open_.clear(); }
+
+  // Returns the nodes whose DEF name, type or field names have this text, in any case, in the order
+  // of the file; at most `most`.
+  static std::vector<OutlineRow> find(const xvrml::World& world, std::string_view text,
+                                      size_t most);
+
+ private:
+  std::map<const xvrml::Node*, xvrml::NodeRef> open_; // keeps them, so that no address comes again
+};
+
+// Returns what a row says of a node: its DEF name and its type.
+std::string labelOf(const xvrml::Node& node);
+
+// Returns the nodes from a root of the file to this one, first place only; empty if it is not in
+// the file.
+std::vector<xvrml::Node*> pathTo(const xvrml::World& world, const xvrml::Node& node);
+
+} // namespace vv

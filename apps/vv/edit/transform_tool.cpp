@@ -1,0 +1,227 @@
+#include "edit/transform_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include <Imath/ImathMatrixAlgo.h>
+#include <fmt/format.h>
+
+#include "edit/actions.h"
+#include "xvrml/nodes.h"
+
+namespace vv {
+
+using namespace xvrml;
+using Imath::M44d;
+using Imath::Quatd;
+using Imath::V3d;
+
+namespace {
+
+constexpr double degrees = 180 / std::numbers::pi;
+constexpr const char* verbs[] = {"Move", "Turn", "Scale"};
+
+V3d vectorOf(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+Vec3f floats(const V3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+// Returns where a ray meets the plane through a point that faces the camera.
+V3d inPlane(const CameraRay& ray, const V3d& point, const V3d& normal) {
+  const V3d origin = vectorOf(ray.origin), direction = vectorOf(ray.direction);
+  const double along = direction.dot(normal);
+  return along == 0 ? point : origin + direction * ((point - origin).dot(normal) / along);
+}
+
+// Returns the place on a line, in lengths of its direction, that is nearest to a ray.
+double alongLine(const CameraRay& ray, const V3d& point, const V3d& line) {
+  const V3d origin = vectorOf(ray.origin), direction = vectorOf(ray.direction).normalized();
+  const V3d between = point - origin;
+  const double cosine = line.dot(direction), sine2 = 1 - cosine * cosine;
+  if (sine2 < 1e-6) return 0; // the line points at the viewer
+  return (between.dot(direction) * cosine - between.dot(line)) / sine2;
+}
+
+// Returns the rotation of a file's SFRotation, whose axis may have any length.
+Quatd turnOf(const Rotation& r) {
+  const V3d axis(r.x, r.y, r.z);
+  if (axis.length() == 0) return {};
+  Quatd turn;
+  return turn.setAxisAngle(axis.normalized(), r.angle);
+}
+
+Rotation rotationOf(const Quatd& turn) {
+  const double angle = turn.angle();
+  if (!(std::abs(angle) > 1e-9)) return {0, 0, 1, 0};
+  const V3d axis = turn.axis();
+  // Negative angles and those above a half turn are the same turn about the opposite axis.
+  const bool opposite = angle > std::numbers::pi;
+  const V3d shown = opposite ? -axis : axis;
+  return {float(shown.x), float(shown.y), float(shown.z),
+          float(opposite ? 2 * std::numbers::pi - angle : angle)};
+}
+
+} // namespace
+
+TransformTool::TransformTool(WorldEditor& editor, Kind kind, const EditView& view, double x,
+                             double y)
+    : kind_(kind), view_(view), startX_(x), startY_(y) {
+  if (!editor.selected()) throw EditError("nothing is selected");
+  selected_ = editor.selection();
+  editor.select({NodeRef(editor.selected())});
+  editor.editor().begin(fmt::format("{} {}", verbs[size_t(kind)], editor.selected()->type().name));
+  try {
+    if (!nodeCast<nodes::Transform>(editor.selected())) wrapSelected(editor);
+    node_ = NodeRef(editor.selected());
+    const auto& transform = static_cast<const nodes::Transform&>(*node_);
+    NodePlacement placement;
+    if (!editor.browser().locate(*node_, placement))
+      throw EditError(fmt::format("{} is not in the scene", labelOf(*node_)));
+    const size_t depth = placement.path.size();
+    if (depth > 1)
+      std::copy(placement.path[depth - 2].toWorld.begin(), placement.path[depth - 2].toWorld.end(),
+                &toWorld_.x[0][0]);
+    translation_ = V3d(transform.translation.x, transform.translation.y, transform.translation.z);
+    scale_ = V3d(transform.scale.x, transform.scale.y, transform.scale.z);
+    rotation_ = turnOf(transform.rotation);
+    const V3d centre(transform.center.x, transform.center.y, transform.center.z);
+    pivot_ = (translation_ + centre) * toWorld_;
+    if (!projectPoint(view.camera, view.aspect, &pivot_.x, pivotX_, pivotY_))
+      throw EditError("what is selected is behind the viewer");
+  } catch (...) {
+    cancel(editor);
+    throw;
+  }
+}
+
+void TransformTool::cancel(WorldEditor& editor) {
+  editor.editor().cancel();
+  editor.select(selected_);
+}
+
+void TransformTool::chooseAxis(int axis) {
+  if (axis_ != axis) {
+    axis_ = axis;
+    isLocal_ = false;
+  } else if (!isLocal_) {
+    isLocal_ = true;
+  } else {
+    axis_ = -1;
+    isLocal_ = false;
+  }
+}
+
+bool TransformTool::type(const std::string& key) {
+  if (key == "Backspace") {
+    if (!typed_.empty()) typed_.pop_back();
+    return true;
+  }
+  const std::string sign = key.starts_with("Keypad ") ? key.substr(7) : key;
+  const bool isPoint = sign == "." && typed_.find('.') == typed_.npos;
+  if (sign == "-") {
+    typed_ = typed_.starts_with('-') ? typed_.substr(1) : "-" + typed_;
+    return true;
+  }
+  if (!isPoint && (sign.size() != 1 || sign[0] < '0' || sign[0] > '9')) return false;
+  constexpr size_t mostDigits = 16;
+  if (typed_.size() < mostDigits) typed_ += sign;
+  return true;
+}
+
+// Returns the number that is typed, or that of the pointer, perhaps rounded to steps.
+double TransformTool::chosen(double byPointer, double step) {
+  const bool isNumber = typed_.find_first_of("0123456789") != typed_.npos;
+  amount_ = isNumber            ? std::strtod(typed_.c_str(), nullptr)
+            : snap_ && step > 0 ? std::round(byPointer / step) * step
+                                : byPointer;
+  return amount_;
+}
+
+// Returns the axis that was chosen, as a unit vector in the world.
+V3d TransformTool::axisInWorld() const {
+  V3d axis(0);
+  axis[axis_] = 1;
+  if (!isLocal_) return axis;
+  V3d turned = axis * rotation_.toMatrix44(), world;
+  toWorld_.multDirMatrix(turned, world);
+  return world.length() > 0 ? world.normalized() : axis;
+}
+
+void TransformTool::point(WorldEditor& editor, double x, double y) {
+  switch (kind_) {
+  case Kind::move: return move(editor, x, y);
+  case Kind::turn: return turn(editor, x, y);
+  case Kind::scale: return scale(editor, x, y);
+  }
+}
+
+void TransformTool::move(WorldEditor& editor, double x, double y) {
+  const CameraRay from = rayThrough(view_.camera, view_.aspect, startX_, startY_),
+                  to = rayThrough(view_.camera, view_.aspect, x, y);
+  const V3d eye = vectorOf(view_.camera.matrix + 12), normal = vectorOf(view_.camera.matrix + 8);
+  // A step of a power of ten that is well to be seen.
+  const double size = view_.camera.fovy > 0
+                          ? std::abs((pivot_ - eye).dot(normal)) * std::tan(view_.camera.fovy / 2)
+                          : view_.camera.height / 2;
+  const double step = size > 0 ? std::pow(10, std::floor(std::log10(size / 5))) : 0;
+  V3d way;
+  if (axis_ >= 0) {
+    const V3d axis = axisInWorld();
+    way = axis * chosen(alongLine(to, pivot_, axis) - alongLine(from, pivot_, axis), step);
+  } else {
+    way = inPlane(to, pivot_, normal) - inPlane(from, pivot_, normal);
+    const double length = way.length();
+    if (const double wanted = chosen(length, step); length > 0)
+      way *= wanted / length;
+    else
+      way = vectorOf(view_.camera.matrix) * wanted; // a typed number alone: to the right
+  }
+  V3d own;
+  toWorld_.inverse().multDirMatrix(way, own);
+  editor.editor().set(*node_, "translation", floats(translation_ + own));
+}
+
+void TransformTool::turn(WorldEditor& editor, double x, double y) {
+  const V3d toViewer = vectorOf(view_.camera.matrix + 8);
+  const V3d axis = axis_ >= 0 ? axisInWorld() : toViewer;
+  const auto angleAt = [this](double atX, double atY) {
+    return std::atan2(atY - pivotY_, (atX - pivotX_) * view_.aspect);
+  };
+  double angle = angleAt(x, y) - angleAt(startX_, startY_);
+  if (axis.dot(toViewer) < 0) angle = -angle; // the picture turns as the pointer does
+  angle = std::remainder(angle, 2 * std::numbers::pi);
+  V3d own;
+  toWorld_.inverse().multDirMatrix(axis, own);
+  if (own.length() == 0) return;
+  Quatd turn;
+  turn.setAxisAngle(own.normalized(), chosen(angle * degrees, 5) / degrees);
+  // Imath multiplies row vectors: the node's own turn comes first.
+  editor.editor().set(*node_, "rotation", rotationOf(turn * rotation_));
+}
+
+void TransformTool::scale(WorldEditor& editor, double x, double y) {
+  const auto distance = [this](double atX, double atY) {
+    return std::hypot((atX - pivotX_) * view_.aspect, atY - pivotY_);
+  };
+  const double start = distance(startX_, startY_);
+  const double factor = chosen(start > 1e-6 ? distance(x, y) / start : 1, 0.1);
+  if (!(factor > 0)) return; // a scale is greater than 0
+  V3d size = scale_;
+  if (axis_ >= 0)
+    size[axis_] *= factor;
+  else
+    size *= factor;
+  editor.editor().set(*node_, "scale", floats(size));
+}
+
+std::string TransformTool::text() const {
+  const std::string axis =
+      axis_ < 0 ? ""
+                : fmt::format(" {} {}", kind_ == Kind::turn ? "about" : "along",
+                              std::string(isLocal_ ? "its own " : "") + "xyz"[axis_]);
+  const char* const unit = kind_ == Kind::turn ? " degrees" : "";
+  return fmt::format("{}{}: {:.5g}{}   (X Y Z: axis; numbers; Ctrl: steps; Enter; Escape)",
+                     verbs[size_t(kind_)], axis, amount_, unit);
+}
+
+} // namespace vv

@@ -1,0 +1,222 @@
+#include "window/editing.h"
+
+#include <cmath>
+#include <utility>
+
+#include "window/window.h"
+
+namespace vv {
+
+using namespace xvrml;
+
+namespace {
+
+// How far the pointer may move between press and release of a click, as a part of the picture.
+constexpr double clickDistance = 0.012;
+
+} // namespace
+
+void Editing::open(bool open) {
+  if (open && editorLibrary().empty()) {
+    message_ = "vv was built without the editor: build with Dear ImGui (Debian: libimgui-dev)";
+    return;
+  }
+  if (open && !model_) {
+    model_.emplace();
+    panels_.emplace(*model_, probes_);
+  }
+  if (hasTool_) endTool(false);
+  isOpen_ = open;
+  pressed_.reset();
+  if (open) {
+    screen_.setGui([this] { panels_->draw(); });
+  } else {
+    screen_.setGui(nullptr);
+    if (model_) model_->setActive(false);
+  }
+}
+
+void Editing::reset() {
+  hasTool_ = false;
+  tool_.reset();
+  panels_.reset();
+  model_.reset();
+  probes_.clear();
+  if (isOpen_) open(true);
+}
+
+void Editing::askToSave(std::function<void()> go) {
+  open(true);
+  if (!panels_) return go();
+  panels_->askToSave(std::move(go));
+  screen_.redraw();
+}
+
+std::string Editing::takeMessage() {
+  if (!message_.empty() || !model_) return std::exchange(message_, {});
+  return model_->takeMessage();
+}
+
+bool Editing::take(InputEvent& event) {
+  using Kind = InputEvent::Kind;
+  if (!isOpen_) return false;
+  if (event.kind == Kind::move) pointer_ = event;
+  if (hasTool_ && takeForTool(event)) return true;
+  switch (event.kind) {
+  case Kind::press:
+    // A click selects; a drag moves the viewer. With Alt both work the world's sensors.
+    event.forView = !event.alt;
+    if (event.button == Button::left && !event.alt) pressed_ = event;
+    return false;
+  case Kind::release:
+    if (event.button == Button::left) click(event);
+    return false;
+  case Kind::down: return press(event);
+  default: return false;
+  }
+}
+
+void Editing::click(const InputEvent& event) {
+  const std::optional<InputEvent> pressed = std::exchange(pressed_, std::nullopt);
+  if (!pressed || std::hypot(event.x - pressed->x, event.y - pressed->y) > clickDistance) return;
+  model_->request([view = view_, event](WorldEditor& editor) {
+    selectAt(editor, view, event.x, event.y, event.control, event.shift);
+  });
+}
+
+// Takes a key of the editor. Returns whether it is one.
+bool Editing::press(const InputEvent& event) {
+  const std::string& key = event.text;
+  const bool selects = model_->sheet().node.get() != nullptr;
+  const auto request = [this](EditModel::Command command) {
+    model_->request(std::move(command));
+    return true;
+  };
+  if (event.control && key == "Z" && !event.shift)
+    return request([](WorldEditor& editor) { editor.undo(); });
+  if (event.control && (key == "Y" || key == "Z"))
+    return request([](WorldEditor& editor) { editor.redo(); });
+  if (event.control && key == "S") return request([](WorldEditor& editor) { editor.save(); });
+  if (!event.control && !event.alt && key == "V")
+    return request([this, view = view_, at = pointer_](WorldEditor& editor) {
+      const CameraRay ray = rayThrough(view.camera, view.aspect, at.x, at.y);
+      PickHit hit;
+      if (!editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit))
+        throw EditError("there is nothing here to be measured");
+      probes_.add(hit.point);
+    });
+  if (!event.control && !event.alt && key == "B" && !probes_.all().empty()) {
+    probes_.keep();
+    screen_.redraw();
+    return true;
+  }
+  if (event.control && key == "G" && selects) return request(wrapSelected);
+  if (key == "Escape" && !selects) {
+    open(false);
+    return true;
+  }
+  if (event.control || event.alt || !selects) return false;
+  if (event.shift && key == "D") return request(duplicateSelected);
+  if (key == "X" || key == "Delete") return request(removeSelected);
+  if (key == ".") return wantsFrame_ = true;
+  if (key == "G") return beginTool(TransformTool::Kind::move);
+  if (key == "R") return beginTool(TransformTool::Kind::turn);
+  if (key == "S") return beginTool(TransformTool::Kind::scale);
+  if (key == "Escape") return request([](WorldEditor& editor) { editor.select({}); });
+  return false;
+}
+
+bool Editing::beginTool(TransformTool::Kind kind) {
+  hasTool_ = true;
+  model_->request([this, kind, at = pointer_](WorldEditor& editor) {
+    try {
+      tool_.emplace(editor, kind, view_, at.x, at.y);
+    } catch (...) {
+      hasTool_ = false;
+      throw;
+    }
+  });
+  return true;
+}
+
+void Editing::useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use) {
+  model_->request([this, use = std::move(use)](WorldEditor& editor) {
+    if (!tool_) return;
+    use(*tool_, editor);
+    message_ = tool_->text();
+  });
+}
+
+void Editing::endTool(bool accept) {
+  hasTool_ = false;
+  model_->request([this, accept](WorldEditor& editor) {
+    if (!tool_) return;
+    accept ? tool_->accept(editor) : tool_->cancel(editor);
+    tool_.reset();
+  });
+}
+
+// Takes an event while a tool is in use. Returns whether it was for the tool.
+bool Editing::takeForTool(const InputEvent& event) {
+  using Kind = InputEvent::Kind;
+  const std::string& key = event.text;
+  const auto follow = [at = pointer_](TransformTool& tool, WorldEditor& editor) {
+    tool.point(editor, at.x, at.y);
+  };
+  switch (event.kind) {
+  case Kind::move:
+    useTool([follow, snap = event.control](TransformTool& tool, WorldEditor& editor) {
+      tool.setSnap(snap);
+      follow(tool, editor);
+    });
+    return true;
+  case Kind::press: return true;
+  case Kind::release: endTool(event.button == Button::left); return true;
+  case Kind::down:
+    if (key == "Return" || key == "Keypad Enter" || key == "Escape") {
+      endTool(key != "Escape");
+    } else if (key == "X" || key == "Y" || key == "Z") {
+      useTool([follow, axis = key[0] - 'X'](TransformTool& tool, WorldEditor& editor) {
+        tool.chooseAxis(axis);
+        follow(tool, editor);
+      });
+    } else {
+      useTool([follow, key](TransformTool& tool, WorldEditor& editor) {
+        if (tool.type(key)) follow(tool, editor);
+      });
+    }
+    return true;
+  default: return false;
+  }
+}
+
+void Editing::update(Session& session, double seconds) {
+  if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
+  view_ = {session.pilot().camera(), session.pilot().aspect()};
+  panels_->setView(view_);
+  if (std::exchange(wantsFrame_, false))
+    session.pilot().putAt(model_->cameraAround(session.editor(), view_));
+  readProbes(session, seconds);
+  if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
+    screen_.redraw();
+}
+
+// Reads the probes from the still picture of the world as it is, a few times a second.
+void Editing::readProbes(Session& session, double seconds) {
+  constexpr double interval = 0.25;
+  if (probes_.all().empty() || seconds < probesRead_ + interval) return;
+  session.pictures().wantReadings();
+  const uint64_t finished =
+      session.pictures().isFinished(session.pilot()) ? session.pictures().number() : 0;
+  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting()) return;
+  picture::Picture picture;
+  if (session.viewers().own().isOutdated() || !session.pictures().copyStill(picture) ||
+      !picture.planes.contains(RT_ERROR))
+    return;
+  probesRead_ = seconds;
+  finishedRead_ = finished;
+  probes_.read(session.browser(), picture, view_);
+  screen_.redraw();
+}
+
+} // namespace vv

@@ -1,0 +1,62 @@
+// editing.h: The editor in the window: its panels over the picture, its keys, and clicks that
+// select. It is open or not; edits stay when it is closed. [main thread]
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "edit/edit_model.h"
+#include "edit/transform_tool.h"
+#include "session/session.h"
+#include "window/editor_panels.h"
+#include "window/screen.h"
+
+namespace vv {
+
+class Editing {
+ public:
+  explicit Editing(Screen& screen) : screen_(screen) {}
+
+  bool isOpen() const { return isOpen_; }
+  // Opens or closes the editor. Says why it cannot be opened by takeMessage().
+  void open(bool open);
+  // Takes an event that no panel wanted. Returns whether it was for the editor; otherwise the
+  // session gets it, perhaps changed.
+  bool take(InputEvent& event);
+  // Does what the user has asked for. [while the world can be used]
+  void update(Session& session, double seconds);
+  // Asks whether edits are saved, and calls go unless the user wants to stay.
+  void askToSave(std::function<void()> go);
+  // Forgets the world, because another takes its place.
+  void reset();
+  // Returns, once, what is to be said to the user.
+  std::string takeMessage();
+
+ private:
+  bool press(const InputEvent& event);
+  void click(const InputEvent& event);
+  // The tool begins, is used and ends when the world can be used.
+  bool beginTool(TransformTool::Kind kind);
+  void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
+  void endTool(bool accept);
+  bool takeForTool(const InputEvent& event);
+  void readProbes(Session& session, double seconds);
+
+  Screen& screen_;
+  bool isOpen_ = false;
+  std::optional<EditModel> model_; // one for each world
+  Probes probes_;
+  double probesRead_ = 0;     // when
+  uint64_t finishedRead_ = 0; // the number of the finished frame that they were read from
+  std::optional<EditorPanels> panels_;
+  EditView view_;
+  std::optional<InputEvent> pressed_; // the left button is held down since then
+  InputEvent pointer_;                // where the pointer was last
+  bool hasTool_ = false;              // the tool gets the events; it may still have to begin
+  std::optional<TransformTool> tool_;
+  bool wantsFrame_ = false; // the viewer is to see what is selected
+  std::string message_;
+};
+
+} // namespace vv

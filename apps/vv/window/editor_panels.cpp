@@ -1,0 +1,219 @@
+#include "window/editor_panels.h"
+
+#include <algorithm>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "printable.h"
+
+namespace vv {
+
+using namespace xvrml;
+
+namespace {
+
+constexpr ImGuiWindowFlags panelFlags =
+    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar;
+constexpr ImU32 frameColour = IM_COL32(255, 170, 40, 220);
+
+void tooltip(const char* text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+// A button that can be pressed only if `active`.
+bool button(const char* label, bool active, const std::string& hint) {
+  ImGui::BeginDisabled(!active);
+  const bool pressed = ImGui::Button(label);
+  ImGui::EndDisabled();
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    ImGui::SetTooltip("%s", hint.c_str());
+  ImGui::SameLine();
+  return pressed;
+}
+
+enum class Edge : uint8_t { left, right };
+
+// Places a panel at an edge of the window, in the whole height, with this part of its width. The
+// user may make it wider or narrower.
+void placePanel(Edge edge, float part) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float least = std::min(120.f, size.x / 2), width = std::clamp(part * size.x, least, 300.f);
+  ImGui::SetNextWindowSize(ImVec2(width, size.y), ImGuiCond_Appearing);
+  ImGui::SetNextWindowSizeConstraints(ImVec2(least, size.y), ImVec2(size.x / 2, size.y));
+  const float x = edge == Edge::left ? 0.f : 1.f;
+  ImGui::SetNextWindowPos(ImVec2(x * size.x, 0), ImGuiCond_Always, ImVec2(x, 0));
+}
+
+} // namespace
+
+void EditorPanels::draw() {
+  drawFrames();
+  drawOutline();
+  drawSheet();
+  drawProbes();
+  drawQuestion();
+  model_.setActive(ImGui::IsAnyItemActive());
+}
+
+void EditorPanels::drawFrames() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  for (const EditModel::Line& line : model_.frames())
+    list.AddLine(ImVec2(float(1 + line.x0) / 2 * size.x, float(1 - line.y0) / 2 * size.y),
+                 ImVec2(float(1 + line.x1) / 2 * size.x, float(1 - line.y1) / 2 * size.y),
+                 frameColour, 1.5f);
+}
+
+void EditorPanels::drawTools() {
+  const bool writable = model_.readOnly().empty(), any = model_.sheet().node && writable;
+  if (button("Undo", !model_.undoName().empty(), "Undo " + model_.undoName() + " (Ctrl+Z)"))
+    model_.request([](WorldEditor& editor) { editor.undo(); });
+  if (button("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
+    model_.request([](WorldEditor& editor) { editor.redo(); });
+  if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)"))
+    model_.request([](WorldEditor& editor) { editor.save(); });
+  ImGui::NewLine();
+  if (button("Add", writable, "Add a node to the selected group, or behind the selected node"))
+    ImGui::OpenPopup("##new");
+  if (button("Copy", any, "Duplicate what is selected (Shift+D)"))
+    model_.request(duplicateSelected);
+  if (button("Group", any, "Put a Transform around what is selected (Ctrl+G)"))
+    model_.request(wrapSelected);
+  if (button("Remove", any, "Remove what is selected (X, Delete)")) model_.request(removeSelected);
+  ImGui::NewLine();
+  if (ImGui::BeginPopup("##new")) {
+    for (const NewNode& one : newNodes())
+      if (ImGui::Selectable(one.name))
+        model_.request([&one](WorldEditor& editor) { add(editor, one); });
+    if (ImGui::Selectable("Viewpoint from here"))
+      model_.request([view = view_](WorldEditor& editor) { addViewpoint(editor, view); });
+    ImGui::EndPopup();
+  }
+}
+
+void EditorPanels::drawOutline() {
+  placePanel(Edge::left, 0.26f);
+  if (ImGui::Begin("##outline", nullptr, panelFlags)) {
+    drawTools();
+    if (!model_.readOnly().empty()) ImGui::TextWrapped("%s", model_.readOnly().c_str());
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::InputTextWithHint("##search", "Search names, types and fields", &search_))
+      model_.search(search_);
+    if (ImGui::BeginChild("##rows")) {
+      const std::vector<OutlineRow>& rows = model_.rows();
+      if (const int row = model_.takeScroll(); row >= 0)
+        ImGui::SetScrollY(std::max(0.f, float(row - 3) * ImGui::GetTextLineHeightWithSpacing()));
+      ImGuiListClipper clipper;
+      clipper.Begin(int(rows.size()), ImGui::GetTextLineHeightWithSpacing());
+      while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) drawRow(rows[size_t(i)], i);
+    }
+    ImGui::EndChild();
+  }
+  ImGui::End();
+}
+
+void EditorPanels::drawRow(const OutlineRow& row, int number) {
+  ImGui::PushID(number);
+  const float indent = float(row.depth) * 12;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+  const char* const sign = !row.canOpen || row.isUse ? "  " : row.isOpen ? "-" : "+";
+  if (ImGui::Selectable(sign, false, 0, ImVec2(12, 0)) && row.canOpen && !row.isUse)
+    model_.setOpen(row.node, !row.isOpen);
+  ImGui::SameLine();
+  if (row.isUse)
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  // Names are those of a hostile file: behind "##" nothing would be shown.
+  if (ImGui::Selectable("##row", model_.isSelected(*row.node)))
+    model_.select(row.node, ImGui::GetIO().KeyShift || ImGui::GetIO().KeyCtrl);
+  ImGui::SameLine(0, 0);
+  ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
+  if (row.isUse) ImGui::PopStyleColor();
+  ImGui::PopID();
+}
+
+void EditorPanels::drawSheet() {
+  placePanel(Edge::right, 0.3f);
+  if (ImGui::Begin("##sheet", nullptr, panelFlags)) {
+    PropertySheet& sheet = model_.sheet();
+    if (!sheet.node) {
+      ImGui::TextWrapped("Click on something in the picture or in the outline to select it.");
+    } else {
+      ImGui::PushID(sheet.node.get());
+      ImGui::TextUnformatted(sheet.title.c_str());
+      if (!sheet.note.empty()) ImGui::TextWrapped("%s", printable(sheet.note).c_str());
+      ImGui::Separator();
+      ImGui::BeginDisabled(!model_.readOnly().empty());
+      for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row);
+      ImGui::EndDisabled();
+      ImGui::PopID();
+    }
+  }
+  ImGui::End();
+}
+
+void EditorPanels::drawProbes() {
+  if (probes_.all().empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  for (const Probe& probe : probes_.all()) {
+    double x = 0, y = 0;
+    if (!projectPoint(view_.camera, view_.aspect, probe.point.data(), x, y)) continue;
+    const ImVec2 at(float(1 + x) / 2 * size.x, float(1 - y) / 2 * size.y);
+    list.AddCircle(at, 4, frameColour, 12, 1.5f);
+    list.AddText(ImVec2(at.x + 6, at.y - 8), frameColour, std::to_string(probe.number).c_str());
+  }
+  ImGui::SetNextWindowPos(ImVec2(size.x / 2, size.y - 30), ImGuiCond_Appearing, ImVec2(0.5f, 1));
+  if (ImGui::Begin("Probes", nullptr,
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+    const std::vector<std::optional<Difference>> changes = probes_.differences();
+    for (size_t i = 0; i < changes.size(); ++i) {
+      const std::string text = probeText(probes_.all()[i], changes[i]);
+      const bool certain = changes[i] && changes[i]->isSignificant;
+      ImGui::PushStyleColor(
+          ImGuiCol_Text,
+          ImGui::GetStyleColorVec4(!changes[i] || certain ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+      ImGui::TextUnformatted(text.c_str());
+      ImGui::PopStyleColor();
+    }
+    if (button("Keep as A", true, "Compare what follows with the light of now (B)")) probes_.keep();
+    if (button("Copy", true, "Copy all as a table (CSV)"))
+      ImGui::SetClipboardText(probes_.csv().c_str());
+    if (button("Clear", true, "Remove all probes")) probes_.clear();
+    ImGui::NewLine();
+  }
+  ImGui::End();
+}
+
+void EditorPanels::askToSave(std::function<void()> go) { go_ = std::move(go); }
+
+void EditorPanels::drawQuestion() {
+  constexpr const char* title = "Unsaved edits";
+  if (go_ && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::TextUnformatted("The edits of this world have not been saved.");
+  std::function<void()> go;
+  bool ends = false;
+  if (button("Save", true, "Write the file")) {
+    model_.request([](WorldEditor& editor) { editor.save(); });
+    // Behind the command: if the file cannot be written, the world stays.
+    model_.request([chosen = go_](WorldEditor& editor) {
+      if (!editor.isChanged()) chosen();
+    });
+    ends = true;
+  }
+  if (button("Throw away", true, "Go without saving")) {
+    go = go_;
+    ends = true;
+  }
+  if (button("Stay", true, "Go on with this world")) ends = true;
+  if (ends) {
+    go_ = nullptr;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+  if (go) go();
+}
+
+} // namespace vv

@@ -1,0 +1,20 @@
+// no_editor.cpp: Replaces the panels of the editor in a build without Dear ImGui.
+#include "window/editing.h"
+#include "window/gui.h"
+#include "window/window.h"
+
+namespace vv {
+
+struct Gui::Impl {};
+Gui::Gui(SDL_Window*, SDL_Renderer*, double, std::function<void()>) {}
+Gui::~Gui() = default;
+bool Gui::take(const SDL_Event&) { return false; }
+void Gui::draw() {}
+bool Gui::hasChanged() const { return false; }
+
+void EditorPanels::draw() {}
+void EditorPanels::askToSave(std::function<void()> go) { go(); }
+
+std::string editorLibrary() { return ""; }
+
+} // namespace vv

@@ -1,0 +1,110 @@
+"""Tests the editor in vv's window with real clicks and keys, and what becomes of the file."""
+import re
+
+import pytest
+
+from conftest import HEADER
+from window_driver import screen, window  # noqa: F401
+
+WORLD = HEADER + """
+# The stage
+Viewpoint { position 0 0 10 fieldOfView 0.785398 }
+DirectionalLight { direction 0 0 -1 }
+DEF LEFT Transform { translation -2 0 0 # moved by hand
+  children [
+    DEF Touch TouchSensor {}
+    Shape { appearance Appearance { material DEF Paint Material { diffuseColor 1 0 0 } } geometry Box {} } ] }
+DEF RIGHT Transform {
+  translation 2 0 0 children Shape {
+    appearance Appearance { material Material { diffuseColor 0 0 1 } } geometry Box {} } }
+"""
+
+
+def text(vv):
+    return (vv.folder / "world.wrl").read_text()
+
+
+@pytest.fixture
+def editor(window, vv):
+    if "without Dear ImGui" in vv("--list-features").text or re.search(
+            r"^edit +no", vv("--list-features").text, re.M):
+        pytest.skip("vv is built without the editor")
+    # Beside the panels a part of the picture must be free.
+    w = window(WORLD, "--size", "600x400")
+    w.key("e")
+    return w
+
+
+def saved(w, vv, change):
+    """Returns the text once the file has changed in this way."""
+    w.wait(lambda: change(text(vv)), "the file")
+    return text(vv)
+
+
+def test_a_box_is_selected_moved_undone_and_saved(editor, vv):
+    w = editor
+    w.click(0, 0)  # nothing is there
+    w.click(-0.25, 0)
+    w.key("g", "x", "1", "Return")
+    w.key("ctrl+s")
+    now = saved(w, vv, lambda t: t != WORLD)
+    assert now.count("\n") > WORLD.count("\n")  # a Transform around the Shape
+    assert "DEF LEFT Transform { translation -2 0 0 # moved by hand\n" in now
+    assert "translation 1 0 0" in now
+    w.key("ctrl+z")
+    w.key("ctrl+s")
+    assert saved(w, vv, lambda t: t == WORLD)
+    w.key("ctrl+y")
+    w.key("ctrl+s")
+    assert saved(w, vv, lambda t: t == now)
+
+
+def test_groups_are_selected_with_ctrl_and_the_file_differs_in_one_value(editor, vv):
+    w = editor
+    w.move(-0.25, 0)
+    w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
+    w.key("g", "y", "minus", "period", "5", "Return")
+    w.key("ctrl+s")
+    now = saved(w, vv, lambda t: t != WORLD)
+    assert now == WORLD.replace("translation -2 0 0 #", "translation -2 -0.5 0 #")
+    assert w.end() == 0
+
+
+def test_escape_takes_a_move_back(editor, vv):
+    w = editor
+    w.move(-0.25, 0)
+    w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
+    w.key("g")
+    w.move(0.2, 0.3)
+    w.key("Escape")
+    w.key("r", "z", "3", "0", "Return")
+    w.key("ctrl+s")
+    now = saved(w, vv, lambda t: t != WORLD)
+    assert "translation -2 0 0" in now and "rotation 0 0 1 0.5235988" in now
+
+
+def test_a_window_with_unsaved_edits_asks(editor, vv):
+    w = editor
+    w.click(-0.25, 0)
+    w.key("Delete")
+    w.key("e")  # the panels are closed, the edit stays
+    w.key("q")
+    assert w.program.poll() is None
+    w.key("ctrl+s")
+    now = saved(w, vv, lambda t: t != WORLD)
+    assert "diffuseColor 1 0 0" not in now and "TouchSensor" in now
+
+
+def test_edits_of_a_recording_are_refused(window, vv):
+    w = window(WORLD, "--size", "600x400", "--record-input", "input.txt")
+    w.key("e")
+    w.click(-0.25, 0)
+    w.key("Delete")
+    w.key("ctrl+s")
+    assert w.end() == 0
+    assert text(vv) == WORLD
+
+
+def test_vv_edit_needs_a_file(vv):
+    done = vv("edit")
+    assert done.returncode == 2 and "edit" in done.talk

@@ -1,0 +1,275 @@
+// editor_model.cpp: Tests what the panels of the editor show, and what their commands do.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "edit/actions.h"
+#include "edit/edit_model.h"
+#include "unit/editor_support.h"
+
+namespace {
+
+using namespace editor_test;
+using namespace vv;
+using namespace xvrml;
+
+constexpr const char* hall = "#VRML V2.0 utf8\n"
+                             "# The hall\n"
+                             "Viewpoint { position 0 0 10 fieldOfView 0.785398 }\n"
+                             "DEF LAMP PointLight { intensity 0.80 # by day\n"
+                             "}\n"
+                             "DEF TABLE Transform { translation 2 0 0 children [\n"
+                             "  DEF LEG Shape { appearance Appearance {\n"
+                             "    material DEF WOOD Material { } } geometry Box { } }\n"
+                             "  DEF TWICE Group { children USE LEG }\n"
+                             "] }\n";
+
+EditView front() {
+  EditView view;
+  const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1};
+  std::copy(matrix, matrix + 16, view.camera.matrix);
+  return view;
+}
+
+std::vector<std::string> labels(const EditModel& model) {
+  std::vector<std::string> all;
+  for (const OutlineRow& row : model.rows())
+    all.push_back(std::string(size_t(row.depth), '.') + (row.isUse ? "USE " : "") + row.label);
+  return all;
+}
+
+PropertyRow& row(EditModel& model, const std::string& name) {
+  for (PropertyRow& one : model.sheet().rows)
+    if (one.field->name == name) return one;
+  throw std::out_of_range(name);
+}
+
+struct Model : testing::Test {
+  EditedWorld world{hall};
+  EditModel model;
+  EditView view = front();
+  bool update(double seconds = 0, bool moves = false) {
+    return model.update(world.editor, view, moves, seconds);
+  }
+};
+
+TEST_F(Model, TheOutlineShowsWhatIsOpen) {
+  update();
+  EXPECT_EQ(labels(model),
+            (std::vector<std::string>{"Viewpoint", "LAMP  PointLight", "TABLE  Transform"}));
+  model.setOpen(world.node("TABLE"), true);
+  model.setOpen(world.node("TWICE"), true);
+  update();
+  EXPECT_EQ(labels(model),
+            (std::vector<std::string>{"Viewpoint", "LAMP  PointLight", "TABLE  Transform",
+                                      ".LEG  Shape", ".TWICE  Group", "..USE LEG  Shape"}));
+  EXPECT_FALSE(update()) << "nothing else is shown";
+  model.setOpen(world.node("TABLE"), false);
+  update();
+  EXPECT_EQ(model.rows().size(), 3u);
+}
+
+TEST_F(Model, ASelectionIsRevealedAndFramed) {
+  model.select(world.node("WOOD"), false);
+  update();
+  EXPECT_EQ(labels(model).at(4), "..appearance: Appearance");
+  EXPECT_EQ(labels(model).at(5), "...material: WOOD  Material");
+  EXPECT_EQ(model.takeScroll(), 5);
+  EXPECT_EQ(model.takeScroll(), -1);
+  EXPECT_EQ(model.sheet().title, "WOOD  Material");
+  EXPECT_TRUE(model.isSelected(*world.node("WOOD")));
+  // The box of its Shape: from x = 1 to 3 at z = 1, so 9 before the viewer.
+  ASSERT_EQ(model.frames().size(), 12u);
+  double least = 1, most = -1;
+  for (const EditModel::Line& line : model.frames()) {
+    least = std::min({least, line.x0, line.x1});
+    most = std::max({most, line.x0, line.x1});
+  }
+  EXPECT_NEAR(least, 1 / (11 * std::tan(0.785398 / 2)), 1e-4);
+  EXPECT_NEAR(most, 3 / (9 * std::tan(0.785398 / 2)), 1e-4);
+}
+
+TEST_F(Model, TheViewerGoesToTheSelection) {
+  model.select(world.node("LEG"), false);
+  update();
+  for (const double aspect : {0.5, 1.0, 2.0}) {
+    view.aspect = aspect;
+    view.camera = model.cameraAround(world.editor, view);
+    update();
+    double most = 0;
+    for (const EditModel::Line& line : model.frames())
+      for (const double place : {line.x0, line.y0, line.x1, line.y1})
+        most = std::max(most, std::abs(place));
+    EXPECT_LT(most, 1) << aspect;
+    EXPECT_GT(most, 0.4) << aspect;
+  }
+  model.select(nullptr, false);
+  update();
+  const CameraSettings same = model.cameraAround(world.editor, view);
+  EXPECT_TRUE(std::equal(same.matrix, same.matrix + 16, view.camera.matrix));
+}
+
+TEST_F(Model, ALampHasNoFrameOfItsNeighbours) {
+  model.select(world.node("LAMP"), false);
+  update();
+  EXPECT_TRUE(model.frames().empty());
+}
+
+TEST_F(Model, SearchesFindNamesTypesAndFields) {
+  update();
+  for (const auto& [text, found] :
+       {std::pair("wood", 1u), {"SHAPE", 1u}, {"intensity", 1u}, {"transl", 1u}, {"nothing", 0u}}) {
+    model.search(text);
+    update();
+    EXPECT_EQ(model.rows().size(), found) << text;
+  }
+  model.search("");
+  update();
+  EXPECT_EQ(model.rows().size(), 3u);
+}
+
+TEST_F(Model, ADragIsOneStep) {
+  model.select(world.node("LAMP"), false);
+  update();
+  const PropertyRow& intensity = row(model, "intensity");
+  EXPECT_FALSE(intensity.isDefault);
+  EXPECT_TRUE(row(model, "color").isDefault);
+  for (const float value : {0.7f, 0.6f, 0.5f}) {
+    model.drag(world.node("LAMP"), *intensity.field, value);
+    update();
+  }
+  model.setActive(false);
+  update();
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.5f);
+  EXPECT_EQ(model.undoName(), "Set PointLight.intensity");
+  EXPECT_TRUE(model.hasUnsaved());
+  EXPECT_NE(world.editor.editor().text().find("intensity 0.5 # by day"), std::string::npos);
+  model.request([](WorldEditor& editor) { editor.undo(); });
+  update();
+  EXPECT_EQ(world.editor.editor().text(), hall);
+  EXPECT_EQ(model.undoName(), "");
+  EXPECT_EQ(model.redoName(), "Set PointLight.intensity");
+}
+
+TEST_F(Model, WrongValuesAreSaidAndChangeNothing) {
+  model.select(world.node("LAMP"), false);
+  update();
+  const FieldInfo& field = *row(model, "intensity").field;
+  for (const float value : {-1.f, 2.f, std::numeric_limits<float>::quiet_NaN()}) {
+    model.drag(world.node("LAMP"), field, value);
+    model.setActive(false);
+    update();
+    EXPECT_NE(model.takeMessage().find("PointLight.intensity"), std::string::npos);
+    EXPECT_EQ(model.takeMessage(), "");
+  }
+  EXPECT_EQ(world.editor.editor().text(), hall);
+  EXPECT_EQ(model.undoName(), "");
+}
+
+TEST_F(Model, WhatRoutesAndScriptsChangeIsShownLater) {
+  model.select(world.node("LAMP"), false);
+  update(1);
+  world.browser.set(*world.node("LAMP"), "intensity", 0.25f);
+  update(1.1, true);
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.8f);
+  update(1.3, true);
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.25f);
+}
+
+TEST_F(Model, EditsOfOthersAreShown) {
+  update();
+  world.editor.editor().remove({nullptr, "", 1});
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().size(), 2u);
+  EXPECT_EQ(model.undoName(), "Remove PointLight");
+  world.editor.undo();
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().size(), 3u);
+}
+
+TEST_F(Model, AClickSelectsWhatIsThere) {
+  const double x = 2 / (9 * std::tan(0.785398 / 2));
+  selectAt(world.editor, view, x, 0, false, false);
+  EXPECT_EQ(world.editor.selected(), world.node("LEG").get());
+  selectAt(world.editor, view, x, 0, true, false);
+  EXPECT_EQ(world.editor.selected(), world.node("TABLE").get());
+  selectAt(world.editor, view, x, 0, false, true);
+  EXPECT_EQ(world.editor.selection().size(), 2u);
+  selectAt(world.editor, view, x, 0, false, true);
+  EXPECT_EQ(world.editor.selection().size(), 1u) << "a second time takes it out";
+  selectAt(world.editor, view, -0.9, 0.9, false, false);
+  EXPECT_EQ(world.editor.selected(), nullptr);
+}
+
+TEST_F(Model, ActionsAreOneStepEach) {
+  Editor& editor = world.editor.editor();
+  world.editor.select({world.node("LAMP"), world.node("TWICE")});
+  duplicateSelected(world.editor);
+  ASSERT_EQ(world.editor.selection().size(), 2u);
+  EXPECT_EQ(world.editor.selection()[0]->defName, "LAMP_2");
+  EXPECT_EQ(editor.undoName(), "Duplicate 2 nodes");
+  removeSelected(world.editor);
+  EXPECT_TRUE(world.editor.selection().empty());
+  world.editor.undo();
+  world.editor.undo();
+  EXPECT_EQ(editor.text(), hall);
+  world.editor.select({world.node("LAMP")});
+  wrapSelected(world.editor);
+  EXPECT_EQ(world.editor.selected()->type().name, "Transform");
+  for (const NewNode& one : newNodes()) {
+    add(world.editor, one);
+    EXPECT_NE(editor.text().find(one.name), std::string::npos);
+  }
+  while (!world.editor.undo().empty()) {}
+  EXPECT_EQ(editor.text(), hall);
+}
+
+TEST_F(Model, ANodeInSeveralPlacesIsNotRemovedBySurprise) {
+  world.editor.select({world.node("LAMP"), world.node("LEG")});
+  EXPECT_THROW(removeSelected(world.editor), EditError);
+  EXPECT_EQ(world.editor.editor().text(), hall) << "the lamp is still there";
+}
+
+TEST_F(Model, AViewpointLooksAsTheViewerDoes) {
+  for (const double angle : {0.0, 0.3, 2.0, 3.1}) {
+    view.camera.matrix[0] = view.camera.matrix[10] = std::cos(angle);
+    view.camera.matrix[8] = std::sin(angle);
+    view.camera.matrix[2] = -std::sin(angle);
+    world.editor.select({});
+    addViewpoint(world.editor, view);
+    world.browser.set(*world.editor.selected(), "set_bind", true);
+    const CameraSettings camera = world.browser.camera(1);
+    for (size_t i = 0; i < 16; ++i)
+      EXPECT_NEAR(camera.matrix[i], view.camera.matrix[i], 1e-5) << angle << " " << i;
+    EXPECT_NEAR(camera.fovy, view.camera.fovy, 1e-5);
+  }
+}
+
+TEST(EditorModel, ReadOnlyFilesSayWhy) {
+  EditedWorld world("{ \"X3D\": { \"@profile\": \"Interchange\", \"Scene\": { \"-children\": [ "
+                    "{ \"Group\": {} } ] } } }",
+                    "x3dj");
+  EditModel model;
+  model.update(world.editor, front(), false, 0);
+  EXPECT_NE(model.readOnly(), "");
+}
+
+TEST(EditorModel, HostileNamesAndLongListsAreShown) {
+  std::string points;
+  for (int i = 0; i < 1000; ++i) points += std::to_string(i) + " 0 0 ";
+  const std::string name(10'000, 'n');
+  EditedWorld world("#VRML V2.0 utf8\nDEF " + name + " Group { }\nDEF A##b\x1b[31m Group { }\n" +
+                    "DEF P Coordinate { point [ " + points + "] }\nDEF G Group { children [\n" +
+                    "Shape { geometry PointSet { coord USE P } } ] }");
+  EditModel model;
+  model.select(world.node("P"), false);
+  model.update(world.editor, front(), false, 0);
+  EXPECT_LT(model.rows().at(0).label.size(), 100u);
+  for (const OutlineRow& one : model.rows()) EXPECT_EQ(one.label.find('\x1b'), std::string::npos);
+  if (!model.sheet().node) return; // a Coordinate among the roots may be left out
+  EXPECT_TRUE(row(model, "point").isLong);
+  EXPECT_EQ(row(model, "point").size, 1000u);
+}
+
+} // namespace

@@ -1,0 +1,125 @@
+// editor_probes.cpp: Tests what probes read from pictures, and when a change counts.
+#include <algorithm>
+
+#include "edit/probes.h"
+#include "unit/editor_support.h"
+
+namespace {
+
+using namespace editor_test;
+using namespace vv;
+using picture::Picture;
+
+constexpr const char* text =
+    "#VRML V2.0 utf8\n"
+    "DEF WALL Shape { geometry Box { size 20 20 2 } }\n"
+    "DEF SCREEN Transform { translation 100 0 3 children Shape { geometry Box { size 1 1 1 } } }\n";
+
+EditView front() {
+  EditView view;
+  const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1};
+  std::copy(matrix, matrix + 16, view.camera.matrix);
+  return view;
+}
+
+// A picture of 8 x 8 pixels with one grey in all of them.
+Picture grey(float luminance, float halfWidth, bool trusted = true) {
+  Picture picture;
+  picture.width = picture.height = 8;
+  picture.planes[RT_RGBA].assign(4 * 64, luminance);
+  picture.planes[RT_ERROR].assign(3 * 64, halfWidth);
+  picture.planes[RT_SAMPLES].assign(64, 100);
+  picture.planes[RT_TRUST].assign(64, trusted ? 1.f : 0.f);
+  return picture;
+}
+
+struct ProbesOfAWall : testing::Test {
+  EditedWorld world{text};
+  EditView view = front();
+  Probes probes;
+  void read(const Picture& picture) { probes.read(world.browser, picture, view); }
+};
+
+TEST_F(ProbesOfAWall, ThePixelOfThePlaceIsRead) {
+  Picture picture = grey(0, 0.5f);
+  // The point (2, 1, 1) is 9 before the viewer: at (.537, .268) of the picture.
+  std::fill_n(&picture.planes[RT_RGBA][4 * (2 * 8 + 6)], 3, 7.f);
+  probes.add({2, 1, 1});
+  EXPECT_EQ(probes.all()[0].state, Probe::State::waiting);
+  read(picture);
+  EXPECT_EQ(probes.all()[0].state, Probe::State::read);
+  EXPECT_FLOAT_EQ(probes.all()[0].now.luminance, 7);
+  EXPECT_FLOAT_EQ(probes.all()[0].now.luminanceHalfWidth, .5f);
+  EXPECT_EQ(probes.all()[0].now.samples, 100u);
+}
+
+TEST_F(ProbesOfAWall, WhatIsNotSeenIsNotRead) {
+  probes.add({0, 0, 1});
+  probes.add({0, 50, 1});
+  probes.add({0, 0, 20});
+  read(grey(1, .1f));
+  EXPECT_EQ(probes.all()[0].state, Probe::State::read);
+  EXPECT_EQ(probes.all()[1].state, Probe::State::outside);
+  EXPECT_EQ(probes.all()[2].state, Probe::State::outside);
+  world.editor.editor().set(*world.node("SCREEN"), "translation", xvrml::Vec3f{0, 0, 3});
+  read(grey(1, .1f));
+  EXPECT_EQ(probes.all()[0].state, Probe::State::hidden) << "something stands before it";
+  world.editor.undo();
+  world.editor.editor().remove({nullptr, "", 0});
+  read(grey(1, .1f));
+  EXPECT_EQ(probes.all()[0].state, Probe::State::hidden) << "nothing is there any more";
+}
+
+TEST_F(ProbesOfAWall, AChangeCountsWhenTheIntervalsPart) {
+  probes.add({0, 0, 1});
+  EXPECT_FALSE(probes.differences()[0]);
+  read(grey(10, 3));
+  EXPECT_FALSE(probes.differences()[0]) << "nothing was kept";
+  probes.keep();
+  read(grey(16, 4)); // 6 +- 5
+  ASSERT_TRUE(probes.differences()[0]);
+  EXPECT_FLOAT_EQ(float(probes.differences()[0]->value), 6);
+  EXPECT_FLOAT_EQ(float(probes.differences()[0]->halfWidth), 5);
+  EXPECT_TRUE(probes.differences()[0]->isSignificant);
+  read(grey(14.9f, 4));
+  EXPECT_FALSE(probes.differences()[0]->isSignificant);
+  read(grey(100, 4, false));
+  EXPECT_FALSE(probes.differences()[0]->isSignificant) << "not trusted";
+  read(grey(10, 0));
+  EXPECT_FALSE(probes.differences()[0]->isSignificant);
+  view.camera.matrix[12] = .1;
+  read(grey(16, 4));
+  EXPECT_FALSE(probes.differences()[0]) << "another view";
+}
+
+TEST_F(ProbesOfAWall, SeveralProbesShareTheChanceOfAnError) {
+  // One alone: 2.2 standard deviations are significant at 5 %. The first one among three needs 1.7
+  // %.
+  probes.add({0, 0, 1});
+  read(grey(10, 0));
+  probes.keep();
+  read(grey(12.2f, 1.96f));
+  EXPECT_TRUE(probes.differences()[0]->isSignificant);
+  probes.add({1, 0, 1});
+  probes.add({-1, 0, 1});
+  read(grey(10, 0));
+  probes.keep();
+  read(grey(12.2f, 1.96f));
+  for (const auto& one : probes.differences()) EXPECT_FALSE(one->isSignificant);
+  read(grey(12.6f, 1.96f)); // 0.9 %: less than 1.7 %, and the others follow
+  for (const auto& one : probes.differences()) EXPECT_TRUE(one->isSignificant);
+}
+
+TEST_F(ProbesOfAWall, TheTableHasALineForEachProbe) {
+  probes.add({0, 0, 1});
+  probes.add({0, 50, 1});
+  read(grey(10, 1));
+  probes.keep();
+  read(grey(15, 0));
+  EXPECT_EQ(probes.csv(), "probe,x,y,z,luminance,half_width,trusted,before,before_half_width,"
+                          "difference,difference_half_width,significant\n"
+                          "1,0,0,1,15,0,true,10,1,5,1,true\n"
+                          "2,0,50,1,,,,,,,,\n");
+}
+
+} // namespace

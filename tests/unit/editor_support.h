@@ -1,0 +1,44 @@
+// editor_support.h: A world in a file of its own, with the editor of a session.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "edit/world_editor.h"
+#include "xvrml/browser.h"
+#include "xvrml/world.h"
+
+namespace editor_test {
+
+inline std::string readAll(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// The file is removed with this object.
+struct EditedWorld {
+  explicit EditedWorld(const std::string& text, const std::string& suffix = "wrl")
+      : path(testing::TempDir() + "editor_" +
+             testing::UnitTest::GetInstance()->current_test_info()->name() + "." + suffix),
+        browser(load(path, text)), editor(browser) {}
+  ~EditedWorld() { std::filesystem::remove(path); }
+
+  static std::unique_ptr<xvrml::World> load(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+    return xvrml::loadWorld(path);
+  }
+  xvrml::NodeRef node(const char* name) { return browser.node(name); }
+
+  const std::string path;
+  xvrml::Browser browser;
+  vv::WorldEditor editor;
+};
+
+} // namespace editor_test
