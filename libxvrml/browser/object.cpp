@@ -24,6 +24,20 @@ std::vector<NodeRef> breakCycles(const std::vector<NodeRef>& cyclic) {
   return kept;
 }
 
+// Returns the version that a text follows which is given without a header. caller: that of the
+// file that gives it. An element of XML stands for itself; a file in XML may also give ClassicVRML.
+FileVersion versionOfText(std::string_view text, const FileVersion& caller,
+                          const FileVersion& world) {
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  const bool isXml = first != text.npos && text[first] == '<';
+  const FileVersion& known = caller.isX3d() ? caller : world;
+  if (isXml && known.isX3d()) return {Encoding::x3dXml, known.major, known.minor};
+  if (isXml) return {Encoding::x3dXml, 3, 3};
+  if (caller.encoding == Encoding::x3dXml)
+    return {Encoding::x3dClassic, caller.major, caller.minor};
+  return caller;
+}
+
 void append(Diagnostics& to, const Diagnostics& from) {
   for (const Diagnostic& d : from.list()) to.add(d);
 }
@@ -163,9 +177,10 @@ MFNode Browser::createVrmlFromString(std::string_view text, const std::string& b
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
   const SourcePosition caller = impl_->callerPosition();
+  const FileVersion& world = impl_->world->head.version;
   const auto loaded = loadFragment(
       text, name, options, TemporaryCharge(*impl_->world).budget(), fileDepth(caller.file) + 1,
-      caller.file ? fileVersion(caller.file) : impl_->world->head.version);
+      versionOfText(text, caller.file ? fileVersion(caller.file) : world, world));
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;

@@ -99,7 +99,7 @@ class ElementWriter : public NodeWriter {
   }
 
   void keepUse(const DocumentText& text, const NodePlace& place) override {
-    const XmlOutline& xml = text.layout.xml;
+    const XmlIndex& xml = text.layout.xml;
     const XmlAttribute* const use = xml.find(xml.at(place.span.begin), "USE");
     text_.replaceName(text, xml.trimmedValue(*use), *place.node);
     text_.copy(text, place.span.end);

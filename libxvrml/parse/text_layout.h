@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "parse/xml_outline.h"
+#include "parse/xml_index.h"
 #include "xvrml/node.h"
 
 namespace xvrml {
@@ -68,7 +68,7 @@ struct TextLayout {
   std::vector<NodePlace> roots;
   std::vector<RouteText> routes;
   std::vector<PrototypeText> prototypes;
-  XmlOutline xml; // empty for other encodings
+  XmlIndex xml; // empty for other encodings
   // Says why the text cannot be changed in place, behind "the file"; empty if it can.
   std::string whyNot;
 };

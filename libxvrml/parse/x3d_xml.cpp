@@ -23,7 +23,7 @@ namespace {
 
 class Reader {
  public:
-  // layout: gets the outline of the text; null: nothing does.
+  // layout: gets the index of the text; null: nothing does.
   Reader(const XmlText& text, Locator& locator, X3dElements& elements, TextLayout* layout)
       : text_(text), locator_(locator), elements_(elements), layout_(layout),
         // The text is in UTF-8, whatever its declaration says.

@@ -1,5 +1,5 @@
 // xml_recorder.h: records where everything stands in a text of X3D in XML. The innermost element of
-// the outline is the one whose tag the reader has just read. [the thread that loads]
+// the index is the one whose tag the reader has just read. [the thread that loads]
 #pragma once
 
 #include "parse/layout_recorder.h"

@@ -1,4 +1,4 @@
-#include "parse/xml_outline.h"
+#include "parse/xml_index.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace xvrml {
 
-void XmlOutline::open(const char* tag, const char* tagEnd, Attributes attributes) {
+void XmlIndex::open(const char* tag, const char* tagEnd, Attributes attributes) {
   XmlElement element;
   element.begin = offset(tag);
   element.tagEnd = offset(tagEnd);
@@ -25,20 +25,20 @@ void XmlOutline::open(const char* tag, const char* tagEnd, Attributes attributes
   elements_.push_back(element);
 }
 
-void XmlOutline::close(const char* endTag, const char* end) {
+void XmlIndex::close(const char* endTag, const char* end) {
   XmlElement& element = elements_[open_.back()];
   open_.pop_back();
   element.endTag = offset(endTag);
   element.end = offset(end);
 }
 
-const XmlElement& XmlOutline::at(size_t begin) const {
+const XmlElement& XmlIndex::at(size_t begin) const {
   return *std::lower_bound(
       elements_.begin(), elements_.end(), begin,
       [](const XmlElement& element, size_t place) { return element.begin < place; });
 }
 
-const XmlAttribute* XmlOutline::find(const XmlElement& element, std::string_view name) const {
+const XmlAttribute* XmlIndex::find(const XmlElement& element, std::string_view name) const {
   const auto attributes = attributesOf(element);
   const auto found =
       std::find_if(attributes.begin(), attributes.end(),
@@ -46,7 +46,7 @@ const XmlAttribute* XmlOutline::find(const XmlElement& element, std::string_view
   return found == attributes.end() ? nullptr : &*found;
 }
 
-const XmlAttribute* XmlOutline::attributeAt(const XmlElement& element, size_t begin) const {
+const XmlAttribute* XmlIndex::attributeAt(const XmlElement& element, size_t begin) const {
   const auto attributes = attributesOf(element);
   const auto found = std::lower_bound(
       attributes.begin(), attributes.end(), begin,
@@ -54,7 +54,7 @@ const XmlAttribute* XmlOutline::attributeAt(const XmlElement& element, size_t be
   return found == attributes.end() || found->name.begin != begin ? nullptr : &*found;
 }
 
-TextSpan XmlOutline::trimmedValue(const XmlAttribute& attribute) const {
+TextSpan XmlIndex::trimmedValue(const XmlAttribute& attribute) const {
   const std::string_view value = trimmed(textOf(attribute.value));
   const size_t begin = offset(value.data());
   return {begin, begin + value.size()};

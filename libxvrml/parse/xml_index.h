@@ -1,5 +1,5 @@
-// xml_outline.h: where the elements and attributes of an XML text stand, whatever they mean. The
-// reader of X3D in XML fills an outline for programs that change a part of the text.
+// xml_index.h: where the elements and attributes of an XML text stand, whatever they mean. The
+// reader of X3D in XML fills an index for programs that change a part of the text.
 // [the thread that loads]
 #pragma once
 
@@ -34,9 +34,9 @@ struct XmlElement {
   bool isEmptyTag() const { return end == tagEnd; }
 };
 
-class XmlOutline {
+class XmlIndex {
  public:
-  // The reader calls these in the order of the text, which must outlive the outline. Pointers are
+  // The reader calls these in the order of the text, which must outlive the index. Pointers are
   // to the first byte of a tag and behind its last one.
   void begin(std::string_view text) { text_ = text; }
   void open(const char* tag, const char* tagEnd, Attributes attributes);
