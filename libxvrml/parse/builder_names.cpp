@@ -261,7 +261,8 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
   if (!mayConnect(access, declared->access)) {
     const std::string_view meant = intendedMeaning(access, declared->access);
     // An inputOutput of a Script was read as initializeOnly, and reported there.
-    const bool reported = isX3d() && frame.scriptType && access == Access::field && !meant.empty();
+    const bool reported =
+        isX3d() && nodeCast<ScriptNode>(frame.node) && access == Access::field && !meant.empty();
     if (!reported)
       locator_.error(interfaceName.at,
                      fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
