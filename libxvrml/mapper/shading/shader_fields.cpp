@@ -46,7 +46,7 @@ std::string problemOf(const FieldInfo& field, const nodes::ORTShader& node,
   const std::vector<FieldType>& types = row->fields;
   if (std::find(types.begin(), types.end(), field.type) != types.end()) return "";
   std::string wanted;
-  for (const FieldType type : types)
+  for (const FieldType& type : types)
     wanted += (wanted.empty()           ? ""
                : &type == &types.back() ? " or "
                                         : ", ") +
