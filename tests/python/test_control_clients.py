@@ -221,7 +221,7 @@ def arm(start, tmp_path):
 
 def test_the_lines_of_the_document(arm):
     page = (ROOT / "docs/control.md").read_text()
-    talk, events = re.findall(r"```json\n(.*?)```", page, re.S)
+    talk, _, events = re.findall(r"```json\n(.*?)```", page, re.S)
     lines = [json.loads(line) for line in talk.splitlines()]
     raw = arm.raw()
     sent = 0
@@ -244,17 +244,31 @@ def test_the_lines_of_the_document(arm):
     assert world in answers
 
 
-def test_the_commands_of_the_document(start):
+def test_the_step_of_the_document(start, tmp_path):
     page = (ROOT / "docs/control.md").read_text()
-    table = page[page.index("## Commands"):page.index("* **set**")]
-    listed = [
-        name for row in re.findall(r"^\| (`.*?) \|", table, re.M)
-        for name in re.findall(r"`(\w+)`", row)
-    ]
+    (tmp_path / "lamp.wrl").write_text(re.findall(r"```vrml file=lamp.wrl\n(.*?)```", page, re.S)[0])
+    _, step, _ = re.findall(r"```json\n(.*?)```", page, re.S)
+    line, answer = (json.loads(line) for line in step.splitlines())
+    assert start("lamp.wrl", *SMALL).raw().ask(line) == answer
+
+
+def words_of(rows):
+    """Returns the names in the first column of a table's rows."""
+    return sorted(name for row in re.findall(r"^\| (`.*?) \|", rows, re.M)
+                  for name in re.findall(r"`(\w+)`", row))
+
+
+def test_the_commands_of_the_document():
+    page = (ROOT / "docs/control.md").read_text()
+    tables = [part.split("\n\n")[0] for part in page.split("| command | members | result |\n")[1:]]
     source = (ROOT / "apps/vv/control/command.cpp").read_text()
     rows = source[source.index("constexpr Row table[]"):source.
                   index("std::vector<std::string> commandNames")]
-    assert sorted(listed) == sorted(re.findall(r'^    \{"(\w+)"', rows, re.M))
+    assert words_of("\n".join(tables)) == sorted(re.findall(r'^    \{"(\w+)"', rows, re.M))
+    edits = page.split("| edit | members |\n")[1].split("\n\n")[0]
+    source = (ROOT / "apps/vv/control/edit_step.cpp").read_text()
+    rows = source[source.index("Reader::table[10] = {"):]
+    assert words_of(edits) == sorted(re.findall(r'\{"(\w+)", &Reader', rows))
 
 
 def test_a_client_in_tcl(arm, tmp_path):

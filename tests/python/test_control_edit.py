@@ -33,9 +33,9 @@ def table(start, file):
     return start("table.wrl", *SMALL).connect()
 
 
-def one(vv, edit, name="A step", **members):
+def one(vv, edit, called="A step", **members):
     """Does one edit. Returns the number of the node that it makes."""
-    return vv.call("edit", name=name, edits=[{"edit": edit, **members}])["nodes"][0]
+    return vv.call("edit", name=called, edits=[{"edit": edit, **members}])["nodes"][0]
 
 
 def text(vv):
@@ -207,13 +207,14 @@ def test_a_file_that_the_world_reads_is_not_saved_over(start, tmp_path):
 def test_files_that_are_only_read(start, tmp_path, file):
     (tmp_path / "old.wrl").write_text("#VRML V1.0 ascii\nSeparator { Cube { } }\n")
     vv = start("old.wrl", *SMALL).connect()
-    assert "VRML97 and X3D ClassicVRML" in vv.edits()["read_only"]
+    assert "is VRML 1.0" in vv.edits()["read_only"]
     refused("edit", "can be edited", one, vv, "insert", vrml="Group {}")
     refused("edit", "can be edited", vv.save)
     vv.load("table.wrl")
     one(vv, "set", node="LAMP", field="on", value=False)
-    vv.replace_world(vv.create("DEF NEW Group { }").nodes)
-    refused("edit", "another world", one, vv, "rename", node="NEW", name="A")
+    made = vv.create("Group { }").nodes
+    vv.replace_world(made)
+    refused("edit", "another world", one, vv, "rename", node=made[0], name="A")
     refused("edit", "another world", vv.undo)
     refused("edit", "another world", vv.save)
     assert file.read_text() == TABLE
@@ -281,15 +282,8 @@ def test_roots_parents_and_selection(start, file):
                                                        ("Group", "SECOND"), ("TimeSensor", "CLOCK")]
     lamp, table_, second, _ = (r["node"] for r in roots)
     leg = vv.node("LEG")["node"]
-    assert vv.parents("LEG") == [{
-        "parent": table_,
-        "field": "children",
-        "index": 0
-    }, {
-        "parent": second,
-        "field": "children",
-        "index": 0
-    }]
+    places = sorted(vv.parents("LEG"), key=lambda place: place["parent"])
+    assert places == [{"parent": p, "field": "children", "index": 0} for p in (table_, second)]
     assert vv.parents(lamp) == [{"parent": None, "field": None, "index": 0}]
     for place in vv.parents("LEG"):  # places may be sent back
         one(vv, "remove", node="LEG", at=place)
@@ -361,7 +355,9 @@ def pixel_of(picture, x, y):
     """Returns the values of each channel of an EXR picture at a place."""
     exr_tools = pytest.importorskip("exr_tools")
     _, planes = exr_tools.read_exr(picture)
-    column, row = int((x + 1) / 2 * SIZE[0]), int((1 - y) / 2 * SIZE[1])
+    column, row = (
+        min(max(int(place * count), 1), count - 2)  # not at the border
+        for place, count in zip(((x + 1) / 2, (1 - y) / 2), SIZE))
     return {name: float(plane[row][column]) for name, plane in planes.items()}
 
 
@@ -379,8 +375,8 @@ def test_probe_reads_a_pixel_of_the_true_picture(lit, tmp_path):
                    cwd=tmp_path,
                    check=True)
     picture = (tmp_path / "lit.exr").read_bytes()
-    for x, y in ((0, 0), (0.3, -0.8), (-0.9, 0.7), (-1, -1), (1, 1)):
-        got, want = lit.probe(x, y), pixel_of(picture, min(x, 0.999), max(y, -0.999))
+    for x, y in ((0, 0), (-1, 0), (0.3, -0.8), (-0.9, 0.7), (-1, -1), (1, 1)):
+        got, want = lit.probe(x, y), pixel_of(picture, x, y)
         assert got["samples"] == 64
         for k, colour in enumerate("RGB"):
             assert got["radiance"][k] == pytest.approx(want[colour], rel=1e-6), (x, y)

@@ -11,8 +11,12 @@ namespace vv::control {
 
 namespace {
 
-// Returns the pixel that holds a place from -1 to 1.
-int pixelAt(double place, int count) { return std::min(int((place + 1) / 2 * count), count - 1); }
+// Returns the pixel that holds a place from -1 to 1, or the next one to it that does not touch the
+// border: the intervals there follow from the whole picture.
+int pixelAt(double place, int count) {
+  const int pixel = std::min(int((place + 1) / 2 * count), count - 1);
+  return count < 3 ? pixel : std::clamp(pixel, 1, count - 2);
+}
 
 std::string numberText(float number) {
   return std::isfinite(number) ? fmt::format("{}", number) : "null";
