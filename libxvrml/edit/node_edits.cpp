@@ -107,7 +107,12 @@ std::function<void(bool)> NodeEdits::listChange(const Slot& slot, const Twin& no
 }
 
 void NodeEdits::place(const Slot& slot, const Twin& node) {
-  if (slot.isSingle()) return setSingle(slot, node);
+  if (slot.isSingle()) {
+    const bool replaces = file_.nodeAt(slot) != nullptr;
+    setSingle(slot, node);
+    if (replaces) dropRoutes();
+    return;
+  }
   const auto change = listChange(slot, node);
   history_.perform({[change] { change(true); }, [change] { change(false); }});
 }

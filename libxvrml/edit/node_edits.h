@@ -16,7 +16,7 @@ class NodeEdits {
  public:
   NodeEdits(EditedFile& file, History& history) : file_(file), history_(history) {}
 
-  // Puts a node at a place.
+  // Puts a node at a place. In an SFNode, the routes of the node that stood there go with it.
   void place(const Slot& slot, const Twin& node);
   // Takes the node at a place out, and returns it.
   Twin take(const Slot& slot);

@@ -369,6 +369,14 @@ TEST(Editor, FilesThatImportKeepTheirNodes) {
   EXPECT_THROW(editor.rename(*world->scope.names.at("L"), "B"), EditError);
 }
 
+TEST_P(Edited, ANodeThatIsReplacedTakesItsRoutesAlong) {
+  load("DEF S Shape { geometry DEF T Text { } }\nDEF C Script { eventOut MFString s }\n"
+       "ROUTE C.s TO T.string\n");
+  editor->insert({&node("S"), "geometry", 0}, "Box { }");
+  EXPECT_EQ(text(), "DEF S Shape { geometry Box { } }\nDEF C Script { eventOut MFString s }\n");
+  undoAll();
+}
+
 // Random edits, all undone, give the file back; all done again, the edited one.
 TEST_P(Edited, RandomEditsCanBeUndone) {
   load("DEF C2 Group { }\n# one\nDEF A Transform {\n  translation 1 2 3 # here\n  children [\n"
