@@ -71,7 +71,7 @@ def test_what_is_wrong_is_a_problem_of_the_world(tmp_path):
     world = load(tmp_path, WORLD % "field SFFloat indx 1.5")
     world.render(**VIEW)
     told = [str(one) for one in world.warnings]
-    assert any("w.wrl:4:" in one and "did you mean 'index'?" in one for one in told), told
+    assert any("w.wrl:5:43: error" in one and "did you mean 'index'?" in one for one in told), told
 
 
 def test_written_worlds_have_it(tmp_path):
