@@ -45,6 +45,15 @@ void Editing::reset() {
   if (isOpen_) open(true);
 }
 
+void Editing::leave(WorldEditor& editor, std::function<void()> go) {
+  if (model_ && model_->hasRequests())
+    model_->request([this, go](WorldEditor& later) { leave(later, go); });
+  else if (editor.isChanged())
+    askToSave(std::move(go));
+  else
+    go();
+}
+
 void Editing::askToSave(std::function<void()> go) {
   open(true);
   if (!panels_) return go();

@@ -26,14 +26,16 @@ class Editing {
   bool take(InputEvent& event);
   // Does what the user has asked for. [while the world can be used]
   void update(Session& session, double seconds);
-  // Asks whether edits are saved, and calls go unless the user wants to stay.
-  void askToSave(std::function<void()> go);
+  // Calls go, which ends the world, once all that was asked for is done: at once, or when the user
+  // has decided what becomes of edits that are not saved, and does not want to stay.
+  void leave(WorldEditor& editor, std::function<void()> go);
   // Forgets the world, because another takes its place.
   void reset();
   // Returns, once, what is to be said to the user.
   std::string takeMessage();
 
  private:
+  void askToSave(std::function<void()> go);
   bool press(const InputEvent& event);
   void click(const InputEvent& event);
   // The tool begins, is used and ends when the world can be used.

@@ -348,8 +348,7 @@ void Window::reload() {
 }
 
 void Window::leaveWorld(std::function<void()> go) {
-  if (session_ && session_->editor().isChanged()) return editing_.askToSave(std::move(go));
-  go();
+  session_ ? editing_.leave(session_->editor(), std::move(go)) : go();
 }
 
 void Window::onAction(const InputEvent& event, Action action) {
