@@ -163,9 +163,11 @@ std::string elementsBetween(std::string_view text, const std::vector<std::string
 
 std::string changed(std::string_view text, FieldType type, const Value& before, const Value& after,
                     size_t indent, const Syntax& syntax) {
-  // A single string of XML is the text itself, and entities are not what their bytes say.
-  const bool isWhole =
-      syntax.isXml() && (type == FieldType::SFString || text.find('&') != text.npos);
+  // A single string of XML is the text itself, also in a list without quotes, and entities are not
+  // what their bytes say.
+  const bool isText =
+      type == FieldType::SFString || (type == FieldType::MFString && text.find('"') == text.npos);
+  const bool isWhole = syntax.isXml() && (isText || text.find('&') != text.npos);
   if (isWhole) return whole(type, after, indent, syntax);
   const Words olds = wordsOf(type, before, syntax), news = wordsOf(type, after, syntax);
   const std::vector<std::string_view> tokens = tokensOf(text, syntax);

@@ -229,6 +229,8 @@ void Editor::rename(Node& node, const std::string& name) {
   Scope& scope = impl_->file.document().scope();
   if (!isNodeName(name)) throw EditError(fmt::format("'{}' is no name for a node", name));
   if (name == node.defName) return;
+  if (!impl_->file.document().standing().contains(twin.document.get()))
+    throw EditError(fmt::format("this {} has been removed from the file", node.type().name));
   if (scope.names.contains(name)) throw EditError(fmt::format("another node is named {}", name));
   if (impl_->file.document().isRepeated(node.defName))
     throw EditError(fmt::format("several nodes are named {}: which one a USE means depends on its "

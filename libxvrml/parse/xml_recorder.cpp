@@ -20,7 +20,9 @@ NodeText XmlRecorder::begunNode(const Name&, const Name* def) {
 }
 
 void XmlRecorder::useNode(const Name& name) {
-  if (isRecording()) add({{element().begin, 0}, builder_.named(name.text), true});
+  // A reference to no node is left as it is.
+  if (const Node* const node = builder_.named(name.text); node && isRecording())
+    add({{element().begin, 0}, node, true});
   builder_.useNode(name);
 }
 

@@ -56,6 +56,17 @@ TEST(ChangedValue, WhatHasNoSuchFormIsWrittenAnew) {
   changed(FieldType::SFImage, "1 1 1 0xff", "2 1 1 0 1");
 }
 
+TEST(ChangedValue, AttributesOfXml) {
+  const auto change = [](std::string_view text, MFString before, MFString after) {
+    return changedAttribute(text, FieldType::MFString, before, after, 0, '\'');
+  };
+  EXPECT_EQ(change("\"a\"  \"b\"", {"a", "b"}, {"a", "c"}), "\"a\"  \"c\"");
+  EXPECT_EQ(change("a", {"a"}, {"a", "b"}), "\"a\" \"b\"") << "a list without quotes";
+  EXPECT_EQ(change("", {}, {"<"}), "\"&lt;\"");
+  EXPECT_EQ(changedAttribute("TRUE", FieldType::SFBool, true, false, 0, '"'), "FALSE");
+  EXPECT_EQ(changedAttribute("true", FieldType::SFBool, true, false, 0, '"'), "false");
+}
+
 TEST(Lines, KnowWhereTheyBegin) {
   const std::string text = "a\n  b c # d\r\n\te";
   EXPECT_TRUE(startsLine(text, 4));
@@ -66,6 +77,14 @@ TEST(Lines, KnowWhereTheyBegin) {
   EXPECT_EQ(indentationAt(text, text.size()), "\t");
   EXPECT_EQ(lineFeedOf(text), "\n");
   EXPECT_EQ(lineFeedOf("a\r\nb"), "\r\n");
+}
+
+TEST(Lines, ValuesAndTextsOfXmlKeepTheirIndentation) {
+  EXPECT_EQ(indentedXml("<A\n  b='x\n  y'>\n  <!-- '\n  -->\n  <![CDATA[\n  c]]>\n  text\n  </A>",
+                        "  ", "    "),
+            "<A\n    b='x\n  y'>\n    <!-- '\n    -->\n    <![CDATA[\n  c]]>\n  text\n    </A>");
+  EXPECT_TRUE(endsXmlLine("<A/> <!-- c --> \n<B/>", 4));
+  EXPECT_FALSE(endsXmlLine("<A/> <!-- c --><B/>", 4));
 }
 
 TEST(Lines, StringsKeepTheirIndentation) {

@@ -369,6 +369,14 @@ TEST(Editor, FilesThatImportKeepTheirNodes) {
   EXPECT_THROW(editor.rename(*world->scope.names.at("L"), "B"), EditError);
 }
 
+TEST_P(Edited, ANodeThatHasBeenRemovedIsNotRenamed) {
+  load("DEF A Group { }\nDEF B Group { }\n");
+  const NodeRef removed(&node("A"));
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(refusal([&] { editor->rename(*removed, "C"); }),
+            "this Group has been removed from the file");
+}
+
 TEST_P(Edited, ANodeThatIsReplacedTakesItsRoutesAlong) {
   load("DEF S Shape { geometry DEF T Text { } }\nDEF C Script { eventOut MFString s }\n"
        "ROUTE C.s TO T.string\n");

@@ -325,26 +325,29 @@ TEST(XmlEditor, FilesThatCannotBeEditedAreSaid) {
 }
 
 TEST_P(EditedXml, WhatCouldNotBeReadStaysAsItIs) {
-  for (const char* body : {"<Foo/><Group><Foo><Group DEF='X'/></Foo></Group>",
-                           "<Box/>",
-                           "<Group><Box/></Group>",
-                           "<Shape><Box/><Sphere/></Shape>",
-                           "<Shape><Box size='1 x 2' foo='1' onclick='f()'/></Shape>",
-                           "<Group containerField='nothing'/>",
-                           "<Group><Shape containerField='nothing'/></Group>",
-                           "<Group DEF='a b'/>",
-                           "<Group USE='none'/>",
-                           "<Group DEF=''/>",
-                           "text <Group>text</Group>",
-                           "<shape><box SIZE='1 2 3'/></shape>",
-                           "<Group bboxsize='1 1 1' bboxSize='2 2 2'/>",
-                           "<x:Group xmlns:x='y' x:z='1'/>",
-                           "<Script url=' \"a\" '><![CDATA[b]]>c<!-- d -->&amp;</Script>",
-                           "<Group children='NULL'><Shape/></Group>",
-                           "<ROUTE/>",
-                           "<ProtoDeclare/>",
-                           "<ProtoInstance name='none'/>",
-                           "<?pi?><!-- <Group/> --><Group><![CDATA[<a/>]]></Group>"}) {
+  for (const char* body :
+       {"<Foo/><Group><Foo><Group DEF='X'/></Foo></Group>",
+        "<Box/>",
+        "<Group><Box/></Group>",
+        "<Shape><Box/><Sphere/></Shape>",
+        "<Shape><Box size='1 x 2' foo='1' onclick='f()'/></Shape>",
+        "<Group containerField='nothing'/>",
+        "<Group><Shape containerField='nothing'/></Group>",
+        "<Group DEF='a b'/>",
+        "<Group USE='none'/>",
+        "<Group DEF=''/>",
+        "<Script><field accessType='initializeOnly' type='SFNode' name='n'><Group USE='none'/>"
+        "</field></Script>",
+        "text <Group>text</Group>",
+        "<shape><box SIZE='1 2 3'/></shape>",
+        "<Group bboxsize='1 1 1' bboxSize='2 2 2'/>",
+        "<x:Group xmlns:x='y' x:z='1'/>",
+        "<Script url=' \"a\" '><![CDATA[b]]>c<!-- d -->&amp;</Script>",
+        "<Group children='NULL'><Shape/></Group>",
+        "<ROUTE/>",
+        "<ProtoDeclare/>",
+        "<ProtoInstance name='none'/>",
+        "<?pi?><!-- <Group/> --><Group><![CDATA[<a/>]]></Group>"}) {
     const std::string text = "<X3D version='3.3'>\n<Scene>\n<PointLight DEF='L'/>\n" +
                              std::string(body) + "\n</Scene>\n</X3D>\n";
     const auto loaded = loadWorld(folder.write("f.x3d", text));

@@ -124,6 +124,10 @@ TEST(Meshes, TheMessageForOtherFormatsNamesThoseThatCanBeRead) {
   }
 }
 
+TEST(Meshes, FormFeedsAreBlanks) {
+  EXPECT_THROW(loadWorldFromMemory("a \f\v b\n", "a.bin"), LoadError) << "it ends";
+}
+
 TEST(Meshes, WeldingKeepsTheFirstOfEqualPoints) {
   std::vector<Vec3f> points = {{0, 0, 0}, {1, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}, {1, 0, 1e-30f}};
   EXPECT_EQ(weldPoints(points), (std::vector<uint32_t>{0, 1, 0, 1, 2}));

@@ -19,7 +19,7 @@ class TextCursor {
   bool atEnd() const { return p_ == end_; }
   // Skips blanks within the line.
   void skipBlanks() {
-    while (p_ < end_ && (*p_ == ' ' || *p_ == '\t')) ++p_;
+    while (p_ < end_ && isSpace(*p_) && *p_ != '\n' && *p_ != '\r') ++p_;
   }
   void skipSpace() { // blanks and line ends
     while (p_ < end_ && isSpace(*p_)) ++p_;
