@@ -16,9 +16,11 @@ void saveEdits(xvrml::Editor& editor, const xvrml::World& world, const std::stri
   const bool isOwn = target == world.path || std::filesystem::equivalent(target, world.path, none);
   const std::string bytes = editor.bytes();
   if (isOwn && !overwrite && editor.isChangedOnDisk())
-    throw xvrml::EditError(fmt::format("{} has been written by another program since it was read: "
-                                       "save with overwrite to replace it",
-                                       target));
+    throw xvrml::EditError(
+        fmt::format("{} has been changed or removed by another program since it was "
+                    "read: "
+                    "save with overwrite to replace it",
+                    target));
   if (!isOwn) return writeRegularFile(target, bytes, Wait::disk);
   writeEditedFile(target, bytes);
   editor.saved();

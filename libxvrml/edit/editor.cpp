@@ -305,7 +305,12 @@ void Editor::removeRoute(Node& from, std::string_view out, Node& to, std::string
 
 std::string Editor::whyReadOnly() { return impl_->file.whyNot(); }
 std::string Editor::text() { return impl_->file.text(); }
-std::string Editor::bytes() { return impl_->file.bytes(); }
+bool Editor::isInStep() const { return impl_->history.isOpen(); }
+
+std::string Editor::bytes() {
+  if (isInStep()) throw EditError("an edit is under way: end it before the file is saved");
+  return impl_->file.bytes();
+}
 bool Editor::isChanged() const { return impl_->history.isChanged(); }
 bool Editor::isChangedOnDisk() const { return impl_->file.isChangedOnDisk(); }
 

@@ -95,6 +95,33 @@ def test_a_window_with_unsaved_edits_asks(editor, vv):
     assert "diffuseColor 1 0 0" not in now and "TouchSensor" in now
 
 
+def test_an_anchor_does_not_take_unsaved_edits_away(window, vv):
+    vv.write("other.wrl", HEADER + "Shape { geometry Sphere {} }")
+    there = WORLD.replace("children [\n    DEF Touch TouchSensor {}",
+                          'children Anchor { url "other.wrl" children [')
+    there = there.replace("geometry Box {} } ] }\nDEF RIGHT", "geometry Box {} } ] } }\nDEF RIGHT")
+    w = window(there, "--size", "600x400")
+    w.key("e")
+    w.click(0.25, 0)
+    w.key("Delete")
+    w.move(-0.25, 0)
+    w.tool("keydown", "alt", "click", 1, "keyup", "alt")
+    w.key("Escape")  # the user stays
+    w.key("ctrl+s")
+    now = saved(w, vv, lambda t: t != there)
+    assert "diffuseColor 0 0 1" not in now and "other.wrl" in now
+
+
+def test_a_slip_does_no_harm(editor, vv):
+    w = editor
+    w.key("g", "x")  # nothing is selected
+    w.key("r")
+    w.key("s")
+    assert not list(vv.folder.glob("*.png"))
+    w.key("ctrl+s")
+    assert w.program.poll() is None and text(vv) == WORLD
+
+
 def test_edits_of_a_recording_are_refused(window, vv):
     w = window(WORLD, "--size", "600x400", "--record-input", "input.txt")
     w.key("e")

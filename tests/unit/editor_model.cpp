@@ -225,6 +225,18 @@ TEST_F(Model, ActionsAreOneStepEach) {
   EXPECT_EQ(editor.text(), hall);
 }
 
+TEST_F(Model, AGroupIsRemovedWithWhatIsInIt) {
+  add(world.editor, newNodes()[0]); // below nothing: at the end of the world
+  for (const bool childFirst : {false, true}) {
+    MFNode both = {world.node("TABLE"), world.node("TWICE")};
+    if (childFirst) std::swap(both[0], both[1]);
+    world.editor.select(both);
+    removeSelected(world.editor);
+    EXPECT_EQ(world.editor.editor().text().find("TWICE"), std::string::npos);
+    world.editor.undo();
+  }
+}
+
 TEST_F(Model, ANodeInSeveralPlacesIsNotRemovedBySurprise) {
   world.editor.select({world.node("LAMP"), world.node("LEG")});
   EXPECT_THROW(removeSelected(world.editor), EditError);

@@ -70,6 +70,15 @@ TEST_F(ProbesOfAWall, WhatIsNotSeenIsNotRead) {
   EXPECT_EQ(probes.all()[0].state, Probe::State::hidden) << "nothing is there any more";
 }
 
+TEST_F(ProbesOfAWall, WhatIsNoLongerTrueIsNotShown) {
+  probes.add({0, 0, 1});
+  read(grey(10, 3));
+  probes.keep();
+  probes.expire();
+  EXPECT_TRUE(probes.isWaiting());
+  EXPECT_FALSE(probes.differences()[0]);
+}
+
 TEST_F(ProbesOfAWall, AChangeCountsWhenTheIntervalsPart) {
   probes.add({0, 0, 1});
   EXPECT_FALSE(probes.differences()[0]);

@@ -172,10 +172,37 @@ TEST_F(Tool, OtherNodesGetATransform) {
 TEST_F(Tool, WhatCannotBeMovedIsSaid) {
   world.editor.select({});
   EXPECT_THROW(TransformTool(world.editor, Kind::move, view, 0, 0), EditError);
+  EXPECT_FALSE(world.editor.editor().isInStep());
+}
+
+TEST_F(Tool, WhatIsBehindTheViewerMovesByNumbers) {
   view.camera.matrix[14] = -10; // the viewer looks away
-  world.editor.select({world.node("T")});
-  EXPECT_THROW(TransformTool(world.editor, Kind::turn, view, 0, 0), EditError);
-  EXPECT_EQ(world.editor.editor().undoName(), "") << "no step is open";
+  const std::array<double, 16> before = matrix();
+  TransformTool tool(world.editor, Kind::move, view, 0, 0);
+  tool.chooseAxis(1);
+  tool.type("1");
+  tool.point(world.editor, 0, 0);
+  EXPECT_NEAR(matrix()[13], before[13] + 1, 1e-5);
+  EXPECT_TRUE(world.editor.editor().isInStep());
+  EXPECT_THROW(world.editor.save(), EditError) << "the move may still be taken back";
+  tool.cancel(world.editor);
+  EXPECT_EQ(world.editor.editor().text(), text);
+}
+
+TEST_F(Tool, AMirroredParentTurnsAsThePointerDoes) {
+  EditedWorld mirrored("#X3D V3.3 utf8\nPROFILE Immersive\nTransform { scale -1 1 1 children "
+                       "DEF T Transform { children Shape { geometry Box { } } } }\n",
+                       "x3dv");
+  mirrored.editor.select({mirrored.node("T")});
+  TransformTool tool(mirrored.editor, Kind::turn, view, 0, 0);
+  tool.chooseAxis(2);
+  for (const char* key : {"9", "0"}) tool.type(key);
+  tool.point(mirrored.editor, 0, 0);
+  NodePlacement placement;
+  ASSERT_TRUE(mirrored.browser.locate(*mirrored.node("T"), placement));
+  // The mirrored x axis (-1, 0, 0) becomes (0, -1, 0).
+  EXPECT_NEAR(placement.path.back().toWorld[1], -1, 1e-5);
+  tool.cancel(mirrored.editor);
 }
 
 } // namespace

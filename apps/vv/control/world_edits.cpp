@@ -115,12 +115,19 @@ class StepDoer {
   MFNode made_;
 };
 
+// The window may be in the middle of a step, which its user can still take back.
+void refuseWithinStep(WorldEditor& world) {
+  if (world.editor().isInStep())
+    throw EditError("the user is in the middle of an edit; try again when it has ended");
+}
+
 std::string nameOrNull(const std::string& name) { return name.empty() ? "null" : jsonText(name); }
 
 } // namespace
 
 std::string WorldCommands::edit(const edits::Step& step) {
   WorldEditor& world = session_.editor();
+  refuseWithinStep(world);
   StepDoer doer(world, [this](const NodeName& name) { return nodeOf(name); });
   std::string nodes;
   const auto where = [&] { return fmt::format("edit: edits[{}]: ", doer.made().size()); };
@@ -136,6 +143,7 @@ std::string WorldCommands::edit(const edits::Step& step) {
 }
 
 std::string WorldCommands::undo(const Undo& undo) {
+  refuseWithinStep(session_.editor());
   return nameOrNull(undo.again ? session_.editor().redo() : session_.editor().undo());
 }
 

@@ -100,6 +100,10 @@ void Probes::read(xvrml::Browser& browser, const picture::Picture& picture, cons
   }
 }
 
+void Probes::expire() {
+  for (Probe& probe : probes_) probe.state = Probe::State::waiting;
+}
+
 void Probes::keep() {
   kept_ = camera_;
   for (Probe& probe : probes_) {

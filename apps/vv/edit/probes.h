@@ -43,7 +43,9 @@ class Probes {
   // unbiased samples. A probe behind something else, or where nothing is any more, is hidden.
   // [while the world can be used]
   void read(xvrml::Browser& browser, const picture::Picture& picture, const EditView& view);
-  // Keeps the light of all probes, to compare what follows with it.
+  // Notes that the world or the view has changed: all probes wait for the next picture.
+  void expire();
+  // Keeps the light of all probes that have been read, to compare what follows with it.
   void keep();
   // Returns the changes of the probes, in their order; none where there is nothing to compare: the
   // probe was not read, or from another view. The two pictures are taken as independent (Welch);

@@ -53,12 +53,19 @@ Quatd turnOf(const Rotation& r) {
 Rotation rotationOf(const Quatd& turn) {
   const double angle = turn.angle();
   if (!(std::abs(angle) > 1e-9)) return {0, 0, 1, 0};
-  const V3d axis = turn.axis();
+  V3d axis = turn.axis();
+  for (int i = 0; i < 3; ++i) // rounding of an axis that is one of the three
+    if (std::abs(axis[i]) < 1e-12) axis[i] = 0;
   // Negative angles and those above a half turn are the same turn about the opposite axis.
   const bool opposite = angle > std::numbers::pi;
   const V3d shown = opposite ? -axis : axis;
   return {float(shown.x), float(shown.y), float(shown.z),
           float(opposite ? 2 * std::numbers::pi - angle : angle)};
+}
+
+// Returns what a key types, without the name of the keypad.
+std::string signOf(const std::string& key) {
+  return key.starts_with("Keypad ") ? key.substr(7) : key;
 }
 
 } // namespace
@@ -86,8 +93,8 @@ TransformTool::TransformTool(WorldEditor& editor, Kind kind, const EditView& vie
     rotation_ = turnOf(transform.rotation);
     const V3d centre(transform.center.x, transform.center.y, transform.center.z);
     pivot_ = (translation_ + centre) * toWorld_;
-    if (!projectPoint(view.camera, view.aspect, &pivot_.x, pivotX_, pivotY_))
-      throw EditError("what is selected is behind the viewer");
+    // Behind the viewer there is no place in the picture: turns and scales are about its middle.
+    if (!projectPoint(view.camera, view.aspect, &pivot_.x, pivotX_, pivotY_)) pivotX_ = pivotY_ = 0;
   } catch (...) {
     cancel(editor);
     throw;
@@ -111,20 +118,23 @@ void TransformTool::chooseAxis(int axis) {
   }
 }
 
+bool TransformTool::isNumberKey(const std::string& key) {
+  const std::string sign = signOf(key);
+  return key == "Backspace" || sign == "." || sign == "-" ||
+         (sign.size() == 1 && sign[0] >= '0' && sign[0] <= '9');
+}
+
 bool TransformTool::type(const std::string& key) {
+  if (!isNumberKey(key)) return false;
+  constexpr size_t mostDigits = 16;
+  const std::string sign = signOf(key);
   if (key == "Backspace") {
     if (!typed_.empty()) typed_.pop_back();
-    return true;
-  }
-  const std::string sign = key.starts_with("Keypad ") ? key.substr(7) : key;
-  const bool isPoint = sign == "." && typed_.find('.') == typed_.npos;
-  if (sign == "-") {
+  } else if (sign == "-") {
     typed_ = typed_.starts_with('-') ? typed_.substr(1) : "-" + typed_;
-    return true;
+  } else if (typed_.size() < mostDigits && (sign != "." || typed_.find('.') == typed_.npos)) {
+    typed_ += sign;
   }
-  if (!isPoint && (sign.size() != 1 || sign[0] < '0' || sign[0] > '9')) return false;
-  constexpr size_t mostDigits = 16;
-  if (typed_.size() < mostDigits) typed_ += sign;
   return true;
 }
 
@@ -193,6 +203,7 @@ void TransformTool::turn(WorldEditor& editor, double x, double y) {
   V3d own;
   toWorld_.inverse().multDirMatrix(axis, own);
   if (own.length() == 0) return;
+  if (toWorld_.determinant() < 0) own = -own; // a mirrored parent turns the other way
   Quatd turn;
   turn.setAxisAngle(own.normalized(), chosen(angle * degrees, 5) / degrees);
   // Imath multiplies row vectors: the node's own turn comes first.

@@ -23,7 +23,9 @@ class TransformTool {
   // Restricts it to an axis, 0 to 2: one of the world, or if it is chosen again, one of the node's
   // own; then it is free again.
   void chooseAxis(int axis);
-  // Types a digit, a point, a minus sign, or "Backspace". Returns false for other keys.
+  // Tells whether a key is a digit, a point, a minus sign, or "Backspace", also of the keypad.
+  static bool isNumberKey(const std::string& key);
+  // Types such a key. Returns false for other keys.
   bool type(const std::string& key);
   // Rounds to steps: 5 degrees, a tenth of the size, or a power of ten of the distance.
   void setSnap(bool snap) { snap_ = snap; }

@@ -45,20 +45,24 @@ void Editing::reset() {
   if (isOpen_) open(true);
 }
 
-void Editing::leave(WorldEditor& editor, std::function<void()> go) {
+void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay) {
   if (model_ && model_->hasRequests())
-    model_->request([this, go](WorldEditor& later) { leave(later, go); });
-  else if (editor.isChanged())
-    askToSave(std::move(go));
-  else
-    go();
+    return model_->request([this, go, stay](WorldEditor& later) { leave(later, go, stay); });
+  if (!editor.isChanged()) return go();
+  open(true);
+  if (!panels_) return go(); // there is no editor in this build
+  panels_->askToSave(std::move(go), std::move(stay));
+  screen_.redraw();
 }
 
-void Editing::askToSave(std::function<void()> go) {
-  open(true);
-  if (!panels_) return go();
-  panels_->askToSave(std::move(go));
-  screen_.redraw();
+// Saves the file, or asks first if somebody else has changed it.
+void Editing::save() {
+  model_->request([this](WorldEditor& editor) {
+    if (editor.editor().isChangedOnDisk() && !editor.editor().isInStep())
+      panels_->askToOverwrite();
+    else
+      editor.save();
+  });
 }
 
 std::string Editing::takeMessage() {
@@ -70,6 +74,8 @@ bool Editing::take(InputEvent& event) {
   using Kind = InputEvent::Kind;
   if (!isOpen_) return false;
   if (event.kind == Kind::move) pointer_ = event;
+  if (event.kind == Kind::move || event.kind == Kind::leave)
+    isOverPicture_ = event.kind == Kind::move;
   if (hasTool_ && takeForTool(event)) return true;
   switch (event.kind) {
   case Kind::press:
@@ -105,26 +111,36 @@ bool Editing::press(const InputEvent& event) {
     return request([](WorldEditor& editor) { editor.undo(); });
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
-  if (event.control && key == "S") return request([](WorldEditor& editor) { editor.save(); });
-  if (!event.control && !event.alt && key == "V")
-    return request([this, view = view_, at = pointer_](WorldEditor& editor) {
-      const CameraRay ray = rayThrough(view.camera, view.aspect, at.x, at.y);
-      PickHit hit;
-      if (!editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit))
-        throw EditError("there is nothing here to be measured");
-      probes_.add(hit.point);
-    });
-  if (!event.control && !event.alt && key == "B" && !probes_.all().empty()) {
-    probes_.keep();
-    screen_.redraw();
+  if (event.control && key == "S") {
+    save();
     return true;
   }
+  if (!event.control && !event.alt && key == "V")
+    return request(
+        [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
+          if (!inside) throw EditError("put the pointer where the light is to be measured");
+          const CameraRay ray = rayThrough(view.camera, view.aspect, at.x, at.y);
+          PickHit hit;
+          if (!editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit))
+            throw EditError("there is nothing here to be measured");
+          probes_.add(hit.point);
+        });
+  if (!event.control && !event.alt && key == "B" && !probes_.all().empty())
+    return request([this](WorldEditor& editor) {
+      if (editor.browser().hasChanges()) probes_.expire();
+      probes_.keep();
+    });
   if (event.control && key == "G" && selects) return request(wrapSelected);
   if (key == "Escape" && !selects) {
     open(false);
     return true;
   }
-  if (event.control || event.alt || !selects) return false;
+  if (event.control || event.alt) return false;
+  // With nothing selected these keys are not those of the window either: a slip must do no harm.
+  const bool isTool = !event.shift && (key == "G" || key == "R" || key == "S");
+  if (!selects && isTool)
+    return request([](WorldEditor&) { throw EditError("nothing is selected"); });
+  if (!selects) return false;
   if (event.shift && key == "D") return request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
   if (key == ".") return wantsFrame_ = true;
@@ -136,14 +152,13 @@ bool Editing::press(const InputEvent& event) {
 }
 
 bool Editing::beginTool(TransformTool::Kind kind) {
+  // Until it is ended the tool has its keys, also if it cannot begin: an axis is no other command.
   hasTool_ = true;
+  isToolClick_ = hasToolFailed_ = false;
   model_->request([this, kind, at = pointer_](WorldEditor& editor) {
-    try {
-      tool_.emplace(editor, kind, view_, at.x, at.y);
-    } catch (...) {
-      hasTool_ = false;
-      throw;
-    }
+    hasToolFailed_ = true;
+    tool_.emplace(editor, kind, view_, at.x, at.y);
+    hasToolFailed_ = false;
   });
   return true;
 }
@@ -179,9 +194,13 @@ bool Editing::takeForTool(const InputEvent& event) {
       follow(tool, editor);
     });
     return true;
-  case Kind::press: return true;
-  case Kind::release: endTool(event.button == Button::left); return true;
+  case Kind::press: return isToolClick_ = true;
+  case Kind::release:
+    if (!isToolClick_) return false; // the session has seen the press
+    endTool(event.button == Button::left);
+    return true;
   case Kind::down:
+    if (event.control || event.alt) return true;
     if (key == "Return" || key == "Keypad Enter" || key == "Escape") {
       endTool(key != "Escape");
     } else if (key == "X" || key == "Y" || key == "Z") {
@@ -190,6 +209,7 @@ bool Editing::takeForTool(const InputEvent& event) {
         follow(tool, editor);
       });
     } else {
+      if (hasToolFailed_ && !TransformTool::isNumberKey(key)) return hasTool_ = false;
       useTool([follow, key](TransformTool& tool, WorldEditor& editor) {
         if (tool.type(key)) follow(tool, editor);
       });
@@ -205,23 +225,24 @@ void Editing::update(Session& session, double seconds) {
   panels_->setView(view_);
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_));
-  readProbes(session, seconds);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
+  readProbes(session, seconds);
 }
 
 // Reads the probes from the still picture of the world as it is, a few times a second.
 void Editing::readProbes(Session& session, double seconds) {
   constexpr double interval = 0.25;
-  if (probes_.all().empty() || seconds < probesRead_ + interval) return;
+  if (probes_.all().empty()) return;
+  const bool outdated = session.viewers().own().isOutdated();
+  if (outdated) probes_.expire();
+  if (outdated || seconds < probesRead_ + interval) return;
   session.pictures().wantReadings();
   const uint64_t finished =
       session.pictures().isFinished(session.pilot()) ? session.pictures().number() : 0;
   if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting()) return;
   picture::Picture picture;
-  if (session.viewers().own().isOutdated() || !session.pictures().copyStill(picture) ||
-      !picture.planes.contains(RT_ERROR))
-    return;
+  if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
   probesRead_ = seconds;
   finishedRead_ = finished;
   probes_.read(session.browser(), picture, view_);

@@ -28,15 +28,16 @@ class Editing {
   void update(Session& session, double seconds);
   // Calls go, which ends the world, once all that was asked for is done: at once, or when the user
   // has decided what becomes of edits that are not saved, and does not want to stay.
-  void leave(WorldEditor& editor, std::function<void()> go);
+  // stay: is called otherwise; may be null.
+  void leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay = {});
   // Forgets the world, because another takes its place.
   void reset();
   // Returns, once, what is to be said to the user.
   std::string takeMessage();
 
  private:
-  void askToSave(std::function<void()> go);
   bool press(const InputEvent& event);
+  void save();
   void click(const InputEvent& event);
   // The tool begins, is used and ends when the world can be used.
   bool beginTool(TransformTool::Kind kind);
@@ -55,7 +56,10 @@ class Editing {
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then
   InputEvent pointer_;                // where the pointer was last
+  bool isOverPicture_ = false;        // the pointer is there
   bool hasTool_ = false;              // the tool gets the events; it may still have to begin
+  bool isToolClick_ = false;          // a button has been pressed for the tool
+  bool hasToolFailed_ = false;        // it could not begin
   std::optional<TransformTool> tool_;
   bool wantsFrame_ = false; // the viewer is to see what is selected
   std::string message_;

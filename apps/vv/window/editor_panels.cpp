@@ -49,6 +49,7 @@ void EditorPanels::draw() {
   drawSheet();
   drawProbes();
   drawQuestion();
+  drawOverwriteQuestion();
   model_.setActive(ImGui::IsAnyItemActive());
 }
 
@@ -68,7 +69,12 @@ void EditorPanels::drawTools() {
   if (button("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
     model_.request([](WorldEditor& editor) { editor.redo(); });
   if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)"))
-    model_.request([](WorldEditor& editor) { editor.save(); });
+    model_.request([this](WorldEditor& editor) {
+      if (editor.editor().isChangedOnDisk() && !editor.editor().isInStep())
+        askToOverwrite();
+      else
+        editor.save();
+    });
   ImGui::NewLine();
   if (button("Add", writable, "Add a node to the selected group, or behind the selected node"))
     ImGui::OpenPopup("##new");
@@ -186,34 +192,56 @@ void EditorPanels::drawProbes() {
   ImGui::End();
 }
 
-void EditorPanels::askToSave(std::function<void()> go) { go_ = std::move(go); }
+void EditorPanels::askToSave(std::function<void()> go, std::function<void()> stay) {
+  go_ = std::move(go);
+  stay_ = std::move(stay);
+}
 
+// The answer is given when the question is closed, because it may end the world.
 void EditorPanels::drawQuestion() {
   constexpr const char* title = "Unsaved edits";
   if (go_ && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
   if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
   ImGui::TextUnformatted("The edits of this world have not been saved.");
-  std::function<void()> go;
-  bool ends = false;
-  if (button("Save", true, "Write the file")) {
-    model_.request([](WorldEditor& editor) { editor.save(); });
-    // Behind the command: if the file cannot be written, the world stays.
-    model_.request([chosen = go_](WorldEditor& editor) {
-      if (!editor.isChanged()) chosen();
+  const bool saves = button("Save", true, "Write the file"),
+             throws = button("Throw away", true, "Go without saving"),
+             stays = button("Stay", true, "Go on with this world (Escape)") ||
+                     ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  if (saves || throws || stays) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  if (!saves && !throws && !stays) return;
+  const std::function<void()> go = std::exchange(go_, nullptr),
+                              stay = std::exchange(stay_, nullptr);
+  if (saves)
+    model_.request([go, stay](WorldEditor& editor) {
+      try {
+        editor.save(); // if the file cannot be written, the world stays
+      } catch (...) {
+        if (stay) stay();
+        throw;
+      }
+      go();
     });
-    ends = true;
-  }
-  if (button("Throw away", true, "Go without saving")) {
-    go = go_;
-    ends = true;
-  }
-  if (button("Stay", true, "Go on with this world")) ends = true;
-  if (ends) {
-    go_ = nullptr;
+  else if (throws)
+    go();
+  else if (stay)
+    stay();
+}
+
+void EditorPanels::drawOverwriteQuestion() {
+  constexpr const char* title = "The file has changed";
+  if (asksToOverwrite_ && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::TextUnformatted("Another program has changed or removed the file since it was read.");
+  const bool replaces = button("Replace it", true, "Write the text with these edits over it"),
+             keeps = button("Do not save", true, "Leave the file as it is (Escape)") ||
+                     ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  if (replaces || keeps) {
+    asksToOverwrite_ = false;
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
-  if (go) go();
+  if (replaces) model_.request([](WorldEditor& editor) { editor.save("", true); });
 }
 
 } // namespace vv

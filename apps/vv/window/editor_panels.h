@@ -19,9 +19,11 @@ class EditorPanels {
   void draw();
   // Where the viewer stands, for a new Viewpoint.
   void setView(const EditView& view) { view_ = view; }
-  // Asks whether edits are saved, thrown away or kept before the world goes. go: is called then,
-  // unless the user wants to stay.
-  void askToSave(std::function<void()> go);
+  // Asks whether edits are saved or thrown away before the world goes. go: is called then. stay: is
+  // called if the user wants to stay; may be null.
+  void askToSave(std::function<void()> go, std::function<void()> stay);
+  // Asks whether the file is replaced although somebody else has changed it.
+  void askToOverwrite() { asksToOverwrite_ = true; }
 
  private:
   void drawOutline();
@@ -31,12 +33,14 @@ class EditorPanels {
   void drawFrames() const;
   void drawProbes();
   void drawQuestion();
+  void drawOverwriteQuestion();
 
   EditModel& model_;
   Probes& probes_;
   EditView view_;
   std::string search_;
-  std::function<void()> go_; // null: nothing is asked
+  std::function<void()> go_, stay_; // go_ null: nothing is asked
+  bool asksToOverwrite_ = false;
 };
 
 // Draws the widgets for a field, and asks for the edits that the user makes with them.

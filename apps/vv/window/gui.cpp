@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -88,6 +89,7 @@ struct Gui::Impl {
   ImGuiContext* const context = ImGui::CreateContext();
   SDL_Texture* font = nullptr;
   std::string clipboard;
+  std::set<int> down; // buttons and keys that the widgets have seen go down
   uint64_t drawn = SDL_GetTicks64();
   int unsettled = framesToSettle;
 
@@ -158,6 +160,31 @@ struct Gui::Impl {
     ImGui::EndFrame();
   }
 
+  // Tells which button or key an event is about, as a number, and whether it goes down or up.
+  struct Held {
+    int number = 0;
+    bool isDown = false, isUp = false;
+  };
+  static Held held(const SDL_Event& event) {
+    if (event.type == SDL_MOUSEBUTTONDOWN || event.type == SDL_MOUSEBUTTONUP)
+      return {-int(event.button.button), event.type == SDL_MOUSEBUTTONDOWN,
+              event.type == SDL_MOUSEBUTTONUP};
+    if (event.type == SDL_KEYDOWN || event.type == SDL_KEYUP)
+      return {int(event.key.keysym.scancode), event.type == SDL_KEYDOWN, event.type == SDL_KEYUP};
+    return {};
+  }
+
+  // Ctrl+S ends what is typed, which counts then, and is left to the window.
+  bool endsTyping(const SDL_Event& event) {
+    if (event.type != SDL_KEYDOWN || event.key.keysym.sym != SDLK_s ||
+        !(event.key.keysym.mod & KMOD_CTRL) || !ImGui::GetIO().WantTextInput)
+      return false;
+    ImGui::SetWindowFocus(nullptr);
+    frame();
+    frame();
+    return true;
+  }
+
   static bool wants(const SDL_Event& event) {
     const ImGuiIO& io = ImGui::GetIO();
     switch (event.type) {
@@ -167,7 +194,7 @@ struct Gui::Impl {
     case SDL_MOUSEWHEEL: return io.WantCaptureMouse;
     case SDL_KEYDOWN:
     case SDL_KEYUP:
-    case SDL_TEXTINPUT: return io.WantTextInput;
+    case SDL_TEXTINPUT: return io.WantCaptureKeyboard; // a text, a drag or a question
     default: return false;
     }
   }
@@ -243,8 +270,13 @@ bool Gui::take(const SDL_Event& event) {
   const bool before = Impl::wants(event);
   if (!Impl::feed(event)) return false;
   impl_->unsettled = framesToSettle;
+  if (impl_->endsTyping(event)) return false;
   impl_->frame();
-  return before || Impl::wants(event);
+  const bool taken = before || Impl::wants(event);
+  // A button or key belongs to those who saw it go down.
+  const auto [number, isDown, isUp] = Impl::held(event);
+  if (isDown && taken) impl_->down.insert(number);
+  return isUp ? impl_->down.erase(number) > 0 : taken;
 }
 
 void Gui::draw() {

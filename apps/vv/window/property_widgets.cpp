@@ -43,11 +43,18 @@ template <class Number> const char* formOf(const Number* numbers, int count) {
   return large ? "%.7g" : "%.4g";
 }
 
+// Returns whether a change of the last item counts: at once while it is dragged, and when it is
+// finished while it is typed.
+bool counts(bool changes) {
+  return (changes && !ImGui::GetIO().WantTextInput) || ImGui::IsItemDeactivatedAfterEdit();
+}
+
 // The functions edit() draw the widget of a value, and return whether the user has changed it.
 
 template <class Number> bool dragNumbers(Number* numbers, int count) {
-  return ImGui::DragScalarN("##value", dataType<Number>, numbers, count, speedOf(numbers, count),
-                            nullptr, nullptr, formOf(numbers, count));
+  return counts(ImGui::DragScalarN("##value", dataType<Number>, numbers, count,
+                                   speedOf(numbers, count), nullptr, nullptr,
+                                   formOf(numbers, count)));
 }
 
 bool edit(bool& value) { return ImGui::Checkbox("##value", &value); }
@@ -59,22 +66,20 @@ bool edit(std::string& value) {
 }
 
 bool edit(Color& value) {
-  return ImGui::ColorEdit3("##value", &value.r, ImGuiColorEditFlags_Float);
+  return counts(ImGui::ColorEdit3("##value", &value.r, ImGuiColorEditFlags_Float));
 }
 
 bool edit(ColorRGBA& value) {
-  return ImGui::ColorEdit4("##value", &value.r, ImGuiColorEditFlags_Float);
+  return counts(ImGui::ColorEdit4("##value", &value.r, ImGuiColorEditFlags_Float));
 }
 
 bool edit(Rotation& value) {
-  bool changes = ImGui::DragFloat3("##axis", &value.x, 0.01f, 0, 0, "%.4g");
+  bool changes = counts(ImGui::DragFloat3("##axis", &value.x, 0.01f, 0, 0, "%.4g"));
   auto angle = float(double(value.angle) * degrees);
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::DragFloat("##angle", &angle, 0.5f, 0, 0, "%.4g degrees")) {
-    value.angle = float(double(angle) / degrees);
-    changes = true;
-  }
-  return changes;
+  const bool turned = ImGui::DragFloat("##angle", &angle, 0.5f, 0, 0, "%.4g degrees");
+  if (turned) value.angle = float(double(angle) / degrees);
+  return counts(turned) || changes;
 }
 
 // Numbers, alone or a few of them.

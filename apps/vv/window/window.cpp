@@ -59,7 +59,14 @@ class Window {
     if (!options_.control.empty())
       control_ = std::make_unique<control::Control>(
           options_, control::Host{[this](const std::vector<std::string>& urls) {
-                                    open({urls, "", {}}, false);
+                                    leaveWorld(
+                                        [this, urls] {
+                                          open({urls, "", {}}, false);
+                                        },
+                                        [this] {
+                                          control_->loadFailed("the user keeps this world, whose "
+                                                               "edits are not saved");
+                                        });
                                   },
                                   [this] { ended_ = true; }});
   }
@@ -102,7 +109,7 @@ class Window {
   void recordingFailed(int reason);
   void reload();
   // Goes on at once, or when the user has decided what becomes of edits that are not saved.
-  void leaveWorld(std::function<void()> go);
+  void leaveWorld(std::function<void()> go, std::function<void()> stay = {});
 
   // --- Keys ---
   void onAction(const InputEvent& event, Action action);
@@ -284,7 +291,7 @@ void Window::begin(std::unique_ptr<xvrml::World> world, const std::string& fragm
   Session::Callbacks calls;
   calls.onAction = [this](const InputEvent& event, Action action) { onAction(event, action); };
   calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
-    open({urls, base, {}}, false);
+    leaveWorld([this, urls, base] { open({urls, base, {}}, false); });
   };
   // A recording and a script are of one world: the first one, or for a script the same one again.
   Options options = options_;
@@ -316,9 +323,7 @@ void Window::begin(std::unique_ptr<xvrml::World> world, const std::string& fragm
 void Window::record(const std::string& line) {
   if (!record_) return;
   errno = 0;
-  if (record_ << line << std::flush) return;
-  const int reason = errno;
-  recordingFailed(reason);
+  if (!(record_ << line << std::flush)) recordingFailed(errno);
 }
 
 std::string Window::endRecording() {
@@ -347,8 +352,8 @@ void Window::reload() {
   leaveWorld([this, path] { open({{path}, "", {}}, true); });
 }
 
-void Window::leaveWorld(std::function<void()> go) {
-  session_ ? editing_.leave(session_->editor(), std::move(go)) : go();
+void Window::leaveWorld(std::function<void()> go, std::function<void()> stay) {
+  session_ ? editing_.leave(session_->editor(), std::move(go), std::move(stay)) : go();
 }
 
 void Window::onAction(const InputEvent& event, Action action) {

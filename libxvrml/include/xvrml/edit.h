@@ -55,6 +55,8 @@ class Editor {
   void begin(std::string name);
   void end();
   void cancel();
+  // Tells whether a step is open.
+  bool isInStep() const;
   // Undo the last step, or do again the one that was undone last. Return false if there is none.
   // An edit after undo() forgets the steps that could be done again.
   bool undo();
@@ -105,7 +107,8 @@ class Editor {
   // Returns the text of the file with all edits. It has been read back, and gives the edited world.
   // Throws EditError if it does not.
   std::string text();
-  // Returns the bytes of the file with this text: with its byte-order mark, packed as it was.
+  // Returns the bytes of the file with this text, to be saved: with its byte-order mark, packed as
+  // it was. Throws EditError within a step, which may still be taken back.
   std::string bytes();
   // Returns whether there are edits that have not been saved.
   bool isChanged() const;
