@@ -226,7 +226,6 @@ TEST_F(Model, ActionsAreOneStepEach) {
 }
 
 TEST_F(Model, AGroupIsRemovedWithWhatIsInIt) {
-  add(world.editor, newNodes()[0]); // below nothing: at the end of the world
   for (const bool childFirst : {false, true}) {
     MFNode both = {world.node("TABLE"), world.node("TWICE")};
     if (childFirst) std::swap(both[0], both[1]);

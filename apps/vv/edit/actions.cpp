@@ -92,7 +92,13 @@ void selectAt(WorldEditor& editor, const EditView& view, double x, double y, boo
 void removeSelected(WorldEditor& editor) {
   const MFNode nodes = selectionOf(editor);
   editor.step(nameOf("Remove", nodes), [&] {
-    for (const NodeRef& node : nodes) editor.editor().remove(editor.placeOf(*node));
+    bool anyGone = false;
+    for (const NodeRef& node : nodes) {
+      // A node may have gone with the group that it was in.
+      if (anyGone && editor.editor().placesOf(*node).empty()) continue;
+      editor.editor().remove(editor.placeOf(*node));
+      anyGone = true;
+    }
   });
   editor.select({});
 }
