@@ -102,7 +102,6 @@ void Editing::click(const InputEvent& event) {
 // Takes a key of the editor. Returns whether it is one.
 bool Editing::press(const InputEvent& event) {
   const std::string& key = event.text;
-  const bool selects = model_->sheet().node.get() != nullptr;
   const auto request = [this](EditModel::Command command) {
     model_->request(std::move(command));
     return true;
@@ -125,29 +124,27 @@ bool Editing::press(const InputEvent& event) {
             throw EditError("there is nothing here to be measured");
           probes_.add(hit.point);
         });
-  if (!event.control && !event.alt && key == "B" && !probes_.all().empty())
+  if (!event.control && !event.alt && key == "B")
     return request([this](WorldEditor& editor) {
       if (editor.browser().hasChanges()) probes_.expire();
       probes_.keep();
     });
-  if (event.control && key == "G" && selects) return request(wrapSelected);
-  if (key == "Escape" && !selects) {
-    open(false);
-    return true;
-  }
+  // The keys are taken whatever is selected: what was clicked just now may still have to be.
+  if (event.control && key == "G") return request(wrapSelected);
   if (event.control || event.alt) return false;
-  // With nothing selected these keys are not those of the window either: a slip must do no harm.
-  const bool isTool = !event.shift && (key == "G" || key == "R" || key == "S");
-  if (!selects && isTool)
-    return request([](WorldEditor&) { throw EditError("nothing is selected"); });
-  if (!selects) return false;
-  if (event.shift && key == "D") return request(duplicateSelected);
+  if (event.shift) return key == "D" && request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
   if (key == ".") return wantsFrame_ = true;
   if (key == "G") return beginTool(TransformTool::Kind::move);
   if (key == "R") return beginTool(TransformTool::Kind::turn);
   if (key == "S") return beginTool(TransformTool::Kind::scale);
-  if (key == "Escape") return request([](WorldEditor& editor) { editor.select({}); });
+  if (key == "Escape")
+    return request([this](WorldEditor& editor) {
+      if (editor.selection().empty())
+        open(false);
+      else
+        editor.select({});
+    });
   return false;
 }
 
@@ -184,6 +181,7 @@ void Editing::endTool(bool accept) {
 bool Editing::takeForTool(const InputEvent& event) {
   using Kind = InputEvent::Kind;
   const std::string& key = event.text;
+  const bool isAxis = key == "X" || key == "Y" || key == "Z";
   const auto follow = [at = pointer_](TransformTool& tool, WorldEditor& editor) {
     tool.point(editor, at.x, at.y);
   };
@@ -200,16 +198,20 @@ bool Editing::takeForTool(const InputEvent& event) {
     endTool(event.button == Button::left);
     return true;
   case Kind::down:
-    if (event.control || event.alt) return true;
+    if (hasToolFailed_ && (event.control || !(isAxis || TransformTool::isNumberKey(key))))
+      return hasTool_ = false;
+    if ((event.control || event.alt) && !key.ends_with("Ctrl") && !key.ends_with("Alt")) {
+      message_ = "end this first: Enter keeps it, Escape takes it back";
+      return true;
+    }
     if (key == "Return" || key == "Keypad Enter" || key == "Escape") {
       endTool(key != "Escape");
-    } else if (key == "X" || key == "Y" || key == "Z") {
+    } else if (isAxis) {
       useTool([follow, axis = key[0] - 'X'](TransformTool& tool, WorldEditor& editor) {
         tool.chooseAxis(axis);
         follow(tool, editor);
       });
     } else {
-      if (hasToolFailed_ && !TransformTool::isNumberKey(key)) return hasTool_ = false;
       useTool([follow, key](TransformTool& tool, WorldEditor& editor) {
         if (tool.type(key)) follow(tool, editor);
       });
@@ -223,10 +225,10 @@ void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
   view_ = {session.pilot().camera(), session.pilot().aspect()};
   panels_->setView(view_);
-  if (std::exchange(wantsFrame_, false))
-    session.pilot().putAt(model_->cameraAround(session.editor(), view_));
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
+  if (std::exchange(wantsFrame_, false))
+    session.pilot().putAt(model_->cameraAround(session.editor(), view_));
   readProbes(session, seconds);
 }
 
