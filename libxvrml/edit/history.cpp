@@ -6,7 +6,7 @@
 namespace xvrml {
 
 void History::begin(std::string name) {
-  if (begun_.empty()) open_ = {std::move(name), {}};
+  if (begun_.empty()) open_ = {name.empty() ? "Edit" : std::move(name), {}};
   begun_.push_back(open_.edits.size());
 }
 

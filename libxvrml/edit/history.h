@@ -20,8 +20,8 @@ struct Edit {
 
 class History {
  public:
-  // Edits from begin() to end() are one step; both may nest. cancel() undoes what the innermost
-  // begin() has begun, and ends it.
+  // Edits from begin() to end() are one step; both may nest. A step without a name is an "Edit".
+  // cancel() undoes what the innermost begin() has begun, and ends it.
   void begin(std::string name);
   void end();
   void cancel();

@@ -29,6 +29,13 @@ def lamp(tmp_path):
     return xvrml.load(tmp_path / "l.wrl")
 
 
+def test_a_step_without_a_name_can_be_undone(lamp):
+    with lamp.edit(""):
+        lamp["L"].intensity = 0.5
+    assert lamp.edit.undo() == "Edit"
+    assert lamp["L"].intensity == pytest.approx(0.8)
+
+
 @pytest.mark.parametrize("runs", [False, True])
 def test_a_step_is_saved_in_place(lamp, runs):
     if runs:
