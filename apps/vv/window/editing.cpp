@@ -55,16 +55,6 @@ void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function
   screen_.redraw();
 }
 
-// Saves the file, or asks first if somebody else has changed it.
-void Editing::save() {
-  model_->request([this](WorldEditor& editor) {
-    if (editor.editor().isChangedOnDisk() && !editor.editor().isInStep())
-      panels_->askToOverwrite();
-    else
-      editor.save();
-  });
-}
-
 std::string Editing::takeMessage() {
   if (!message_.empty() || !model_) return std::exchange(message_, {});
   return model_->takeMessage();
@@ -111,7 +101,7 @@ bool Editing::press(const InputEvent& event) {
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
   if (event.control && key == "S") {
-    save();
+    panels_->save();
     return true;
   }
   if (!event.control && !event.alt && key == "V")

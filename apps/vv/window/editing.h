@@ -37,7 +37,6 @@ class Editing {
 
  private:
   bool press(const InputEvent& event);
-  void save();
   void click(const InputEvent& event);
   // The tool begins, is used and ends when the world can be used.
   bool beginTool(TransformTool::Kind kind);

@@ -68,13 +68,7 @@ void EditorPanels::drawTools() {
     model_.request([](WorldEditor& editor) { editor.undo(); });
   if (button("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
     model_.request([](WorldEditor& editor) { editor.redo(); });
-  if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)"))
-    model_.request([this](WorldEditor& editor) {
-      if (editor.editor().isChangedOnDisk() && !editor.editor().isInStep())
-        askToOverwrite();
-      else
-        editor.save();
-    });
+  if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)")) save();
   ImGui::NewLine();
   if (button("Add", writable, "Add a node to the selected group, or behind the selected node"))
     ImGui::OpenPopup("##new");
@@ -190,6 +184,13 @@ void EditorPanels::drawProbes() {
     ImGui::NewLine();
   }
   ImGui::End();
+}
+
+void EditorPanels::save() {
+  model_.request([this](WorldEditor& editor) {
+    asksToOverwrite_ = editor.editor().isChangedOnDisk() && !editor.editor().isInStep();
+    if (!asksToOverwrite_) editor.save();
+  });
 }
 
 void EditorPanels::askToSave(std::function<void()> go, std::function<void()> stay) {

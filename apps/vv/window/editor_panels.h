@@ -22,8 +22,8 @@ class EditorPanels {
   // Asks whether edits are saved or thrown away before the world goes. go: is called then. stay: is
   // called if the user wants to stay; may be null.
   void askToSave(std::function<void()> go, std::function<void()> stay);
-  // Asks whether the file is replaced although somebody else has changed it.
-  void askToOverwrite() { asksToOverwrite_ = true; }
+  // Saves the file, or asks first if somebody else has changed it.
+  void save();
 
  private:
   void drawOutline();
