@@ -25,13 +25,6 @@ constexpr const char* hall = "#VRML V2.0 utf8\n"
                              "  DEF TWICE Group { children USE LEG }\n"
                              "] }\n";
 
-EditView front() {
-  EditView view;
-  const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1};
-  std::copy(matrix, matrix + 16, view.camera.matrix);
-  return view;
-}
-
 std::vector<std::string> labels(const EditModel& model) {
   std::vector<std::string> all;
   for (const OutlineRow& row : model.rows())

@@ -15,13 +15,6 @@ constexpr const char* text =
     "DEF WALL Shape { geometry Box { size 20 20 2 } }\n"
     "DEF SCREEN Transform { translation 100 0 3 children Shape { geometry Box { size 1 1 1 } } }\n";
 
-EditView front() {
-  EditView view;
-  const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1};
-  std::copy(matrix, matrix + 16, view.camera.matrix);
-  return view;
-}
-
 // A picture of 8 x 8 pixels with one grey in all of them.
 Picture grey(float luminance, float halfWidth, bool trusted = true) {
   Picture picture;

@@ -1,25 +1,26 @@
 // editor_support.h: A world in a file of its own, with the editor of a session.
 #pragma once
 
-#include <cstdlib>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "edit/world_editor.h"
+#include "edit/edit_model.h"
 #include "xvrml/browser.h"
 #include "xvrml/world.h"
 
 namespace editor_test {
 
-inline std::string readAll(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
+// A viewer at (0, 0, 10) who looks along -z.
+inline vv::EditView front(double aspect = 1) {
+  vv::EditView view;
+  const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1};
+  std::copy(matrix, matrix + 16, view.camera.matrix);
+  view.aspect = aspect;
+  return view;
 }
 
 // The file is removed with this object.

@@ -21,17 +21,9 @@ constexpr const char* text =
     "  DEF T Transform { translation 0.3 0.1 0 rotation 0 1 0 0.5 children [\n"
     "    DEF S Shape { geometry Box { size 0.4 0.2 0.2 } } ] } ] }\n";
 
-EditView front() {
-  EditView view;
-  const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 10, 1};
-  std::copy(matrix, matrix + 16, view.camera.matrix);
-  view.aspect = 1.5;
-  return view;
-}
-
 struct Tool : testing::Test {
   EditedWorld world{text};
-  EditView view = front();
+  EditView view = front(1.5);
 
   void SetUp() override { world.editor.select({world.node("T")}); }
   // The matrix from the node's own coordinates to the world.

@@ -72,21 +72,16 @@ bool isXml(WorldEditor& editor) {
 void selectAt(WorldEditor& editor, const EditView& view, double x, double y, bool group, bool add) {
   const CameraRay ray = rayThrough(view.camera, view.aspect, x, y);
   PickHit hit;
-  MFNode selection = add ? editor.selection() : MFNode();
+  NodeRef found;
   if (editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit)) {
     // From the Shape upwards: what stands in the file, and is a group if one is wanted.
-    bool isShape = true;
-    for (auto step = hit.path.rbegin(); step != hit.path.rend(); ++step, isShape = false) {
-      if ((group && isShape) || editor.editor().placesOf(*step->node).empty()) continue;
-      const auto known = std::find(selection.begin(), selection.end(), step->node);
-      if (known != selection.end())
-        selection.erase(known);
-      else
-        selection.push_back(step->node);
-      break;
-    }
+    if (group) hit.path.pop_back();
+    const auto step = std::find_if(hit.path.rbegin(), hit.path.rend(), [&](const auto& one) {
+      return !editor.editor().placesOf(*one.node).empty();
+    });
+    if (step != hit.path.rend()) found = step->node;
   }
-  editor.select(std::move(selection));
+  editor.choose(found, add);
 }
 
 void removeSelected(WorldEditor& editor) {

@@ -76,15 +76,7 @@ void EditModel::search(std::string text) {
 }
 
 void EditModel::select(const NodeRef& node, bool add) {
-  request([this, node, add](WorldEditor& editor) {
-    MFNode selection = add ? editor.selection() : MFNode();
-    const auto known = std::find(selection.begin(), selection.end(), node);
-    if (known != selection.end())
-      selection.erase(known);
-    else if (node)
-      selection.push_back(node);
-    editor.select(std::move(selection));
-  });
+  request([node, add](WorldEditor& editor) { editor.choose(node, add); });
 }
 
 bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, double seconds) {

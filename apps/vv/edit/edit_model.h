@@ -60,7 +60,6 @@ class EditModel {
   void setActive(bool active);
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
-  const std::string& searched() const { return search_; }
   // Selects a node, shows its row, and adds to the selection or replaces it.
   void select(const xvrml::NodeRef& node, bool add);
 

@@ -65,6 +65,15 @@ std::vector<Open> rootPlaces(const World& world) {
   return places;
 }
 
+// Appends the children of a node, so that the first one is visited next.
+void appendChildPlaces(std::vector<Open>& open, const Open& parent) {
+  const auto first = std::ptrdiff_t(open.size());
+  forEachChild(*parent.node, [&](const NodeSlot& slot, const NodeRef& child) {
+    open.push_back({slot, child, parent.depth + 1});
+  });
+  std::reverse(open.begin() + first, open.end());
+}
+
 } // namespace
 
 std::string labelOf(const Node& node) {
@@ -82,19 +91,13 @@ std::vector<OutlineRow> Outline::rows(const World& world) const {
   while (!open.empty()) {
     const Open place = std::move(open.back());
     open.pop_back();
-    OutlineRow row{place.node, place.slot, place.depth, labelOf(*place.node), false, false, false};
+    OutlineRow row{place.node, place.depth, labelOf(*place.node), false, false, false};
     if (place.slot.parent && !place.slot.field.empty() && place.slot.field != "children")
       row.label = place.slot.field + ": " + row.label;
     row.isUse = !seen.insert(place.node.get());
     row.canOpen = hasChildren(*place.node);
     row.isOpen = row.canOpen && !row.isUse && open_.contains(place.node.get());
-    if (row.isOpen) {
-      const auto first = std::ptrdiff_t(open.size());
-      forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
-        open.push_back({slot, child, place.depth + 1});
-      });
-      std::reverse(open.begin() + first, open.end());
-    }
+    if (row.isOpen) appendChildPlaces(open, place);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -123,12 +126,8 @@ std::vector<OutlineRow> Outline::find(const World& world, std::string_view text,
     open.pop_back();
     if (!seen.insert(place.node.get())) continue;
     if (matches(*place.node, text))
-      found.push_back({place.node, place.slot, 0, labelOf(*place.node), false, false, false});
-    const auto first = std::ptrdiff_t(open.size());
-    forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
-      open.push_back({slot, child, 0});
-    });
-    std::reverse(open.begin() + first, open.end());
+      found.push_back({place.node, 0, labelOf(*place.node), false, false, false});
+    appendChildPlaces(open, place);
   }
   return found;
 }
@@ -136,15 +135,10 @@ std::vector<OutlineRow> Outline::find(const World& world, std::string_view text,
 std::vector<Node*> pathTo(const World& world, const Node& node) {
   std::unordered_map<const Node*, Node*> parents;
   std::vector<Open> open = rootPlaces(world);
-  for (const Open& root : open) parents.emplace(root.node.get(), nullptr);
   while (!open.empty() && !parents.contains(&node)) {
     const Open place = std::move(open.back());
     open.pop_back();
-    const auto first = std::ptrdiff_t(open.size());
-    forEachChild(*place.node, [&](const NodeSlot& slot, const NodeRef& child) {
-      if (parents.emplace(child.get(), slot.parent).second) open.push_back({slot, child, 0});
-    });
-    std::reverse(open.begin() + first, open.end());
+    if (parents.emplace(place.node.get(), place.slot.parent).second) appendChildPlaces(open, place);
   }
   std::vector<Node*> path;
   if (!parents.contains(&node)) return path;

@@ -15,7 +15,6 @@ namespace vv {
 
 struct OutlineRow {
   xvrml::NodeRef node;
-  xvrml::NodeSlot slot; // where the node stands
   int depth = 0;
   std::string label; // "LAMP  PointLight"
   bool canOpen = false, isOpen = false;
@@ -30,8 +29,6 @@ class Outline {
   void setOpen(const xvrml::NodeRef& node, bool open);
   // Opens all nodes on the way from a root to this one. Returns false if it is not in the file.
   bool reveal(const xvrml::World& world, const xvrml::Node& node);
-  // Forgets which nodes are open.
-  void clear() { open_.clear(); }
 
   // Returns the nodes whose DEF name, type or field names have this text, in any case, in the order
   // of the file; at most `most`.

@@ -1,5 +1,7 @@
 #include "edit/world_editor.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "libpicture/files/save_edits.h"
@@ -7,6 +9,15 @@
 namespace vv {
 
 using namespace xvrml;
+
+void WorldEditor::choose(const NodeRef& node, bool add) {
+  if (!add) selection_.clear();
+  const auto known = std::find(selection_.begin(), selection_.end(), node);
+  if (known != selection_.end())
+    selection_.erase(known);
+  else if (node)
+    selection_.push_back(node);
+}
 
 void WorldEditor::step(const std::string& name, const std::function<void()>& edits) {
   editor_.begin(name);

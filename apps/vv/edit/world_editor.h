@@ -24,6 +24,9 @@ class WorldEditor {
   // been removed from the world, until another is selected.
   const xvrml::MFNode& selection() const { return selection_; }
   void select(xvrml::MFNode nodes) { selection_ = std::move(nodes); }
+  // Selects a node, or adds it to what is selected; a node that is selected then is taken out. Null
+  // selects nothing more.
+  void choose(const xvrml::NodeRef& node, bool add);
   // Returns the node that was selected last; null: none is selected.
   xvrml::Node* selected() const { return selection_.empty() ? nullptr : selection_.back().get(); }
 

@@ -28,6 +28,20 @@ bool button(const char* label, bool active, const std::string& hint) {
   return pressed;
 }
 
+// Begins a question, which waits for an answer while it is asked. Returns whether it is there; then
+// ImGui::EndPopup() ends it.
+bool beginQuestion(const char* title, bool isAsked, const char* text) {
+  if (isAsked && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return false;
+  ImGui::TextUnformatted(text);
+  return true;
+}
+
+// The answer that changes nothing, which Escape gives, too.
+bool harmlessAnswer(const char* label, const char* hint) {
+  return button(label, true, hint) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+}
+
 enum class Edge : uint8_t { left, right };
 
 // Places a panel at an edge of the window, in the whole height, with this part of its width. The
@@ -200,14 +214,11 @@ void EditorPanels::askToSave(std::function<void()> go, std::function<void()> sta
 
 // The answer is given when the question is closed, because it may end the world.
 void EditorPanels::drawQuestion() {
-  constexpr const char* title = "Unsaved edits";
-  if (go_ && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::TextUnformatted("The edits of this world have not been saved.");
+  if (!beginQuestion("Unsaved edits", bool(go_), "The edits of this world have not been saved."))
+    return;
   const bool saves = button("Save", true, "Write the file"),
              throws = button("Throw away", true, "Go without saving"),
-             stays = button("Stay", true, "Go on with this world (Escape)") ||
-                     ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+             stays = harmlessAnswer("Stay", "Go on with this world (Escape)");
   if (saves || throws || stays) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   if (!saves && !throws && !stays) return;
@@ -230,13 +241,11 @@ void EditorPanels::drawQuestion() {
 }
 
 void EditorPanels::drawOverwriteQuestion() {
-  constexpr const char* title = "The file has changed";
-  if (asksToOverwrite_ && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::TextUnformatted("Another program has changed or removed the file since it was read.");
+  if (!beginQuestion("The file has changed", asksToOverwrite_,
+                     "Another program has changed or removed the file since it was read."))
+    return;
   const bool replaces = button("Replace it", true, "Write the text with these edits over it"),
-             keeps = button("Do not save", true, "Leave the file as it is (Escape)") ||
-                     ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+             keeps = harmlessAnswer("Do not save", "Leave the file as it is (Escape)");
   if (replaces || keeps) {
     asksToOverwrite_ = false;
     ImGui::CloseCurrentPopup();

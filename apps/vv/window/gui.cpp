@@ -130,7 +130,6 @@ struct Gui::Impl {
       io.Fonts->AddFontFromMemoryTTF(owned, int(bytes.size()), size, nullptr, ranges);
       io.FontGlobalScale = float(1 / scale);
     }
-    ImGui::GetStyle().ScaleAllSizes(1);
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);

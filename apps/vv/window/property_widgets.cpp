@@ -94,11 +94,6 @@ concept Editable = requires(T& value) {
   edit(value);
 };
 
-std::string textOf(const PropertyRow& row) {
-  return row.size > 0 ? fmt::format("{} of {}", fieldTypeName(row.field->type), row.size)
-                      : std::string(fieldTypeName(row.field->type));
-}
-
 void drawLink(EditModel& model, const NodeRef& node, int number) {
   if (!node) return ImGui::TextDisabled("NULL");
   ImGui::PushID(number);
@@ -182,7 +177,7 @@ void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   }
   if (row.isLong) {
     ImGui::SameLine();
-    ImGui::TextDisabled("%s", textOf(row).c_str());
+    ImGui::TextDisabled("%s of %zu", std::string(fieldTypeName(field.type)).c_str(), row.size);
     return ImGui::PopID();
   }
   if (drawValue(model, row)) model.drag(node, field, row.value);
