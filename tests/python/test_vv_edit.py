@@ -44,6 +44,19 @@ def saved(w, vv, change):
     return text(vv)
 
 
+def stay_and_save(w, vv, before):
+    """Answers the question with Escape and saves. The question comes once all edits are done, so the
+    keys may be too early and are tried again."""
+
+    def tried():
+        w.key("Escape")
+        w.key("ctrl+s")
+        return text(vv) != before
+
+    w.wait(tried, "the file")
+    return text(vv)
+
+
 def test_a_box_is_selected_moved_undone_and_saved(editor, vv):
     w = editor
     w.click(0, 0)  # nothing is there
@@ -93,9 +106,7 @@ def test_a_window_with_unsaved_edits_asks(editor, vv):
     w.key("e")  # the panels are closed, the edit stays
     w.key("q")
     w.key("Delete")  # not while a question waits
-    w.key("Escape")  # the user stays
-    w.key("ctrl+s")
-    now = saved(w, vv, lambda t: t != WORLD)
+    now = stay_and_save(w, vv, WORLD)
     assert "diffuseColor 1 0 0" not in now and "TouchSensor" in now
 
 
@@ -110,9 +121,7 @@ def test_an_anchor_does_not_take_unsaved_edits_away(window, vv):
     w.key("Delete")
     w.move(-0.25, 0)
     w.tool("keydown", "alt", "click", 1, "keyup", "alt")
-    w.key("Escape")  # the user stays
-    w.key("ctrl+s")
-    now = saved(w, vv, lambda t: t != there)
+    now = stay_and_save(w, vv, there)
     assert "diffuseColor 0 0 1" not in now and "other.wrl" in now
 
 
