@@ -87,6 +87,16 @@ Pick readPick(Members& m) {
   return {read("x"), read("y")};
 }
 
+Action readProbe(Members& m) {
+  Probe probe{readPick(m), readSamples(m)};
+  if (!m.has("quantity")) return probe;
+  const std::string quantity = m.text("quantity");
+  probe.illuminance = quantity == "illuminance";
+  if (!probe.illuminance && quantity != "luminance")
+    refuse(m.at("quantity"), "\"luminance\" or \"illuminance\"", quantity);
+  return probe;
+}
+
 Action readSave(Members& m) {
   Save save;
   if (m.has("path")) save.path = pathOf(m.at("path"), m.need("path"));
@@ -172,10 +182,8 @@ constexpr Row table[] = {
      }},
     {"selection", [](Members&) -> Action { return ListSelection{}; }},
     {"pick", [](Members& m) -> Action { return readPick(m); }},
-    {"probe",
-     [](Members& m) -> Action {
-       return Probe{readPick(m), readSamples(m)};
-     }},
+    {"probe", readProbe},
+    {"measure", [](Members& m) -> Action { return Measure{readSamples(m)}; }},
     {"quit", [](Members&) -> Action { return Quit{}; }},
 };
 

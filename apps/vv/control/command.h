@@ -98,13 +98,17 @@ struct Pick {
 struct Probe {
   Pick place;
   std::optional<int> samples;
+  bool illuminance = false; // that of the surface there; otherwise its luminance
+};
+struct Measure {
+  std::optional<int> samples;
 };
 struct Quit {};
 
 using Action = std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute,
                             Describe, ListNames, ListViewpoints, Bind, Load, Replace, Render, Time,
                             Quit, PressKey, edits::Step, Undo, Save, ListEdits, ListRoots,
-                            ListParents, Select, ListSelection, Pick, Probe>;
+                            ListParents, Select, ListSelection, Pick, Probe, Measure>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

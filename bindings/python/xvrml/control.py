@@ -551,14 +551,31 @@ class Control:
               x: float,
               y: float,
               *,
+              quantity: str = "luminance",
               samples: Optional[int] = None,
               timeout: Optional[float] = None) -> Dict[str, Any]:
         """Measures the light of a pixel of the true picture. Returns its luminance in cd/m2,
         half_width of the 95 % interval, radiance and radiance_half_width of the three colours,
         samples, trusted: whether the intervals can be trusted, which takes 32 samples or more, and
-        hit: what pick returns. samples: of the pixel; None: as many as the window takes."""
+        hit: what pick returns. samples: of the pixel; None: as many as the window takes.
+        With quantity="illuminance" it measures the light that falls on the surface that is seen
+        there: illuminance in lux instead of luminance and radiance. samples: of the point; None:
+        4,096, or as many as the command line says."""
         given = {} if samples is None else {"samples": samples}
-        result: Dict[str, Any] = self._call("probe", {"x": x, "y": y, **given}, timeout)
+        members = {"x": x, "y": y, "quantity": quantity, **given}
+        result: Dict[str, Any] = self._call("probe", members, timeout)
+        return result
+
+    def measure(self,
+                *,
+                samples: Optional[int] = None,
+                timeout: Optional[float] = None) -> List[Dict[str, Any]]:
+        """Reads all ORTSensors of the world as it is now. Returns them in the order of the file, as
+        "sensors" of `vv --measure FILE.json` has them: name, quantity, unit, mean, mean_half_width,
+        minimum, maximum, uniformity, points and so on. samples: of each point; None: 4,096, or as
+        many as the command line says."""
+        given = {} if samples is None else {"samples": samples}
+        result: List[Dict[str, Any]] = self._call("measure", given, timeout)
         return result
 
     def bind(self, viewpoint: Union[str, int]) -> None:
