@@ -348,15 +348,12 @@ void LiveRenderer::Impl::map(FrameRequest frame) {
 }
 
 std::vector<Measurement> LiveRenderer::Impl::read(MeasureRequest request) {
-  std::vector<PlacedSensor> sensors;
+  std::vector<PlacedSensor> sensors = std::move(request.what.sensors);
   try {
     apply(std::move(request.worldChanges));
     stage.prepareSensors(request.what.view);
     steps.beginAnew(); // RT_MOTION of the next frame begins here
-    if (request.what.sensor)
-      sensors.push_back(*request.what.sensor);
-    else
-      sensors = stage.placeSensors();
+    if (sensors.empty()) sensors = stage.placeSensors();
   } catch (const SensorError&) {
     throw;        // the world is mapped; a sensor has wrong fields
   } catch (...) { // as in begin()

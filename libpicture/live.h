@@ -81,8 +81,8 @@ struct LivePicture {
 struct LiveMeasure {
   // Chooses levels of detail and billboards.
   View view;
-  // The sensor; nothing: all ORTSensors of the world, in the order of the file.
-  std::optional<PlacedSensor> sensor;
+  // The sensors; none: all ORTSensors of the world, in the order of the file.
+  std::vector<PlacedSensor> sensors;
   int samples = 1; // samples of each point
 };
 

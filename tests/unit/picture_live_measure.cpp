@@ -90,9 +90,11 @@ TEST(LiveMeasure, aSensorAtASurfaceReadsTheSideThatIsSeen) {
   const double expected = M_PI * 2 / std::hypot(1.0, 2.0);
   EXPECT_NEAR(double(read(live, {.samples = 16}).sensors.at(1).value[0]), expected, 1e-4);
   for (const double* normal : {up, down}) {
-    const LiveReadings top = read(live, {.sensor = sensorAt(point, normal, down), .samples = 16});
+    const LiveReadings top =
+        read(live, {.sensors = {sensorAt(point, normal, down)}, .samples = 16});
     EXPECT_NEAR(double(top.sensors.at(0).value[0]), expected, 1e-4);
-    const LiveReadings under = read(live, {.sensor = sensorAt(point, normal, up), .samples = 16});
+    const LiveReadings under =
+        read(live, {.sensors = {sensorAt(point, normal, up)}, .samples = 16});
     EXPECT_LT(double(under.sensors.at(0).value[0]), .15 * expected) << "what the ball reflects";
   }
 }

@@ -55,7 +55,7 @@ void Rendering::begin(const Command& command, Session& session, const Describe& 
   else if (const auto* probe = std::get_if<Probe>(&command.action))
     begin(*probe, session, describe);
   else
-    measure({}, {}, std::get<Measure>(command.action).samples, session);
+    measure({}, "", std::get<Measure>(command.action).samples, session);
 }
 
 void Rendering::begin(const Render& render, Session& session) {
@@ -76,21 +76,21 @@ void Rendering::begin(const Render& render, Session& session) {
 void Rendering::begin(const Probe& probe, Session& session, const Describe& describe) {
   refuseScreenColours(options_);
   if (probe.illuminance)
-    return measure(sensorAt(probe.place, session), describe(probe.place), probe.samples, session);
+    return measure({sensorAt(probe.place, session)}, describe(probe.place), probe.samples, session);
   Probing probing = probingAt(probe, settingsOf(probe, options_, session));
   probing.hit = describe(probe.place);
   session.pictures().requestStill(probing.still);
   work_ = std::move(probing);
 }
 
-void Rendering::measure(std::optional<picture::PlacedSensor> sensor, std::string hit,
+void Rendering::measure(std::vector<picture::PlacedSensor> sensors, std::string hit,
                         std::optional<int> samples, Session& session) {
   refuseScreenColours(options_);
-  Reading reading{sensor.has_value(), std::move(hit),
+  Reading reading{!sensors.empty(), std::move(hit),
                   std::make_shared<std::optional<picture::LiveReadings>>()};
   session.measuring().want(
       {.view = session.pictures().stillOf(session.pilot()).view,
-       .sensor = std::move(sensor),
+       .sensors = std::move(sensors),
        .samples = samples.value_or(samplesOfSensors(options_))},
       [out = reading.read](const picture::LiveReadings& read) { *out = read; });
   work_ = std::move(reading);

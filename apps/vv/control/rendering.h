@@ -56,7 +56,8 @@ class Rendering {
 
   void begin(const Render& render, Session& session);
   void begin(const Probe& probe, Session& session, const Describe& describe);
-  void measure(std::optional<picture::PlacedSensor> sensor, std::string hit,
+  // sensors: none: those of the world. hit: of a probe.
+  void measure(std::vector<picture::PlacedSensor> sensors, std::string hit,
                std::optional<int> samples, Session& session);
   std::optional<Outcome> follow(const Reading& reading);
   std::optional<Outcome> take(StillAnswer still);
