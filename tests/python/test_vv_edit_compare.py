@@ -53,10 +53,9 @@ class Editor:
         return [row[160:410] for row in self.rows()[384:]]
 
     def keep(self):
-        """Keeps A, which the bottom of the window then says."""
-        before = self.says()
+        """Keeps A, and waits for the long message that says that it has all its samples."""
         self.window.key("b")
-        self.window.wait(lambda: self.says() != before, "A")
+        self.until(lambda rows: any(min(p) > 150 for row in rows[384:] for p in row[250:400]), "A")
 
     def drag(self, *places, keys=()):
         for key in keys:

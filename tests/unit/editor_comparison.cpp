@@ -137,7 +137,8 @@ struct KeptPicture : testing::Test {
   void keep(const Picture& picture, uint64_t frame) {
     comparison.ask(0, view);
     EXPECT_TRUE(comparison.wantsPicture());
-    EXPECT_TRUE(comparison.take(picture, frame, 0, view));
+    EXPECT_TRUE(comparison.take(picture, frame, 0, view, false));
+    EXPECT_EQ(comparison.takeMessage(), "A is kept");
     EXPECT_FALSE(comparison.wantsPicture());
   }
 };
@@ -145,7 +146,7 @@ struct KeptPicture : testing::Test {
 TEST_F(KeptPicture, ItIsShownInThePlaceOfThePresentOne) {
   EXPECT_THROW(comparison.toggle(Shown::a), xvrml::EditError);
   keep(grey(4, 2, 1, 0), 7);
-  comparison.take(grey(4, 2, 0, 0), 8, 1, view);
+  comparison.take(grey(4, 2, 0, 0), 8, 1, view, false);
   EXPECT_EQ(comparison.cover().width, 0);
   comparison.toggle(Shown::a);
   EXPECT_EQ(comparison.cover().width, 4);
@@ -160,12 +161,15 @@ TEST_F(KeptPicture, ItIsShownInThePlaceOfThePresentOne) {
 
 TEST_F(KeptPicture, ItIsRefinedWithItsFrame) {
   keep(grey(4, 2, 1, .5f), 7);
-  EXPECT_TRUE(comparison.take(grey(4, 2, 1, .1f), 7, 0, view));
-  EXPECT_FALSE(comparison.take(grey(4, 2, 5, .1f), 8, 1, view));
+  EXPECT_TRUE(comparison.take(grey(4, 2, 1, .1f), 7, 0, view, false));
+  EXPECT_EQ(comparison.takeMessage(), "");
+  EXPECT_TRUE(comparison.take(grey(4, 2, 1, .1f), 7, 0, view, true));
+  EXPECT_NE(comparison.takeMessage().find("all its samples"), std::string::npos);
+  EXPECT_FALSE(comparison.take(grey(4, 2, 5, .1f), 8, 1, view, false));
   comparison.toggle(Shown::difference);
   EXPECT_TRUE(comparison.wantsPicture());
   EXPECT_EQ(comparison.changes(), nullptr);
-  comparison.take(grey(4, 2, 2, 0), 8, 1, view);
+  comparison.take(grey(4, 2, 2, 0), 8, 1, view, false);
   ASSERT_NE(comparison.changes(), nullptr);
   EXPECT_EQ(comparison.changes()->significant, 8u) << "by the narrower error bars";
   comparison.follow(view, 4, 2, {}, true);
@@ -175,7 +179,7 @@ TEST_F(KeptPicture, ItIsRefinedWithItsFrame) {
 
 TEST_F(KeptPicture, AnEditBeforeItsPictureIsThereIsSaid) {
   comparison.ask(3, view);
-  EXPECT_FALSE(comparison.take(grey(4, 2, 1, 0), 7, 4, view));
+  EXPECT_FALSE(comparison.take(grey(4, 2, 1, 0), 7, 4, view, false));
   EXPECT_FALSE(comparison.hasA());
   EXPECT_NE(comparison.takeMessage().find("not kept"), std::string::npos);
 }
@@ -183,7 +187,6 @@ TEST_F(KeptPicture, AnEditBeforeItsPictureIsThereIsSaid) {
 TEST_F(KeptPicture, OtherViewsAndSizesAreNotCompared) {
   EXPECT_FALSE(comparison.whyNot(view, 4, 2).empty());
   keep(grey(4, 2, 1, 0), 7);
-  comparison.takeMessage();
   EXPECT_EQ(comparison.whyNot(view, 4, 2), "");
   EXPECT_NE(comparison.whyNot(view, 8, 4), "");
   comparison.toggle(Shown::a);
@@ -193,7 +196,7 @@ TEST_F(KeptPicture, OtherViewsAndSizesAreNotCompared) {
   EXPECT_EQ(comparison.shown(), Shown::present);
   EXPECT_NE(comparison.takeMessage().find("cannot be compared"), std::string::npos);
   comparison.toggle(Shown::difference);
-  comparison.take(grey(4, 2, 9, 0), 9, 1, other);
+  comparison.take(grey(4, 2, 9, 0), 9, 1, other, false);
   EXPECT_EQ(comparison.changes(), nullptr);
 }
 

@@ -177,12 +177,13 @@ bool Comparison::wantsPicture() const {
 }
 
 bool Comparison::take(const picture::Picture& picture, uint64_t frame, uint64_t changes,
-                      const EditView& view) {
+                      const EditView& view, bool isFinished) {
   if (asked_) {
     const Asked asked = *std::exchange(asked_, std::nullopt);
     if (asked.changes == changes && areEqual(asked.view, view)) {
       frame_ = frame;
-      message_ = "this picture is kept as A: \\ shows it, W beside the present one, D what differs";
+      isComplete_ = false;
+      message_ = "A is kept";
     } else {
       message_ = "A was not kept: the world or the view has changed before its picture was there";
     }
@@ -191,6 +192,8 @@ bool Comparison::take(const picture::Picture& picture, uint64_t frame, uint64_t 
   if (isA) {
     a_ = picture;
     view_ = view;
+    if (isFinished && !std::exchange(isComplete_, true))
+      message_ = "A has all its samples: \\ shows it, W beside the picture, D what has changed";
     if (shown_ == Shown::a || shown_ == Shown::wiper) coverWithA();
   }
   if (shown_ == Shown::difference && whyNot(view, picture.width, picture.height).empty()) {

@@ -82,9 +82,10 @@ class Comparison {
   // Tells whether it waits for a still picture.
   bool wantsPicture() const;
   // Takes a still picture with picture::readingChannels and only unbiased samples. frame: its
-  // number. Returns whether A is this picture: A is refined as long as its frame is.
-  bool take(const picture::Picture& picture, uint64_t frame, uint64_t changes,
-            const EditView& view);
+  // number. isFinished: it has all its samples. Returns whether A is this picture: A is refined as
+  // long as its frame is.
+  bool take(const picture::Picture& picture, uint64_t frame, uint64_t changes, const EditView& view,
+            bool isFinished);
   // Follows the window: A is not shown any more if it has another view or size. isOutdated: the
   // last still picture does not show the world as it is.
   void follow(const EditView& view, int width, int height, const Look& look, bool isOutdated);
@@ -110,8 +111,9 @@ class Comparison {
   };
   std::optional<Asked> asked_;
   picture::Picture a_;
-  EditView view_;      // the view of A
-  uint64_t frame_ = 0; // the number of A's frame
+  EditView view_;           // the view of A
+  uint64_t frame_ = 0;      // the number of A's frame
+  bool isComplete_ = false; // A has all its samples
   Shown shown_ = Shown::present;
   double wiper_ = 0;
   Look look_;

@@ -385,7 +385,8 @@ void Editing::readStill(Session& session, double seconds) {
   stillRead_ = seconds;
   finishedRead_ = finished;
   probes_.read(session.browser(), picture, view_);
-  if (comparison_.take(picture, number, session.editor().editor().changes(), view_)) probes_.keep();
+  if (comparison_.take(picture, number, session.editor().editor().changes(), view_, finished != 0))
+    probes_.keep();
   screen_.redraw();
 }
 
