@@ -82,7 +82,7 @@ Difference differenceBetween(const picture::PixelReading& before,
   const double freedom = fewestFreedom / (p * p * p * p + q * q * q * q);
   const double t =
       std::abs(difference.value) / difference.halfWidth * student::quantile95(fewestFreedom);
-  difference.chance = chanceBeyond(t, std::max(int(freedom), int(fewestFreedom)));
+  difference.chance = chanceBeyond(t, std::max(int(freedom + 1e-9), int(fewestFreedom)));
   return difference;
 }
 
