@@ -6,6 +6,7 @@
 #include <imgui_stdlib.h>
 
 #include "printable.h"
+#include "window/comparison_view.h"
 
 namespace vv {
 
@@ -168,6 +169,9 @@ void EditorPanels::drawProbes() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   for (const Probe& probe : probes_.all()) {
+    if (probe.area && areEqual(probe.area->view, view_))
+      drawRectangle(probe.area->region, std::to_string(probe.number).c_str());
+    if (probe.area) continue;
     double x = 0, y = 0;
     if (!projectPoint(view_.camera, view_.aspect, probe.point.data(), x, y)) continue;
     const ImVec2 at(float(1 + x) / 2 * size.x, float(1 - y) / 2 * size.y);
@@ -191,7 +195,8 @@ void EditorPanels::drawProbes() {
       ImGui::PopStyleColor();
     }
     ImGui::PopTextWrapPos();
-    if (button("Keep as A", true, "Compare what follows with the light of now (B)")) probes_.keep();
+    if (button("Keep as A", true, "Compare what follows with the light of now (B)"))
+      probes_.askToKeep();
     if (button("Copy", true, "Copy all as a table (CSV)"))
       ImGui::SetClipboardText(probes_.csv().c_str());
     if (button("Clear", true, "Remove all probes")) probes_.clear();

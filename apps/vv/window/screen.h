@@ -30,6 +30,10 @@ class Screen {
 
   // rgb: bytes, first row at the top; the picture fills the window.
   void setPicture(int width, int height, const std::vector<uint8_t>& rgb);
+  // Shows another picture, which would fill the window, over the left part of the picture. width
+  // 0: none.
+  void setCover(int width, int height, const std::vector<uint8_t>& rgb);
+  void setCoverPart(double part);                              // from 0 to 1, of the width
   enum Place : uint8_t { right, top, bottom, middle, places }; // each covers those before it
   void setPanel(Place place, const Panel& panel);
   // Shows panels of widgets over the picture, below the texts at the bottom and in the middle. They
