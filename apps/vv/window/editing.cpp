@@ -23,13 +23,16 @@ void Editing::open(bool open) {
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_, probes_);
+    panels_.emplace(*model_, probes_, [this] { save(); });
   }
   if (hasTool_) endTool(false);
   isOpen_ = open;
   pressed_.reset();
   if (open) {
-    screen_.setGui([this] { panels_->draw(); });
+    screen_.setGui([this] {
+      panels_->draw();
+      questions_.draw();
+    });
   } else {
     screen_.setGui(nullptr);
     if (model_) model_->setActive(false);
@@ -37,22 +40,13 @@ void Editing::open(bool open) {
 }
 
 void Editing::reset() {
-  hasTool_ = false;
+  questions_.clear();
+  hasOffered_ = hasTool_ = false;
   tool_.reset();
   panels_.reset();
   model_.reset();
   probes_.clear();
   if (isOpen_) open(true);
-}
-
-void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay) {
-  if (model_ && model_->hasRequests())
-    return model_->request([this, go, stay](WorldEditor& later) { leave(later, go, stay); });
-  if (!editor.isChanged()) return go();
-  open(true);
-  if (!panels_) return go(); // there is no editor in this build
-  panels_->askToSave(std::move(go), std::move(stay));
-  screen_.redraw();
 }
 
 std::string Editing::takeMessage() {
@@ -101,7 +95,7 @@ bool Editing::press(const InputEvent& event) {
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
   if (event.control && key == "S") {
-    panels_->save();
+    save();
     return true;
   }
   if (!event.control && !event.alt && key == "V")
@@ -213,6 +207,7 @@ bool Editing::takeForTool(const InputEvent& event) {
 
 void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
+  if (isOpen_) offerLeft(session.editor());
   view_ = {session.pilot().camera(), session.pilot().aspect()};
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
