@@ -32,11 +32,13 @@ std::string EditedFile::whyNot() {
         return fmt::format("{} has a unit of its own for angles, which is only read", path);
     packed_ = source.isPacked();
     marked_ = source.hasByteOrderMark();
-    auto document = std::make_unique<Document>(std::string(source.text()), path, world().options);
+    auto document = std::make_unique<Document>(adopted_ ? *adopted_ : std::string(source.text()),
+                                               path, world().options);
     if (const std::string& reason = document->file().layout.whyNot; !reason.empty())
       return fmt::format("{} {}", path, reason);
     document_ = std::move(document);
-    read_ = onDisk_ = source.stamp();
+    onDisk_ = source.stamp();
+    read_ = adopted_ ? FileStamp() : onDisk_; // a text in memory has no stamp
   } catch (const LoadError& error) { return error.diagnostic.text(); }
   return "";
 }
@@ -173,6 +175,25 @@ std::string EditedFile::bytes() {
 
 bool EditedFile::isChangedOnDisk() { return document_ && stampOf(world().path) != onDisk_; }
 void EditedFile::saved() { onDisk_ = stampOf(world().path); }
+
+std::string EditedFile::draft() {
+  if (!document_) throw EditError("nothing has been edited");
+  return onStackOf(deepestStack, [&] { return writeInPlace(*document_); });
+}
+
+std::string EditedFile::textOnDisk() {
+  try {
+    return std::string(Source::open(world().path, world().options.limits, nullptr).text());
+  } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
+}
+
+void EditedFile::adopt(std::string text) {
+  if (document_) throw EditError("the file has been read for editing already");
+  adopted_ = std::move(text);
+  const std::string reason = whyNot();
+  adopted_.reset();
+  if (!reason.empty()) throw EditError(reason);
+}
 
 const MFNode& EditedFile::liveList(const Slot& slot) {
   return slot.field ? *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field))

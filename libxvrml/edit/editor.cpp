@@ -319,4 +319,12 @@ void Editor::saved() {
   impl_->file.saved();
 }
 
+std::string Editor::draft() { return impl_->file.draft(); }
+std::string Editor::textOnDisk() { return impl_->file.textOnDisk(); }
+
+void Editor::adopt(std::string text) {
+  impl_->file.adopt(std::move(text));
+  impl_->history.neverSaved();
+}
+
 } // namespace xvrml

@@ -101,8 +101,7 @@ struct Control::Impl {
       if (client.waiting.empty() || client.busy != Client::Busy::no) continue;
       const Line& line = client.waiting.front().letter.line;
       if (loading && line.command &&
-          (std::holds_alternative<Load>(line.command->action) ||
-           (!session && needsWorld(*line.command))))
+          (isOneOf<Load, Recover>(*line.command) || (!session && needsWorld(*line.command))))
         continue;
       if (line.command && Rendering::makes(*line.command) && !rendering.isFree(session)) continue;
       if (line.command && picks(*line.command) && session && !session->viewers().own().isPlaced())
@@ -178,7 +177,8 @@ struct Control::Impl {
     if (picks(command)) refuseCameraShader(options, *session);
     if (std::holds_alternative<Hello>(command.action)) {
       answer(letter, hello());
-    } else if (std::holds_alternative<Quit>(command.action)) {
+    } else if (const auto* quit = std::get_if<Quit>(&command.action)) {
+      if (quit->discard && session) session->editor().journal().throwAway();
       answer(letter, "null");
       host.quit();
     } else if (const auto* load = std::get_if<Load>(&command.action)) {
@@ -186,10 +186,11 @@ struct Control::Impl {
       if (std::find(load->urls.begin(), load->urls.end(), "-") != load->urls.end())
         throw CommandError("world", "load: \"-\" is standard input, which belongs to the one who "
                                     "started vv; the path of a file was expected");
-      host.open(load->urls);
-      loading = true;
-      client.busy = Client::Busy::loading;
-      client.underWay = std::move(letter);
+      open(client, letter, {load->urls, "", {}});
+    } else if (const auto* recover = std::get_if<Recover>(&command.action);
+               recover && recover->use) {
+      open(client, letter,
+           {{session->browser().world().path}, "", {}, session->editor().journal().take()});
     } else if (Rendering::makes(command)) {
       rendering.begin(command, *session, [&](const Pick& place) {
         return WorldCommands(*session, client, mailbox).pick(place);
@@ -201,6 +202,14 @@ struct Control::Impl {
       answer(letter, WorldCommands(*session, client, mailbox).perform(command));
       noticeOtherWorld();
     }
+  }
+
+  // Loads a world for a client, who waits for it.
+  void open(Client& client, Letter& letter, LoadRequest request) {
+    host.open(std::move(request));
+    loading = true;
+    client.busy = Client::Busy::loading;
+    client.underWay = std::move(letter);
   }
 
   std::string hello() const {

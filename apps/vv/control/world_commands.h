@@ -45,6 +45,7 @@ class WorldCommands {
   std::string undo(const Undo& undo);
   std::string save(const Save& save);
   std::string listEdits(const ListEdits& list);
+  std::string throwLeftAway();
   std::string listRoots();
   std::string listParents(const ListParents& list);
   std::string select(const Select& select);

@@ -149,6 +149,7 @@ void Session::settleCamera() {
 void Session::advance(double seconds) {
   clock_.read(seconds,
               saver_.isWaiting() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
+  editor_.journal().advance(seconds);
   if (!resting()) return;
   if (own_.pictures.placeViewer(own_.pilot, own_.fit)) {
     settleCamera();

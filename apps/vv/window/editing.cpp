@@ -30,7 +30,7 @@ void Editing::open(bool open) {
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_, probes_);
+    panels_.emplace(*model_, probes_, [this] { save(); });
   }
   if (hasTool_) endTool(false);
   isOpen_ = open;
@@ -48,7 +48,8 @@ void Editing::open(bool open) {
 }
 
 void Editing::reset() {
-  hasTool_ = false;
+  questions_.clear();
+  hasOffered_ = hasTool_ = false;
   tool_.reset();
   panels_.reset();
   model_.reset();
@@ -68,16 +69,7 @@ void Editing::draw() {
   if (pressed_ && (drag_ == Drag::measure || drag_ == Drag::select))
     drawRectangle(regionBetween(pressed_->x, pressed_->y, pointer_.x, pointer_.y), "");
   panels_->draw();
-}
-
-void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay) {
-  if (model_ && model_->hasRequests())
-    return model_->request([this, go, stay](WorldEditor& later) { leave(later, go, stay); });
-  if (!editor.isChanged()) return go();
-  open(true);
-  if (!panels_) return go(); // there is no editor in this build
-  panels_->askToSave(std::move(go), std::move(stay));
-  screen_.redraw();
+  questions_.draw();
 }
 
 std::string Editing::takeMessage() {
@@ -181,7 +173,7 @@ bool Editing::press(const InputEvent& event) {
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
   if (event.control && key == "S") {
-    panels_->save();
+    save();
     return true;
   }
   if (!event.control && !event.alt && event.shift && key == "V") {
@@ -325,6 +317,7 @@ bool Editing::takeForTool(const InputEvent& event) {
 
 void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
+  if (isOpen_) offerLeft(session.editor());
   view_ = {session.pilot().camera(), session.pilot().aspect()};
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))

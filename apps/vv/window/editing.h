@@ -12,14 +12,18 @@
 #include "edit/gizmo.h"
 #include "edit/transform_tool.h"
 #include "session/session.h"
+#include "session/world_loader.h"
 #include "window/editor_panels.h"
+#include "window/questions.h"
 #include "window/screen.h"
 
 namespace vv {
 
 class Editing {
  public:
-  explicit Editing(Screen& screen) : screen_(screen) {}
+  // recover: loads the world with the edits of an earlier session.
+  Editing(Screen& screen, Questions& questions, std::function<void(LoadRequest)> recover)
+      : screen_(screen), questions_(questions), recover_(std::move(recover)) {}
 
   bool isOpen() const { return isOpen_; }
   // Opens or closes the editor. Says why it cannot be opened by takeMessage().
@@ -33,6 +37,10 @@ class Editing {
   // has decided what becomes of edits that are not saved, and does not want to stay.
   // stay: is called otherwise; may be null.
   void leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay = {});
+  // Tells whether something has been asked for that has not been done yet.
+  bool isBusy() const { return model_ && model_->hasRequests(); }
+  // Tells whether a question may follow from an event, before those behind it are taken.
+  bool mayAsk(WorldEditor& editor, const InputEvent& event) const;
   // Forgets the world, because another takes its place.
   void reset();
   // Returns, once, what is to be said to the user.
@@ -44,6 +52,11 @@ class Editing {
   enum class Drag : uint8_t { none, wiper, measure, select, handle, tool };
 
   void draw();
+  void ask(Question question);
+  // Saves the file, or asks first if somebody else has changed it.
+  void save();
+  // Asks once whether the edits that an earlier session has left are used.
+  void offerLeft(WorldEditor& editor);
   bool press(const InputEvent& event);
   bool pressForComparison(const InputEvent& event);
   void click(const InputEvent& event);
@@ -64,7 +77,10 @@ class Editing {
   void readStill(Session& session, double seconds);
 
   Screen& screen_;
+  Questions& questions_;
+  const std::function<void(LoadRequest)> recover_;
   bool isOpen_ = false;
+  bool hasOffered_ = false;
   std::optional<EditModel> model_; // one for each world
   Probes probes_;
   Comparison comparison_;

@@ -242,11 +242,21 @@ Screen::Screen(const std::string& title, int width, int height) : impl_(std::mak
 
 Screen::~Screen() = default;
 
-void Screen::wait(double seconds, std::vector<InputEvent>& events) {
+namespace {
+int milliseconds(double seconds) { return std::clamp(int(seconds * 1000), 0, 1000); }
+} // namespace
+
+void Screen::wait(double seconds, std::vector<InputEvent>& events,
+                  const std::function<bool()>& isEnough) {
   SDL_Event event;
-  if (SDL_WaitEventTimeout(&event, std::clamp(int(seconds * 1000), 0, 1000)) == 0) return;
+  if (SDL_WaitEventTimeout(&event, milliseconds(seconds)) == 0) return;
   do impl_->take(event, events);
-  while (SDL_PollEvent(&event));
+  while (!isEnough() && SDL_PollEvent(&event));
+}
+
+void Screen::rest(double seconds) {
+  SDL_PumpEvents(); // the system must not take the window for one that hangs
+  SDL_Delay(uint32_t(milliseconds(seconds)));
 }
 
 int Screen::width() const {

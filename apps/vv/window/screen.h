@@ -21,9 +21,11 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  // Waits for events for at most `seconds` and appends those that have arrived.
-  void wait(double seconds, std::vector<InputEvent>& events);
-  int width() const; // pixels
+  // Waits for events for at most `seconds` and appends those that have arrived. After each of them
+  // isEnough() tells whether those behind it stay for the next call.
+  void wait(double seconds, std::vector<InputEvent>& events, const std::function<bool()>& isEnough);
+  void rest(double seconds); // waits, and leaves all events for later
+  int width() const;         // pixels
   int height() const;
   double scale() const; // pixels per unit of the desktop; above 1 on a high-resolution screen
   bool visible() const; // true if any part of the window is visible

@@ -509,9 +509,18 @@ class Control:
 
     def edits(self, *, text: bool = False) -> Dict[str, Any]:
         """Returns the state of the file: read_only (why, or None), changed, changed_on_disk, the
-        names of the steps to undo and redo; with text=True also the edited text."""
+        names of the steps to undo and redo, recoverable: what an earlier session has left (file,
+        time), or None; with text=True also the edited text."""
         result: Dict[str, Any] = self.call("edits", text=text)
         return result
+
+    def recover(self, *, use: bool = True, timeout: Optional[float] = None) -> Optional[str]:
+        """Loads the world with the edits that an earlier session has left unsaved, and returns its
+        path, as `load` does; with use=False they are thrown away, and None is returned."""
+        world: Optional[str] = self._call("recover", {"use": use}, timeout)
+        if use:
+            self._callbacks.clear()
+        return world
 
     def roots(self) -> List[Dict[str, Any]]:
         """Returns the outermost nodes: node, type, name."""
@@ -637,9 +646,10 @@ class Control:
         now: float = self._call("time", members, None)["now"]
         return now
 
-    def quit(self) -> None:
-        """Ends vv."""
-        self.call("quit")
+    def quit(self, *, discard: bool = False) -> None:
+        """Ends vv. Edits that are not saved are kept for the next session, unless discard is
+        true."""
+        self.call("quit", discard=discard)
 
 
 def connect(address: str,

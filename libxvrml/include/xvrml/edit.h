@@ -117,6 +117,19 @@ class Editor {
   // To be called when bytes() has been written to the file.
   void saved();
 
+  // --- Edits that outlive the program ---
+  // Returns the text of the file with all edits so far, also within a step and after another world
+  // has taken the place of this one. It is not read back, and meant to be kept beside the file.
+  // Throws EditError if nothing has been edited.
+  std::string draft();
+  // Returns the text of the file that is on the disk now, unpacked. Throws EditError if it cannot
+  // be read.
+  std::string textOnDisk();
+  // Says that the world was loaded from this text (loadWorldFromMemory with the file's path), which
+  // draft() gave an earlier program: it counts as edits that have not been saved, which undo()
+  // cannot take back. To be called before any edit. Throws EditError if the file cannot be edited.
+  void adopt(std::string text);
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
