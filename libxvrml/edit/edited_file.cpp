@@ -19,7 +19,7 @@ std::string EditedFile::whyNot() {
   if (stampOf(path) == FileStamp()) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
   if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic &&
-      encoding != Encoding::x3dXml)
+      encoding != Encoding::x3dXml && encoding != Encoding::x3dJson)
     return fmt::format("{} is {}: VRML97 and X3D can be edited in place; write it as one of these "
                        "first",
                        path, encodingName(encoding));
