@@ -19,9 +19,9 @@ std::string EditedFile::whyNot() {
   if (stampOf(path) == FileStamp()) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
   if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic &&
-      encoding != Encoding::x3dXml)
-    return fmt::format("{} is {}: VRML97, X3D ClassicVRML and X3D XML can be edited in place; "
-                       "write it as one of these first",
+      encoding != Encoding::x3dXml && encoding != Encoding::x3dJson)
+    return fmt::format("{} is {}: VRML97 and X3D can be edited in place; write it as one of these "
+                       "first",
                        path, encodingName(encoding));
   try {
     const Source source = Source::open(path, world().options.limits, nullptr);
@@ -91,7 +91,9 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   if (given.index > list.size() || (holds && given.index == list.size()))
     throw EditError(fmt::format("there is no place {} among {} nodes", given.index, list.size()));
   const MFNode& own = document().listOf(slot.parent.document.get(), slot.field);
-  for (const NodeRef& node : own)
+  // Only the fields of instances have nodes without a text.
+  const bool isInstance = given.parent && nodeCast<ProtoInstance>(given.parent);
+  for (const NodeRef& node : isInstance ? own : MFNode())
     if (node && !document().hasText(*node))
       throw EditError(fmt::format("{} of this {} has the nodes of its prototype, which cannot be "
                                   "edited here",
@@ -144,13 +146,11 @@ Node* EditedFile::nodeAt(const Slot& slot) {
 
 std::string EditedFile::text() {
   Document& document = this->document();
-  if (const auto exchange = exchangeOf(document.world())) {
-    const SeenNodes standing = document.standing();
+  if (const auto exchange = exchangeOf(document.world()))
     for (const Exchange::Export& one : exchange->exports)
-      if (!standing.contains(one.node.get()))
+      if (!document.stands(*one.node))
         throw EditError(
             fmt::format("{} has been removed, but the file exports it", one.node->defName));
-  }
   return onStackOf(deepestStack, [&]() -> std::string {
     std::string written = writeInPlace(document);
     if (written == document.file().text) return written;

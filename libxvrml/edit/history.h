@@ -27,6 +27,7 @@ class History {
   void cancel();
   // Does an edit, as a part of the open step.
   void perform(Edit edit);
+  // Return false if there is no step. If an edit throws, the whole step stays as it was.
   bool undo();
   bool redo();
   std::string undoName() const;

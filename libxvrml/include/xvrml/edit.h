@@ -5,8 +5,8 @@
 // began: of a field that an interpolator moves, only a value that was edited is written. Undo
 // restores what the edit has changed, and nothing else.
 //
-// Files of VRML97, X3D ClassicVRML and X3D in XML can be edited, also packed with gzip. Nodes that
-// stand in the world's own file can be edited, and what has been inserted there; nodes in the
+// Files of VRML97 and X3D (ClassicVRML, XML and JSON) can be edited, also packed with gzip. Nodes
+// that stand in the world's own file can be edited, and what has been inserted there; nodes in the
 // bodies of prototypes, of Inlines and of Scripts cannot.
 //
 // All functions are for the thread that owns the world. A function that throws EditError has
@@ -77,7 +77,7 @@ class Editor {
   // field's range, or with a number that is not finite.
   void set(Node& node, std::string_view field, Value value);
   // Inserts a node that is given as text in the encoding of the file, with all that is in it: in
-  // XML as one element.
+  // XML as one element, in JSON as an object with one member.
   // Returns the node. In an SFNode it takes the place of the present one. Names that the file has
   // already get a number behind them. Throws EditError if the text cannot be read as one node
   // without routes and prototypes, or the node cannot stand there.
