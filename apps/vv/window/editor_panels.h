@@ -9,12 +9,13 @@
 #include "edit/actions.h"
 #include "edit/edit_model.h"
 #include "edit/probes.h"
+#include "window/panel_state.h"
 
 namespace vv {
 
 class EditorPanels {
  public:
-  EditorPanels(EditModel& model, Probes& probes) : model_(model), probes_(probes) {}
+  EditorPanels(EditModel& model, Probes& probes);
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
@@ -28,7 +29,10 @@ class EditorPanels {
  private:
   void drawOutline();
   void drawTools();
+  void drawViewItems();
   void drawRow(const OutlineRow& row, int number);
+  void drawRowMenu();
+  void watchWidth(float& drawn, float& chosen);
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
@@ -39,11 +43,13 @@ class EditorPanels {
   Probes& probes_;
   EditView view_;
   std::string search_;
-  std::function<void()> go_, stay_; // go_ null: nothing is asked
+  OutlineRow menuRow_; // the row that the menu is about
+  bool opensMenu_ = false;
+  PanelWidths widths_;                      // what the user has chosen
+  float outlineWidth_ = 0, sheetWidth_ = 0; // as the panels were drawn last
+  bool isResized_ = false;                  // the user drags the edge of a panel
+  std::function<void()> go_, stay_;         // go_ null: nothing is asked
   bool asksToOverwrite_ = false;
 };
-
-// Draws the widgets for a field, and asks for the edits that the user makes with them.
-void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);
 
 } // namespace vv
