@@ -275,6 +275,9 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
   if (!dynamic_cast<const DeclaringNode*>(&node))
     throw EditError(fmt::format("{} has no fields of its own", node.type().name));
   if (node.type().find(field)) throw EditError(fmt::format("there is a field {} already", what));
+  if (document.world().head.version.encoding == Encoding::x3dJson)
+    throw EditError(
+        fmt::format("{} cannot be declared in JSON: write the field into the file", what));
   const std::vector<NodeSlot> places = placesOf(node);
   if (places.empty()) throw EditError(fmt::format("this {} is not in the file", node.type().name));
   const std::string text =

@@ -26,10 +26,6 @@ constexpr Material materials[] = {{"Material", "diffuseColor"},
                                   {"PhysicalMaterial", "baseColor"},
                                   {"UnlitMaterial", "emissiveColor"}};
 
-bool isXml(WorldEditor& editor) {
-  return editor.browser().world().head.version.encoding == Encoding::x3dXml;
-}
-
 // Returns the node in an SFNode; null if there is none, or no such field.
 NodeRef nodeIn(const Node& node, const char* name) {
   const FieldInfo* const field = node.type().find(name);
@@ -50,23 +46,20 @@ bool isAppearance(const NodeRef& node) {
   return nodeCast<nodes::Appearance>(node) || nodeCast<nodes::ORTAppearance>(node);
 }
 
-void nameShader(WorldEditor& editor, const NodeRef& shader, const Look& look) {
+void insertShader(WorldEditor& editor, Node& appearance, const Look& look) {
+  const NodeRef shader = insertNew(editor, {&appearance, "shader", 0}, "ORTShader");
   editor.editor().set(*shader, "name", look.name);
   editor.editor().set(*shader, "file", look.library);
 }
 
-// Inserts a whole appearance with a look.
-void insertAppearance(WorldEditor& editor, const NodeSlot& slot, const Look& look) {
-  if (!look.isShader()) {
-    const char* const form =
-        isXml(editor) ? "<Appearance><{}/></Appearance>" : "Appearance {{ material {} {{ }} }}";
-    editor.editor().insert(slot, fmt::format(fmt::runtime(form), look.name));
-    return;
-  }
-  const NodeRef made =
-      editor.editor().insert(slot, isXml(editor) ? "<ORTAppearance><ORTShader/></ORTAppearance>"
-                                                 : "ORTAppearance { shader ORTShader { } }");
-  nameShader(editor, nodeIn(*made, "shader"), look);
+// Inserts a whole appearance with a look. Returns it.
+NodeRef insertAppearance(WorldEditor& editor, const NodeSlot& slot, const Look& look) {
+  NodeRef made = insertNew(editor, slot, look.isShader() ? "ORTAppearance" : "Appearance");
+  if (look.isShader())
+    insertShader(editor, *made, look);
+  else
+    insertNew(editor, {made.get(), "material", 0}, look.name);
+  return made;
 }
 
 // Takes the value of a field over, if both nodes have it and it is no default.
@@ -81,8 +74,7 @@ void takeOver(WorldEditor& editor, const Node& from, const char* name, Node& to,
 void setMaterial(WorldEditor& editor, Node& appearance, const Look& look) {
   const NodeRef before = nodeIn(appearance, "material");
   if (before && before->type().name == look.name) return;
-  const NodeRef made = editor.editor().insert({&appearance, "material", 0},
-                                              textOfNew(editor, *findNodeType(look.name)));
+  const NodeRef made = insertNew(editor, {&appearance, "material", 0}, look.name);
   const auto named = [](const std::string& type) {
     return std::find_if(std::begin(materials), std::end(materials),
                         [&](const Material& one) { return one.type == type; });
@@ -98,10 +90,8 @@ void replaceAppearance(WorldEditor& editor, const NodeRef& before, const Look& l
   Editor& file = editor.editor();
   const std::vector<NodeSlot> places = file.placesOf(*before);
   // Nodes are moved while both stand in the file, so that they keep their names and routes.
-  const NodeRef holder =
-      file.insert(editor.endOf(nullptr, ""), isXml(editor) ? "<Shape/>" : "Shape { }");
-  insertAppearance(editor, {holder.get(), "appearance", 0}, look);
-  const NodeRef made = nodeIn(*holder, "appearance");
+  const NodeRef holder = insertNew(editor, editor.endOf(nullptr, ""), "Shape");
+  const NodeRef made = insertAppearance(editor, {holder.get(), "appearance", 0}, look);
   for (const char* field : {"material", "texture", "textureTransform"})
     if (nodeIn(*before, field)) file.move({before.get(), field, 0}, {made.get(), field, 0});
   file.move({holder.get(), "appearance", 0}, places.front());
@@ -113,7 +103,10 @@ void replaceAppearance(WorldEditor& editor, const NodeRef& before, const Look& l
 void setLookOf(WorldEditor& editor, const NodeSlot& slot, const NodeRef& appearance,
                const Look& look) {
   Editor& file = editor.editor();
-  if (!isAppearance(appearance)) return insertAppearance(editor, slot, look);
+  if (!isAppearance(appearance)) {
+    insertAppearance(editor, slot, look);
+    return;
+  }
   if (!look.isShader()) {
     if (nodeIn(*appearance, "shader")) file.remove({appearance.get(), "shader", 0});
     return setMaterial(editor, *appearance, look);
@@ -121,10 +114,7 @@ void setLookOf(WorldEditor& editor, const NodeSlot& slot, const NodeRef& appeara
   if (nodeCast<nodes::Appearance>(appearance)) return replaceAppearance(editor, appearance, look);
   const auto* const known = nodeCast<nodes::ORTShader>(nodeIn(*appearance, "shader"));
   if (known && known->name == look.name) return;
-  nameShader(
-      editor,
-      file.insert({appearance.get(), "shader", 0}, textOfNew(editor, *findNodeType("ORTShader"))),
-      look);
+  insertShader(editor, *appearance, look);
 }
 
 // Compares what nodes say: their values and the nodes in them, but no names.

@@ -94,14 +94,19 @@ std::unordered_map<const Node*, size_t> countPlaces(const World& world, const MF
   return counts;
 }
 
-std::string textOfNew(WorldEditor& editor, const NodeType& type) {
-  const bool isXml = editor.browser().world().head.version.encoding == Encoding::x3dXml;
-  return isXml ? fmt::format("<{}/>", type.name) : type.name + " { }";
+NodeRef insertNew(WorldEditor& editor, const NodeSlot& slot, const std::string& type) {
+  const char* form = "{} {{ }}";
+  switch (editor.browser().world().head.version.encoding) {
+  case Encoding::x3dXml: form = "<{}/>"; break;
+  case Encoding::x3dJson: form = "{{ \"{}\": {{ }} }}"; break;
+  default: break;
+  }
+  return editor.editor().insert(slot, fmt::format(fmt::runtime(form), type));
 }
 
 void addNode(WorldEditor& editor, const NodeRef& parent, const std::string& field,
              const NodeType& type) {
-  editor.editor().insert(editor.endOf(parent.get(), field), textOfNew(editor, type));
+  insertNew(editor, editor.endOf(parent.get(), field), type.name);
 }
 
 void useNode(WorldEditor& editor, const NodeRef& parent, const std::string& field,

@@ -29,8 +29,8 @@ std::vector<xvrml::NodeRef> nodesFor(const xvrml::World& world, const xvrml::Fie
 std::unordered_map<const xvrml::Node*, size_t> countPlaces(const xvrml::World& world,
                                                            const xvrml::MFNode& nodes);
 
-// Returns the text of a new node of a type, in the encoding of the file.
-std::string textOfNew(WorldEditor& editor, const xvrml::NodeType& type);
+// Inserts a new node of a type, as the encoding of the file writes it. Returns the node.
+xvrml::NodeRef insertNew(WorldEditor& editor, const xvrml::NodeSlot& slot, const std::string& type);
 // Puts a new node at the end of a field. In an SFNode it takes the place of the present one.
 void addNode(WorldEditor& editor, const xvrml::NodeRef& parent, const std::string& field,
              const xvrml::NodeType& type);
