@@ -10,14 +10,14 @@
 #include "edit/actions.h"
 #include "edit/edit_model.h"
 #include "edit/probes.h"
+#include "window/panel_state.h"
 
 namespace vv {
 
 class EditorPanels {
  public:
   // save: saves the file.
-  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
-      : model_(model), probes_(probes), save_(std::move(save)) {}
+  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save);
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
@@ -26,7 +26,10 @@ class EditorPanels {
  private:
   void drawOutline();
   void drawTools();
+  void drawViewItems();
   void drawRow(const OutlineRow& row, int number);
+  void drawRowMenu();
+  void watchWidth(float& drawn, float& chosen);
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
@@ -36,9 +39,11 @@ class EditorPanels {
   EditView view_;
   std::string search_;
   const std::function<void()> save_;
+  OutlineRow menuRow_; // the row that the menu is about
+  bool opensMenu_ = false;
+  PanelWidths widths_;                      // what the user has chosen
+  float outlineWidth_ = 0, sheetWidth_ = 0; // as the panels were drawn last
+  bool isResized_ = false;                  // the user drags the edge of a panel
 };
-
-// Draws the widgets for a field, and asks for the edits that the user makes with them.
-void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);
 
 } // namespace vv

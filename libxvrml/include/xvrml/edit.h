@@ -68,6 +68,10 @@ class Editor {
   // Grows with each edit, undo and redo, so that who shows the world knows when to look again.
   uint64_t changes() const;
 
+  // Returns how many edits of those that are not undone have set a field. Edits of one step that
+  // follow each other are one.
+  uint64_t editsOf(const Node& node, std::string_view field) const;
+
   // Returns the places where a node stands in the world now: once where it is defined, and once for
   // each USE. Places in Inlines and in the bodies of prototypes are left out.
   std::vector<NodeSlot> placesOf(const Node& node);
@@ -92,11 +96,19 @@ class Editor {
   // Inserts a copy of the node at a place behind it (in an MFNode or among the roots), with names
   // of its own, as the file has it: not as it has moved since the world began.
   NodeRef duplicate(const NodeSlot& slot);
+  // Puts a copy of the node at a place there, with names of its own. Returns the copy, which can be
+  // edited without the other places of the node. Throws EditError if there are none.
+  NodeRef separate(const NodeSlot& slot);
   // Puts a new grouping node of this type around the node at a place. Returns the new node.
   NodeRef wrap(const NodeSlot& slot, std::string_view type = "Transform");
   // Gives a node a DEF name, or another one, in all of its references. Throws EditError for a name
   // that is none or that another node has.
   void rename(Node& node, const std::string& name);
+  // Declares an exposedField of a node that can have fields of its own (ORTShader), with this
+  // value. Another node takes its place, or all of its places, with its name and its routes.
+  // Returns that node. Throws EditError for nodes that declare nothing, and for a field that the
+  // node has.
+  NodeRef declare(Node& node, std::string_view field, const Value& value);
   // Add or remove a route between nodes of the file. Nodes without names get some.
   void addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
   void removeRoute(Node& from, std::string_view out, Node& to, std::string_view in);
