@@ -124,14 +124,6 @@ TEST(Meshes, TheMessageForOtherFormatsNamesThoseThatCanBeRead) {
   }
 }
 
-TEST(Meshes, HaveSuffixesAndWorldsHaveNone) {
-  EXPECT_EQ(meshSuffixes(Encoding::gltf), ".gltf .glb");
-  for (int i = 0; i < encodingCount(); ++i) {
-    const auto encoding = static_cast<Encoding>(i);
-    EXPECT_EQ(isMesh(encoding), !meshSuffixes(encoding).empty()) << encodingName(encoding);
-  }
-}
-
 TEST(Meshes, FormFeedsAreBlanks) {
   EXPECT_THROW(loadWorldFromMemory("a \f\v b\n", "a.bin"), LoadError) << "it ends";
 }
