@@ -43,7 +43,4 @@ class Encoding {
   std::shared_ptr<Task> task_;
 };
 
-// Returns bytes in base64 (RFC 4648, section 4).
-std::string base64(std::string_view bytes);
-
 } // namespace vv::control
