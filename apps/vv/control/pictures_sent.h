@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "control/command.h"
 #include "libpicture/files/formats.h"
