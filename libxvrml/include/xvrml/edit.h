@@ -31,9 +31,9 @@ struct EditError : std::runtime_error {
 
 // A field of a node of the file that edits have changed since the file was read.
 struct ChangedField {
-  NodeRef node;           // of the live world; null: the roots of the file
+  NodeRef node;           // in the live world; null: the roots of the file
   uint32_t line = 0;      // where the node begins in the file as it was read
-  std::string type, name; // of the node; name: after DEF, as it is now
+  std::string type, name; // the node's type, and its name behind DEF as it is now
   std::string field;      // "DEF": the name of the node
   // Values as VRML97 writes them, cut to a readable length. For nodes these say how many there are.
   std::string before, now;
