@@ -42,6 +42,7 @@ void Editing::reset() {
   panels_.reset();
   model_.reset();
   probes_.clear();
+  report_.reset();
   if (isOpen_) open(true);
 }
 
@@ -56,6 +57,7 @@ void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function
 }
 
 std::string Editing::takeMessage() {
+  if (std::string text = report_.takeMessage(); !text.empty()) return text;
   if (!message_.empty() || !model_) return std::exchange(message_, {});
   return model_->takeMessage();
 }
@@ -220,6 +222,7 @@ void Editing::update(Session& session, double seconds) {
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_));
   readProbes(session, seconds);
+  if (panels_->takeReportWish()) report_.begin(session, probes_, arguments_);
 }
 
 // Reads the probes from the still picture of the world as it is, a few times a second.

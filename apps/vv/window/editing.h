@@ -5,10 +5,12 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edit/edit_model.h"
 #include "edit/transform_tool.h"
 #include "session/session.h"
+#include "session/world_report.h"
 #include "window/editor_panels.h"
 #include "window/screen.h"
 
@@ -16,7 +18,9 @@ namespace vv {
 
 class Editing {
  public:
-  explicit Editing(Screen& screen) : screen_(screen) {}
+  // arguments: those of the command line, for the command in reports. Both must live as long.
+  Editing(Screen& screen, const std::vector<std::string>& arguments)
+      : screen_(screen), arguments_(arguments) {}
 
   bool isOpen() const { return isOpen_; }
   // Opens or closes the editor. Says why it cannot be opened by takeMessage().
@@ -46,6 +50,8 @@ class Editing {
   void readProbes(Session& session, double seconds);
 
   Screen& screen_;
+  const std::vector<std::string>& arguments_;
+  WorldReport report_;
   bool isOpen_ = false;
   std::optional<EditModel> model_; // one for each world
   Probes probes_;

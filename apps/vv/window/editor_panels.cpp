@@ -62,6 +62,7 @@ void EditorPanels::draw() {
   drawOutline();
   drawSheet();
   drawProbes();
+  drawProblems(model_);
   drawQuestion();
   drawOverwriteQuestion();
   model_.setActive(ImGui::IsAnyItemActive());
@@ -92,6 +93,7 @@ void EditorPanels::drawTools() {
     model_.request(wrapSelected);
   if (button("Remove", any, "Remove what is selected (X, Delete)")) model_.request(removeSelected);
   ImGui::NewLine();
+  drawReports();
   if (ImGui::BeginPopup("##new")) {
     for (const NewNode& one : newNodes())
       if (ImGui::Selectable(one.name))
@@ -100,6 +102,16 @@ void EditorPanels::drawTools() {
       model_.request([view = view_](WorldEditor& editor) { addViewpoint(editor, view); });
     ImGui::EndPopup();
   }
+}
+
+void EditorPanels::drawReports() {
+  ProblemList& problems = model_.problems();
+  // The identifier behind ### stays when the number changes.
+  const std::string label = "Problems (" + std::to_string(problems.count()) + ")###problems";
+  if (button(label.c_str(), problems.count() > 0 || problems.isOpen(), "Messages about the world"))
+    problems.setOpen(!problems.isOpen());
+  wantsReport_ |= button("Report", true, "Write a page and a table beside the file");
+  ImGui::NewLine();
 }
 
 void EditorPanels::drawOutline() {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "edit/actions.h"
 #include "edit/edit_model.h"
@@ -24,10 +25,13 @@ class EditorPanels {
   void askToSave(std::function<void()> go, std::function<void()> stay);
   // Saves the file, or asks first if somebody else has changed it.
   void save();
+  // Tells, once, whether the user has asked for a report.
+  bool takeReportWish() { return std::exchange(wantsReport_, false); }
 
  private:
   void drawOutline();
   void drawTools();
+  void drawReports();
   void drawRow(const OutlineRow& row, int number);
   void drawSheet();
   void drawFrames() const;
@@ -40,8 +44,11 @@ class EditorPanels {
   EditView view_;
   std::string search_;
   std::function<void()> go_, stay_; // go_ null: nothing is asked
-  bool asksToOverwrite_ = false;
+  bool asksToOverwrite_ = false, wantsReport_ = false;
 };
+
+// Draws the list of the messages about the world, if it is open.
+void drawProblems(EditModel& model);
 
 // Draws the widgets for a field, and asks for the edits that the user makes with them.
 void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);

@@ -143,7 +143,7 @@ class Window {
   std::unique_ptr<Session> session_;          // null: no world has been loaded yet
   std::unique_ptr<control::Control> control_; // null: no program controls the world
   WorldWatch watch_{options_};
-  Editing editing_{screen_};
+  Editing editing_{screen_, arguments_};
   uint64_t saves_ = 0; // times that the file of the world has been saved
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;
