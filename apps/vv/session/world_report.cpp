@@ -12,6 +12,7 @@
 #include "libpicture/false_colour.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
+#include "process/messages.h"
 #include "report/describe.h"
 
 namespace vv {
@@ -114,8 +115,10 @@ void WorldReport::reset() { work_ = std::make_shared<Work>(); }
 
 std::string WorldReport::takeMessage() {
   if (work_->files.valid() &&
-      work_->files.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+      work_->files.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     work_->message = work_->files.get();
+    say("vv: " + work_->message);
+  }
   return std::exchange(work_->message, {});
 }
 

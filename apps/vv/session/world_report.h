@@ -21,7 +21,8 @@ class WorldReport {
   void begin(Session& session, const Probes& probes, const std::vector<std::string>& arguments);
   // Forgets the session, because it ends.
   void reset();
-  // Returns, once, what has become of the report; "" if there is nothing to say.
+  // Returns, once, what has become of the report, which is also printed; "" if there is nothing to
+  // say.
   std::string takeMessage();
 
  private:
