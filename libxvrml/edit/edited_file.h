@@ -51,7 +51,7 @@ class EditedFile {
 
   // See Editor.
   std::vector<NodeRef> nodesAt(std::span<const SourcePosition> places);
-  std::vector<ChangedField> changedFields();
+  std::vector<ChangedField> changedFields() const;
 
   std::string text();
   std::string bytes();

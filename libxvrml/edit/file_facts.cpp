@@ -73,51 +73,35 @@ std::vector<NodeRef> EditedFile::nodesAt(std::span<const SourcePosition> places)
   return nodes;
 }
 
-std::vector<ChangedField> EditedFile::changedFields() {
+std::vector<ChangedField> EditedFile::changedFields() const {
   std::vector<ChangedField> changed;
   if (!document_) return changed;
   const SeenNodes standing = document_->standing();
-  std::vector<std::pair<uint64_t, ChangedField>> fields;
-  std::unordered_set<uint64_t> places;
+  std::vector<std::pair<uint64_t, ChangedField>> fields; // by the places of their nodes
+  const auto add = [&](const Node& node, std::string field, std::string before, std::string now) {
+    fields.emplace_back(placeKey(node.source.line, node.source.column),
+                        ChangedField{node.source.line, node.type().name, node.defName,
+                                     std::move(field), std::move(before), std::move(now)});
+  };
   document_->forEachChanged([&](const Node& node, const FieldInfo& field, const Value& before) {
     if (!standing.contains(&node) || !document_->hasText(node) || !document_->isOwn(node)) return;
-    const Value now = node.get(field);
-    if (now == before) return;
-    const uint64_t key = placeKey(node.source.line, node.source.column);
-    places.insert(key);
-    fields.emplace_back(key, ChangedField{{},
-                                          node.source.line,
-                                          node.type().name,
-                                          node.defName,
-                                          field.name,
-                                          textOf(field, before),
-                                          textOf(field, now)});
+    if (const Value now = node.get(field); now != before)
+      add(node, field.name, textOf(field, before), textOf(field, now));
   });
-  for (const auto& [node, text] : document_->file().layout.nodes) {
-    const std::string& before = document_->nameInText(*node);
-    if (before == node->defName || !standing.contains(node)) continue;
-    const uint64_t key = placeKey(node->source.line, node->source.column);
-    places.insert(key);
-    fields.emplace_back(
-        key,
-        ChangedField{
-            {}, node->source.line, node->type().name, node->defName, "DEF", before, node->defName});
-  }
+  for (const auto& [node, text] : document_->file().layout.nodes)
+    if (const std::string& before = document_->nameInText(*node);
+        before != node->defName && standing.contains(node))
+      add(*node, "DEF", before, node->defName);
   std::sort(fields.begin(), fields.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second.field < b.second.field;
   });
-  const MFNode& roots = document_->scope().roots;
-  const auto isAt = [](const NodeRef& node, const NodePlace& place) {
-    return node.get() == place.node;
-  };
+  const MFNode& roots = document_->listOf(nullptr, nullptr);
   const std::vector<NodePlace>& read = document_->file().layout.roots;
-  if (!std::equal(roots.begin(), roots.end(), read.begin(), read.end(), isAt))
-    changed.push_back({{}, 0, "", "", "", countText(read.size()), countText(roots.size())});
-  const std::unordered_map<uint64_t, NodeRef> live = liveNodesAt(places);
-  for (auto& [key, field] : fields) {
-    if (const auto known = live.find(key); known != live.end()) field.node = known->second;
-    changed.push_back(std::move(field));
-  }
+  if (!std::equal(
+          roots.begin(), roots.end(), read.begin(), read.end(),
+          [](const NodeRef& node, const NodePlace& place) { return node.get() == place.node; }))
+    changed.push_back({0, "", "", "", countText(read.size()), countText(roots.size())});
+  for (auto& [place, field] : fields) changed.push_back(std::move(field));
   return changed;
 }
 

@@ -28,7 +28,7 @@ Report example() {
   probe.hasBefore = true;
   report.probes.push_back(probe);
   report.changes.push_back(Difference{-20, 2.5, true});
-  report.fields.push_back({{}, 3, "PointLight", "LAMP", "intensity", "0.8", "0.5"});
+  report.fields.push_back({3, "PointLight", "LAMP", "intensity", "0.8", "0.5"});
   return report;
 }
 
@@ -88,7 +88,7 @@ TEST(Reports, NothingOfAWorldIsMarkup) {
   Report report = example();
   report.world = report.program = hostile;
   report.pictures.front().title = report.pictures.front().command = hostile;
-  report.fields.front() = {{}, 1, hostile, hostile, hostile, hostile, hostile};
+  report.fields.front() = {1, hostile, hostile, hostile, hostile, hostile};
   const std::string page = reportPage(report);
   EXPECT_FALSE(has(page, "<script"));
   EXPECT_FALSE(has(page, "\x1b"));
@@ -115,8 +115,8 @@ TEST(Reports, TheTableHasALineForEachThing) {
 
 TEST(Reports, NothingOfAWorldIsAFormulaOrABreakOfTheTable) {
   Report report = example();
-  report.fields.front() = {{}, 1, "T", "=1+1", "a,b", "two \"words\"", "-1 0 0"};
-  report.fields.push_back({{}, 1, "T", "@x", "+f(x)", "one\nline", "-x"});
+  report.fields.front() = {1, "T", "=1+1", "a,b", "two \"words\"", "-1 0 0"};
+  report.fields.push_back({1, "T", "@x", "+f(x)", "one\nline", "-x"});
   const auto lines = linesOf(reportTable(report));
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_EQ(lines[3][1], "'=1+1  T");

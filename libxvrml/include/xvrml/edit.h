@@ -31,8 +31,7 @@ struct EditError : std::runtime_error {
 
 // A field of a node of the file that edits have changed since the file was read.
 struct ChangedField {
-  NodeRef node;           // in the live world; null: the roots of the file
-  uint32_t line = 0;      // where the node begins in the file as it was read
+  uint32_t line = 0; // where the node begins in the file as it was read; 0: the roots of the file
   std::string type, name; // the node's type, and its name behind DEF as it is now
   std::string field;      // "DEF": the name of the node
   // Values as VRML97 writes them, cut to a readable length. For nodes these say how many there are.
@@ -90,7 +89,7 @@ class Editor {
   // Returns the fields that differ from the file as it was read, in the order of the file. Fields
   // of nodes that have been inserted are not listed: the field that holds them is. Routes are not,
   // either.
-  std::vector<ChangedField> changedFields();
+  std::vector<ChangedField> changedFields() const;
 
   // --- Edits ---
   // Sets a field that holds no nodes. Throws EditError for a value of another type, out of the
