@@ -89,6 +89,11 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
   return places;
 }
 
+std::vector<NodeRef> Editor::nodesAt(std::span<const SourcePosition> places) {
+  return impl_->file.nodesAt(places);
+}
+std::vector<ChangedField> Editor::changedFields() const { return impl_->file.changedFields(); }
+
 void Editor::begin(std::string name) { impl_->history.begin(std::move(name)); }
 void Editor::end() { impl_->history.end(); }
 void Editor::cancel() { impl_->history.cancel(); }

@@ -160,11 +160,12 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
       shown_ = NodeRef(node);
   }
   if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
-  const bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
   }
+  reads |= problems_.update(editor, seconds);
   std::vector<Line> frames = framesOf(editor, view);
   return std::exchange(frames_, frames) != frames || reads;
 }

@@ -13,6 +13,7 @@
 
 #include "edit/hiding.h"
 #include "edit/outline.h"
+#include "edit/problems.h"
 #include "edit/properties.h"
 #include "edit/world_editor.h"
 
@@ -48,6 +49,8 @@ class EditModel {
   bool hasUnsaved() const { return unsaved_; }
   // Why the file cannot be edited; "": it can, or this is not known yet.
   const std::string& readOnly() const { return readOnly_; }
+  // The messages about the world.
+  ProblemList& problems() { return problems_; }
   // The edges of a box around each node that is selected.
   const std::vector<Line>& frames() const { return frames_; }
   // Returns the camera that looks as the viewer does and shows what is selected; the viewer's own
@@ -102,6 +105,7 @@ class EditModel {
   Outline outline_;
   std::vector<OutlineRow> rows_;
   PropertySheet sheet_;
+  ProblemList problems_;
   xvrml::MFNode selection_;
   std::string undoName_, redoName_, readOnly_, message_, search_;
   std::vector<Line> frames_;

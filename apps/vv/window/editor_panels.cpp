@@ -66,6 +66,7 @@ void EditorPanels::draw() {
   drawOutline();
   drawSheet();
   drawProbes();
+  drawProblems(model_);
   if (isResized_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     isResized_ = false;
     writePanelWidths(panelStateFile(), widths_);
@@ -108,6 +109,7 @@ void EditorPanels::drawTools() {
   if (toolButton("View", true, "Hide nodes for now, and show them again"))
     ImGui::OpenPopup("##view");
   ImGui::NewLine();
+  drawReports();
   if (ImGui::BeginPopup("##new")) {
     for (const NewNode& one : newNodes())
       if (ImGui::Selectable(one.name))
@@ -128,6 +130,17 @@ void EditorPanels::drawViewItems() {
   if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
   if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
   if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
+}
+
+void EditorPanels::drawReports() {
+  ProblemList& problems = model_.problems();
+  // The identifier behind ### stays when the number changes.
+  const std::string label = "Problems (" + std::to_string(problems.count()) + ")###problems";
+  if (toolButton(label.c_str(), problems.count() > 0 || problems.isOpen(),
+                 "Messages about the world"))
+    problems.setOpen(!problems.isOpen());
+  wantsReport_ |= toolButton("Report", true, "Write a page and a table beside the file");
+  ImGui::NewLine();
 }
 
 void EditorPanels::drawOutline() {

@@ -22,11 +22,14 @@ class EditorPanels {
   void draw();
   // Where the viewer stands, for a new Viewpoint.
   void setView(const EditView& view) { view_ = view; }
+  // Tells, once, whether the user has asked for a report.
+  bool takeReportWish() { return std::exchange(wantsReport_, false); }
 
  private:
   void drawOutline();
   void drawTools();
   void drawViewItems();
+  void drawReports();
   void drawRow(const OutlineRow& row, int number);
   void drawRowMenu();
   void watchWidth(float& drawn, float& chosen);
@@ -44,6 +47,10 @@ class EditorPanels {
   PanelWidths widths_;                      // what the user has chosen
   float outlineWidth_ = 0, sheetWidth_ = 0; // as the panels were drawn last
   bool isResized_ = false;                  // the user drags the edge of a panel
+  bool wantsReport_ = false;
 };
+
+// Draws the list of the messages about the world, if it is open.
+void drawProblems(EditModel& model);
 
 } // namespace vv

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,6 +27,15 @@ namespace xvrml {
 // Says in one sentence why an edit is not possible.
 struct EditError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+// A field of a node of the file that edits have changed since the file was read.
+struct ChangedField {
+  uint32_t line = 0; // where the node begins in the file as it was read; 0: the roots of the file
+  std::string type, name; // the node's type, and its name behind DEF as it is now
+  std::string field;      // "DEF": the name of the node
+  // Values as VRML97 writes them, cut to a readable length. For nodes these say how many there are.
+  std::string before, now;
 };
 
 // A place for a node: in a field of a node or, without a parent, among the roots of the file.
@@ -75,6 +85,15 @@ class Editor {
   // Returns the places where a node stands in the world now: once where it is defined, and once for
   // each USE. Places in Inlines and in the bodies of prototypes are left out.
   std::vector<NodeSlot> placesOf(const Node& node);
+
+  // Returns for each place in the world's file, as it was read, the innermost node whose text holds
+  // it, as the messages about the file have places; null if there is none, or it is not in the
+  // world any more. In a file that cannot be edited only a node that begins there is found.
+  std::vector<NodeRef> nodesAt(std::span<const SourcePosition> places);
+  // Returns the fields that differ from the file as it was read, in the order of the file. Fields
+  // of nodes that have been inserted are not listed: the field that holds them is. Routes are not,
+  // either.
+  std::vector<ChangedField> changedFields() const;
 
   // --- Edits ---
   // Sets a field that holds no nodes. Throws EditError for a value of another type, out of the
