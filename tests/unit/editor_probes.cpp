@@ -118,11 +118,12 @@ TEST_F(ProbesOfAWall, TheTableHasALineForEachProbe) {
   read(grey(10, 1));
   probes.keep();
   read(grey(15, 0));
-  EXPECT_EQ(probes.csv(), "probe,x,y,z,luminance,half_width,trusted,before,before_half_width,"
-                          "difference,difference_half_width,significant,left,top,width,height,"
-                          "least,most,uniformity\n"
-                          "1,0,0,1,15,0,true,10,1,5,1,true,,,,,,,\n"
-                          "2,0,50,1,,,,,,,,,,,,,,,\n");
+  EXPECT_EQ(probes.csv(),
+            "probe,x,y,z,quantity,unit,value,half_width,trusted,before,before_half_width,"
+            "difference,difference_half_width,significant,left,top,width,height,"
+            "least,most,uniformity\n"
+            "1,0,0,1,luminance,cd/m2,15,0,true,10,1,5,1,true,,,,,,,\n"
+            "2,0,50,1,luminance,cd/m2,,,,,,,,,,,,,,,\n");
 }
 
 TEST_F(ProbesOfAWall, ARectangleIsReadInItsOwnView) {
@@ -137,8 +138,9 @@ TEST_F(ProbesOfAWall, ARectangleIsReadInItsOwnView) {
   ASSERT_TRUE(probes.differences()[0]);
   EXPECT_NEAR(probes.differences()[0]->value, .5, 1e-5);
   EXPECT_TRUE(probes.differences()[0]->isSignificant);
-  EXPECT_NE(probes.csv().find("\n1,,,,10,0,true,9.5,0,0.5,0,true,2,2,4,4,10,10,1\n"),
-            std::string::npos)
+  EXPECT_NE(
+      probes.csv().find("\n1,,,,luminance,cd/m2,10,0,true,9.5,0,0.5,0,true,2,2,4,4,10,10,1\n"),
+      std::string::npos)
       << probes.csv();
   EXPECT_NE(probeText(probes.all()[0], probes.differences()[0]).find("uniformity 1"),
             std::string::npos);
@@ -146,6 +148,50 @@ TEST_F(ProbesOfAWall, ARectangleIsReadInItsOwnView) {
   read(grey(10, 0));
   EXPECT_EQ(probes.all()[0].state, Probe::State::otherView);
   EXPECT_FALSE(probes.differences()[0]);
+}
+
+TEST_F(ProbesOfAWall, SensorsReadIlluminanceInAnyView) {
+  const double point[3] = {0, 0, 1}, normal[3] = {0, 0, 1}, seen[3] = {0, 0, -1};
+  const picture::PlacedSensor sensor = picture::sensorAt(point, normal, seen);
+  const auto measure = [&](float lux, float halfWidth) {
+    std::vector<picture::Measurement> readings;
+    for (const picture::PlacedSensor& one : probes.waitingSensors()) {
+      picture::Measurement reading;
+      reading.sensor = one;
+      reading.value = {lux};
+      reading.halfWidth = {halfWidth};
+      reading.trusted = {1};
+      reading.samples = {64};
+      readings.push_back(reading);
+    }
+    probes.take(readings);
+    return readings.size();
+  };
+  probes.add({0, 0, 1});
+  probes.addSensor(sensor);
+  read(grey(10, 1));
+  EXPECT_FALSE(probes.isWaiting()) << "a sensor does not wait for pictures";
+  EXPECT_EQ(probes.all()[1].state, Probe::State::waiting);
+  EXPECT_EQ(measure(412, 6), 1u);
+  EXPECT_EQ(measure(1, 1), 0u) << "it has been read";
+  EXPECT_EQ(probeText(probes.all()[1], {}), "2  412 lx +- 1.5 %  trusted");
+  probes.keep();
+  view.camera.matrix[12] = .1; // another view
+  probes.expire();
+  read(grey(10, 1));
+  EXPECT_EQ(probes.all()[1].state, Probe::State::read);
+  probes.expireSensors();
+  EXPECT_EQ(measure(371, 5), 1u);
+  const auto changes = probes.differences();
+  EXPECT_FALSE(changes[0]) << "pictures of two views are not compared";
+  ASSERT_TRUE(changes[1]);
+  EXPECT_EQ(changes[1]->value, -41);
+  EXPECT_TRUE(changes[1]->isSignificant);
+  EXPECT_NE(probes.csv().find("\n2,0,0,1,illuminance,lx,371,5,true,412,6,-41,"), std::string::npos)
+      << probes.csv();
+  probes.clear();
+  probes.addSensor(sensor);
+  EXPECT_EQ(measure(5, 1), 1u);
 }
 
 } // namespace

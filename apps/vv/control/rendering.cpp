@@ -91,7 +91,7 @@ void Rendering::measure(std::vector<picture::PlacedSensor> sensors, std::string 
   session.measuring().want(
       {.view = session.pictures().stillOf(session.pilot()).view,
        .sensors = std::move(sensors),
-       .samples = samples.value_or(samplesOfSensors(options_))},
+       .samples = samples.value_or(session.measuring().samples())},
       [out = reading.read](const picture::LiveReadings& read) { *out = read; });
   work_ = std::move(reading);
 }

@@ -53,10 +53,14 @@ void readArea(Probe& probe, const picture::Picture& picture, const EditView& vie
 
 } // namespace
 
+const char* quantityOf(const Probe& probe) { return probe.sensor ? "illuminance" : "luminance"; }
+const char* unitOf(const Probe& probe) { return probe.sensor ? "lx" : "cd/m2"; }
+
 std::string probeText(const Probe& probe, const std::optional<Difference>& change) {
   std::string text = fmt::format("{}  {}", probe.number, probe.area ? "mean " : "");
   switch (probe.state) {
-  case Probe::State::waiting: return text + "waits for a still picture";
+  case Probe::State::waiting:
+    return text + (probe.sensor ? "is being measured" : "waits for a still picture");
   case Probe::State::hidden: return text + "not seen from here";
   case Probe::State::outside: return text + "outside of the picture";
   case Probe::State::otherView: return text + "of another view";
@@ -64,9 +68,10 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
   }
   const auto luminance = double(probe.now.luminance),
              halfWidth = double(probe.now.luminanceHalfWidth);
+  const char* const unit = unitOf(probe);
   text += luminance > halfWidth
-              ? fmt::format("{:.4g} cd/m2 +- {:.2g} %", luminance, 100 * halfWidth / luminance)
-              : fmt::format("{:.4g} +- {:.2g} cd/m2", luminance, halfWidth);
+              ? fmt::format("{:.4g} {} +- {:.2g} %", luminance, unit, 100 * halfWidth / luminance)
+              : fmt::format("{:.4g} +- {:.2g} {}", luminance, halfWidth, unit);
   text += probe.now.trusted ? "  trusted" : "  not trusted";
   if (probe.area) {
     const RegionReading& area = probe.area->reading;
@@ -88,14 +93,20 @@ void Probes::add(const std::array<double, 3>& point) {
   probes_.push_back(probe);
 }
 
+void Probes::addSensor(const picture::PlacedSensor& sensor) {
+  add({sensor.first[0], sensor.first[1], sensor.first[2]});
+  probes_.back().sensor = sensor;
+}
+
 void Probes::add(const Region& region, const EditView& view) {
   add({0, 0, 0});
   probes_.back().area = {region, view, {}};
 }
 
 bool Probes::isWaiting() const {
-  return std::any_of(probes_.begin(), probes_.end(),
-                     [](const Probe& one) { return one.state == Probe::State::waiting; });
+  return std::any_of(probes_.begin(), probes_.end(), [](const Probe& one) {
+    return !one.sensor && one.state == Probe::State::waiting;
+  });
 }
 
 void Probes::clear() {
@@ -106,11 +117,43 @@ void Probes::clear() {
 void Probes::read(xvrml::Browser& browser, const picture::Picture& picture, const EditView& view) {
   view_ = view;
   for (Probe& probe : probes_)
-    probe.area ? readArea(probe, picture, view) : vv::read(probe, browser, picture, view);
+    if (probe.area)
+      readArea(probe, picture, view);
+    else if (!probe.sensor)
+      vv::read(probe, browser, picture, view);
+}
+
+std::vector<picture::PlacedSensor> Probes::waitingSensors() const {
+  std::vector<picture::PlacedSensor> sensors;
+  for (const Probe& probe : probes_)
+    if (probe.sensor && probe.state == Probe::State::waiting) {
+      sensors.push_back(*probe.sensor);
+      sensors.back().name = std::to_string(probe.number);
+    }
+  return sensors;
+}
+
+void Probes::take(const std::vector<picture::Measurement>& readings) {
+  for (const picture::Measurement& reading : readings)
+    for (Probe& probe : probes_) {
+      if (!probe.sensor || std::to_string(probe.number) != reading.sensor.name) continue;
+      probe.now = {};
+      probe.now.luminance = reading.value[0];
+      probe.now.luminanceHalfWidth = reading.halfWidth[0];
+      probe.now.samples = reading.samples[0];
+      probe.now.trusted = reading.trusted[0] != 0;
+      probe.state = Probe::State::read;
+    }
 }
 
 void Probes::expire() {
-  for (Probe& probe : probes_) probe.state = Probe::State::waiting;
+  for (Probe& probe : probes_)
+    if (!probe.sensor) probe.state = Probe::State::waiting;
+}
+
+void Probes::expireSensors() {
+  for (Probe& probe : probes_)
+    if (probe.sensor) probe.state = Probe::State::waiting;
 }
 
 void Probes::keep() {
@@ -127,7 +170,8 @@ std::vector<std::optional<Difference>> Probes::differences() const {
   std::vector<size_t> judged;
   for (size_t i = 0; i < probes_.size(); ++i) {
     const Probe& probe = probes_[i];
-    if (!probe.hasBefore || probe.state != Probe::State::read || !areEqual(view_, kept_)) continue;
+    if (!probe.hasBefore || probe.state != Probe::State::read) continue;
+    if (!probe.sensor && !areEqual(view_, kept_)) continue;
     all[i] = differenceBetween(probe.before, probe.now);
     // An interval that cannot be trusted proves nothing.
     if (!probe.now.trusted || !probe.before.trusted) continue;
@@ -139,9 +183,10 @@ std::vector<std::optional<Difference>> Probes::differences() const {
 }
 
 std::string Probes::csv() const {
-  std::string text = "probe,x,y,z,luminance,half_width,trusted,before,before_half_width,difference,"
-                     "difference_half_width,significant,left,top,width,height,least,most,"
-                     "uniformity\n";
+  std::string text =
+      "probe,x,y,z,quantity,unit,value,half_width,trusted,before,before_half_width,difference,"
+      "difference_half_width,significant,left,top,width,height,least,most,"
+      "uniformity\n";
   const std::vector<std::optional<Difference>> changes = differences();
   for (size_t i = 0; i < probes_.size(); ++i) {
     const Probe& probe = probes_[i];
@@ -149,6 +194,7 @@ std::string Probes::csv() const {
     text += probe.area ? fmt::format("{},,,", probe.number)
                        : fmt::format("{},{:.9g},{:.9g},{:.9g}", probe.number, probe.point[0],
                                      probe.point[1], probe.point[2]);
+    text += fmt::format(",{},{}", quantityOf(probe), unitOf(probe));
     text += isRead ? fmt::format(",{:.9g},{:.9g},{}", probe.now.luminance,
                                  probe.now.luminanceHalfWidth, probe.now.trusted)
                    : ",,,";

@@ -1,5 +1,6 @@
 // probes.h: Places in the world, and rectangles of the picture, whose light is read from still
-// pictures, with error bars, and what an edit has changed there. [the browser's thread]
+// pictures, and surfaces whose light sensors read, with error bars; and what an edit has changed
+// there. [the browser's thread]
 #pragma once
 
 #include <array>
@@ -10,6 +11,7 @@
 
 #include "edit/comparison.h"
 #include "edit/region.h"
+#include "libpicture/measure.h"
 
 namespace vv {
 
@@ -24,21 +26,30 @@ struct Probe {
   int number = 0;
   std::array<double, 3> point{}; // in the world, if there is no area
   std::optional<Area> area;
+  // Reads the illuminance of the surface at the point, whatever the view is; none: the probe reads
+  // the luminance in pictures.
+  std::optional<picture::PlacedSensor> sensor;
   State state = State::waiting;
-  picture::PixelReading now;    // reading of its pixel, or mean of its area
+  // The reading of its pixel, the mean of its area, or the illuminance in lux as its luminance.
+  picture::PixelReading now;
   picture::PixelReading before; // the same, as it was kept
   bool hasBefore = false;
 };
 
+// Return what a probe reads: "luminance" in "cd/m2", or "illuminance" in "lx".
+const char* quantityOf(const Probe& probe);
+const char* unitOf(const Probe& probe);
 // Returns what a probe says: "1  412 cd/m2 +- 1.5 %  trusted   B - A: -41 +- 8, significant".
 std::string probeText(const Probe& probe, const std::optional<Difference>& change);
 
 class Probes {
  public:
   const std::vector<Probe>& all() const { return probes_; }
-  // Tells whether a probe has not been read yet.
+  // Tells whether a probe has not been read from a picture yet.
   bool isWaiting() const;
   void add(const std::array<double, 3>& point);
+  // Adds a sensor with one point.
+  void addSensor(const picture::PlacedSensor& sensor);
   // Adds a rectangle of the pictures of this view.
   void add(const Region& region, const EditView& view);
   void clear();
@@ -46,15 +57,20 @@ class Probes {
   // unbiased samples. A probe behind something else, or where nothing is any more, is hidden. A
   // rectangle is read from pictures of its own view alone. [while the world can be used]
   void read(xvrml::Browser& browser, const picture::Picture& picture, const EditView& view);
-  // Notes that the world or the view has changed: all probes wait for the next picture.
+  // Returns the sensors of the probes that have not been read yet, and takes their readings.
+  std::vector<picture::PlacedSensor> waitingSensors() const;
+  void take(const std::vector<picture::Measurement>& readings);
+  // Notes that the world or the view has changed: all probes wait for the next picture. Sensors
+  // wait only if the world has changed.
   void expire();
+  void expireSensors();
   // Keeps the light of all probes that have been read, to compare what follows with it.
   void keep();
   // Lets the user's wish be known that the light is kept, and tells it once.
   void askToKeep() { wantsKeep_ = true; }
   bool takeKeep() { return std::exchange(wantsKeep_, false); }
   // Returns the changes of the probes, in their order; none where there is nothing to compare: the
-  // probe was not read, or from another view. All are judged together.
+  // probe was not read, or in a picture of another view. All are judged together.
   std::vector<std::optional<Difference>> differences() const;
   // Returns a table with a line for each probe.
   std::string csv() const;

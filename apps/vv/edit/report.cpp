@@ -80,6 +80,7 @@ const char* stateOf(const Probe& probe) {
   case Probe::State::waiting: return "not read yet";
   case Probe::State::hidden: return "not seen";
   case Probe::State::outside: return "outside of the picture";
+  case Probe::State::otherView: return "of another view";
   default: return probe.now.trusted ? "trusted" : "not trusted";
   }
 }
@@ -108,8 +109,8 @@ void addPictures(const Report& report, std::string& out) {
 
 void addProbes(const Report& report, std::string& out) {
   if (report.probes.empty()) return;
-  out += "<h2>Luminance at the probes</h2>\n<table><tr><th>probe<th>place<th class=n>before (A), "
-         "cd/m²<th class=n>now (B), cd/m²<th class=n>B - A<th></tr>\n";
+  out += "<h2>Light at the probes</h2>\n<table><tr><th>probe<th>place<th><th class=n>before (A)"
+         "<th class=n>now (B)<th class=n>B - A<th></tr>\n";
   for (size_t i = 0; i < report.probes.size(); ++i) {
     const Probe& probe = report.probes[i];
     const bool isRead = probe.state == Probe::State::read;
@@ -120,9 +121,12 @@ void addProbes(const Report& report, std::string& out) {
         isRead ? interval(probe.now.luminance, probe.now.luminanceHalfWidth) : "";
     const std::string verdict =
         change ? fmt::format("{}, {}", verdictOf(*change), stateOf(probe)) : stateOf(probe);
-    out += fmt::format("<tr><td>{}<td>{:.4g} {:.4g} {:.4g}<td class=n>{}<td class=n>{}<td "
+    const std::string place = probe.area ? "a rectangle"
+                                         : fmt::format("{:.4g} {:.4g} {:.4g}", probe.point[0],
+                                                       probe.point[1], probe.point[2]);
+    out += fmt::format("<tr><td>{}<td>{}<td>{}, {}<td class=n>{}<td class=n>{}<td "
                        "class=n>{}<td>{}</tr>\n",
-                       probe.number, probe.point[0], probe.point[1], probe.point[2], before, now,
+                       probe.number, place, quantityOf(probe), unitOf(probe), before, now,
                        change ? interval(change->value, change->halfWidth, true) : "", verdict);
   }
   out += "</table>\n<p class=weak>± is half of the 95 % interval. A change is significant at 5 % "
@@ -178,8 +182,10 @@ std::string reportTable(const Report& report) {
   for (size_t i = 0; i < report.probes.size(); ++i) {
     const Probe& probe = report.probes[i];
     const std::optional<Difference>& change = changeOf(report, i);
-    out += fmt::format("probe,{},luminance,{:.9g},{:.9g},{:.9g},", probe.number, probe.point[0],
-                       probe.point[1], probe.point[2]);
+    out += fmt::format("probe,{},{},", probe.number, quantityOf(probe));
+    out += probe.area ? std::string(",,,")
+                      : fmt::format("{:.9g},{:.9g},{:.9g},", probe.point[0], probe.point[1],
+                                    probe.point[2]);
     out += change ? fmt::format("{:.9g},{:.9g},", probe.before.luminance,
                                 probe.before.luminanceHalfWidth)
                   : ",,";

@@ -23,6 +23,7 @@ void Measuring::advance() {
       return;
     }
     shared_.measure(*std::exchange(wanted_, std::nullopt));
+    world_ = shared_.world();
   } else if (const std::optional<picture::LiveReadings> readings = shared_.live.takeReadings()) {
     end(*readings);
   }

@@ -14,14 +14,19 @@ class Measuring {
   // Receives the readings, or why there are none.
   using Done = std::function<void(const picture::LiveReadings& readings)>;
 
-  // The renderer must outlive this object.
-  explicit Measuring(SharedRenderer& shared) : shared_(shared) {}
+  // samples: see samples(). The renderer must outlive this object.
+  Measuring(SharedRenderer& shared, int samples) : shared_(shared), samples_(samples) {}
+
+  // The samples of each point, if nobody asks for others.
+  int samples() const { return samples_; }
 
   // Asks for readings of the world as it is when the renderer is free. [not while one is pending]
   void want(const picture::LiveMeasure& measure, Done done);
   // A measurement waits or is under way, so that no frame may be started.
   bool isPending() const { return done_ != nullptr; }
   bool isWaiting() const { return wanted_.has_value(); }
+  // Tells whether the world has changed since the last measurement.
+  bool isOutdated() const { return shared_.isOutdated(world_); }
   // Ends what is pending: done is called with a failure.
   void giveUp();
   // Begins what waits once the renderer is free, and hands over what has ended. [not while mapping]
@@ -31,6 +36,8 @@ class Measuring {
   void end(const picture::LiveReadings& readings);
 
   SharedRenderer& shared_;
+  const int samples_;
+  uint64_t world_ = 0; // the state of the world that was measured last
   std::optional<picture::LiveMeasure> wanted_;
   Done done_; // null: nothing is pending
 };

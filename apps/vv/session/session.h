@@ -22,6 +22,7 @@
 #include "session/pick_preparation.h"
 #include "session/picture_saver.h"
 #include "session/replay.h"
+#include "session/saving.h"
 #include "session/session_clock.h"
 #include "session/session_viewers.h"
 
@@ -149,7 +150,7 @@ class Session {
   SessionViewers viewers_;
   SessionViewer& own_ = viewers_.own();
   Captures captures_{shared_};
-  Measuring measuring_{shared_};
+  Measuring measuring_{shared_, samplesOfSensors(options_)};
   const uint32_t channels_; // channels of saved pictures
   PictureSaver saver_;
   SessionClock clock_;

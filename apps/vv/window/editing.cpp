@@ -19,6 +19,19 @@ namespace {
 constexpr double clickDistance = 0.012;
 // How far the pointer may be from the line of the wiper, in halves of the picture's width.
 constexpr double wiperReach = 0.02;
+struct SurfaceSeen {
+  CameraRay ray;
+  PickHit hit;
+};
+// Returns what the pointer is at. inside: it is over the picture. Throws EditError.
+SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, const InputEvent& at,
+                      bool inside) {
+  if (!inside) throw EditError("put the pointer where the light is to be measured");
+  SurfaceSeen seen{rayThrough(view.camera, view.aspect, at.x, at.y), {}};
+  if (!editor.browser().pick(seen.ray.origin, seen.ray.direction, {.bothSides = true}, seen.hit))
+    throw EditError("there is nothing here to be measured");
+  return seen;
+}
 constexpr const char* kindNames[] = {"move", "turn", "scale"};
 
 } // namespace
@@ -178,20 +191,26 @@ bool Editing::press(const InputEvent& event) {
     save();
     return true;
   }
-  if (!event.control && !event.alt && event.shift && key == "V") {
+  const bool measures = !event.control && !event.alt && (key == "V" || key == "U");
+  if (measures && !hasLight_) {
+    message_ = "--colour vrml97 makes colours for screens, not light";
+    return true;
+  }
+  if (measures && event.shift && key == "V") {
     measures_ = true;
     message_ = "drag a rectangle over what is to be measured (Escape: none)";
     return true;
   }
-  if (!event.control && !event.alt && key == "V")
+  if (measures && key == "V")
     return request(
         [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          if (!inside) throw EditError("put the pointer where the light is to be measured");
-          const CameraRay ray = rayThrough(view.camera, view.aspect, at.x, at.y);
-          PickHit hit;
-          if (!editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit))
-            throw EditError("there is nothing here to be measured");
-          probes_.add(hit.point);
+          probes_.add(surfaceAt(editor, view, at, inside).hit.point);
+        });
+  if (measures && !event.shift)
+    return request(
+        [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
+          const auto [ray, hit] = surfaceAt(editor, view, at, inside);
+          probes_.addSensor(picture::sensorAt(hit.point.data(), hit.normal.data(), ray.direction));
         });
   if (pressForComparison(event)) return true;
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
@@ -321,6 +340,7 @@ void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
   if (isOpen_) offerLeft(session.editor());
   view_ = {session.pilot().camera(), session.pilot().aspect()};
+  hasLight_ = session.pilot().hasLight();
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
@@ -333,6 +353,7 @@ void Editing::update(Session& session, double seconds) {
   if (probes_.takeKeep()) keepLight(session.editor());
   compare(session);
   readStill(session, seconds);
+  readSensors(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
   if (panels_->takeReportWish()) report_.begin(session, probes_, arguments_);
@@ -347,7 +368,10 @@ void Editing::showCover() {
 
 // Keeps the light of the probes, and the next still picture.
 void Editing::keepLight(WorldEditor& editor) {
-  if (editor.browser().hasChanges()) probes_.expire();
+  if (editor.browser().hasChanges()) {
+    probes_.expire();
+    probes_.expireSensors();
+  }
   probes_.keep();
   comparison_.ask(editor.editor().changes(), view_);
 }
@@ -384,6 +408,29 @@ void Editing::readStill(Session& session, double seconds) {
   if (comparison_.take(picture, number, session.editor().editor().changes(), view_, finished != 0))
     probes_.keep();
   screen_.redraw();
+}
+
+// Reads the probes of illuminance when the previews have ended. The still picture begins anew then.
+void Editing::readSensors(Session& session, double seconds) {
+  constexpr double patience = 2; // seconds after a failure
+  Measuring& measuring = session.measuring();
+  if (measuring.isOutdated()) probes_.expireSensors();
+  if (!session.pictures().isRefining() || session.viewers().own().isOutdated() ||
+      measuring.isPending() || seconds < nextSensors_)
+    return;
+  const std::vector<picture::PlacedSensor> sensors = probes_.waitingSensors();
+  if (sensors.empty()) return;
+  measuring.want({.view = session.pictures().stillOf(session.pilot()).view,
+                  .sensors = sensors,
+                  .samples = measuring.samples()},
+                 [this, seconds](const picture::LiveReadings& read) {
+                   if (!read.failure.empty()) {
+                     message_ = "not measured: " + read.failure;
+                     nextSensors_ = seconds + patience;
+                   }
+                   probes_.take(read.sensors);
+                   screen_.redraw();
+                 });
 }
 
 } // namespace vv

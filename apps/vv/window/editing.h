@@ -80,6 +80,7 @@ class Editing {
   void compare(Session& session);
   void showCover();
   void readStill(Session& session, double seconds);
+  void readSensors(Session& session, double seconds);
 
   Screen& screen_;
   Questions& questions_;
@@ -93,6 +94,7 @@ class Editing {
   Comparison comparison_;
   Gizmo gizmo_;
   double stillRead_ = 0;      // when
+  double nextSensors_ = 0;    // when sensors are read again, after a failure
   uint64_t finishedRead_ = 0; // the number of the finished frame that was read
   uint64_t cover_ = 0;        // the number of the comparison's cover that the screen shows
   std::optional<EditorPanels> panels_;
@@ -106,6 +108,7 @@ class Editing {
   bool isToolClick_ = false;   // a button has been pressed for the tool
   bool hasToolFailed_ = false; // it could not begin
   std::optional<TransformTool> tool_;
+  bool hasLight_ = true;    // pictures have light that can be measured
   bool wantsFrame_ = false; // the viewer is to see what is selected
   std::string message_;
 };
