@@ -35,7 +35,7 @@ class Editing {
   // stay: is called otherwise; may be null.
   void leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay = {});
   // Tells whether something has been asked for that has not been done yet.
-  bool isBusy() const { return model_ && model_->hasRequests(); }
+  bool isBusy() const { return (model_ && model_->hasRequests()) || (isOpen_ && !hasOffered_); }
   // Tells whether a question may follow from an event, before those behind it are taken.
   bool mayAsk(WorldEditor& editor, const InputEvent& event) const;
   // Forgets the world, because another takes its place.
@@ -62,7 +62,7 @@ class Editing {
   Questions& questions_;
   const std::function<void(LoadRequest)> recover_;
   bool isOpen_ = false;
-  bool hasOffered_ = false;
+  bool hasOffered_ = false;        // what an earlier session has left, if there is anything
   std::optional<EditModel> model_; // one for each world
   Probes probes_;
   double probesRead_ = 0;     // when
