@@ -171,7 +171,7 @@ def test_quit_keeps_edits_or_discards_them(hall, file):
     vv.quit(discard=True)
     assert server.program.wait(20) == 0
     assert names(file.parent) == ["hall.wrl"] and file.read_text() == WORLD
-    assert not [line for line in server.err[1:] if "in " + str(file.parent) in line]
+    assert not [line for line in server.err if "are in" in line]
 
 
 def test_another_world_takes_no_edits_away(hall, file):
@@ -368,8 +368,8 @@ def editor(window, vv):
 
 STAGE = HEADER + """
 Viewpoint { position 0 0 10 fieldOfView 0.785398 }
-DEF LEFT Transform { translation -1 0 0 children # moved by hand
-  Shape { appearance Appearance { material Material { diffuseColor 1 0 0 } } geometry Box {} } }
+DEF LEFT Transform { # moved by hand
+  translation -1 0 0 children Shape { appearance Appearance { material Material { diffuseColor 1 0 0 } } geometry Box {} } }
 DEF RIGHT Transform { translation 2 0 0 children
   Shape { appearance Appearance { material Material { diffuseColor 0 0 1 } } geometry Box {} } }
 """
@@ -432,7 +432,7 @@ def test_what_is_typed_at_once_answers_the_question(editor, vv):
     w.key("q", "Return")  # saves, and ends
     assert w.program.wait(20) == 0
     assert "diffuseColor 1 0 0" not in world.read_text()
-    assert names(vv.folder) == sorted({*names(vv.folder)} - {".hall.wrl.vv-edits"})
+    assert ".hall.wrl.vv-edits" not in names(vv.folder)
 
 
 def test_a_file_that_has_changed_is_not_replaced_by_what_is_typed(editor, vv):

@@ -43,7 +43,7 @@ class Editing {
   // stay: is called otherwise; may be null.
   void leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay = {});
   // Tells whether something has been asked for that has not been done yet.
-  bool isBusy() const { return model_ && model_->hasRequests(); }
+  bool isBusy() const { return (model_ && model_->hasRequests()) || (isOpen_ && !hasOffered_); }
   // Tells whether a question may follow from an event, before those behind it are taken.
   bool mayAsk(WorldEditor& editor, const InputEvent& event) const;
   // Forgets the world, because another takes its place.
@@ -88,7 +88,7 @@ class Editing {
   const std::function<void(LoadRequest)> recover_;
   WorldReport report_;
   bool isOpen_ = false;
-  bool hasOffered_ = false;
+  bool hasOffered_ = false;        // what an earlier session has left, if there is anything
   std::optional<EditModel> model_; // one for each world
   Probes probes_;
   Comparison comparison_;

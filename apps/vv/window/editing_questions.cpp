@@ -11,20 +11,19 @@
 
 namespace vv {
 
-// Edits that are not saved, or that are still to be done, must not be lost; and what an earlier
-// session has left is offered when the editor opens.
+// While the editor is open, an event before this one may be an edit that is still to be done.
 bool Editing::mayAsk(WorldEditor& editor, const InputEvent& event) const {
   using Kind = InputEvent::Kind;
-  if (!editor.isChanged() && !isBusy() && !editor.journal().left()) return false;
+  const Action action = event.kind == Kind::down ? actionOf(event) : Action::none;
+  if (action == Action::edit) return true; // keys behind it are for the editor
+  if (!isOpen_ && !isBusy() && !editor.isChanged()) return false;
   switch (event.kind) {
   case Kind::quit:
   case Kind::open: return true;
   case Kind::release: return event.alt || !isOpen_; // it may work an Anchor
-  case Kind::down: {
-    const Action action = actionOf(event);
-    return action == Action::quit || action == Action::reload || action == Action::edit ||
+  case Kind::down:
+    return action == Action::quit || action == Action::reload ||
            (event.control && event.text == "S");
-  }
   default: return false;
   }
 }
@@ -36,7 +35,7 @@ void Editing::ask(Question question) {
 }
 
 void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay) {
-  if (isBusy()) {
+  if (model_ && model_->hasRequests()) {
     questions_.expect();
     return model_->request([this, go, stay](WorldEditor& later) {
       questions_.decide();
@@ -88,7 +87,7 @@ void Editing::save() {
 
 void Editing::offerLeft(WorldEditor& editor) {
   const std::optional<FoundJournal>& left = editor.journal().left();
-  if (!left || std::exchange(hasOffered_, true)) return;
+  if (std::exchange(hasOffered_, true) || !left) return;
   const auto use = [this] {
     model_->request([this](WorldEditor& later) {
       recover_({{later.browser().world().path}, "", {}, later.journal().take()});
