@@ -30,15 +30,6 @@ bool button(const char* label, bool active, const std::string& hint) {
   return pressed;
 }
 
-// A button of a row of buttons that goes on in the next line where the panel is too narrow.
-bool toolButton(const char* label, bool active, const std::string& hint) {
-  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
-  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
-      ImGui::GetContentRegionAvail().x < width)
-    ImGui::NewLine();
-  return button(label, active, hint);
-}
-
 // Begins a question, which waits for an answer while it is asked. Returns whether it is there; then
 // ImGui::EndPopup() ends it.
 bool beginQuestion(const char* title, bool isAsked, const char* text) {
@@ -51,6 +42,15 @@ bool beginQuestion(const char* title, bool isAsked, const char* text) {
 // The answer that changes nothing, which Escape gives, too.
 bool harmlessAnswer(const char* label, const char* hint) {
   return button(label, true, hint) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+}
+
+// A button of a row of buttons that goes on in the next line where the panel is too narrow.
+bool toolButton(const char* label, bool active, const std::string& hint) {
+  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
+      ImGui::GetContentRegionAvail().x < width)
+    ImGui::NewLine();
+  return button(label, active, hint);
 }
 
 enum class Edge : uint8_t { left, right };
@@ -70,9 +70,6 @@ void placePanel(Edge edge, float chosen, float part) {
 
 } // namespace
 
-EditorPanels::EditorPanels(EditModel& model, Probes& probes)
-    : model_(model), probes_(probes), widths_(readPanelWidths(panelStateFile())) {}
-
 void EditorPanels::draw() {
   drawFrames();
   drawOutline();
@@ -80,20 +77,7 @@ void EditorPanels::draw() {
   drawProbes();
   drawQuestion();
   drawOverwriteQuestion();
-  if (isResized_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    isResized_ = false;
-    writePanelWidths(panelStateFile(), widths_);
-  }
   model_.setActive(ImGui::IsAnyItemActive());
-}
-
-// Notes the width of the present panel when the user drags its edge. A smaller window makes panels
-// narrower, too; that is no choice.
-void EditorPanels::watchWidth(float& drawn, float& chosen) {
-  const float before = std::exchange(drawn, ImGui::GetWindowWidth());
-  if (before == 0 || before == drawn || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
-  chosen = drawn;
-  isResized_ = true;
 }
 
 void EditorPanels::drawFrames() const {
@@ -193,6 +177,18 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
   ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
   if (row.isUse) ImGui::PopStyleColor();
   ImGui::PopID();
+}
+
+// Keeps the width of the present panel when the user has dragged its edge. A smaller window makes
+// panels narrower, too; that is no choice.
+void EditorPanels::watchWidth(float& drawn, float& chosen) {
+  const float before = std::exchange(drawn, ImGui::GetWindowWidth());
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    if (std::exchange(isResized_, false)) writePanelWidths(panelStateFile(), widths_);
+  } else if (before != 0 && before != drawn) {
+    chosen = drawn;
+    isResized_ = true;
+  }
 }
 
 void EditorPanels::drawRowMenu() {

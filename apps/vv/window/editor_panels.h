@@ -15,7 +15,7 @@ namespace vv {
 
 class EditorPanels {
  public:
-  EditorPanels(EditModel& model, Probes& probes);
+  EditorPanels(EditModel& model, Probes& probes) : model_(model), probes_(probes) {}
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
@@ -39,16 +39,17 @@ class EditorPanels {
   void drawQuestion();
   void drawOverwriteQuestion();
 
+  PanelWidths widths_ = readPanelWidths(panelStateFile()); // what the user has chosen
+  float outlineWidth_ = 0, sheetWidth_ = 0;                // as the panels were drawn last
+  bool isResized_ = false;                                 // the user drags the edge of a panel
+  OutlineRow menuRow_;                                     // the row that the menu is about
+  bool opensMenu_ = false;
+
   EditModel& model_;
   Probes& probes_;
   EditView view_;
   std::string search_;
-  OutlineRow menuRow_; // the row that the menu is about
-  bool opensMenu_ = false;
-  PanelWidths widths_;                      // what the user has chosen
-  float outlineWidth_ = 0, sheetWidth_ = 0; // as the panels were drawn last
-  bool isResized_ = false;                  // the user drags the edge of a panel
-  std::function<void()> go_, stay_;         // go_ null: nothing is asked
+  std::function<void()> go_, stay_; // go_ null: nothing is asked
   bool asksToOverwrite_ = false;
 };
 

@@ -12,7 +12,6 @@ bool Gui::take(const SDL_Event&) { return false; }
 void Gui::draw() {}
 bool Gui::hasChanged() const { return false; }
 
-EditorPanels::EditorPanels(EditModel& model, Probes& probes) : model_(model), probes_(probes) {}
 void EditorPanels::draw() {}
 void EditorPanels::save() {}
 void EditorPanels::askToSave(std::function<void()> go, std::function<void()>) { go(); }
