@@ -44,15 +44,6 @@ bool harmlessAnswer(const char* label, const char* hint) {
   return button(label, true, hint) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
 }
 
-// A button of a row of buttons that goes on in the next line where the panel is too narrow.
-bool toolButton(const char* label, bool active, const std::string& hint) {
-  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
-  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
-      ImGui::GetContentRegionAvail().x < width)
-    ImGui::NewLine();
-  return button(label, active, hint);
-}
-
 enum class Edge : uint8_t { left, right };
 
 // Places a panel at an edge of the window, in the whole height: with the width that the user has
@@ -66,6 +57,15 @@ void placePanel(Edge edge, float chosen, float part) {
   ImGui::SetNextWindowSizeConstraints(ImVec2(least, size.y), ImVec2(size.x / 2, size.y));
   const float x = edge == Edge::left ? 0.f : 1.f;
   ImGui::SetNextWindowPos(ImVec2(x * size.x, 0), ImGuiCond_Always, ImVec2(x, 0));
+}
+
+// A button of a row of buttons that goes on in the next line where the panel is too narrow.
+bool toolButton(const char* label, bool active, const std::string& hint) {
+  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
+      ImGui::GetContentRegionAvail().x < width)
+    ImGui::NewLine();
+  return button(label, active, hint);
 }
 
 } // namespace
@@ -120,14 +120,6 @@ void EditorPanels::drawTools() {
   }
 }
 
-// Draws the items of a menu that change what is seen and selected, and not the file.
-void EditorPanels::drawViewItems() {
-  if (ImGui::MenuItem("Hide")) model_.hideSelected();
-  if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
-  if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
-  if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
-}
-
 void EditorPanels::drawOutline() {
   placePanel(Edge::left, widths_.outline, 0.26f);
   if (ImGui::Begin("##outline", nullptr, panelFlags)) {
@@ -177,6 +169,14 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
   ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
   if (row.isUse) ImGui::PopStyleColor();
   ImGui::PopID();
+}
+
+// Draws the items of a menu that change what is seen and selected, and not the file.
+void EditorPanels::drawViewItems() {
+  if (ImGui::MenuItem("Hide")) model_.hideSelected();
+  if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
+  if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
+  if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
 }
 
 // Keeps the width of the present panel when the user has dragged its edge. A smaller window makes

@@ -29,8 +29,8 @@ class EditorPanels {
  private:
   void drawOutline();
   void drawTools();
-  void drawViewItems();
   void drawRow(const OutlineRow& row, int number);
+  void drawViewItems();
   void drawRowMenu();
   void watchWidth(float& drawn, float& chosen);
   void drawSheet();
