@@ -56,6 +56,7 @@ PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field)
   PropertyRow row;
   row.field = &field;
   row.defaultValue = field.defaultValue;
+  row.range = field.range;
   row.help = helpOf(field, field.text, field.range);
   row.choices = choicesOf(field);
   if (holdsNodes(field)) {
@@ -80,6 +81,7 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
     if (declared != sheet.rows.end()) {
       if (!declared->field->declared) continue; // a field of the node itself has this name
       declared->help = helpOf(*declared->field, field->text, field->range);
+      declared->range = field->range;
       if (declared->field->type != field->type) continue;
       declared->defaultValue = field->defaultValue;
       declared->isDefault = !declared->isLong && declared->value == declared->defaultValue;
@@ -89,6 +91,7 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
     row.parameter = std::make_shared<const FieldInfo>(*field);
     row.field = row.parameter.get();
     row.value = row.defaultValue = field->defaultValue;
+    row.range = field->range;
     row.help = helpOf(*field, field->text, field->range);
     row.isDefault = true;
     row.isDeclared = false;

@@ -23,6 +23,7 @@ struct PropertyRow {
   bool isDeclared = true;   // false: the shader gets the field when it is changed
   bool isInOptions = false; // the options of the shader set the parameter, which is not shown
   uint64_t edits = 0;       // Editor::editsOf() when the value was read
+  xvrml::FieldRange range;  // the range of each number
   std::string help;         // type, range and what the field does
   std::vector<std::string> choices; // words that a field of strings may hold
   // --- Fields of nodes ---

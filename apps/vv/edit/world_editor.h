@@ -65,11 +65,11 @@ class WorldEditor {
   xvrml::Browser& browser_;
   xvrml::Editor editor_;
   Journal journal_{editor_, browser_};
-  const std::string shaderPath_;
-  std::optional<std::vector<picture::ShaderClass>> shaderClasses_;
   xvrml::MFNode selection_;
   std::deque<xvrml::MFNode> earlier_; // selections before this one, the last one last
   uint64_t saves_ = 0;
+  const std::string shaderPath_;
+  std::optional<std::vector<picture::ShaderClass>> shaderClasses_;
 };
 
 } // namespace vv

@@ -31,15 +31,6 @@ bool button(const char* label, bool active, const std::string& hint) {
   return pressed;
 }
 
-// A button of a row of buttons that goes on in the next line where the panel is too narrow.
-bool toolButton(const char* label, bool active, const std::string& hint) {
-  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
-  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
-      ImGui::GetContentRegionAvail().x < width)
-    ImGui::NewLine();
-  return button(label, active, hint);
-}
-
 enum class Edge : uint8_t { left, right };
 
 // Places a panel at an edge of the window, in the whole height: with the width that the user has
@@ -55,11 +46,16 @@ void placePanel(Edge edge, float chosen, float part) {
   ImGui::SetNextWindowPos(ImVec2(x * size.x, 0), ImGuiCond_Always, ImVec2(x, 0));
 }
 
-} // namespace
+// A button of a row of buttons that goes on in the next line where the panel is too narrow.
+bool toolButton(const char* label, bool active, const std::string& hint) {
+  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
+      ImGui::GetContentRegionAvail().x < width)
+    ImGui::NewLine();
+  return button(label, active, hint);
+}
 
-EditorPanels::EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
-    : model_(model), probes_(probes), save_(std::move(save)),
-      widths_(readPanelWidths(panelStateFile())) {}
+} // namespace
 
 void EditorPanels::draw() {
   drawFrames();
@@ -67,20 +63,7 @@ void EditorPanels::draw() {
   drawSheet();
   drawProbes();
   drawProblems(model_);
-  if (isResized_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    isResized_ = false;
-    writePanelWidths(panelStateFile(), widths_);
-  }
   model_.setActive(ImGui::IsAnyItemActive());
-}
-
-// Notes the width of the present panel when the user drags its edge. A smaller window makes panels
-// narrower, too; that is no choice.
-void EditorPanels::watchWidth(float& drawn, float& chosen) {
-  const float before = std::exchange(drawn, ImGui::GetWindowWidth());
-  if (before == 0 || before == drawn || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
-  chosen = drawn;
-  isResized_ = true;
 }
 
 void EditorPanels::drawFrames() const {
@@ -122,14 +105,6 @@ void EditorPanels::drawTools() {
     drawViewItems();
     ImGui::EndPopup();
   }
-}
-
-// Draws the items of a menu that change what is seen and selected, and not the file.
-void EditorPanels::drawViewItems() {
-  if (ImGui::MenuItem("Hide")) model_.hideSelected();
-  if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
-  if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
-  if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
 }
 
 void EditorPanels::drawReports() {
@@ -192,6 +167,26 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
   ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
   if (row.isUse) ImGui::PopStyleColor();
   ImGui::PopID();
+}
+
+// Draws the items of a menu that change what is seen and selected, and not the file.
+void EditorPanels::drawViewItems() {
+  if (ImGui::MenuItem("Hide")) model_.hideSelected();
+  if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
+  if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
+  if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
+}
+
+// Keeps the width of the present panel when the user has dragged its edge. A smaller window makes
+// panels narrower, too; that is no choice.
+void EditorPanels::watchWidth(float& drawn, float& chosen) {
+  const float before = std::exchange(drawn, ImGui::GetWindowWidth());
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    if (std::exchange(isResized_, false)) writePanelWidths(panelStateFile(), widths_);
+  } else if (before != 0 && before != drawn) {
+    chosen = drawn;
+    isResized_ = true;
+  }
 }
 
 void EditorPanels::drawRowMenu() {

@@ -17,7 +17,8 @@ namespace vv {
 class EditorPanels {
  public:
   // save: saves the file.
-  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save);
+  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
+      : model_(model), probes_(probes), save_(std::move(save)) {}
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
@@ -28,25 +29,26 @@ class EditorPanels {
  private:
   void drawOutline();
   void drawTools();
-  void drawViewItems();
   void drawReports();
   void drawRow(const OutlineRow& row, int number);
+  void drawViewItems();
   void drawRowMenu();
   void watchWidth(float& drawn, float& chosen);
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
 
+  PanelWidths widths_ = readPanelWidths(panelStateFile()); // what the user has chosen
+  float outlineWidth_ = 0, sheetWidth_ = 0;                // as the panels were drawn last
+  bool isResized_ = false;                                 // the user drags the edge of a panel
+  OutlineRow menuRow_;                                     // the row that the menu is about
+  bool opensMenu_ = false;
+
   EditModel& model_;
   Probes& probes_;
   EditView view_;
   std::string search_;
   const std::function<void()> save_;
-  OutlineRow menuRow_; // the row that the menu is about
-  bool opensMenu_ = false;
-  PanelWidths widths_;                      // what the user has chosen
-  float outlineWidth_ = 0, sheetWidth_ = 0; // as the panels were drawn last
-  bool isResized_ = false;                  // the user drags the edge of a panel
   bool wantsReport_ = false;
 };
 

@@ -33,7 +33,8 @@ void hint(const std::string& text) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(text).c_str());
 }
 
-// Begins a popup with a list that a text filters. A click that chooses closes the popup by end().
+// A popup with a list that a text filters. A click chooses a row, and Enter the first one; then
+// end() closes the popup.
 struct FilteredList {
   // The popup has been opened by ImGui::OpenPopup. Returns whether it is there.
   static bool begin(const char* name) { return ImGui::BeginPopup(name); }
@@ -45,7 +46,8 @@ struct FilteredList {
     }
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextItemWidth(std::min(240.f, size.x / 2));
-    ImGui::InputTextWithHint("##filter", "Search", &text);
+    takesFirst =
+        ImGui::InputTextWithHint("##filter", "Search", &text, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::BeginChild("##rows", ImVec2(std::min(240.f, size.x / 2), std::min(260.f, size.y / 2)));
     filter = &text;
   }
@@ -59,7 +61,7 @@ struct FilteredList {
         label.end())
       return false;
     ImGui::PushID(number);
-    const bool pressed = ImGui::Selectable("##row");
+    const bool pressed = ImGui::Selectable("##row") || std::exchange(takesFirst, false);
     if (!text.empty()) hint(text);
     drawOver(printable(label));
     ImGui::PopID();
@@ -73,7 +75,7 @@ struct FilteredList {
   }
 
   const std::string* filter = nullptr;
-  bool chosen = false;
+  bool takesFirst = false, chosen = false;
 };
 
 void drawAdd(EditModel& model, const NodeRef& node, const PropertyRow& row) {

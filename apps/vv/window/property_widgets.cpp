@@ -1,6 +1,7 @@
 // property_widgets.cpp: The widgets for the fields of a node, by the types of their values.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 #include <utility>
@@ -44,43 +45,70 @@ bool counts(bool changes) {
   return (changes && !ImGui::GetIO().WantTextInput) || ImGui::IsItemDeactivatedAfterEdit();
 }
 
+// How far a drag goes: the range of a field. A number that is typed may be refused.
+template <class Number> struct DragLimits {
+  explicit DragLimits(const FieldRange& range) {
+    if (!range.bounded() || !std::isnan(range.also)) return;
+    constexpr double greatest = double(std::numeric_limits<Number>::max()) / 2;
+    least = bound(std::max(range.minimum, -greatest), range.minimumOpen, greatest);
+    most = bound(std::min(range.maximum, greatest), range.maximumOpen, -greatest);
+  }
+  // An open end is no value of the field.
+  static Number bound(double end, bool isOpen, double inwards) {
+    const auto number = Number(end);
+    if (!isOpen) return number;
+    if constexpr (std::is_integral_v<Number>)
+      return inwards > 0 ? number + 1 : number - 1;
+    else
+      return std::nextafter(number, Number(inwards));
+  }
+  Number least = 0, most = 0; // equal: there are none
+};
+
 // The functions edit() draw the widget of a value, and return whether the user has changed it.
 
 // Each number of a vector has a drag of its own, with its own speed.
-template <class Number> bool dragNumbers(Number* numbers, int count) {
+template <class Number> bool dragNumbers(Number* numbers, int count, const FieldRange& range = {}) {
   constexpr float gap = 2;
   const float width =
       std::max(1.f, (ImGui::CalcItemWidth() - gap * float(count - 1)) / float(count));
+  const DragLimits<Number> limits(range);
   bool changes = false;
   for (int i = 0; i < count; ++i) {
     if (i > 0) ImGui::SameLine(0, gap);
     ImGui::PushID(i);
     ImGui::SetNextItemWidth(width);
-    changes |= counts(ImGui::DragScalar("##value", dataType<Number>, numbers + i,
-                                        speedOf(numbers[i]), nullptr, nullptr, formOf(numbers[i])));
+    changes |=
+        counts(ImGui::DragScalar("##value", dataType<Number>, numbers + i, speedOf(numbers[i]),
+                                 &limits.least, &limits.most, formOf(numbers[i])));
     ImGui::PopID();
   }
   return changes;
 }
 
-bool edit(bool& value) { return ImGui::Checkbox("##value", &value); }
+bool edit(bool& value, const FieldRange&) { return ImGui::Checkbox("##value", &value); }
 
 // A text counts when the user has finished it.
-bool edit(std::string& value) {
+bool edit(std::string& value, const FieldRange&) {
   ImGui::InputText("##value", &value);
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-bool edit(Color& value) {
-  return counts(ImGui::ColorEdit3("##value", &value.r, ImGuiColorEditFlags_Float));
+// Numbers of a colour may be above 1 where its field does not say otherwise.
+ImGuiColorEditFlags colourFlags(const FieldRange& range) {
+  return ImGuiColorEditFlags_Float | (range.maximum > 1 ? ImGuiColorEditFlags_HDR : 0);
 }
 
-bool edit(ColorRGBA& value) {
-  return counts(ImGui::ColorEdit4("##value", &value.r, ImGuiColorEditFlags_Float));
+bool edit(Color& value, const FieldRange& range) {
+  return counts(ImGui::ColorEdit3("##value", &value.r, colourFlags(range)));
+}
+
+bool edit(ColorRGBA& value, const FieldRange& range) {
+  return counts(ImGui::ColorEdit4("##value", &value.r, colourFlags(range)));
 }
 
 // An axis, and the angle in degrees.
-bool edit(Rotation& value) {
+bool edit(Rotation& value, const FieldRange&) {
   const bool changes = dragNumbers(&value.x, 3);
   auto angle = float(double(value.angle) * degrees);
   ImGui::SetNextItemWidth(-1);
@@ -92,23 +120,23 @@ bool edit(Rotation& value) {
 // Numbers, alone or a few of them.
 template <Numeric T>
 requires(numberCount<T> <= 4 && !std::is_same_v<T, Color> && !std::is_same_v<T, ColorRGBA> &&
-         !std::is_same_v<T, Rotation>) bool edit(T& value) {
-  return dragNumbers(numbersOf(value), numberCount<T>);
+         !std::is_same_v<T, Rotation>) bool edit(T& value, const FieldRange& range) {
+  return dragNumbers(numbersOf(value), numberCount<T>, range);
 }
 
 template <class T>
-concept Editable = requires(T& value) {
-  edit(value);
+concept Editable = requires(T& value, const FieldRange& range) {
+  edit(value, range);
 };
 
 // A text, or one of the words that the field may hold.
-bool edit(std::string& value, const std::vector<std::string>& choices) {
-  if (choices.empty()) return edit(value);
+bool editText(std::string& value, const PropertyRow& row) {
+  if (row.choices.empty()) return edit(value, row.range);
   ImGui::SetNextItemWidth(std::max(1.f, ImGui::CalcItemWidth() - ImGui::GetFrameHeight() - 2));
-  bool changes = edit(value);
+  bool changes = edit(value, row.range);
   ImGui::SameLine(0, 2);
   if (ImGui::BeginCombo("##choices", nullptr, ImGuiComboFlags_NoPreview)) {
-    for (const std::string& one : choices)
+    for (const std::string& one : row.choices)
       if (ImGui::Selectable(one.c_str(), one == value)) {
         value = one;
         changes = true;
@@ -118,19 +146,19 @@ bool edit(std::string& value, const std::vector<std::string>& choices) {
   return changes;
 }
 
-template <class T> bool editList(std::vector<T>& list, const std::vector<std::string>& choices) {
+template <class T> bool editList(std::vector<T>& list, const PropertyRow& row) {
   bool changes = false;
   for (size_t i = 0; i < list.size(); ++i) {
     ImGui::PushID(int(i));
     ImGui::SetNextItemWidth(-ImGui::GetFrameHeight() - 6);
     if constexpr (std::is_same_v<T, bool>) {
       bool value = list[i];
-      changes |= edit(value);
+      changes |= edit(value, row.range);
       list[i] = value;
     } else if constexpr (std::is_same_v<T, std::string>) {
-      changes |= edit(list[i], choices);
+      changes |= editText(list[i], row);
     } else {
-      changes |= edit(list[i]);
+      changes |= edit(list[i], row.range);
     }
     ImGui::SameLine();
     const bool removed = ImGui::Button("x", ImVec2(ImGui::GetFrameHeight(), 0));
@@ -142,7 +170,7 @@ template <class T> bool editList(std::vector<T>& list, const std::vector<std::st
   if (list.size() < PropertySheet::mostElements && ImGui::Button("+")) {
     T added = list.empty() ? T() : T(list.back());
     if constexpr (std::is_same_v<T, std::string>)
-      if (list.empty() && !choices.empty()) added = choices.front();
+      if (list.empty() && !row.choices.empty()) added = row.choices.front();
     list.push_back(std::move(added));
     return true;
   }
@@ -157,11 +185,11 @@ bool drawValue(PropertyRow& row) {
         ImGui::SetNextItemWidth(-1);
         if constexpr (isList<T>) {
           if constexpr (Editable<ElementOf<T>> && !std::is_same_v<T, MFImage>)
-            return editList(value, row.choices);
+            return editList(value, row);
         } else if constexpr (std::is_same_v<T, std::string>) {
-          return edit(value, row.choices);
+          return editText(value, row);
         } else if constexpr (Editable<T>) {
-          return edit(value);
+          return edit(value, row.range);
         }
         ImGui::TextDisabled("%s", std::string(fieldTypeName(row.field->type)).c_str());
         return false;
