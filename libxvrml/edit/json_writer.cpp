@@ -88,14 +88,17 @@ size_t blanksBefore(const DocumentText& text, size_t at) {
 
 class JsonWriter : public NodeWriter {
  public:
-  JsonWriter(const Document& document, std::vector<const PrototypeText*> lifted)
-      : NodeWriter(document, std::move(lifted)), style_(document.file().text, 0) {}
+  JsonWriter(const Document& document, WritingPlan plan)
+      : NodeWriter(document, std::move(plan)), style_(document.file().text, 0) {}
 
  private:
   // Returns a text of a node, route or member with an indentation.
   using Make = std::function<std::string(std::string_view indentation)>;
 
   std::string finished(std::string text) const override { return withCommas(text); }
+  CommentedNode commented(std::string_view, const TextSpan& node) const override {
+    return {node.begin, node.end, node.end, node}; // comments are members
+  }
   bool endsLine(std::string_view text, size_t at) const override {
     return xvrml::endsLine(text, at);
   }
@@ -386,9 +389,8 @@ class JsonWriter : public NodeWriter {
 
 } // namespace
 
-std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document,
-                                           std::vector<const PrototypeText*> lifted) {
-  return std::make_unique<JsonWriter>(document, std::move(lifted));
+std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document, WritingPlan plan) {
+  return std::make_unique<JsonWriter>(document, std::move(plan));
 }
 
 } // namespace xvrml
