@@ -46,6 +46,9 @@ class ClassicWriter : public NodeWriter {
     text_.out += useOf(*place.node, {});
   }
 
+  CommentedNode commented(std::string_view text, const TextSpan& node) const override {
+    return commentedNode(text, node);
+  }
   bool endsLine(std::string_view text, size_t at) const override {
     return xvrml::endsLine(text, at);
   }
@@ -125,7 +128,8 @@ class ClassicWriter : public NodeWriter {
   std::string inBrackets(const MFNode& children, const std::string& indentation) {
     const std::string inner = deeper(indentation);
     std::string out = "[";
-    for (const NodeRef& child : children) out += feed_ + inner + node(child.get(), inner, {});
+    for (const NodeRef& child : children)
+      out += feed_ + inner + nodeInLines(child.get(), inner, {});
     return out + feed_ + indentation + "]";
   }
 
@@ -184,9 +188,8 @@ class ClassicWriter : public NodeWriter {
 
 } // namespace
 
-std::unique_ptr<NodeWriter> makeClassicWriter(const Document& document,
-                                              std::vector<const PrototypeText*> lifted) {
-  return std::make_unique<ClassicWriter>(document, std::move(lifted));
+std::unique_ptr<NodeWriter> makeClassicWriter(const Document& document, WritingPlan plan) {
+  return std::make_unique<ClassicWriter>(document, std::move(plan));
 }
 
 } // namespace xvrml

@@ -66,7 +66,9 @@ static bool isFaithful(const DocumentText& text, const Node& node, const FieldIn
                                    [](const NodePlace& one) { return one.taken; });
   const bool hasOthers = size_t(taken) < place.nodes.size();
   if (!whole || !hasOthers) return whole;
-  const bool isOpen = place.form != FieldForm::statement || text.text[place.value.begin] == '[';
+  const bool isOpen = place.form == FieldForm::children ||
+                      (place.form == FieldForm::element && place.value.begin == 0) ||
+                      text.text[place.value.begin] == '[';
   const bool isNull = !isList && place.nodes.size() == 1 && !place.nodes[0].node;
   return isNull || (isList && isOpen && (place.readable || place.form != FieldForm::statement));
 }

@@ -105,6 +105,9 @@ class ElementWriter : public NodeWriter {
     text_.copy(text, place.span.end);
   }
 
+  CommentedNode commented(std::string_view text, const TextSpan& node) const override {
+    return commentedXmlNode(text, node);
+  }
   bool endsLine(std::string_view text, size_t at) const override { return endsXmlLine(text, at); }
   std::string indented(std::string_view text, std::string_view from,
                        std::string_view to) const override {
@@ -241,7 +244,7 @@ class ElementWriter : public NodeWriter {
     const size_t indent = indentationAt(text, element.begin).size();
     if (nodeCast<ProtoInstance>(&node)) {
       lists.push_back(
-          {{Kind::behind, {}, {}, [this, &node, &field, quote](std::string_view indentation) {
+          {{Kind::behind, {}, {}, [this, &node, &field, quote](std::string_view indentation, bool) {
               return fieldValue(node, field, indentation, quote);
             }}});
     } else if (holdsNodes(field)) {
@@ -263,7 +266,7 @@ class ElementWriter : public NodeWriter {
     out += ">";
     const std::string inner = deeper(indentation);
     for (const NodeRef& child : nodesOf(node, field))
-      out += feed_ + inner + this->node(child.get(), inner, {});
+      out += feed_ + inner + nodeInLines(child.get(), inner, {});
     return out + feed_ + std::string(indentation) + "</fieldValue>";
   }
 
@@ -327,7 +330,7 @@ class ElementWriter : public NodeWriter {
       std::vector<ListItem> routes;
       if (withRoutes)
         for (const Route* route : routesToAdd())
-          routes.push_back({Kind::behind, {}, {}, [this, route](std::string_view) {
+          routes.push_back({Kind::behind, {}, {}, [this, route](std::string_view, bool) {
                               return routeText(*route);
                             }});
       return routes;
@@ -339,8 +342,8 @@ class ElementWriter : public NodeWriter {
       return text_.copy(text, element.end);
     }
     std::string content;
-    for (const ListItem& item : items) content += feed_ + inner + item.make(inner);
-    for (const ListItem& item : routeItems()) content += feed_ + inner + item.make(inner);
+    for (const ListItem& item : items) content += feed_ + inner + item.make(inner, true);
+    for (const ListItem& item : routeItems()) content += feed_ + inner + item.make(inner, true);
     if (!content.empty()) { // <A/> becomes <A> and </A>
       size_t slash = element.end - 2;
       while (slash > text_.at &&
@@ -362,9 +365,8 @@ class ElementWriter : public NodeWriter {
 
 } // namespace
 
-std::unique_ptr<NodeWriter> makeElementWriter(const Document& document,
-                                              std::vector<const PrototypeText*> lifted) {
-  return std::make_unique<ElementWriter>(document, std::move(lifted));
+std::unique_ptr<NodeWriter> makeElementWriter(const Document& document, WritingPlan plan) {
+  return std::make_unique<ElementWriter>(document, std::move(plan));
 }
 
 } // namespace xvrml

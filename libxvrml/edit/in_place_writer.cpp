@@ -7,12 +7,11 @@
 namespace xvrml {
 namespace {
 
-std::unique_ptr<NodeWriter> makeWriter(const Document& document,
-                                       std::vector<const PrototypeText*> lifted = {}) {
+std::unique_ptr<NodeWriter> makeWriter(const Document& document, WritingPlan plan = {}) {
   switch (document.encoding()) {
-  case Encoding::x3dXml: return makeElementWriter(document, std::move(lifted));
-  case Encoding::x3dJson: return makeJsonWriter(document, std::move(lifted));
-  default: return makeClassicWriter(document, std::move(lifted));
+  case Encoding::x3dXml: return makeElementWriter(document, std::move(plan));
+  case Encoding::x3dJson: return makeJsonWriter(document, std::move(plan));
+  default: return makeClassicWriter(document, std::move(plan));
   }
 }
 
@@ -21,8 +20,8 @@ std::unique_ptr<NodeWriter> makeWriter(const Document& document,
 std::string writeInPlace(const Document& document) {
   const std::unique_ptr<NodeWriter> writer = makeWriter(document);
   std::string text = writer->file();
-  const std::vector<const PrototypeText*> missing = writer->missing();
-  return missing.empty() ? text : makeWriter(document, missing)->file();
+  WritingPlan missing = writer->missing();
+  return missing.isEmpty() ? text : makeWriter(document, std::move(missing))->file();
 }
 
 std::string writeNode(const Document& document, const Node& node) {

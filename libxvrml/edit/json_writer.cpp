@@ -88,14 +88,17 @@ size_t blanksBefore(const DocumentText& text, size_t at) {
 
 class JsonWriter : public NodeWriter {
  public:
-  JsonWriter(const Document& document, std::vector<const PrototypeText*> lifted)
-      : NodeWriter(document, std::move(lifted)), style_(document.file().text, 0) {}
+  JsonWriter(const Document& document, WritingPlan plan)
+      : NodeWriter(document, std::move(plan)), style_(document.file().text, 0) {}
 
  private:
   // Returns a text of a node, route or member with an indentation.
   using Make = std::function<std::string(std::string_view indentation)>;
 
   std::string finished(std::string text) const override { return withCommas(text); }
+  CommentedNode commented(std::string_view, const TextSpan& node) const override {
+    return {node.begin, node.end, node.end, node}; // comments are members
+  }
   bool endsLine(std::string_view text, size_t at) const override {
     return xvrml::endsLine(text, at);
   }
@@ -126,47 +129,39 @@ class JsonWriter : public NodeWriter {
     }
     text_.copy(text, place.span.end);
   }
+
   void writeRoots(const DocumentText& file) override {
-    const TextLayout& layout = file.layout;
+    const TextSpan& list = file.layout.sceneList;
+    if (isEmptyList(file.text, list)) return fillScene(file);
+    text_.copy(file, list.begin + 1);
+    const std::string outer(indentationAt(file, list.begin));
+    writeList({file, list.end - 1, outer, deeper(outer)},
+              itemsOf(file, file.layout.roots, document_.scope().roots, {}));
+    text_.copy(file, list.end - 1 - blanksBefore(file, list.end - 1));
+    std::vector<Make> routes;
+    for (const Route* route : routesToAdd())
+      routes.push_back([this, route](std::string_view) { return routeText(*route); });
+    append(file, list, routes);
+  }
+
+  // Writes the nodes and routes of a Scene that had none.
+  void fillScene(const DocumentText& file) {
     const MFNode& roots = document_.scope().roots;
-    const bool isEmpty = isEmptyList(file.text, layout.sceneList);
-    std::vector<Make> added;
-    if (isEmpty)
-      for (const NodeRef& root : roots)
-        added.push_back([this, &root](std::string_view in) { return node(root.get(), in, {}); });
-    if (!isEmpty) {
-      text_.copy(file, layout.sceneList.begin + 1);
-      const std::string outer(indentationAt(file, layout.sceneList.begin));
-      writeList({file, layout.sceneList.end - 1, outer, deeper(outer)},
-                itemsOf(file, layout.roots, roots, {}));
-      text_.copy(file, layout.sceneList.end - 1 - blanksBefore(file, layout.sceneList.end - 1));
-    }
-    const auto addRoutes = [&](std::vector<Make>& to) {
-      for (const Route* route : routesToAdd())
-        to.push_back([this, route](std::string_view) { return routeText(*route); });
-    };
-    if (layout.sceneList.begin > 0 && !isEmpty) {
-      addRoutes(added);
-      return append(file, layout.sceneList, added);
-    }
-    // The routes are known when the nodes have been written.
-    const auto lines = [&](std::string_view indentation) {
+    if (roots.empty()) return;
+    const auto nodes = [&](std::string_view indentation) {
       const std::string inner = deeper(indentation);
-      std::string out;
-      for (const Make& make : added) out += feed_ + inner + make(inner);
+      std::string out = "[";
+      for (const NodeRef& root : roots) out += feed_ + inner + node(root.get(), inner, {});
       for (const Route* route : routesToAdd()) out += feed_ + inner + routeText(*route);
-      return out.empty() ? out : "[" + out + feed_ + std::string(indentation) + "]";
+      return out + feed_ + std::string(indentation) + "]";
     };
-    if (layout.sceneList.begin > 0) {
-      const std::string list = lines(indentationAt(file, layout.sceneList.begin));
-      if (list.empty()) return;
-      text_.copy(file, layout.sceneList.begin);
-      text_.out += list;
-      text_.at = layout.sceneList.end;
-    } else if (!roots.empty() || !routesToAdd().empty()) {
-      append(file, layout.scene,
-             {[&](std::string_view in) { return style_.member("-children", lines(in)); }});
-    }
+    const TextSpan& list = file.layout.sceneList;
+    if (list.begin == 0)
+      return append(file, file.layout.scene,
+                    {[&](std::string_view in) { return style_.member("-children", nodes(in)); }});
+    text_.copy(file, list.begin);
+    addText("", nodes, indentationAt(file, list.begin));
+    text_.at = list.end;
   }
 
   // Adds members to an object, or elements to a list, at their end: in lines of their own if the
@@ -386,9 +381,8 @@ class JsonWriter : public NodeWriter {
 
 } // namespace
 
-std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document,
-                                           std::vector<const PrototypeText*> lifted) {
-  return std::make_unique<JsonWriter>(document, std::move(lifted));
+std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document, WritingPlan plan) {
+  return std::make_unique<JsonWriter>(document, std::move(plan));
 }
 
 } // namespace xvrml

@@ -20,6 +20,11 @@ bool contains(const Node& root, const Node& searched) {
   });
 }
 
+void refuseLoop(const Node& node, const Node& parent) {
+  if (contains(node, parent))
+    throw EditError(fmt::format("this {} would become a part of itself", node.type().name));
+}
+
 // Sets the nodes of a field of the live world.
 void setLive(LiveWorld& live, const Slot& slot, Value value) {
   if (!live.set(*slot.parent.live, slot.field->name, std::move(value)))
@@ -30,6 +35,7 @@ void setLive(LiveWorld& live, const Slot& slot, Value value) {
 // Puts a node into a list of the live world, or takes it out.
 void insertLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
   if (!slot.field) return live.addRoot(node, slot.liveIndex);
+  refuseLoop(*node, *slot.parent.live); // undo: Scripts may have moved it since
   MFNode list = *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field));
   list.insert(list.begin() + std::ptrdiff_t(std::min(slot.liveIndex, list.size())), node);
   setLive(live, slot, std::move(list));
@@ -100,6 +106,7 @@ void NodeEdits::setSingle(const Slot& slot, const Twin& node) {
   std::vector<Twin> named = namedIn(node);
   for (Twin& one : namedIn(before)) named.push_back(std::move(one));
   const auto put = [this, slot, &own, named](const Twin& twin) {
+    if (twin.live) refuseLoop(*twin.live, *slot.parent.live);
     setLive(file_.live(), slot, twin.live);
     file_.document().setNode(*slot.parent.document, own, twin.document);
     updateNames(named);
@@ -156,10 +163,9 @@ void NodeEdits::checkPlace(const Slot& slot, const Twin& twin) {
                                : fmt::format("{} cannot stand at the root of a file: expected a "
                                              "child node",
                                              node.type().name));
-  // Scripts may have changed which nodes of the live world hold which others.
-  if (slot.parent.live &&
-      (contains(node, *slot.parent.live) || contains(*twin.document, *slot.parent.document)))
-    throw EditError(fmt::format("this {} would become a part of itself", node.type().name));
+  if (!slot.parent.live) return;
+  refuseLoop(node, *slot.parent.live);
+  refuseLoop(*twin.document, *slot.parent.document); // Scripts may have changed the live world
 }
 
 void NodeEdits::nameFreshly(const Twin& root) {

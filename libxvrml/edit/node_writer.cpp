@@ -12,17 +12,17 @@ namespace xvrml {
 
 using Kind = ListStep::Kind;
 
-NodeWriter::NodeWriter(const Document& document, std::vector<const PrototypeText*> lifted)
-    : document_(document), feed_(lineFeedOf(document.file().text)), text_(document, lifted),
-      lifted_(std::move(lifted)) {}
+NodeWriter::NodeWriter(const Document& document, WritingPlan plan)
+    : document_(document), feed_(lineFeedOf(document.file().text)), text_(document, plan.lifted),
+      plan_(std::move(plan)) {}
 
 std::string NodeWriter::file() {
   const DocumentText& file = document_.file();
-  if (!lifted_.empty()) {
+  if (!plan_.lifted.empty()) {
     text_.copy(file, beginOfRoots());
     const bool inLines = startsLine(file.text, text_.at) && text_.at < file.text.size();
     const std::string indentation(inLines ? indentationAt(file, text_.at) : "");
-    for (const PrototypeText* one : lifted_)
+    for (const PrototypeText* one : plan_.lifted)
       text_.out += indentation + file.text.substr(one->whole.begin, one->whole.size()) + feed_;
   }
   writeRoots(file);
@@ -30,12 +30,13 @@ std::string NodeWriter::file() {
   return finished(std::move(text_.out));
 }
 
-std::vector<const PrototypeText*> NodeWriter::missing() const {
-  std::vector<const PrototypeText*> all;
+WritingPlan NodeWriter::missing() const {
+  WritingPlan plan;
+  plan.commented = leavesComments_;
   const std::vector<PrototypeText>& prototypes = document_.file().layout.prototypes;
   for (const PrototypeText& one : prototypes)
-    if (&one <= last_ && one.whole.begin >= beginOfRoots()) all.push_back(&one);
-  return all;
+    if (&one <= last_ && one.whole.begin >= beginOfRoots()) plan.lifted.push_back(&one);
+  return plan;
 }
 
 // Returns where the first root stands, with its line if it begins one.
@@ -58,6 +59,25 @@ std::string NodeWriter::node(const Node* node, std::string_view indentation, con
   const std::string own = std::exchange(text_.out, std::move(outer));
   text_.at = at;
   return indented(own, from, indentation);
+}
+
+std::string NodeWriter::nodeInLines(const Node* node, std::string_view indentation,
+                                    const Holder& holder) {
+  if (!node || text_.written.contains(node) || !document_.isOwn(*node))
+    return this->node(node, indentation, holder);
+  const std::string_view text = document_.textOf(*node).text;
+  const CommentedNode own = commented(text, document_.placeOf(*node).whole);
+  std::string made = this->node(node, indentation, holder);
+  if (!own.hasComments()) return made;
+  if (plan_.commented.contains(node)) return withComments(text, own, made, indentation, feed_);
+  leavesComments_.insert(node);
+  return made;
+}
+
+// Returns whether the node of a place takes its comments along, or is nowhere any more.
+bool NodeWriter::isGone(const NodePlace& place) const {
+  return place.node && !place.isUse &&
+         (plan_.commented.contains(place.node) || !document_.stands(*place.node));
 }
 
 void NodeWriter::begin(const Node& node) {
@@ -146,9 +166,15 @@ std::vector<ListItem> NodeWriter::itemsOf(const DocumentText& text,
     }
     ListItem& item = items.emplace_back();
     item.kind = step.kind;
-    if (step.place) item.span = step.place->span;
-    item.make = [this, holder, fresh = step.node](std::string_view indentation) {
-      return node(fresh, indentation, holder);
+    if (step.place) {
+      item.span = item.outer = step.place->span;
+      if (isGone(*step.place)) {
+        const CommentedNode gone = commented(text.text, item.span);
+        item.outer = {gone.begin, gone.end};
+      }
+    }
+    item.make = [this, holder, fresh = step.node](std::string_view indentation, bool inLines) {
+      return inLines ? nodeInLines(fresh, indentation, holder) : node(fresh, indentation, holder);
     };
   }
   std::for_each(other, others.end(), addKept);
@@ -183,13 +209,18 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
   bool begun = false;  // a node has been written
   for (const ListItem& item : items) {
     switch (item.kind) {
-    case Kind::remove: text_.remove(list.text, item.span); break;
-    case Kind::replace:
-      text_.copy(list.text, item.span.begin);
-      text_.out += item.make(indentationAt(list.text, item.span.begin));
-      text_.at = item.span.end;
+    case Kind::remove: text_.remove(list.text, item.outer); break;
+    case Kind::replace: {
+      const std::string indentation(indentationAt(list.text, item.span.begin));
+      const bool inLines = startsLine(all, item.span.begin) && endsLine(all, item.span.end);
+      text_.copy(list.text, item.outer.begin); // with the routes before the node
+      if (item.outer.begin < item.span.begin) text_.out += indentation;
+      const std::string made = item.make(indentation, inLines);
+      text_.out += made;
+      text_.at = item.outer.end;
       begun = true;
       break;
+    }
     case Kind::keep:
       text_.copy(list.text, item.span.begin);
       text_.out += std::exchange(waiting, {});
@@ -198,11 +229,12 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
       break;
     case Kind::before:
     case Kind::behind:
-      if (begun && item.kind == Kind::behind)
-        insertBehind(list, item.make(list.inner));
-      else
-        waiting += item.make(list.inner) +
-                   (first || !hasPlaces || item.kind == Kind::behind ? feed_ + list.inner : " ");
+      if (begun && item.kind == Kind::behind) {
+        insertBehind(list, item);
+      } else {
+        const bool inLines = first || !hasPlaces || item.kind == Kind::behind;
+        waiting += item.make(list.inner, inLines) + (inLines ? feed_ + list.inner : " ");
+      }
       break;
     }
   }
@@ -211,15 +243,13 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
 
 // Inserts a node behind the one that has been written: in the next line if nothing but a comment
 // follows in this one.
-void NodeWriter::insertBehind(const ListText& list, const std::string& node) {
+void NodeWriter::insertBehind(const ListText& list, const ListItem& item) {
   const std::string_view all = list.text.text;
   const size_t end = endsLine(all, text_.at) ? lineEnd(all, text_.at) : all.size() + 1;
-  if (end <= list.end) {
-    text_.copy(list.text, end);
-    text_.out += feed_ + list.inner + node;
-  } else {
-    text_.out += " " + node;
-  }
+  const bool inLines = end <= list.end;
+  const std::string node = item.make(list.inner, inLines);
+  if (inLines) text_.copy(list.text, end);
+  text_.out += (inLines ? feed_ + list.inner : " ") + node;
 }
 
 // Fills a list that is empty in the text. nodes: each with the beginning of the next line.

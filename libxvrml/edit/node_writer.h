@@ -8,9 +8,11 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "edit/list_steps.h"
+#include "edit/node_comments.h"
 #include "edit/text_copier.h"
 
 namespace xvrml {
@@ -35,24 +37,33 @@ struct ListItem {
   ListStep::Kind kind;
   TextSpan span;              // the place; not for before and behind
   std::function<void()> copy; // keep: writes what stands there
-  // replace, before, behind: returns the text with an indentation.
-  std::function<std::string(std::string_view indentation)> make;
+  // replace, before, behind: returns the text with an indentation. inLines: it gets lines of its
+  // own.
+  std::function<std::string(std::string_view indentation, bool inLines)> make;
+  TextSpan outer{}; // remove, replace: the place with the comments that go with its node
 
   bool hasPlace() const { return kind != ListStep::Kind::before && kind != ListStep::Kind::behind; }
 };
 
+// How a file is to be written a second time, after the first has shown what is needed.
+struct WritingPlan {
+  std::vector<const PrototypeText*> lifted;  // prototypes that stand before all nodes
+  std::unordered_set<const Node*> commented; // moved nodes that take their comments along
+  bool isEmpty() const { return lifted.empty() && commented.empty(); }
+};
+
 class NodeWriter {
  public:
-  // lifted: prototypes that stand before all nodes.
-  NodeWriter(const Document& document, std::vector<const PrototypeText*> lifted);
+  NodeWriter(const Document& document, WritingPlan plan);
   virtual ~NodeWriter() = default;
 
   // Return the text of the file, or of a node. Only one of them is called, once.
   std::string file();
   std::string node(const Node& node) { return finished(this->node(&node, "", {})); }
-  // Returns the prototypes that must be lifted, because instances have been written before them:
-  // those that were missing, and those before them, which they may use.
-  std::vector<const PrototypeText*> missing() const;
+  // Returns what is to be written otherwise. The prototypes that must be lifted, because instances
+  // have been written before them, are those that were missing, and those before them, which they
+  // may use.
+  WritingPlan missing() const;
 
  protected:
   // Writes the roots and, behind them, the routes that routesToAdd() returns then.
@@ -63,6 +74,8 @@ class NodeWriter {
   virtual std::string useOf(const Node& node, const Holder& holder) const = 0;
   // Writes a reference that stays at its place.
   virtual void keepUse(const DocumentText& text, const NodePlace& place) = 0;
+  // Returns a node with the comments that belong to it.
+  virtual CommentedNode commented(std::string_view text, const TextSpan& node) const = 0;
   virtual bool endsLine(std::string_view text, size_t at) const = 0;
   virtual std::string indented(std::string_view text, std::string_view from,
                                std::string_view to) const = 0;
@@ -71,6 +84,8 @@ class NodeWriter {
 
   // Returns the text of a node with this indentation, or a reference if it has been written.
   std::string node(const Node* node, std::string_view indentation, const Holder& holder);
+  // Does the same for a node that gets lines of its own, with its comments.
+  std::string nodeInLines(const Node* node, std::string_view indentation, const Holder& holder);
   // Returns the nodes of an SFNode or MFNode.
   static MFNode nodesOf(const Node& node, const FieldInfo& field);
   // Returns what a list has of the places that a text has for it.
@@ -105,10 +120,13 @@ class NodeWriter {
 
  private:
   size_t beginOfRoots() const;
-  void insertBehind(const ListText& list, const std::string& node);
+  void insertBehind(const ListText& list, const ListItem& item);
   void fill(const ListText& list, std::string nodes);
 
-  const std::vector<const PrototypeText*> lifted_;
+  bool isGone(const NodePlace& place) const;
+
+  const WritingPlan plan_;
+  std::unordered_set<const Node*> leavesComments_; // nodes that have been moved without them
   const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
   // The last place whose line was asked for, and where that line begins.
   mutable const DocumentText* lineText_ = nullptr;
@@ -116,11 +134,8 @@ class NodeWriter {
 };
 
 // Return the writer of a syntax.
-std::unique_ptr<NodeWriter> makeClassicWriter(const Document& document,
-                                              std::vector<const PrototypeText*> lifted);
-std::unique_ptr<NodeWriter> makeElementWriter(const Document& document,
-                                              std::vector<const PrototypeText*> lifted);
-std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document,
-                                           std::vector<const PrototypeText*> lifted);
+std::unique_ptr<NodeWriter> makeClassicWriter(const Document& document, WritingPlan plan);
+std::unique_ptr<NodeWriter> makeElementWriter(const Document& document, WritingPlan plan);
+std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document, WritingPlan plan);
 
 } // namespace xvrml

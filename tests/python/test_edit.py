@@ -1,8 +1,11 @@
 """Tests World.edit: edits of a world's file from Python, also of real files by others."""
+import json
 import os
 import pathlib
 import random
+import re
 import threading
+import xml.etree.ElementTree
 
 import pytest
 
@@ -192,6 +195,48 @@ def test_xml(tmp_path):
         world.edit.insert("Shape { }", world["G"])
 
 
+JSON = """{ "X3D": {
+    "@version":"3.3",
+    "Scene": {
+      "-children":[
+        {"#comment":"by day"},
+        {"PointLight": {"@DEF":"L", "@intensity":0.80, "#comment":"bright"}},
+        {"Group": {"@DEF":"G"}}
+      ]
+    }
+  }
+}
+"""
+
+
+def test_json(tmp_path):
+    path = tmp_path / "l.x3dj"
+    path.write_text(JSON)
+    world = xvrml.load(path)
+    with world.edit("Dim"):
+        world["L"].intensity = .5
+        world["L"].on = False
+    world.edit.save()
+    dimmed = JSON.replace("0.80", "0.5").replace('"bright"}', '"bright", "@on":false}')
+    assert path.read_text() == dimmed
+    world.edit.insert('{"Shape": {"@DEF":"S"}}', world["G"])
+    world.edit.use(world["S"], world["G"])
+    world.edit.add_route(world["L"], "on", world["L"], "on")
+    assert world.edit.text() == dimmed.replace(
+        """{"@DEF":"G"}}
+""", """{"@DEF":"G", "-children":[
+          {"Shape": {"@DEF":"S"}},
+          {"Shape": {"@USE": "S"}}
+        ]}},
+        {"ROUTE": {"@fromNode": "L", "@fromField": "on", "@toNode": "L", "@toField": "on"}}
+""")
+    while world.edit.undo():
+        pass
+    assert world.edit.text() == JSON
+    with pytest.raises(xvrml.EditError):
+        world.edit.insert("Shape { }", world["G"])
+
+
 def test_routes(lamp):
     lamp.edit.add_route(lamp["L"], "on_changed", lamp["L"], "set_on")
     assert lamp.edit.text().endswith("ROUTE L.on_changed TO L.set_on\n")
@@ -306,7 +351,8 @@ def edit_one(path, seed):
         gone, come = difference(before, after)
         if len(gone) > 60 or len(come) > 120:
             return "%d bytes became %d" % (len(gone), len(come))
-        if path.suffix.lower() in (".x3d", ".x3dz") and set(gone + come) & set("<>"):
+        marks = {".x3d": "<>", ".x3dz": "<>", ".x3dj": "{}"}.get(path.suffix.lower(), "")
+        if set(gone + come) & set(marks):
             return "%r became %r" % (gone, come)
         world.edit.undo()
         return "" if world.edit.text() == before else "undo gives another text"
@@ -323,6 +369,76 @@ def test_real_files_change_within_the_field(corpus, suffixes, step):
     assert files
     tried, wrong = 0, {}
     for number, path in enumerate(files[::step]):
+        problem = edit_one(path, number)
+        if problem is None:
+            continue
+        tried += 1
+        if problem:
+            wrong[path.name] = problem
+    assert tried > 20
+    assert len(wrong) <= tried / 100, wrong
+
+
+FIELDS = {
+    "Appearance": "appearance", "Color": "color", "ColorRGBA": "color", "Coordinate": "coord", "FontStyle":
+    "fontStyle", "ImageTexture": "texture", "Material": "material", "MovieTexture": "texture", "Normal":
+    "normal", "PixelTexture": "texture", "TextureCoordinate": "texCoord", "TextureTransform":
+    "textureTransform"
+}
+GEOMETRY = ("Box", "Cone", "Cylinder", "ElevationGrid", "Extrusion", "IndexedFaceSet", "IndexedLineSet",
+            "IndexedTriangleSet", "PointSet", "Sphere", "Text", "TriangleSet")
+
+
+def json_value(text):
+    """Returns the value of an attribute of XML as JSON has it."""
+    if text in ("true", "false"):
+        return text == "true"
+    if text.lstrip().startswith('"'):
+        return [re.sub(r"\\(.)", r"\1", one) for one in re.findall(r'"((?:[^"\\]|\\.)*)"', text)]
+    try:
+        numbers = [json.loads(one) for one in text.replace(",", " ").split()]
+    except ValueError:
+        return text
+    return numbers[0] if len(numbers) == 1 else numbers or text
+
+
+def json_object(element):
+    """Returns the object for an element of XML."""
+    made = {"@" + name: json_value(value) for name, value in element.attrib.items() if "}" not in name}
+    in_nodes = element.tag not in ("X3D", "head", "ProtoInterface", "ProtoDeclare", "IS")
+    for child in element:
+        field = child.get("containerField") or FIELDS.get(
+            child.tag, "geometry" if child.tag in GEOMETRY else "metadata" if
+            child.tag.startswith("Metadata") else "children")
+        if child.tag in ("field", "fieldValue", "connect", "meta", "component", "unit"):
+            made.setdefault(child.tag, []).append(json_object(child))
+        elif not in_nodes or child.tag == "IS":
+            made[child.tag] = json_object(child)
+        elif field in ("children", "proxy") or element.tag in ("fieldValue", "field"):
+            made.setdefault("-" + field, []).append({child.tag: json_object(child)})
+        else:
+            made["-" + field] = {child.tag: json_object(child)}
+    if (element.text or "").strip() and element.tag == "Script":
+        made["#sourceCode"] = element.text.strip().split("\n")
+    return made
+
+
+def test_real_files_in_json_change_within_the_field(tmp_path):
+    if not (SHARED / "corpus-x3d").is_dir():
+        pytest.skip("the corpus is not here")
+    files = sorted((SHARED / "corpus-x3d").rglob("*.x3dj"))
+    for number, path in enumerate(sorted((SHARED / "corpus-x3d").rglob("*.x3d"))[::3]):
+        if path.stat().st_size > 200_000:
+            continue
+        try:
+            root = xml.etree.ElementTree.parse(path).getroot()
+        except xml.etree.ElementTree.ParseError:
+            continue
+        files.append(tmp_path / ("%d.x3dj" % number))
+        style = [{"indent": 2}, {"indent": 1, "separators": (",", ":")}, {}][number % 3]
+        files[-1].write_text(json.dumps({root.tag: json_object(root)}, **style))
+    tried, wrong = 0, {}
+    for number, path in enumerate(files):
         problem = edit_one(path, number)
         if problem is None:
             continue

@@ -124,6 +124,54 @@ TEST(EditorPlaces, NodesInFieldsThatCouldNotBeRead) {
   }
 }
 
+// Comments directly above a node and behind it go where it goes.
+TEST_P(EditedPlaces, CommentsBelongToTheirNodes) {
+  load("# by us\nDEF G Group {\n  children [\n    # above\n    DEF A Shape { } # behind A\n"
+       "    # of B\n    # and more\n    DEF B Shape { }, # comma\n\n    # alone\n\n"
+       "    DEF C Shape { }\n  ]\n}\nDEF H Group {\n  children [\n  ]\n}\n"
+       "DEF I Group { children [ Group { } ] }\n");
+  editor->remove({&node("G"), "children", 0});
+  editor->move({&node("G"), "children", 0}, {&node("H"), "children", 0});
+  EXPECT_EQ(text(), "# by us\nDEF G Group {\n  children [\n\n    # alone\n\n    DEF C Shape { }\n"
+                    "  ]\n}\nDEF H Group {\n  children [\n    # of B\n    # and more\n"
+                    "    DEF B Shape { } # comma\n  ]\n}\n"
+                    "DEF I Group { children [ Group { } ] }\n");
+  undoAll();
+  editor->move({&node("H"), "children", 0}, {&node("I"), "children", 1}); // within a line
+  EXPECT_NE(text().find("    # of B\n    # and more\n"), std::string::npos) << text();
+  EXPECT_NE(text().find("[ Group { } DEF B Shape { } ]"), std::string::npos) << text();
+  undoAll();
+  while (editor->undo()) {}
+  editor->move({&node("G"), "children", 1}, {&node("G"), "children", 0});
+  EXPECT_EQ(text(), "# by us\nDEF G Group {\n  children [\n    # of B\n    # and more\n"
+                    "    DEF B Shape { } # comma\n    # above\n    DEF A Shape { } # behind A\n"
+                    "\n    # alone\n\n    DEF C Shape { }\n  ]\n}\nDEF H Group {\n  children [\n"
+                    "  ]\n}\nDEF I Group { children [ Group { } ] }\n");
+  undoAll();
+  editor->remove({nullptr, "", 0}); // what stands below the header belongs to the file
+  EXPECT_EQ(text().substr(0, 14), "# by us\nDEF H ");
+  undoAll();
+}
+
+TEST(EditorPlaces, CommentsOfXmlBelongToTheirNodes) {
+  const Folder folder;
+  const std::string text = "<X3D version='3.3'>\n<Scene>\n  <Group DEF='G'>\n    <!-- of A -->\n"
+                           "    <Shape DEF='A'/> <!-- behind -->\n    <Shape DEF='B'/>\n"
+                           "  </Group>\n  <Group DEF='H'/>\n</Scene>\n</X3D>\n";
+  const auto world = loadWorld(folder.write("w.x3d", text));
+  Editor editor(*world);
+  Node &from = *world->scope.names.at("G"), &to = *world->scope.names.at("H");
+  editor.move({&from, "children", 0}, {&to, "children", 0});
+  EXPECT_EQ(editor.text(), "<X3D version='3.3'>\n<Scene>\n  <Group DEF='G'>\n"
+                           "    <Shape DEF='B'/>\n  </Group>\n  <Group DEF='H'>\n"
+                           "    <!-- of A -->\n    <Shape DEF='A'/> <!-- behind -->\n"
+                           "  </Group>\n</Scene>\n</X3D>\n");
+  editor.remove({&to, "children", 0});
+  EXPECT_EQ(editor.text().find("<!--"), std::string::npos);
+  while (editor.undo()) {}
+  EXPECT_EQ(editor.text(), text);
+}
+
 TEST_P(EditedPlaces, ANameOfSeveralNodesFallsToTheLastOne) {
   load("DEF A Group { }\nDEF A Shape { }\nDEF A PointLight { }\n");
   editor->remove({nullptr, "", 2});

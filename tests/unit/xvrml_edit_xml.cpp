@@ -92,9 +92,10 @@ TEST_P(EditedXml, NodesAreInsertedRemovedAndMoved) {
   editor->remove({&node("G"), "children", 2});
   editor->move({&node("G"), "children", 1}, {&node("H"), "children", 0});
   editor->move({&node("G"), "children", 0}, {&node("I"), "children", 0});
-  EXPECT_EQ(scene(), "    <Group DEF='G'>\n      <!-- the first -->\n    </Group>\n"
-                     "    <Group DEF='H'>\n      <Shape DEF='C'><Box/></Shape>\n    </Group>\n"
-                     "    <Group DEF='I'>\n      <Shape DEF='A'/>\n    </Group>\n");
+  EXPECT_EQ(scene(),
+            "    <Group DEF='G'>\n    </Group>\n"
+            "    <Group DEF='H'>\n      <Shape DEF='C'><Box/></Shape>\n    </Group>\n"
+            "    <Group DEF='I'>\n      <Shape DEF='A'/> <!-- the first -->\n    </Group>\n");
   undoAll();
 }
 
