@@ -26,10 +26,20 @@ void ServedWorld::reload() {
 }
 
 void ServedWorld::watch(double now) {
+  if (std::exchange(saves_, session_->editor().saves()) != saves_)
+    watch_.follow(session_->browser().world());
   if (watch_.changed(now)) reload();
 }
 
+// Another world takes the place of this one. Tells everybody if edits would be lost by that.
+bool ServedWorld::refuseWhileUnsaved() const {
+  if (!session_->editor().isChanged()) return false;
+  callbacks_.onMessage("the world has edits that are not saved: save or undo them first");
+  return true;
+}
+
 void ServedWorld::open(LoadRequest request, bool keepPlace) {
+  if (refuseWhileUnsaved()) return;
   request.options = loadOptionsForShowing(options_);
   keepPlace_ = keepPlace;
   loading_ = request.urls.empty() ? "" : request.urls[0];
@@ -48,6 +58,7 @@ bool ServedWorld::take(PictureSize size) {
   LoadAnswer answer;
   if (!loader_.take(answer)) return false;
   loading_.clear();
+  if (refuseWhileUnsaved()) return false; // they were made while it was read
   const std::string wrong = useWorld(std::move(answer), [&](std::unique_ptr<xvrml::World> world,
                                                             const std::string& fragment) {
                               begin(std::move(world), fragment, size);
@@ -76,6 +87,22 @@ void ServedWorld::begin(std::unique_ptr<xvrml::World> world, const std::string& 
   fresh->begin(size.width, size.height, place, fragment);
   session_ = std::move(fresh); // ends the previous session
   watch_.follow(session_->browser().world());
+  saves_ = 0;
+}
+
+std::optional<InputEvent> ServedWorld::viewpointEvent(int number) {
+  std::vector<xvrml::ViewpointInfo> list;
+  for (const xvrml::ViewpointName& one : session_->browser().viewpoints())
+    list.push_back({one.name, one.description, one.node, {}});
+  if (size_t(number) >= list.size()) return {};
+  InputEvent event;
+  event.kind = InputEvent::Kind::viewpoint;
+  for (const std::string& text :
+       {std::to_string(number), list[size_t(number)].name, list[size_t(number)].description}) {
+    event.text = text;
+    if (picture::findViewpoint(list, text) == number) return event;
+  }
+  return {};
 }
 
 } // namespace vv::server
