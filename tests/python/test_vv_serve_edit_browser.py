@@ -47,7 +47,7 @@ def open_row(browser, label):
 
 
 def until_title(browser, title):
-    browser.until(lambda: browser.text("#title") == title, title)
+    until_script(browser, "document.getElementById('title').textContent === arguments[0]", title)
 
 
 def select_paint(browser):

@@ -56,6 +56,7 @@ function numberWidget(facts, label, change) {
     if (event.button === 0) pressed = { x: event.clientX, value: Number(input.value) || 0 };
   });
   input.addEventListener("pointermove", (event) => {
+    if (!(event.buttons & 1)) pressed = null; // it was released elsewhere
     if (!pressed || input.disabled) return;
     const moved = event.clientX - pressed.x;
     if (!isDragging && Math.abs(moved) < 4) return;

@@ -16,6 +16,7 @@ export class Outline {
     this.first = 0; // number of the first of these rows
     this.total = 0;
     this.cursor = 0; // the row that keys work on
+    this.wanted = null; // a row that is to be seen once the rows have come
     this.most = 500;
     this.extent = document.createElement("div");
     this.extent.className = "extent";
@@ -75,6 +76,8 @@ export class Outline {
     this.extent.style.height = `${this.height}px`;
     this.shown.replaceChildren(...this.rows.map((row, i) => this.element(row, this.first + i)));
     this.mark();
+    if (this.wanted !== null) this.goTo(this.wanted);
+    this.wanted = null;
     this.ask();
   }
 
@@ -112,7 +115,14 @@ export class Outline {
     else this.list.removeAttribute("aria-activedescendant");
   }
 
+  // Shows a row that has been selected. Its rows may still be on their way.
   reveal(number) {
+    this.wanted = number;
+    this.goTo(number);
+  }
+
+  // Puts the cursor on a row, and scrolls if it is not seen.
+  goTo(number) {
     this.cursor = number;
     const first = this.firstSeen;
     if (number < first || number >= first + this.countSeen)
@@ -143,12 +153,12 @@ export class Outline {
     const row = this.row(this.cursor);
     const add = event.shiftKey || event.ctrlKey;
     const actions = {
-      ArrowUp: () => this.reveal(Math.max(0, this.cursor - 1)),
-      ArrowDown: () => this.reveal(Math.min(this.total - 1, this.cursor + 1)),
-      PageUp: () => this.reveal(Math.max(0, this.cursor - this.countSeen)),
-      PageDown: () => this.reveal(Math.min(this.total - 1, this.cursor + this.countSeen)),
-      Home: () => this.reveal(0),
-      End: () => this.reveal(Math.max(0, this.total - 1)),
+      ArrowUp: () => this.goTo(Math.max(0, this.cursor - 1)),
+      ArrowDown: () => this.goTo(Math.min(this.total - 1, this.cursor + 1)),
+      PageUp: () => this.goTo(Math.max(0, this.cursor - this.countSeen)),
+      PageDown: () => this.goTo(Math.min(this.total - 1, this.cursor + this.countSeen)),
+      Home: () => this.goTo(0),
+      End: () => this.goTo(Math.max(0, this.total - 1)),
       ArrowRight: () => this.open(row, true),
       ArrowLeft: () => this.open(row, false),
       Enter: () => this.select(row, add),
