@@ -151,12 +151,12 @@ def test_numbers_are_typed_and_dragged_undone_and_saved(browser, serve, vv):
 
 def test_clicks_on_the_picture_select_and_with_alt_work_sensors(browser, serve):
     open_editor(browser, serve(SENSORS, "--edit", "--spp", 1))
-    until_pixel(browser, -0.3, 0, red)
-    browser.drag(CANVAS, (-0.3, 0))
+    until_pixel(browser, -0.5, 0, red)
+    browser.drag(CANVAS, (-0.5, 0))
     until_script(browser, "document.getElementById('title').textContent.includes('Shape')")
     until_script(browser, "document.querySelectorAll('#frames line').length === 12")
     finished(browser)
-    until_pixel(browser, -0.3, 0.02, red)  # no sensor was worked
+    until_pixel(browser, -0.5, 0.02, red)  # no sensor was worked
     keep(browser, "serve-edit-selected")
     browser.click("#show-outline")
     browser.click("#show-sheet")
