@@ -99,16 +99,6 @@ class Editor {
       make("p", { id: "readonly", hidden: true }),
       search,
       make("div", { id: "rows", label: "Nodes of the world" }),
-    );
-    const rename = make("input", { id: "rename", label: "Name (DEF)", maxLength: 200 });
-    rename.placeholder = "name (DEF)";
-    const sheet = make(
-      "aside",
-      { id: "sheet", label: "Fields" },
-      make("h2", { id: "title" }),
-      make("p", { id: "note" }),
-      rename,
-      make("div", { id: "fields" }),
       make(
         "section",
         { id: "probes", label: "Probes of the light", hidden: true },
@@ -119,6 +109,16 @@ class Editor {
         ),
         button("clear", "Clear", "Remove all probes", () => this.edit("clear_probes")),
       ),
+    );
+    const rename = make("input", { id: "rename", label: "Name (DEF)", maxLength: 200 });
+    rename.placeholder = "name (DEF)";
+    const sheet = make(
+      "aside",
+      { id: "sheet", label: "Fields" },
+      make("h2", { id: "title" }),
+      make("p", { id: "note" }),
+      rename,
+      make("div", { id: "fields" }),
     );
     work.append(outline, stage, sheet);
     stage.append(make("p", { id: "said" }));

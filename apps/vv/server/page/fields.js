@@ -269,6 +269,7 @@ export class Fields {
 
   rebuild(message) {
     const path = this.pathOf(document.activeElement); // the keyboard stays where it is
+    if (this.node !== message.node) this.element.parentElement.scrollTop = 0;
     this.node = message.node;
     this.rows = message.fields.map((facts) => this.make(facts));
     const more = make("p", { textContent: `${message.hidden} more fields` });

@@ -56,8 +56,9 @@ export class Outline {
     const count = Math.min(this.countSeen + 2 * spare, this.most);
     const first = Math.max(0, this.firstSeen - spare);
     const wanted = `${first} ${count}`;
-    if (again || wanted !== this.asked) this.edit("rows", { first, count });
+    const isNew = again || wanted !== this.asked;
     this.asked = wanted;
+    if (isNew) this.edit("rows", { first, count });
     this.place();
   }
 
@@ -76,8 +77,9 @@ export class Outline {
     this.extent.style.height = `${this.height}px`;
     this.shown.replaceChildren(...this.rows.map((row, i) => this.element(row, this.first + i)));
     this.mark();
-    if (this.wanted !== null) this.goTo(this.wanted);
+    const wanted = this.wanted;
     this.wanted = null;
+    if (wanted !== null) this.goTo(wanted);
     this.ask();
   }
 
