@@ -59,6 +59,12 @@ struct FrameRequest {
   double denoising = 0; // seconds that the denoiser may take
 };
 
+struct MeasureRequest {
+  LiveMeasure what;
+  RenderSettings settings;
+  WorldChanges worldChanges;
+};
+
 // A frame that has begun, and the facts that are known only at its start.
 struct FrameInFlight {
   live::ShownFrame facts;
@@ -122,6 +128,8 @@ struct LiveRenderer::Impl {
   std::mutex mutex;
   std::condition_variable changed;
   std::optional<FrameRequest> requested;
+  std::optional<MeasureRequest> toMeasure; // no frame is requested or in flight then
+  std::optional<LiveReadings> readings;
   bool ending = false;
   std::shared_ptr<const EndedFrame> lastStill; // the last still frame that ended
   // Ended frames that look() has not returned yet; at most as many as may be in flight.
@@ -141,6 +149,7 @@ struct LiveRenderer::Impl {
   // Used by the browser's thread only.
   live::ShownFrame current; // the frame that was started last
   bool again = false;       // look() returns the last still frame once more
+  bool measures = false;    // measure() was called after it
   Clock::time_point started;
   float progress = 0;         // progress of the frame in flight at the last poll
   Clock::time_point nextPoll; // earliest time of the next poll of a frame in flight
@@ -162,7 +171,8 @@ struct LiveRenderer::Impl {
   void loop();
 
   // Tells whether kept frames are to be freed. The caller holds the mutex.
-  bool isTidying() const { return !left.empty() || (released && inFlight.empty() && !requested); }
+  bool isTidying() const { return !left.empty() || (released && isIdle()); }
+  bool isIdle() const { return inFlight.empty() && !requested && !toMeasure; }
 
   // Frees what viewers who have left had accumulated, or all viewers.
   void tidy(std::unique_lock<std::mutex>& lock);
@@ -182,6 +192,12 @@ struct LiveRenderer::Impl {
   // state. The caller holds the mutex.
   void updateState(std::string wrong);
   void begin(FrameRequest frame);
+
+  // Applies changes of the world to the context, which is made anew where there is none.
+  void apply(WorldChanges worldChanges);
+
+  // Reads sensors.
+  std::vector<Measurement> read(MeasureRequest request);
 
   // Maps the world for a frame. All references to nodes are released when this returns, because the
   // browser uses the nodes from then on.
@@ -204,6 +220,7 @@ struct LiveRenderer::Impl {
   // settings.
   bool alone() const;
   uint64_t start(const LiveFrame& frame);
+  void measure(const LiveMeasure& measure);
   void end();
   void forget(uint32_t viewer);
   void release();
@@ -220,7 +237,7 @@ struct LiveRenderer::Impl {
 };
 
 void LiveRenderer::Impl::loop() {
-  const auto hasWork = [this] { return requested || ending || isTidying(); };
+  const auto hasWork = [this] { return requested || toMeasure || ending || isTidying(); };
   std::unique_lock lock(mutex);
   while (!ending) {
     if (isTidying()) {
@@ -232,6 +249,14 @@ void LiveRenderer::Impl::loop() {
       if (!wrong.empty()) steps.beginAnew(); // what the next frame's RT_MOTION means is unknown
       lock.lock();
       updateState(std::move(wrong));
+    } else if (toMeasure) {
+      MeasureRequest request = *std::exchange(toMeasure, {});
+      lock.unlock();
+      LiveReadings made;
+      made.failure = failureOf([&] { made.sensors = read(std::move(request)); });
+      lock.lock();
+      readings = std::move(made);
+      updateState({});
     } else if (inFlight.empty()) {
       changed.wait(lock, hasWork);
     } else if (inFlight.size() < most && !cancelled && rtProgress(stage.context()) < 1) {
@@ -256,7 +281,7 @@ void LiveRenderer::Impl::loop() {
 
 void LiveRenderer::Impl::tidy(std::unique_lock<std::mutex>& lock) {
   const std::vector<uint32_t> viewers = std::exchange(left, {});
-  const bool all = !requested && inFlight.empty() && std::exchange(released, false);
+  const bool all = isIdle() && std::exchange(released, false);
   lock.unlock();
   for (const uint32_t viewer : viewers) previews.forget(viewer);
   if (all) {
@@ -299,25 +324,46 @@ void LiveRenderer::Impl::begin(FrameRequest frame) {
   if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
 }
 
-void LiveRenderer::Impl::map(FrameRequest frame) {
-  const bool anew = !stage.context() || frame.worldChanges.otherWorld;
-  bool changed = !frame.worldChanges.changes.empty();
+void LiveRenderer::Impl::apply(WorldChanges worldChanges) {
+  if (!stage.context() || worldChanges.otherWorld)
+    steps.beginAnew();
+  else if (!worldChanges.changes.empty())
+    steps.change();
   if (!stage.context()) {
     stage.open([this] { return cancelled.load(); });
-    frame.worldChanges.changes.clear(); // the new mapper already contains them
-    frame.worldChanges.otherWorld = false;
+    worldChanges.changes.clear(); // the new mapper already contains them
+    worldChanges.otherWorld = false;
   }
+  stage.apply(worldChanges);
+}
+
+void LiveRenderer::Impl::map(FrameRequest frame) {
+  apply(std::move(frame.worldChanges));
   const uint64_t moved = stage.mapper()->stats().instancesMoved;
-  stage.apply(frame.worldChanges);
   stage.prepare(frame.view);
   // Billboards follow the camera, without a change of the world's.
-  changed = changed || stage.mapper()->stats().instancesMoved != moved;
-  if (anew)
-    steps.beginAnew();
-  else if (changed)
-    steps.change();
+  if (stage.mapper()->stats().instancesMoved != moved) steps.change();
   stage.setUpFrame();
   rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
+}
+
+std::vector<Measurement> LiveRenderer::Impl::read(MeasureRequest request) {
+  std::vector<PlacedSensor> sensors = std::move(request.what.sensors);
+  try {
+    apply(std::move(request.worldChanges));
+    stage.prepareSensors(request.what.view);
+    steps.beginAnew(); // RT_MOTION of the next frame begins here
+    if (sensors.empty()) sensors = stage.placeSensors();
+  } catch (const SensorError&) {
+    throw;        // the world is mapped; a sensor has wrong fields
+  } catch (...) { // as in begin()
+    stage.close();
+    throw;
+  }
+  state.store(State::rendering, std::memory_order_release);
+  std::vector<Measurement> out = stage.measure(sensors, request.settings, cancelled);
+  if (cancelled) throw std::runtime_error("the measurement was cancelled");
+  return out;
 }
 
 std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
@@ -394,7 +440,7 @@ std::shared_ptr<const EndedFrame> LiveRenderer::Impl::nextUnpolled() {
 
 bool LiveRenderer::Impl::alone() const {
   const State now = state.load(std::memory_order_acquire);
-  return (now == State::rendering || now == State::ready) && framesInFlight == 1;
+  return (now == State::rendering || now == State::ready) && framesInFlight == 1 && !measures;
 }
 
 uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
@@ -402,7 +448,7 @@ uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
   stage.reportMessages();
   current = {current.number + 1, frame.purpose,     frame.viewer,     frame.samples,
              frame.lightStride,  frame.falseColour, frame.shownWidth, frame.shownHeight};
-  again = false;
+  again = measures = false;
   stage.settings = settingsOf(given, frame);
   if (frame.purpose != Purpose::still)
     makePreview(stage.settings, frame.purpose, frame.lightStride, current.number);
@@ -420,6 +466,24 @@ uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
   }
   changed.notify_all();
   return current.number;
+}
+
+void LiveRenderer::Impl::measure(const LiveMeasure& measure) {
+  if (now() != State::idle) throw std::logic_error("a frame is in flight");
+  stage.reportMessages();
+  measures = true;
+  stage.settings = given;
+  stage.settings.samples = measure.samples;
+  cancelled = false;
+  MeasureRequest next{measure, stage.settings, stage.collectChanges()};
+  {
+    const std::lock_guard lock(mutex);
+    toMeasure = std::move(next);
+    readings.reset();
+    framesInFlight++;
+    state = State::mapping;
+  }
+  changed.notify_all();
 }
 
 void LiveRenderer::Impl::end() {
@@ -535,6 +599,13 @@ LiveRenderer::~LiveRenderer() { impl_->end(); }
 LiveRenderer::State LiveRenderer::state() const { return impl_->now(); }
 
 uint64_t LiveRenderer::start(const LiveFrame& frame) { return impl_->start(frame); }
+
+void LiveRenderer::measure(const LiveMeasure& measure) { impl_->measure(measure); }
+
+std::optional<LiveReadings> LiveRenderer::takeReadings() {
+  const std::lock_guard lock(impl_->mutex);
+  return std::exchange(impl_->readings, std::nullopt);
+}
 
 void LiveRenderer::cancel() {
   if (impl_->state != State::idle) impl_->cancel();

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "libpicture/measure.h"
 #include "libpicture/renderer.h"
 
 namespace picture {
@@ -76,6 +77,20 @@ struct LivePicture {
   RTstats stats{};
 };
 
+// A reading of sensors, without a picture.
+struct LiveMeasure {
+  // Chooses levels of detail and billboards.
+  View view;
+  // The sensors; none: all ORTSensors of the world, in the order of the file.
+  std::vector<PlacedSensor> sensors;
+  int samples = 1; // samples of each point
+};
+
+struct LiveReadings {
+  std::vector<Measurement> sensors;
+  std::string failure; // why there are none; "": all are there
+};
+
 class LiveRenderer {
  public:
   // Returns at once; the world's geometry is read with the first frame. The browser must outlive
@@ -96,8 +111,15 @@ class LiveRenderer {
   // Throws std::logic_error unless the state is idle or ready. At most two frames are in flight, so
   // the display lags by at most one frame.
   uint64_t start(const LiveFrame& frame);
+  // Reads sensors from the browser's changes, with the settings of Renderer::measure but for the
+  // samples, and returns at once. The state is mapping and rendering meanwhile, and idle when
+  // takeReadings() has them. It is no frame: what look(), copy() and recolour() know stays. Throws
+  // std::logic_error unless the state is idle.
+  void measure(const LiveMeasure& measure);
+  // Returns, once, what the last measure() has read; nothing while it is under way.
+  std::optional<LiveReadings> takeReadings();
   // Ends the frames in flight soon, including the older one. Finished parts of still frames stay
-  // visible; previews are dropped. Does nothing without a frame.
+  // visible; previews are dropped. So ends what is measured. Does nothing without either.
   void cancel();
   // Returns each ended frame once, in order. Otherwise returns the frame in flight, if it is the
   // only one, is not a preview and has new samples since the last call. Never waits.

@@ -114,6 +114,17 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
   return out;
 }
 
+PlacedSensor sensorAt(const double point[3], const double normal[3], const double seen[3]) {
+  PlacedSensor out;
+  const Vec n = load(normal) * (dot(load(normal), load(seen)) > 0 ? -1 : 1);
+  const Vec a = acrossOf({1, 0, 0}, n);
+  store(load(point), out.first);
+  store(a, out.column);
+  store(cross(a, n), out.row);
+  store(n, out.direction);
+  return out;
+}
+
 // Sensors see neither the headlight nor the light that vv adds to models without light: only lamps
 // of the world count. Billboards and levels of detail are those of the view.
 void Stage::prepareSensors(const View& view) {
@@ -123,6 +134,24 @@ void Stage::prepareSensors(const View& view) {
   mapper_->map(cameraOf(view));
   useEnvironment();
   if (memoryExhausted_) throw std::bad_alloc();
+}
+
+std::vector<PlacedSensor> Stage::placeSensors() const {
+  std::vector<PlacedSensor> out;
+  for (const xvrml::SensorInfo& info : mapper_->sensors()) out.push_back(placeSensor(info));
+  return out;
+}
+
+std::vector<Measurement> Stage::measure(const std::vector<PlacedSensor>& sensors,
+                                        RenderSettings frame, const std::atomic<bool>& cancelled) {
+  std::vector<Measurement> out;
+  if (!sensors.empty()) frame.timeLimit /= double(sensors.size());
+  for (const PlacedSensor& sensor : sensors) {
+    if (cancelled) break;
+    out.push_back(measure(sensor, frame));
+    out.back().interrupted = cancelled;
+  }
+  return out;
 }
 
 Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& given) {

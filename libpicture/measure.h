@@ -33,6 +33,9 @@ struct PlacedSensor {
 
 // Places a sensor. Throws SensorError if its fields are out of range or its place is flat.
 PlacedSensor placeSensor(const xvrml::SensorInfo& info);
+// Returns a sensor without a name that reads the illuminance at a point of a surface, on the side
+// that a ray along `seen` meets. normal: a unit vector, of either side.
+PlacedSensor sensorAt(const double point[3], const double normal[3], const double seen[3]);
 
 // The readings of one sensor, by point, row by row.
 struct Measurement {

@@ -243,17 +243,9 @@ struct Renderer::Impl {
   void measure(const View& view, std::vector<Measurement>& out) {
     doing = "mapping";
     stage.prepareSensors(view);
-    std::vector<PlacedSensor> sensors;
-    for (const xvrml::SensorInfo& info : stage.mapper()->sensors())
-      sensors.push_back(placeSensor(info));
-    RenderSettings frame = stage.settings;
-    if (!sensors.empty()) frame.timeLimit /= double(sensors.size());
+    const std::vector<PlacedSensor> sensors = stage.placeSensors();
     doing = "";
-    for (const PlacedSensor& sensor : sensors) {
-      if (cancelled) break;
-      out.push_back(stage.measure(sensor, frame));
-      out.back().interrupted = cancelled;
-    }
+    out = stage.measure(sensors, stage.settings, cancelled);
     stage.reportMessages(); // safe here: the browser's thread is waiting
   }
 };

@@ -62,9 +62,14 @@ class Stage {
   bool leavesViewpointOut(const View& view) const;
   // Maps the world for a view.
   void prepare(const View& view);
-  // Maps the world for its sensors, as it is for a view. Then measure() makes the readings of one.
+  // Maps the world for sensors, as it is for a view.
   void prepareSensors(const View& view);
-  Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame);
+  // Returns the sensors of the world. Throws SensorError. [after prepareSensors]
+  std::vector<PlacedSensor> placeSensors() const;
+  // Reads sensors, one after the other, which share the time limit. Ends early when cancelled
+  // becomes true. [after prepareSensors]
+  std::vector<Measurement> measure(const std::vector<PlacedSensor>& sensors, RenderSettings frame,
+                                   const std::atomic<bool>& cancelled);
   // Sets size, channels and quality of the next frame, from the settings or from others.
   void setUpFrame() { setUpFrame(settings); }
   void setUpFrame(const RenderSettings& frame);
@@ -87,6 +92,7 @@ class Stage {
   void makeMapper();
   void useEnvironment();
   void readBackground();
+  Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame);
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
 

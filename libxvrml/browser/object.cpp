@@ -25,15 +25,19 @@ std::vector<NodeRef> breakCycles(const std::vector<NodeRef>& cyclic) {
 }
 
 // Returns the version that a text follows which is given without a header. caller: that of the
-// file that gives it. An element of XML stands for itself; a file in XML may also give ClassicVRML.
+// file that gives it. An element of XML and an object of JSON stand for themselves; files in XML
+// and JSON may also give ClassicVRML.
 FileVersion versionOfText(std::string_view text, const FileVersion& caller,
                           const FileVersion& world) {
   const size_t first = text.find_first_not_of(" \t\r\n");
-  const bool isXml = first != text.npos && text[first] == '<';
+  const char begin = first == text.npos ? ' ' : text[first];
   const FileVersion& known = caller.isX3d() ? caller : world;
-  if (isXml && known.isX3d()) return {Encoding::x3dXml, known.major, known.minor};
-  if (isXml) return {Encoding::x3dXml, 3, 3};
-  if (caller.encoding == Encoding::x3dXml)
+  for (const auto& [mark, encoding] :
+       {std::pair('<', Encoding::x3dXml), std::pair('{', Encoding::x3dJson)})
+    if (begin == mark)
+      return known.isX3d() ? FileVersion{encoding, known.major, known.minor}
+                           : FileVersion{encoding, 3, 3};
+  if (caller.encoding == Encoding::x3dXml || caller.encoding == Encoding::x3dJson)
     return {Encoding::x3dClassic, caller.major, caller.minor};
   return caller;
 }

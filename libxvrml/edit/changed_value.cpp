@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/lexer.h"
 #include "base/visit_storage.h"
 #include "write/value_writer.h"
@@ -25,9 +27,21 @@ std::string escaped(std::string_view text, char quote) {
 
 // How a file writes values.
 struct Syntax {
-  char quote = 0; // around attributes of XML; 0: VRML97
+  char quote = 0; // around attributes of XML; 0: VRML97 or JSON
+  bool isJson = false;
   bool isXml() const { return quote != 0; }
 };
+
+void appendPixels(std::vector<std::string>& words, const Image& image) {
+  for (const int32_t number : {image.width, image.height, image.components})
+    writeNumber(words.emplace_back(), number);
+  const size_t components = size_t(std::clamp(image.components, 0, 4));
+  for (size_t i = 0; components > 0 && i + components <= image.pixels.size(); i += components) {
+    uint32_t pixel = 0;
+    for (size_t c = 0; c < components; ++c) pixel = pixel << 8 | image.pixels[i + c];
+    words.push_back(fmt::format("{}", pixel));
+  }
+}
 
 // A value as the words that a file has for it; empty for one that is written as a whole.
 struct Words {
@@ -41,10 +55,16 @@ void append(std::vector<std::string>& words, const T& value, const Syntax& synta
     for (int i = 0; i < numberCount<T>; ++i) writeNumber(words.emplace_back(), numbersOf(value)[i]);
   } else if constexpr (std::is_same_v<T, std::string>) {
     std::string& word = words.emplace_back();
+    if (syntax.isJson) {
+      word = jsonString(value);
+      return;
+    }
     writeString(word, value);
     if (syntax.isXml()) word = escaped(word, syntax.quote);
+  } else if constexpr (std::is_same_v<T, Image>) {
+    if (syntax.isJson) appendPixels(words, value);
   } else if constexpr (std::is_same_v<T, bool>) {
-    if (syntax.isXml())
+    if (syntax.isXml() || syntax.isJson)
       words.emplace_back(value ? "true" : "false");
     else
       words.emplace_back(value ? "TRUE" : "FALSE");
@@ -80,7 +100,29 @@ std::vector<std::string_view> tokensOf(std::string_view text, const Syntax& synt
   return tokens;
 }
 
+// Returns a value of JSON: one word, or a list of them, in lines that are not too long.
+std::string wholeJson(FieldType type, const Value& value, size_t indent) {
+  constexpr size_t lineWidth = 120;
+  const std::vector<std::string> words = wordsOf(type, value, {0, true}).words;
+  if (words.size() == 1 && !isMultiple(type)) return words[0];
+  std::string out = "[";
+  size_t line = 0; // where the line begins
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) out += ',';
+    if (out.size() - line > lineWidth) {
+      out += '\n';
+      line = out.size();
+      out.append(indent + 2, ' ');
+    } else if (i > 0) {
+      out += ' ';
+    }
+    out += words[i];
+  }
+  return out + "]";
+}
+
 std::string whole(FieldType type, Value value, size_t indent, const Syntax& syntax) {
+  if (syntax.isJson) return wholeJson(type, value, indent);
   std::string out;
   if (!syntax.isXml()) {
     writeValue(out, type, storageOf(value), indent);
@@ -118,7 +160,7 @@ std::string wordByWord(std::string_view text, const std::vector<std::string_view
 
 // Replaces the elements between those at the beginning and at the end that both lists share.
 std::string elementsBetween(std::string_view text, const std::vector<std::string_view>& tokens,
-                            const Words& before, const Words& after) {
+                            const Words& before, const Words& after, const Syntax& syntax) {
   const size_t size = before.ofElement,
                most = std::min(before.words.size(), after.words.size()) / size;
   const auto sameElement = [&](size_t i, size_t j) {
@@ -131,11 +173,11 @@ std::string elementsBetween(std::string_view text, const std::vector<std::string
   while (first < most && sameElement(first, first)) ++first;
   while (first + last < most && sameElement(olds - 1 - last, news - 1 - last)) ++last;
   // Elements are separated as those of the file are.
-  const bool commas = size > 1 && (olds < 2 || text.find(',') != text.npos);
-  const std::string_view between = commas ? ", " : " ";
+  const bool commas = (size > 1 && (olds < 2 || text.find(',') != text.npos)) || syntax.isJson;
+  const std::string_view between = commas ? ", " : " ", within = syntax.isJson ? ", " : " ";
   std::string middle;
   for (size_t i = first * size; i < (news - last) * size; ++i) {
-    if (i > first * size) middle += i % size == 0 ? between : " ";
+    if (i > first * size) middle += i % size == 0 ? between : within;
     middle += after.words[i];
   }
   const auto beginOf = [&](size_t element) { return tokens[element * size].data(); };
@@ -175,7 +217,8 @@ std::string changed(std::string_view text, FieldType type, const Value& before, 
   if (known && olds.words.size() == news.words.size()) return wordByWord(text, tokens, olds, news);
   const bool isList =
       isMultiple(type) && (syntax.isXml() || (text.starts_with('[') && text.ends_with(']')));
-  if (known && isList && !news.words.empty()) return elementsBetween(text, tokens, olds, news);
+  if (known && isList && !news.words.empty())
+    return elementsBetween(text, tokens, olds, news, syntax);
   return whole(type, after, indent, syntax);
 }
 
@@ -189,6 +232,37 @@ std::string changedValue(std::string_view text, FieldType type, const Value& bef
 std::string changedAttribute(std::string_view text, FieldType type, const Value& before,
                              const Value& after, size_t indent, char quote) {
   return changed(text, type, before, after, indent, {quote});
+}
+
+std::string changedJson(std::string_view text, FieldType type, const Value& before,
+                        const Value& after, size_t indent) {
+  // Some files have numbers in a string, as XML has them.
+  const bool isString = type == FieldType::SFString || type == FieldType::MFString;
+  if (text.size() < 2 || text[0] != '"' || isString || text.find('\\') != text.npos)
+    return changed(text, type, before, after, indent, {0, true});
+  std::string out =
+      changed(text.substr(1, text.size() - 2), type, before, after, indent, {'"', false});
+  std::replace(out.begin(), out.end(), '\n', ' ');
+  return '"' + out + '"';
+}
+
+std::string jsonText(FieldType type, const Value& value, size_t indent) {
+  return wholeJson(type, value, indent);
+}
+
+std::string jsonString(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      out += {'\\', c};
+    else if (c == '\n')
+      out += "\\n";
+    else if (c >= 0 && c < 0x20)
+      out += fmt::format("\\u{:04x}", int(c));
+    else
+      out += c;
+  }
+  return out + '"';
 }
 
 std::string attributeText(FieldType type, const Value& value, size_t indent, char quote) {

@@ -18,6 +18,14 @@ std::string changedValue(std::string_view text, FieldType type, const Value& bef
 // entities are written anew.
 std::string changedAttribute(std::string_view text, FieldType type, const Value& before,
                              const Value& after, size_t indent, char quote);
+// Does the same for a value of JSON. Commas between the elements of lists may be missing
+// (json_commas.h).
+std::string changedJson(std::string_view text, FieldType type, const Value& before,
+                        const Value& after, size_t indent);
+// Returns the text of a value of JSON.
+std::string jsonText(FieldType type, const Value& value, size_t indent);
+// Returns the text of a string of JSON, with its quotes.
+std::string jsonString(std::string_view text);
 // Returns the text of a value as an attribute of XML in these quotes has it.
 std::string attributeText(FieldType type, const Value& value, size_t indent, char quote);
 

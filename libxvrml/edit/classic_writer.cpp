@@ -69,8 +69,8 @@ class ClassicWriter : public NodeWriter {
     for (const FieldText& field : place.fields)
       if (given.at(field.name) == &field && field.faithful)
         writeField(text, node, field);
-      else // its text stays as it is
-        for (const NodePlace& one : field.nodes) markWritten(one.node);
+      else
+        keepNodes(text, field);
     std::vector<const FieldInfo*> absent;
     for (const FieldInfo& field : node.type().fields)
       if (holdsValue(field) && !given.contains(field.name)) absent.push_back(&field);
@@ -85,14 +85,14 @@ class ClassicWriter : public NodeWriter {
     const std::string_view all = text.text;
     const size_t brace = place.body.end - 1;
     const bool inLines = startsLine(all, brace);
-    std::string indentation(indentationAt(all, brace));
+    std::string indentation(indentationAt(text, brace));
     if (inLines) {
       const auto first =
           std::find_if(place.fields.begin(), place.fields.end(),
                        [&](const FieldText& field) { return startsLine(all, field.whole.begin); });
       indentation = first == place.fields.end()
                         ? deeper(indentation)
-                        : std::string(indentationAt(all, first->whole.begin));
+                        : std::string(indentationAt(text, first->whole.begin));
     }
     std::string added;
     for (const FieldInfo* field : fields) {
@@ -138,7 +138,7 @@ class ClassicWriter : public NodeWriter {
     text_.copy(text, place.value.begin);
     text_.out += changedValue(
         std::string_view(text.text).substr(place.value.begin, place.value.size()), field.type,
-        *original, node.get(field), indentationAt(text.text, place.whole.begin).size());
+        *original, node.get(field), indentationAt(text, place.whole.begin).size());
     text_.at = place.value.end;
   }
 
@@ -151,7 +151,7 @@ class ClassicWriter : public NodeWriter {
       keep(text, *own, {});
     } else if (child) {
       text_.copy(text, place.value.begin);
-      text_.out += this->node(child, indentationAt(text.text, place.whole.begin), {});
+      text_.out += this->node(child, indentationAt(text, place.whole.begin), {});
       text_.at = place.value.end;
     } else if (own && place.declared) {
       text_.copy(text, place.value.begin);
@@ -165,7 +165,7 @@ class ClassicWriter : public NodeWriter {
   void writeChildren(const DocumentText& text, const Node& node, const FieldInfo& field,
                      const FieldText& place) {
     const auto& children = *static_cast<const MFNode*>(node.storage(field));
-    const std::string indentation(indentationAt(text.text, place.whole.begin));
+    const std::string indentation(indentationAt(text, place.whole.begin));
     if (place.nodes.empty() && children.empty()) return;
     text_.copy(text, place.value.begin);
     if (text.text[place.value.begin] == '[') {

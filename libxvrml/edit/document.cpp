@@ -22,6 +22,7 @@ Document::Document(std::string text, const std::string& path, const LoadOptions&
   made.world = loadWithLayout(made.text, path, options_, made.layout);
   byName_.emplace(path, &made);
   index(made);
+  for (const NodeRef& root : scope().roots) standing_.add(root.get());
 }
 
 Document::~Document() = default;
@@ -40,27 +41,34 @@ const DocumentText& Document::read(const std::string& text, const std::string& n
   return made;
 }
 
-// Forgets the places of nodes that the world did not take, so that their text is left as it is.
-static void keepThoseIn(const MFNode& list, std::vector<NodePlace>& places) {
+// Notes which places of a list the world has taken. Returns whether these give all of the list.
+static bool noteTaken(const MFNode& list, std::vector<NodePlace>& places) {
   size_t next = 0;
-  std::erase_if(places, [&](const NodePlace& place) {
-    const bool taken = next < list.size() && list[next].get() == place.node;
-    next += taken;
-    return !taken;
-  });
+  for (NodePlace& place : places) {
+    place.taken = next < list.size() && list[next].get() == place.node;
+    next += place.taken;
+  }
+  return next == list.size();
 }
 
-// Returns whether a field holds what its text has, and nothing else.
-static bool isWhole(const Node& node, const FieldInfo& field,
-                    const std::vector<NodePlace>& places) {
-  if (field.type == FieldType::SFNode) {
-    const Node* const child = static_cast<const NodeRef*>(node.storage(field))->get();
-    return places.size() <= 1 && (places.empty() ? nullptr : places[0].node) == child;
-  }
-  const MFNode& list = *static_cast<const MFNode*>(node.storage(field));
-  return std::equal(
-      list.begin(), list.end(), places.begin(), places.end(),
-      [](const NodeRef& one, const NodePlace& place) { return one.get() == place.node; });
+// Returns whether a field can be edited: it holds what its text has. A list may have more in its
+// text, which is kept.
+static bool isFaithful(const DocumentText& text, const Node& node, const FieldInfo& field,
+                       FieldText& place) {
+  if (!holdsNodes(field)) return place.readable;
+  MFNode nodes;
+  const bool isList = field.type == FieldType::MFNode;
+  if (const void* const storage = node.storage(field); !isList)
+    if (const NodeRef& child = *static_cast<const NodeRef*>(storage)) nodes.push_back(child);
+  const bool whole =
+      noteTaken(isList ? *static_cast<const MFNode*>(node.storage(field)) : nodes, place.nodes);
+  const auto taken = std::count_if(place.nodes.begin(), place.nodes.end(),
+                                   [](const NodePlace& one) { return one.taken; });
+  const bool hasOthers = size_t(taken) < place.nodes.size();
+  if (!whole || !hasOthers) return whole;
+  const bool isOpen = place.form != FieldForm::statement || text.text[place.value.begin] == '[';
+  const bool isNull = !isList && place.nodes.size() == 1 && !place.nodes[0].node;
+  return isNull || (isList && isOpen && (place.readable || place.form != FieldForm::statement));
 }
 
 void Document::index(DocumentText& text) {
@@ -69,19 +77,19 @@ void Document::index(DocumentText& text) {
     routes.insert(placeKey(route.source.line, route.source.column));
   for (RouteText& route : text.layout.routes)
     route.valid = routes.contains(placeKey(route.line, route.column));
-  keepThoseIn(text.world->scope.roots, text.layout.roots);
-  std::set<std::string, std::less<>> names;
-  for (auto& [node, place] : text.layout.nodes) {
+  noteTaken(text.world->scope.roots, text.layout.roots);
+  if (!text.world->cyclic.empty()) standing_.expectLoops();
+  std::unordered_set<std::string_view> names;
+  text.byPlace.reserve(text.layout.nodes.size());
+  for (NodeText& place : text.layout.nodes) {
+    Node& node = *place.node;
     for (FieldText& field : place.fields) {
-      const FieldInfo* const info = node->type().find(field.name);
-      field.faithful =
-          info && (holdsNodes(*info) ? isWhole(*node, *info, field.nodes) : field.readable);
+      const FieldInfo* const info = node.type().find(field.name);
+      field.faithful = info && isFaithful(text, node, *info, field);
     }
-    text.byPlace.emplace(placeKey(node->source.line, node->source.column), const_cast<Node*>(node));
-    owners_.emplace(node, &text);
-    names_.emplace(node, node->defName);
-    if (!node->defName.empty() && !names.insert(node->defName).second)
-      repeated_.insert(node->defName);
+    text.byPlace.emplace(placeKey(node.source.line, node.source.column), &node);
+    known_.insert(&node, {&text, &place});
+    if (!node.defName.empty() && !names.insert(node.defName).second) repeated_.insert(node.defName);
   }
 }
 
@@ -93,7 +101,6 @@ Node* Document::find(const SourcePosition& place) const {
   return found == text->second->byPlace.end() ? nullptr : found->second;
 }
 
-const DocumentText& Document::textOf(const Node& node) const { return *owners_.at(&node); }
 const FieldText* Document::textOf(const Node& node, const FieldInfo& field) const {
   const std::vector<FieldText>& fields = placeOf(node).fields;
   const auto last = std::find_if(fields.rbegin(), fields.rend(),
@@ -101,13 +108,12 @@ const FieldText* Document::textOf(const Node& node, const FieldInfo& field) cons
   return last == fields.rend() ? nullptr : &*last;
 }
 
-const NodeText& Document::placeOf(const Node& node) const {
-  return textOf(node).layout.nodes.at(&node);
-}
-
-// Keeps the value of a field that is about to be changed.
+// Keeps the value of a field that is about to be changed. The text itself says which nodes a field
+// had that it gives.
 void Document::touch(Node& node, const FieldInfo& field) {
-  originals_[&node].try_emplace(field.name, node.get(field));
+  auto& kept = originals_[&node];
+  if (!kept.contains(field.name) && !(holdsNodes(field) && textOf(node, field)))
+    kept.emplace(field.name, node.get(field));
   if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
 }
 
@@ -133,19 +139,30 @@ const MFNode& Document::listOf(const Node* parent, const FieldInfo* field) const
   return parent ? *static_cast<const MFNode*>(parent->storage(*field)) : scope().roots;
 }
 
+// Nodes are counted where they stand: a parent may have been taken out itself.
 void Document::insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node) {
   MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
+  if (!parent || stands(*parent)) standing_.add(node.get());
 }
 
 void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
   MFNode& list = listToChange(parent, field);
-  if (index < list.size()) list.erase(list.begin() + std::ptrdiff_t(index));
+  if (index >= list.size()) return;
+  const NodeRef gone = list[index];
+  const bool stood = !parent || stands(*parent);
+  list.erase(list.begin() + std::ptrdiff_t(index));
+  if (stood) standing_.remove(gone.get());
 }
 
 void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   touch(parent, field);
-  *static_cast<NodeRef*>(parent.storage(field)) = std::move(child);
+  NodeRef& place = *static_cast<NodeRef*>(parent.storage(field));
+  const bool stands = this->stands(parent);
+  const NodeRef before = std::exchange(place, std::move(child));
+  if (!stands) return;
+  standing_.add(place.get());
+  standing_.remove(before.get());
 }
 
 void Document::rename(Node& node, const std::string& name) {
@@ -154,6 +171,7 @@ void Document::rename(Node& node, const std::string& name) {
   const bool isNamed = known != names.end() && known->second.get() == &node;
   if (isNamed) names.erase(known);
   if (!name.empty() && (isNamed || node.defName.empty())) names[name] = NodeRef(&node);
+  renamed_.try_emplace(&node, node.defName);
   node.defName = name;
 }
 
@@ -164,13 +182,6 @@ std::string Document::freshName(const std::string& wish,
   for (size_t i = 2; known.contains(name) || taken.contains(name); ++i)
     name = fmt::format("{}_{}", wish, i);
   return name;
-}
-
-SeenNodes Document::standing() const {
-  SeenNodes seen;
-  walk(rootsOf(scope()), seen,
-       [](Node& node, std::vector<Node*>& open) { appendChildren(node, open); });
-  return seen;
 }
 
 } // namespace xvrml

@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "edit/standing.h"
 #include "parse/text_layout.h"
-#include "xvrml/walk.h"
 
 namespace xvrml {
 
@@ -51,19 +51,24 @@ class Document {
   // Returns whether a node comes from the file itself.
   bool isOwn(const Node& node) const { return &textOf(node) == &file(); }
   // Returns whether a node has a text: nodes in the default values of prototypes have none.
-  bool hasText(const Node& node) const { return owners_.contains(&node); }
+  bool hasText(const Node& node) const { return known_.contains(&node); }
   // Returns the text of a field of a node; null if the text does not have it.
   const FieldText* textOf(const Node& node, const FieldInfo& field) const;
   // Returns the name behind a node's DEF, and in references to it, in the text that it comes from.
-  const std::string& nameInText(const Node& node) const { return names_.at(&node); }
-  bool isXml() const { return world().head.version.encoding == Encoding::x3dXml; }
+  const std::string& nameInText(const Node& node) const {
+    const auto renamed = renamed_.find(&node);
+    return renamed == renamed_.end() ? node.defName : renamed->second;
+  }
+  bool isXml() const { return encoding() == Encoding::x3dXml; }
+  Encoding encoding() const { return world().head.version.encoding; }
   // Returns the text that a node of the document comes from, and where it stands there.
-  const DocumentText& textOf(const Node& node) const;
-  const NodeText& placeOf(const Node& node) const;
+  const DocumentText& textOf(const Node& node) const { return *known_.find(&node)->text; }
+  const NodeText& placeOf(const Node& node) const { return *known_.find(&node)->place; }
 
   // Sets a field that holds no nodes.
   void set(Node& node, const FieldInfo& field, Value value);
-  // Returns the value that a field had before it was changed first; null: it has not been changed.
+  // Returns the value that a field had before it was changed first; null: it has not been changed,
+  // or it holds nodes that the text has.
   const Value* originalOf(const Node& node, const FieldInfo& field) const;
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
@@ -76,12 +81,16 @@ class Document {
   // number behind it.
   std::string freshName(const std::string& wish,
                         const std::set<std::string, std::less<>>& taken = {});
-  // Returns the nodes that stand anywhere in the file.
-  SeenNodes standing() const;
+  // Returns whether a node stands anywhere in the file.
+  bool stands(const Node& node) const { return standing_.contains(node, scope()); }
 
  private:
-  void index(DocumentText& text);
+  struct Known {
+    const DocumentText* text = nullptr;
+    const NodeText* place = nullptr;
+  };
 
+  void index(DocumentText& text);
   void touch(Node& node, const FieldInfo& field);
   MFNode& listToChange(Node* parent, const FieldInfo* field);
 
@@ -89,9 +98,10 @@ class Document {
   std::deque<DocumentText> texts_; // the file first; a deque does not move its elements
   std::map<std::string, DocumentText*, std::less<>> byName_;
   std::set<std::string, std::less<>> repeated_;
-  std::unordered_map<const Node*, const DocumentText*> owners_;
-  std::unordered_map<const Node*, std::string> names_;
+  NodeMap<Known> known_;                                 // the nodes of all texts
+  std::unordered_map<const Node*, std::string> renamed_; // with the names in their texts
   std::unordered_map<const Node*, std::map<std::string, Value, std::less<>>> originals_;
+  Standing standing_;
 };
 
 } // namespace xvrml

@@ -19,9 +19,9 @@ std::string EditedFile::whyNot() {
   if (stampOf(path) == FileStamp()) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
   if (encoding != Encoding::vrml97 && encoding != Encoding::x3dClassic &&
-      encoding != Encoding::x3dXml)
-    return fmt::format("{} is {}: VRML97, X3D ClassicVRML and X3D XML can be edited in place; "
-                       "write it as one of these first",
+      encoding != Encoding::x3dXml && encoding != Encoding::x3dJson)
+    return fmt::format("{} is {}: VRML97 and X3D can be edited in place; write it as one of these "
+                       "first",
                        path, encodingName(encoding));
   try {
     const Source source = Source::open(path, world().options.limits, nullptr);
@@ -32,11 +32,13 @@ std::string EditedFile::whyNot() {
         return fmt::format("{} has a unit of its own for angles, which is only read", path);
     packed_ = source.isPacked();
     marked_ = source.hasByteOrderMark();
-    auto document = std::make_unique<Document>(std::string(source.text()), path, world().options);
+    auto document = std::make_unique<Document>(adopted_ ? *adopted_ : std::string(source.text()),
+                                               path, world().options);
     if (const std::string& reason = document->file().layout.whyNot; !reason.empty())
       return fmt::format("{} {}", path, reason);
     document_ = std::move(document);
-    read_ = onDisk_ = source.stamp();
+    onDisk_ = source.stamp();
+    read_ = adopted_ ? FileStamp() : onDisk_; // a text in memory has no stamp
   } catch (const LoadError& error) { return error.diagnostic.text(); }
   return "";
 }
@@ -89,7 +91,9 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   if (given.index > list.size() || (holds && given.index == list.size()))
     throw EditError(fmt::format("there is no place {} among {} nodes", given.index, list.size()));
   const MFNode& own = document().listOf(slot.parent.document.get(), slot.field);
-  for (const NodeRef& node : own)
+  // Only the fields of instances have nodes without a text.
+  const bool isInstance = given.parent && nodeCast<ProtoInstance>(given.parent);
+  for (const NodeRef& node : isInstance ? own : MFNode())
     if (node && !document().hasText(*node))
       throw EditError(fmt::format("{} of this {} has the nodes of its prototype, which cannot be "
                                   "edited here",
@@ -142,13 +146,11 @@ Node* EditedFile::nodeAt(const Slot& slot) {
 
 std::string EditedFile::text() {
   Document& document = this->document();
-  if (const auto exchange = exchangeOf(document.world())) {
-    const SeenNodes standing = document.standing();
+  if (const auto exchange = exchangeOf(document.world()))
     for (const Exchange::Export& one : exchange->exports)
-      if (!standing.contains(one.node.get()))
+      if (!document.stands(*one.node))
         throw EditError(
             fmt::format("{} has been removed, but the file exports it", one.node->defName));
-  }
   return onStackOf(deepestStack, [&]() -> std::string {
     std::string written = writeInPlace(document);
     if (written == document.file().text) return written;
@@ -173,6 +175,25 @@ std::string EditedFile::bytes() {
 
 bool EditedFile::isChangedOnDisk() { return document_ && stampOf(world().path) != onDisk_; }
 void EditedFile::saved() { onDisk_ = stampOf(world().path); }
+
+std::string EditedFile::draft() {
+  if (!document_) throw EditError("nothing has been edited");
+  return onStackOf(deepestStack, [&] { return writeInPlace(*document_); });
+}
+
+std::string EditedFile::textOnDisk() {
+  try {
+    return std::string(Source::open(world().path, world().options.limits, nullptr).text());
+  } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
+}
+
+void EditedFile::adopt(std::string text) {
+  if (document_) throw EditError("the file has been read for editing already");
+  adopted_ = std::move(text);
+  const std::string reason = whyNot();
+  adopted_.reset();
+  if (!reason.empty()) throw EditError(reason);
+}
 
 const MFNode& EditedFile::liveList(const Slot& slot) {
   return slot.field ? *static_cast<const MFNode*>(slot.parent.live->storage(*slot.field))

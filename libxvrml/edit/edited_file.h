@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "edit/document.h"
@@ -49,12 +50,17 @@ class EditedFile {
   std::string bytes();
   bool isChangedOnDisk();
   void saved();
+  // See Editor.
+  std::string draft();
+  std::string textOnDisk();
+  void adopt(std::string text);
 
  private:
   const MFNode& liveList(const Slot& slot);
 
   std::unique_ptr<LiveWorld> live_;
   std::unique_ptr<Document> document_; // read at the first edit
+  std::optional<std::string> adopted_; // is read instead of the text of the file
   bool packed_ = false, marked_ = false;
   FileStamp read_, onDisk_; // the file when it was read, and when it was read or saved
 };

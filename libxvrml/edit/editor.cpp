@@ -152,7 +152,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
     if (one.severity == Severity::error) throw EditError(one.text());
   if (scope.roots.size() != 1 || !scope.routes.empty() || !scope.prototypes.empty())
     throw EditError("the text must be that of one node, without routes and prototypes");
-  impl_->nodes.checkPlace(slot, *scope.roots[0]);
+  impl_->nodes.checkPlace(slot, {scope.roots[0], scope.roots[0]});
   const MFNode made = impl_->file.live().read(std::string(text), name);
   if (made.size() != 1) throw EditError("the text could not be read a second time");
   const Twin node{made[0], scope.roots[0]};
@@ -166,7 +166,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
 void Editor::use(const NodeSlot& given, Node& node) {
   const Twin twin = impl_->file.twinOf(node);
   const Slot slot = impl_->file.slotOf(given, false);
-  impl_->nodes.checkPlace(slot, node);
+  impl_->nodes.checkPlace(slot, twin);
   if (impl_->file.document().isRepeated(node.defName))
     throw EditError(
         fmt::format("several nodes are named {}: give this one another name", node.defName));
@@ -190,7 +190,7 @@ void Editor::move(const NodeSlot& from, const NodeSlot& to) {
   OpenStep step(impl_->history, fmt::format("Move {}", node->type().name));
   const Twin twin = impl_->nodes.take(source);
   const Slot target = impl_->file.slotOf(to, false);
-  impl_->nodes.checkPlace(target, *node);
+  impl_->nodes.checkPlace(target, twin);
   impl_->nodes.place(target, twin);
   step.close();
 }
@@ -218,7 +218,7 @@ NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
   const Twin inner = impl_->nodes.take(slot);
   const NodeRef outer = insert(given, emptyNode(impl_->file.document(), type));
   const Slot within = impl_->file.slotOf({outer.get(), "children", 0}, false);
-  impl_->nodes.checkPlace(within, *inner.live);
+  impl_->nodes.checkPlace(within, inner);
   impl_->nodes.place(within, inner);
   step.close();
   return outer;
@@ -229,7 +229,7 @@ void Editor::rename(Node& node, const std::string& name) {
   Scope& scope = impl_->file.document().scope();
   if (!isNodeName(name)) throw EditError(fmt::format("'{}' is no name for a node", name));
   if (name == node.defName) return;
-  if (!impl_->file.document().standing().contains(twin.document.get()))
+  if (!impl_->file.document().stands(*twin.document))
     throw EditError(fmt::format("this {} has been removed from the file", node.type().name));
   if (scope.names.contains(name)) throw EditError(fmt::format("another node is named {}", name));
   if (impl_->file.document().isRepeated(node.defName))
@@ -317,6 +317,14 @@ bool Editor::isChangedOnDisk() const { return impl_->file.isChangedOnDisk(); }
 void Editor::saved() {
   impl_->history.saved();
   impl_->file.saved();
+}
+
+std::string Editor::draft() { return impl_->file.draft(); }
+std::string Editor::textOnDisk() { return impl_->file.textOnDisk(); }
+
+void Editor::adopt(std::string text) {
+  impl_->file.adopt(std::move(text));
+  impl_->history.neverSaved();
 }
 
 } // namespace xvrml

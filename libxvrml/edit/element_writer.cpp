@@ -155,8 +155,8 @@ class ElementWriter : public NodeWriter {
     std::vector<std::vector<ListItem>> lists;
     const auto given = lastOf(place);
     for (const FieldText& field : place.fields) {
-      if (given.at(field.name) != &field || !field.faithful) { // its text stays as it is
-        for (const NodePlace& one : field.nodes) markWritten(one.node);
+      if (given.at(field.name) != &field || !field.faithful) {
+        lists.push_back(keptItems(text, field));
         continue;
       }
       const FieldInfo& info = *node.type().find(field.name);
@@ -178,10 +178,21 @@ class ElementWriter : public NodeWriter {
     writeContent(text, element, inOrder(std::move(lists)), false);
   }
 
-  static MFNode nodesOf(const Node& node, const FieldInfo& field) {
-    if (field.type == FieldType::MFNode) return *static_cast<const MFNode*>(node.storage(field));
-    const NodeRef& child = *static_cast<const NodeRef*>(node.storage(field));
-    return child ? MFNode{child} : MFNode();
+  // Returns what a field has that is not edited itself.
+  std::vector<ListItem> keptItems(const DocumentText& text, const FieldText& field) {
+    std::vector<ListItem> items;
+    if (field.form == FieldForm::element)
+      items.push_back({Kind::keep,
+                       field.whole,
+                       [this, &text, &field] {
+                         keepNodes(text, field);
+                         text_.copy(text, field.whole.end);
+                       },
+                       {}});
+    else
+      for (const NodePlace& one : field.nodes)
+        items.push_back({Kind::keep, one.span, [this, &text, one] { keep(text, one, {}); }, {}});
+    return items;
   }
 
   void changeName(std::vector<TagChange>& changes, const DocumentText& text,
@@ -218,7 +229,7 @@ class ElementWriter : public NodeWriter {
     if (!original) return;
     const std::string_view present = std::string_view(text.text).substr(value.begin, value.size());
     changes.push_back({value, changedAttribute(present, field.type, *original, node.get(field),
-                                               indentationAt(text.text, element.begin).size(),
+                                               indentationAt(text, element.begin).size(),
                                                text.text[value.begin - 1])});
   }
 
@@ -227,7 +238,7 @@ class ElementWriter : public NodeWriter {
                 const DocumentText& text, const XmlElement& element, const Node& node,
                 const FieldInfo& field) {
     const char quote = quoteOf(text, element);
-    const size_t indent = indentationAt(text.text, element.begin).size();
+    const size_t indent = indentationAt(text, element.begin).size();
     if (nodeCast<ProtoInstance>(&node)) {
       lists.push_back(
           {{Kind::behind, {}, {}, [this, &node, &field, quote](std::string_view indentation) {
@@ -269,7 +280,7 @@ class ElementWriter : public NodeWriter {
       changeValue(changes, text, element, node, field, place.value);
     else if (editedFrom(node, field))
       added.push_back({"value", attributeText(field.type, node.get(field),
-                                              indentationAt(text.text, element.begin).size(),
+                                              indentationAt(text, element.begin).size(),
                                               quoteOf(text, element))});
     writeTag(text, element, std::move(changes), added);
     text_.copy(text, element.end);
@@ -296,7 +307,7 @@ class ElementWriter : public NodeWriter {
     } else {
       const TextSpan last = attributes.back().whole();
       if (startsLine(text.text, last.begin))
-        before = feed_ + std::string(indentationAt(text.text, last.begin));
+        before = feed_ + std::string(indentationAt(text, last.begin));
       text_.copy(text, last.end);
     }
     for (const AddedAttribute& one : added)
@@ -308,9 +319,9 @@ class ElementWriter : public NodeWriter {
   void writeContent(const DocumentText& text, const XmlElement& element,
                     const std::vector<ListItem>& items, bool withRoutes) {
     const std::string_view all = text.text;
-    const std::string outer(indentationAt(all, element.begin));
+    const std::string outer(indentationAt(text, element.begin));
     const ListItem* const first = inLine(all, items);
-    const std::string inner(first ? std::string(indentationAt(all, first->span.begin))
+    const std::string inner(first ? std::string(indentationAt(text, first->span.begin))
                                   : deeper(outer));
     const auto routeItems = [&] {
       std::vector<ListItem> routes;

@@ -56,15 +56,30 @@ void History::perform(Edit edit) {
 bool History::undo() {
   if (isOpen() || done_ == 0) return false;
   ++changes_;
-  Step& step = steps_[--done_];
-  for (size_t i = step.edits.size(); i-- > 0;) step.edits[i].undo();
+  std::vector<Edit>& edits = steps_[done_ - 1].edits;
+  size_t left = edits.size();
+  try {
+    for (; left > 0; --left) edits[left - 1].undo();
+  } catch (...) { // the step stays done
+    for (; left < edits.size(); ++left) edits[left].redo();
+    throw;
+  }
+  --done_;
   return true;
 }
 
 bool History::redo() {
   if (isOpen() || done_ == steps_.size()) return false;
   ++changes_;
-  for (Edit& edit : steps_[done_++].edits) edit.redo();
+  std::vector<Edit>& edits = steps_[done_].edits;
+  size_t done = 0;
+  try {
+    for (; done < edits.size(); ++done) edits[done].redo();
+  } catch (...) { // the step stays undone
+    while (done > 0) edits[--done].undo();
+    throw;
+  }
+  ++done_;
   return true;
 }
 

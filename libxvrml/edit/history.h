@@ -27,6 +27,7 @@ class History {
   void cancel();
   // Does an edit, as a part of the open step.
   void perform(Edit edit);
+  // Return false if there is no step. If an edit throws, the whole step stays as it was.
   bool undo();
   bool redo();
   std::string undoName() const;
@@ -35,6 +36,11 @@ class History {
   // Returns whether the edits are others than when the file was saved.
   bool isChanged() const { return done_ != savedAt_ || (isOpen() && !open_.edits.empty()); }
   void saved() { savedAt_ = done_; }
+  // Says that the file does not have what there is before the first step.
+  void neverSaved() {
+    savedAt_ = ~size_t(0);
+    ++changes_;
+  }
   bool isOpen() const { return !begun_.empty(); }
 
  private:

@@ -9,8 +9,11 @@ namespace {
 
 std::unique_ptr<NodeWriter> makeWriter(const Document& document,
                                        std::vector<const PrototypeText*> lifted = {}) {
-  return document.isXml() ? makeElementWriter(document, std::move(lifted))
-                          : makeClassicWriter(document, std::move(lifted));
+  switch (document.encoding()) {
+  case Encoding::x3dXml: return makeElementWriter(document, std::move(lifted));
+  case Encoding::x3dJson: return makeJsonWriter(document, std::move(lifted));
+  default: return makeClassicWriter(document, std::move(lifted));
+  }
 }
 
 } // namespace
@@ -27,8 +30,11 @@ std::string writeNode(const Document& document, const Node& node) {
 }
 
 std::string emptyNode(const Document& document, std::string_view type) {
-  return document.isXml() ? fmt::format("<{}/>", type)
-                          : fmt::format("{} {{\n  children [\n  ]\n}}", type);
+  switch (document.encoding()) {
+  case Encoding::x3dXml: return fmt::format("<{}/>", type);
+  case Encoding::x3dJson: return fmt::format("{{\"{}\": {{\n  }}\n}}", type);
+  default: return fmt::format("{} {{\n  children [\n  ]\n}}", type);
+  }
 }
 
 } // namespace xvrml

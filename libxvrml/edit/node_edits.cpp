@@ -52,17 +52,30 @@ std::vector<Twin> NodeEdits::namedIn(const Twin& root) {
   std::vector<Twin> named;
   walk(std::vector<Node*>{root.live.get()}, [&](Node& node, std::vector<Node*>& open) {
     appendChildren(node, open);
-    Node* const own = file_.document().find(node.source);
-    if (own && !node.defName.empty()) named.push_back({NodeRef(&node), NodeRef(own)});
+    if (node.defName.empty()) return;
+    if (Node* const own = file_.document().find(node.source))
+      named.push_back({NodeRef(&node), NodeRef(own)});
   });
   return named;
+}
+
+// Gives a name that several nodes have to the last of them, in the order of the file.
+void NodeEdits::giveToLast(Scope& scope, const std::string& name) {
+  std::vector<Node*> roots = rootsOf(scope);
+  std::reverse(roots.begin(), roots.end()); // the walk begins with the last one
+  Node* last = nullptr;
+  walk(std::move(roots), [&](Node& node, std::vector<Node*>& open) {
+    if (node.defName == name && file_.document().find(node.source)) last = &node;
+    const auto own = std::ptrdiff_t(open.size());
+    appendChildren(node, open);
+    std::reverse(open.begin() + own, open.end());
+  });
+  if (last) scope.names[name] = NodeRef(last);
 }
 
 // Brings the names of the live world and of the document up to date with the nodes that stand in
 // the file.
 void NodeEdits::updateNames(const std::vector<Twin>& named) {
-  if (named.empty()) return;
-  const SeenNodes standing = file_.document().standing();
   const auto update = [&](Scope& scope, const NodeRef& node, bool stands) {
     const auto known = scope.names.find(node->defName);
     if (stands && known == scope.names.end())
@@ -71,9 +84,12 @@ void NodeEdits::updateNames(const std::vector<Twin>& named) {
       scope.names.erase(known);
   };
   for (const Twin& one : named) {
-    const bool stands = standing.contains(one.document.get());
+    const bool stands = file_.document().stands(*one.document);
     update(file_.world().scope, one.live, stands);
     update(file_.document().scope(), one.document, stands);
+    if (!file_.document().isRepeated(one.live->defName)) continue;
+    giveToLast(file_.world().scope, one.live->defName);
+    giveToLast(file_.document().scope(), one.live->defName);
   }
 }
 
@@ -128,7 +144,8 @@ Twin NodeEdits::take(const Slot& slot) {
   return node;
 }
 
-void NodeEdits::checkPlace(const Slot& slot, const Node& node) {
+void NodeEdits::checkPlace(const Slot& slot, const Twin& twin) {
+  const Node& node = *twin.live;
   const NodeType* const type = effectiveType(node);
   const std::string_view accepted =
       slot.field ? std::string_view(slot.field->nodeTypes) : std::string_view("child");
@@ -139,7 +156,9 @@ void NodeEdits::checkPlace(const Slot& slot, const Node& node) {
                                : fmt::format("{} cannot stand at the root of a file: expected a "
                                              "child node",
                                              node.type().name));
-  if (slot.parent.live && contains(node, *slot.parent.live))
+  // Scripts may have changed which nodes of the live world hold which others.
+  if (slot.parent.live &&
+      (contains(node, *slot.parent.live) || contains(*twin.document, *slot.parent.document)))
     throw EditError(fmt::format("this {} would become a part of itself", node.type().name));
 }
 
@@ -174,11 +193,11 @@ void NodeEdits::ensureName(const Twin& node) {
 }
 
 void NodeEdits::dropRoutes() {
-  const SeenNodes standing = file_.document().standing();
+  const Document& document = file_.document();
   std::vector<Route>& routes = file_.document().scope().routes;
   std::vector<std::pair<size_t, Route>> gone;
   for (size_t i = 0; i < routes.size(); ++i)
-    if (!standing.contains(routes[i].from.get()) || !standing.contains(routes[i].to.get()))
+    if (!document.stands(*routes[i].from) || !document.stands(*routes[i].to))
       gone.emplace_back(i, routes[i]);
   if (gone.empty()) return;
   history_.perform({[&routes, gone] {

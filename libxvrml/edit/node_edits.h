@@ -20,8 +20,9 @@ class NodeEdits {
   void place(const Slot& slot, const Twin& node);
   // Takes the node at a place out, and returns it.
   Twin take(const Slot& slot);
-  // Throws EditError if a node may not stand at a place.
-  static void checkPlace(const Slot& slot, const Node& node);
+  // Throws EditError if a node may not stand at a place, because of its type or because it would
+  // become a part of itself.
+  static void checkPlace(const Slot& slot, const Twin& node);
   void rename(const Twin& node, const std::string& name);
   // Gives a node a name if it has none.
   void ensureName(const Twin& node);
@@ -34,6 +35,7 @@ class NodeEdits {
   void setSingle(const Slot& slot, const Twin& node);
   std::function<void(bool)> listChange(const Slot& slot, const Twin& node);
   std::vector<Twin> namedIn(const Twin& root);
+  void giveToLast(Scope& scope, const std::string& name);
   void updateNames(const std::vector<Twin>& named);
 
   EditedFile& file_;

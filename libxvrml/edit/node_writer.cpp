@@ -1,6 +1,7 @@
 #include "edit/node_writer.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/lexer.h"
@@ -20,13 +21,13 @@ std::string NodeWriter::file() {
   if (!lifted_.empty()) {
     text_.copy(file, beginOfRoots());
     const bool inLines = startsLine(file.text, text_.at) && text_.at < file.text.size();
-    const std::string indentation(inLines ? indentationAt(file.text, text_.at) : "");
+    const std::string indentation(inLines ? indentationAt(file, text_.at) : "");
     for (const PrototypeText* one : lifted_)
       text_.out += indentation + file.text.substr(one->whole.begin, one->whole.size()) + feed_;
   }
   writeRoots(file);
   text_.copy(file, file.text.size());
-  return std::move(text_.out);
+  return finished(std::move(text_.out));
 }
 
 std::vector<const PrototypeText*> NodeWriter::missing() const {
@@ -48,14 +49,15 @@ size_t NodeWriter::beginOfRoots() const {
 std::string NodeWriter::node(const Node* node, std::string_view indentation, const Holder& holder) {
   if (!node) return "NULL";
   if (text_.written.contains(node)) return useOf(*node, holder);
-  const std::string& text = document_.textOf(*node).text;
+  const DocumentText& text = document_.textOf(*node);
   const size_t begin = document_.placeOf(*node).whole.begin;
+  const std::string_view from = indentationAt(text, begin);
   std::string outer = std::exchange(text_.out, {});
   const size_t at = std::exchange(text_.at, begin);
   writeNode(*node, &holder);
   const std::string own = std::exchange(text_.out, std::move(outer));
   text_.at = at;
-  return indented(own, indentationAt(text, begin), indentation);
+  return indented(own, from, indentation);
 }
 
 void NodeWriter::begin(const Node& node) {
@@ -64,10 +66,27 @@ void NodeWriter::begin(const Node& node) {
     last_ = std::max(last_, text_.missingFor(*instance));
 }
 
-void NodeWriter::markWritten(const Node* node) {
-  if (!node || !document_.hasText(*node) || !text_.written.insert(node).second) return;
-  for (const FieldText& field : document_.placeOf(*node).fields)
-    for (const NodePlace& one : field.nodes) markWritten(one.node);
+void NodeWriter::keepNodes(const DocumentText& text, const FieldText& field) {
+  for (const NodePlace& one : field.nodes) {
+    text_.copy(text, one.span.begin);
+    keep(text, one, {});
+  }
+}
+
+std::string_view NodeWriter::indentationAt(const DocumentText& text, size_t at) const {
+  const std::string_view all = text.text;
+  if (lineText_ != &text || at < lineAt_) {
+    line_ = lineBegin(all, at);
+  } else {
+    size_t begin = at; // where the line begins, if that is behind the last place
+    while (begin > lineAt_ && all[begin - 1] != '\n' && all[begin - 1] != '\r') --begin;
+    if (begin > lineAt_) line_ = begin;
+  }
+  lineText_ = &text;
+  lineAt_ = at;
+  size_t end = line_;
+  while (end < all.size() && isBlank(all[end])) ++end;
+  return all.substr(line_, end - line_);
 }
 
 std::vector<const Route*> NodeWriter::routesToAdd() const {
@@ -98,31 +117,52 @@ std::string NodeWriter::deeper(std::string_view indentation) {
   return std::string(indentation) + (indentation.ends_with('\t') ? "\t" : "  ");
 }
 
+MFNode NodeWriter::nodesOf(const Node& node, const FieldInfo& field) {
+  if (field.type == FieldType::MFNode) return *static_cast<const MFNode*>(node.storage(field));
+  const NodeRef& child = *static_cast<const NodeRef*>(node.storage(field));
+  return child ? MFNode{child} : MFNode();
+}
+
 std::vector<ListItem> NodeWriter::itemsOf(const DocumentText& text,
                                           const std::vector<NodePlace>& places, const MFNode& nodes,
                                           const Holder& holder) {
   std::vector<ListItem> items;
-  for (const ListStep& step : listSteps(places, nodes)) {
+  const auto addKept = [&](const NodePlace& place) {
+    items.push_back(
+        {Kind::keep, place.span, [this, &text, holder, place] { keep(text, place, holder); }, {}});
+  };
+  // Nodes that the world has not taken stay where they are.
+  std::vector<NodePlace> taken, others;
+  std::partition_copy(places.begin(), places.end(), std::back_inserter(taken),
+                      std::back_inserter(others), [](const NodePlace& one) { return one.taken; });
+  auto other = others.begin();
+  for (const ListStep& step : listSteps(taken, nodes)) {
+    if (step.place)
+      for (; other != others.end() && other->span.begin < step.place->span.begin; ++other)
+        addKept(*other);
+    if (step.kind == Kind::keep) {
+      addKept(*step.place);
+      continue;
+    }
     ListItem& item = items.emplace_back();
     item.kind = step.kind;
     if (step.place) item.span = step.place->span;
-    if (step.kind == Kind::keep)
-      item.copy = [this, &text, holder, place = step.place] { keep(text, *place, holder); };
-    else
-      item.make = [this, holder, fresh = step.node](std::string_view indentation) {
-        return node(fresh, indentation, holder);
-      };
+    item.make = [this, holder, fresh = step.node](std::string_view indentation) {
+      return node(fresh, indentation, holder);
+    };
   }
+  std::for_each(other, others.end(), addKept);
   return items;
 }
 
 void NodeWriter::keep(const DocumentText& text, const NodePlace& place, const Holder& holder) {
-  if (!place.node)
+  const bool isWritten = place.node && text_.written.contains(place.node);
+  if (!place.node || (place.isUse && !place.taken && !isWritten))
     text_.copy(text, place.span.end);
-  else if (place.isUse == text_.written.contains(place.node))
+  else if (place.isUse == isWritten)
     place.isUse ? keepUse(text, place) : writeNode(*place.node, nullptr);
   else
-    text_.out += node(place.node, indentationAt(text.text, place.span.begin), holder);
+    text_.out += node(place.node, indentationAt(text, place.span.begin), holder);
   text_.at = place.span.end;
 }
 
@@ -136,7 +176,7 @@ const ListItem* NodeWriter::inLine(std::string_view text, const std::vector<List
 void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
   const std::string_view all = list.text.text;
   const ListItem* const first = inLine(all, items);
-  if (first) list.inner = indentationAt(all, first->span.begin);
+  if (first) list.inner = indentationAt(list.text, first->span.begin);
   const bool hasPlaces =
       std::any_of(items.begin(), items.end(), [](const ListItem& item) { return item.hasPlace(); });
   std::string waiting; // nodes to insert before the next place that is kept, or into an empty list
@@ -146,7 +186,7 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
     case Kind::remove: text_.remove(list.text, item.span); break;
     case Kind::replace:
       text_.copy(list.text, item.span.begin);
-      text_.out += item.make(indentationAt(all, item.span.begin));
+      text_.out += item.make(indentationAt(list.text, item.span.begin));
       text_.at = item.span.end;
       begun = true;
       break;
@@ -172,8 +212,9 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
 // Inserts a node behind the one that has been written: in the next line if nothing but a comment
 // follows in this one.
 void NodeWriter::insertBehind(const ListText& list, const std::string& node) {
-  const size_t end = lineEnd(list.text.text, text_.at);
-  if (endsLine(list.text.text, text_.at) && end <= list.end) {
+  const std::string_view all = list.text.text;
+  const size_t end = endsLine(all, text_.at) ? lineEnd(all, text_.at) : all.size() + 1;
+  if (end <= list.end) {
     text_.copy(list.text, end);
     text_.out += feed_ + list.inner + node;
   } else {

@@ -49,7 +49,7 @@ class NodeWriter {
 
   // Return the text of the file, or of a node. Only one of them is called, once.
   std::string file();
-  std::string node(const Node& node) { return this->node(&node, "", {}); }
+  std::string node(const Node& node) { return finished(this->node(&node, "", {})); }
   // Returns the prototypes that must be lifted, because instances have been written before them:
   // those that were missing, and those before them, which they may use.
   std::vector<const PrototypeText*> missing() const;
@@ -66,24 +66,33 @@ class NodeWriter {
   virtual bool endsLine(std::string_view text, size_t at) const = 0;
   virtual std::string indented(std::string_view text, std::string_view from,
                                std::string_view to) const = 0;
+  // Returns a text that has been written, as it is given out.
+  virtual std::string finished(std::string text) const { return text; }
 
   // Returns the text of a node with this indentation, or a reference if it has been written.
   std::string node(const Node* node, std::string_view indentation, const Holder& holder);
+  // Returns the nodes of an SFNode or MFNode.
+  static MFNode nodesOf(const Node& node, const FieldInfo& field);
   // Returns what a list has of the places that a text has for it.
   std::vector<ListItem> itemsOf(const DocumentText& text, const std::vector<NodePlace>& places,
                                 const MFNode& nodes, const Holder& holder);
   void writeList(ListText list, const std::vector<ListItem>& items);
   // Writes what stays at its place in a field or list.
   void keep(const DocumentText& text, const NodePlace& place, const Holder& holder);
-  // Notes that a node is being written, or has been with all that its text has.
+  // Writes the nodes of a field that is not edited itself, because the world has not taken it as it
+  // stands. All between them stays.
+  void keepNodes(const DocumentText& text, const FieldText& field);
+  // Notes that a node is being written.
   void begin(const Node& node);
-  void markWritten(const Node* node);
   // Returns the routes of the document that have not been written with the text.
   std::vector<const Route*> routesToAdd() const;
   // Returns the last text of each field that a node's text gives.
   static std::unordered_map<std::string_view, const FieldText*> lastOf(const NodeText& place);
   // Returns the value that a field had in the file; null if it has not been edited.
   const Value* editedFrom(const Node& node, const FieldInfo& field) const;
+  // Returns the blanks at the beginning of a line. Cheap for places that follow each other, also in
+  // a text that is a single line.
+  std::string_view indentationAt(const DocumentText& text, size_t at) const;
   // Returns the name of a field or event in the file's standard.
   std::string_view spelled(const Node& node, std::string_view field) const;
   static std::string deeper(std::string_view indentation);
@@ -101,6 +110,9 @@ class NodeWriter {
 
   const std::vector<const PrototypeText*> lifted_;
   const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
+  // The last place whose line was asked for, and where that line begins.
+  mutable const DocumentText* lineText_ = nullptr;
+  mutable size_t lineAt_ = 0, line_ = 0;
 };
 
 // Return the writer of a syntax.
@@ -108,5 +120,7 @@ std::unique_ptr<NodeWriter> makeClassicWriter(const Document& document,
                                               std::vector<const PrototypeText*> lifted);
 std::unique_ptr<NodeWriter> makeElementWriter(const Document& document,
                                               std::vector<const PrototypeText*> lifted);
+std::unique_ptr<NodeWriter> makeJsonWriter(const Document& document,
+                                           std::vector<const PrototypeText*> lifted);
 
 } // namespace xvrml

@@ -12,14 +12,14 @@ TextCopier::TextCopier(const Document& document, std::vector<const PrototypeText
     : document_(document), lifted_(std::move(lifted)), declared_(lifted_.begin(), lifted_.end()) {
   for (const Route& route : document.scope().routes)
     routes_.emplace(placeKey(route.source.line, route.source.column), &route);
+  for (const PrototypeText& one : document.file().layout.prototypes)
+    prototypes_.emplace(placeKey(one.line, one.column), &one);
 }
 
 const PrototypeText* TextCopier::missingFor(const ProtoInstance& instance) const {
   const SourcePosition& place = instance.declaration->source;
-  for (const PrototypeText& one : document_.file().layout.prototypes)
-    if (one.line == place.line && one.column == place.column)
-      return declared_.contains(&one) ? nullptr : &one;
-  return nullptr;
+  const auto found = prototypes_.find(placeKey(place.line, place.column));
+  return found == prototypes_.end() || declared_.contains(found->second) ? nullptr : found->second;
 }
 
 void TextCopier::raw(const DocumentText& text, size_t end) {
@@ -79,7 +79,8 @@ void TextCopier::remove(const DocumentText& text, const TextSpan& span) {
   const std::string_view all = text.text;
   size_t begin = span.begin, end = span.end;
   while (end < all.size() && (isBlank(all[end]) || all[end] == ',')) ++end;
-  if (startsLine(all, begin) && end == lineEnd(all, end) && lineBegin(all, begin) >= at) {
+  const bool endsLine = end == all.size() || all[end] == '\n' || all[end] == '\r';
+  if (startsLine(all, begin) && endsLine && lineBegin(all, begin) >= at) {
     copy(text, lineBegin(all, begin));
     at = nextLine(all, end);
     return;

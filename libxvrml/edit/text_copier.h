@@ -40,7 +40,9 @@ class TextCopier {
   void copyRoute(const DocumentText& text, const RouteText& place);
 
   const Document& document_;
-  std::unordered_map<uint64_t, const Route*> routes_; // by their places in the file
+  // By their places in the file.
+  std::unordered_map<uint64_t, const Route*> routes_;
+  std::unordered_map<uint64_t, const PrototypeText*> prototypes_;
   const std::vector<const PrototypeText*> lifted_;
   std::unordered_set<const PrototypeText*> declared_; // those that have been copied or lifted
 };

@@ -1,6 +1,7 @@
 // json_index.cpp: makes the index from the events of nlohmann's parser, which is not recursive.
 #include "parse/json_index.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <iterator>
 #include <utility>
@@ -76,7 +77,7 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
 
   void read() {
     Position end{end_, end_};
-    nlohmann::json::sax_parse(SharedPosition(position_), SharedPosition(end), this);
+    index_.whole_ = nlohmann::json::sax_parse(SharedPosition(position_), SharedPosition(end), this);
     while (!open_.empty()) { // after an error
       index_.values_[open_.back()].complete = false;
       leave();
@@ -191,6 +192,12 @@ class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
 
 JsonIndex::JsonIndex(Locator& locator, const BudgetPtr& budget) : share_(budget) {
   Reader(locator, *this).read();
+}
+
+const JsonIndex::Value& JsonIndex::from(const char* at) const {
+  return *std::lower_bound(
+      values_.begin(), values_.end(), at,
+      [](const Value& value, const char* place) { return value.text.data() < place; });
 }
 
 std::string JsonIndex::decoded(const Value& string) const {

@@ -30,6 +30,10 @@ class JsonIndex {
   template <class Function> void eachWithin(size_t outer, Function function) const {
     for (size_t i = outer + 1; i < values_[outer].next; i = values_[i].next) function(i);
   }
+  // Returns the first value that begins at this place of the text or behind it. There must be one.
+  const Value& from(const char* at) const;
+  // Returns whether the text was read to its end.
+  bool isWhole() const { return whole_; }
   // Returns the characters of a string value.
   std::string decoded(const Value& string) const;
   // Returns the strings of an array; other elements are left out.
@@ -37,8 +41,9 @@ class JsonIndex {
 
  private:
   class Reader;
-  std::vector<Value> values_;
+  std::vector<Value> values_; // in the order of their beginnings
   Share share_;
+  bool whole_ = false;
 };
 
 } // namespace xvrml

@@ -25,7 +25,7 @@ void LayoutRecorder::closeNode(bool good) {
     closed.text.node = NodeRef(const_cast<Node*>(closed.node));
     endNode(closed.text);
     add({closed.text.whole, closed.node, false});
-    layout_.nodes.emplace(closed.node, std::move(closed.text));
+    layout_.nodes.push_back(std::move(closed.text));
   }
   builder_.closeNode(good);
 }
@@ -35,17 +35,21 @@ void LayoutRecorder::beginField(FieldText field) {
   nodes_.back().field = std::move(field);
 }
 
-// A field of child elements that is opened again goes on.
+// A field of child elements, or of the nodes of one list of JSON, that is opened again goes on.
 void LayoutRecorder::finishField(bool good) {
   OpenNode& open = nodes_.back();
   if (!std::exchange(open.inField, false)) return;
   endField(open.field, good);
   std::vector<FieldText>& fields = open.text.fields;
-  const auto same = open.field.form != FieldForm::children
-                        ? fields.end()
-                        : std::find_if(fields.begin(), fields.end(), [&](const FieldText& one) {
-                            return one.form == FieldForm::children && one.name == open.field.name;
-                          });
+  const auto goesOn = [&](const FieldText& one) {
+    return one.form == open.field.form && one.name == open.field.name &&
+           one.whole.begin == open.field.whole.begin;
+  };
+  auto same = fields.end();
+  if (open.field.form == FieldForm::children)
+    same = std::find_if(fields.begin(), fields.end(), goesOn);
+  else if (!fields.empty() && goesOn(fields.back()))
+    --same;
   if (same != fields.end())
     same->nodes.insert(same->nodes.end(), open.field.nodes.begin(), open.field.nodes.end());
   else

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "parse/builder.h"
-#include "parse/json_index.h"
+#include "parse/json_recorder.h"
 #include "parse/suffix.h"
 #include "parse/x3d_elements.h"
 
@@ -35,8 +36,9 @@ bool comesFirst(std::string_view key) {
 
 class Walk {
  public:
-  Walk(Locator& locator, const JsonIndex& index, X3dElements& elements)
-      : locator_(locator), index_(index), elements_(elements) {}
+  // recorder: is told of each element; null: nothing is.
+  Walk(Locator& locator, const JsonIndex& index, X3dElements& elements, JsonRecorder* recorder)
+      : locator_(locator), index_(index), elements_(elements), recorder_(recorder) {}
 
   void walk() {
     if (index_.values().empty()) return;
@@ -44,21 +46,24 @@ class Walk {
       locator_.error(index_.values()[0].text.data(), "expected an object, {\"X3D\": ...}");
       return;
     }
-    index_.eachWithin(0, [&](size_t i) { addElements(i); });
+    index_.eachWithin(0, [&](size_t i) { addElements(i, 0); });
+    std::reverse(tasks_.begin(), tasks_.end());
     while (!tasks_.empty()) {
       const Task task = tasks_.back();
       tasks_.pop_back();
-      if (task.closes)
-        elements_.close();
-      else
+      if (!task.closes) {
         open(task);
+        continue;
+      }
+      elements_.close();
+      if (recorder_) recorder_->leave();
     }
   }
 
  private:
   struct Task {
     std::string_view element; // its name
-    size_t value = 0;         // its object
+    JsonRecorder::Element place;
     std::string_view container;
     bool closes = false; // closes an element instead of opening one
   };
@@ -71,7 +76,7 @@ class Walk {
     std::vector<Attribute> attributes;
     std::string source;
     const char* sourceAt = nullptr;
-    index_.eachWithin(task.value, [&](size_t i) {
+    index_.eachWithin(task.place.object, [&](size_t i) {
       const Value& member = at(i);
       if (member.key.starts_with('@')) addAttribute(member, attributes);
       if (!member.key.starts_with("#source")) return;
@@ -81,31 +86,33 @@ class Walk {
     if (!task.container.empty() && !findAttribute(attributes, "containerField"))
       attributes.push_back(
           {{"containerField", task.container.data()}, task.container, task.container.data()});
+    if (recorder_) recorder_->enter(task.place);
     elements_.open({task.element, task.element.data()}, attributes);
     if (sourceAt) elements_.characters(source, sourceAt);
-    tasks_.push_back({{}, 0, {}, true});
+    tasks_.push_back({{}, {}, {}, true});
     const size_t first = tasks_.size();
     for (const bool early : {true, false})
-      index_.eachWithin(task.value, [&](size_t i) {
-        if (comesFirst(at(i).key) == early) addElements(i);
+      index_.eachWithin(task.place.object, [&](size_t i) {
+        if (comesFirst(at(i).key) == early) addElements(i, JsonRecorder::none);
       });
     std::reverse(tasks_.begin() + static_cast<ptrdiff_t>(first), tasks_.end());
   }
 
   // Plans the elements that a member of an object stands for: "-children" holds objects with one
   // member each, whose name is the element's; other members are elements, or lists of them.
-  void addElements(size_t index) {
+  // holder: the object of the member, if it may be that of a single node.
+  void addElements(size_t index, size_t holder) {
     const Value& member = at(index);
     if (member.key.starts_with('@') || member.key.starts_with('#')) return;
     const bool nodes = member.key.starts_with('-');
     const auto add = [&](size_t object) {
       if (at(object).kind != Value::Kind::object) return;
-      if (!nodes) return tasks_.push_back({member.key, object, {}});
+      if (!nodes) return tasks_.push_back({member.key, {object, holder, JsonRecorder::none}, {}});
       index_.eachWithin(object, [&](size_t i) {
         const Value& node = at(i);
         if (node.key.starts_with('#')) return;
         if (node.kind == Value::Kind::object)
-          tasks_.push_back({node.key, i, member.key.substr(1)});
+          tasks_.push_back({node.key, {i, object, index}, member.key.substr(1)});
         else
           locator_.error(node.text.data(), fmt::format("expected an object of type {}",
                                                        describe(Name{node.key, nullptr})));
@@ -156,6 +163,7 @@ class Walk {
   Locator& locator_;
   const JsonIndex& index_;
   X3dElements& elements_;
+  JsonRecorder* const recorder_;
   std::vector<Task> tasks_;
   std::deque<std::string> decoded_; // values of the element that is opened
 };
@@ -174,11 +182,17 @@ bool isX3dJson(std::string_view text, std::string_view file) {
 void readX3dJson(const WorldFile& file) {
   Locator locator(file.bytes, file.name, file.state.diagnostics);
   Builder builder(locator, file.state, file.content);
-  X3dElements elements(locator, file.state.options.limits, builder, file.budget.get());
   const JsonIndex index(locator, file.budget);
-  Walk(locator, index, elements).walk();
+  TextLayout* const layout = file.state.layout;
+  std::optional<JsonRecorder> recorder;
+  if (layout) recorder.emplace(builder, locator, *layout, index);
+  ParseSink& sink = recorder ? static_cast<ParseSink&>(*recorder) : builder;
+  X3dElements elements(locator, file.state.options.limits, sink, file.budget.get(),
+                       file.state.anyRoots);
+  Walk(locator, index, elements, recorder ? &*recorder : nullptr).walk();
   elements.finish();
   builder.finish();
+  if (recorder) recorder->finish(file.state.anyRoots);
 }
 
 } // namespace xvrml

@@ -103,7 +103,7 @@ void XmlRecorder::finish() {
     for (NodePlace& place : places) complete(place.span);
   };
   completeAll(layout_.roots);
-  for (auto& [node, text] : layout_.nodes) {
+  for (NodeText& text : layout_.nodes) {
     complete(text.whole);
     for (FieldText& field : text.fields) {
       completeAll(field.nodes);

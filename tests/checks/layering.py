@@ -172,7 +172,7 @@ TABLE = [
          "a world that is shown to somebody: input, time, the pace of its pictures",
          "xvrml-h picture vv-process vv-options vv-report vv-start vv-input vv-edit"),
     part("vv-run", "apps/vv/run/", "pictures and facts for files, without a window",
-         "xvrml-h picture vv-process vv-options vv-report vv-start vv-session common"),
+         "xvrml-h picture vv-process vv-options vv-report vv-start vv-edit vv-session common"),
     part("vv-control", "apps/vv/control/",
          "the control channel: commands of other programs, as lines of JSON over sockets",
          "xvrml-h picture vv-process vv-options vv-report vv-edit vv-json vv-session vv-run common system"),

@@ -49,7 +49,8 @@ def test_steps_are_done_undone_and_saved(table, file):
         "changed": False,
         "changed_on_disk": False,
         "undo": None,
-        "redo": None
+        "redo": None,
+        "recoverable": None
     }
     with table.edit("Dim") as step:
         step.set("LAMP", "intensity", 0.5)

@@ -45,16 +45,9 @@ def saved(w, vv, change):
 
 
 def stay_and_save(w, vv, before):
-    """Answers the question with Escape and saves. The question comes once all edits are done, so the
-    keys may be too early and are tried again."""
-
-    def tried():
-        w.key("Escape")
-        w.key("ctrl+s")
-        return text(vv) != before
-
-    w.wait(tried, "the file")
-    return text(vv)
+    """Answers the question with Escape and saves. The keys wait for the question."""
+    w.key("Escape", "ctrl+s")
+    return saved(w, vv, lambda t: t != before)
 
 
 def test_a_box_is_selected_moved_undone_and_saved(editor, vv):
@@ -103,9 +96,8 @@ def test_a_window_with_unsaved_edits_asks(editor, vv):
     w = editor
     w.click(-0.25, 0)
     w.key("Delete")
-    w.key("e")  # the panels are closed, the edit stays
-    w.key("q")
-    w.key("Delete")  # not while a question waits
+    # The panels are closed, the edit stays. Nothing is removed while a question waits.
+    w.key("e", "q", "Delete")
     now = stay_and_save(w, vv, WORLD)
     assert "diffuseColor 1 0 0" not in now and "TouchSensor" in now
 

@@ -226,7 +226,7 @@ def test_a_change_on_disk_is_asked_about(serve, vv):
     assert text_of(vv) == WORLD.replace("diffuseColor 1 0 0", "diffuseColor 0 1 0")
 
 
-def test_unsaved_edits_are_said_at_the_end_and_keep_the_world(serve, vv):
+def test_unsaved_edits_are_kept_at_the_end_and_keep_the_world(serve, vv):
     server = serve(WORLD, "--edit", "--spp", 1)
     page = server.join_editor()
     page.still()
@@ -238,8 +238,33 @@ def test_unsaved_edits_are_said_at_the_end_and_keep_the_world(serve, vv):
     page.edit("drag", node=newest(page, "sheet")["node"], field="diffuseColor", value=[0, 0, 1])
     page.still(lambda p: blue(*p.at(0, 0)))
     assert server.stop() == 0
-    wait_for(lambda: any("have not been saved" in e for e in server.errors), lambda: server.errors)
+    wait_for(lambda: any("unsaved edits" in e for e in server.errors), lambda: server.errors)
     assert text_of(vv) == WORLD
+
+    page = serve("world.wrl", "--edit", "--spp", 1).join_editor()
+    until(page, "history", lambda t: t["left"] is not None)
+    page.still(lambda p: red(*p.at(0, 0)))
+    page.edit("recover", use=True)
+    page.still(lambda p: blue(*p.at(0, 0)))
+    history(page, unsaved=True, left=None, undo="")
+    page.edit("revert")
+    page.still(lambda p: red(*p.at(0, 0)))
+    history(page, unsaved=False, left=None)
+    assert text_of(vv) == WORLD
+    assert list(vv.folder.glob(".*.vv-edits*")) == []
+
+
+def test_without_the_option_nothing_is_said_of_what_was_left(serve, vv):
+    server = serve(WORLD, "--edit", "--spp", 1)
+    page = server.join_editor()
+    drag(page, paint(page), "diffuseColor", [0, 1, 0])
+    history(page, unsaved=True)
+    server.stop()
+    kept = list(vv.folder.glob(".*.vv-edits*"))
+    plain = serve("world.wrl", "--spp", 1)
+    plain.join(*SIZE).still(lambda p: red(*p.at(0, 0)))
+    assert plain.stop() == 0 and plain.errors == []
+    assert len(kept) == 1 and kept[0].exists()
 
 
 def test_probes_measure_the_light(serve):

@@ -119,9 +119,33 @@ TEST_F(ProbesOfAWall, TheTableHasALineForEachProbe) {
   probes.keep();
   read(grey(15, 0));
   EXPECT_EQ(probes.csv(), "probe,x,y,z,luminance,half_width,trusted,before,before_half_width,"
-                          "difference,difference_half_width,significant\n"
-                          "1,0,0,1,15,0,true,10,1,5,1,true\n"
-                          "2,0,50,1,,,,,,,,\n");
+                          "difference,difference_half_width,significant,left,top,width,height,"
+                          "least,most,uniformity\n"
+                          "1,0,0,1,15,0,true,10,1,5,1,true,,,,,,,\n"
+                          "2,0,50,1,,,,,,,,,,,,,,,\n");
+}
+
+TEST_F(ProbesOfAWall, ARectangleIsReadInItsOwnView) {
+  probes.add(regionBetween(-.5, -.5, .5, .5), view);
+  Picture picture = grey(10, 0);
+  std::fill_n(&picture.planes[RT_RGBA][4 * (3 * 8 + 3)], 3, 2.f); // one of 4 x 4 pixels
+  read(picture);
+  ASSERT_EQ(probes.all()[0].state, Probe::State::read);
+  EXPECT_FLOAT_EQ(probes.all()[0].now.luminance, 9.5f);
+  probes.keep();
+  read(grey(10, 0));
+  ASSERT_TRUE(probes.differences()[0]);
+  EXPECT_NEAR(probes.differences()[0]->value, .5, 1e-5);
+  EXPECT_TRUE(probes.differences()[0]->isSignificant);
+  EXPECT_NE(probes.csv().find("\n1,,,,10,0,true,9.5,0,0.5,0,true,2,2,4,4,10,10,1\n"),
+            std::string::npos)
+      << probes.csv();
+  EXPECT_NE(probeText(probes.all()[0], probes.differences()[0]).find("uniformity 1"),
+            std::string::npos);
+  view.camera.matrix[12] = .1;
+  read(grey(10, 0));
+  EXPECT_EQ(probes.all()[0].state, Probe::State::otherView);
+  EXPECT_FALSE(probes.differences()[0]);
 }
 
 } // namespace

@@ -161,6 +161,8 @@ TEST(ServerMessage, ReadsEveryEdit) {
   EXPECT_FALSE(edited<edit::Undo>(R"("command":"undo")").again);
   EXPECT_TRUE(edited<edit::Undo>(R"("command":"redo")").again);
   EXPECT_TRUE(edited<edit::Save>(R"("command":"save","overwrite":true)").overwrite);
+  edited<edit::Revert>(R"("command":"revert")");
+  EXPECT_FALSE(edited<edit::Recover>(R"("command":"recover","use":false)").use);
   EXPECT_EQ(edited<edit::PutProbe>(R"("command":"probe","x":0.5,"y":0)").place.x, 0.5);
   edited<edit::KeepProbes>(R"("command":"keep_probes")");
   edited<edit::ClearProbes>(R"("command":"clear_probes")");

@@ -20,6 +20,10 @@ FieldName endOf(const std::string& where, const Json& json) {
   return {nodeOf(where + "[0]", json[0]), textOf(where + "[1]", json[1])};
 }
 
+bool readSwitch(Members& m, const char* name, bool otherwise) {
+  return m.has(name) ? switchOf(m.at(name), m.need(name)) : otherwise;
+}
+
 Action readSet(Members& m) {
   Set set;
   if (!m.has("values")) {
@@ -87,10 +91,20 @@ Pick readPick(Members& m) {
   return {read("x"), read("y")};
 }
 
+Action readProbe(Members& m) {
+  Probe probe{readPick(m), readSamples(m)};
+  if (!m.has("quantity")) return probe;
+  const std::string quantity = m.text("quantity");
+  probe.illuminance = quantity == "illuminance";
+  if (!probe.illuminance && quantity != "luminance")
+    refuse(m.at("quantity"), "\"luminance\" or \"illuminance\"", quantity);
+  return probe;
+}
+
 Action readSave(Members& m) {
   Save save;
   if (m.has("path")) save.path = pathOf(m.at("path"), m.need("path"));
-  if (m.has("overwrite")) save.overwrite = switchOf(m.at("overwrite"), m.need("overwrite"));
+  save.overwrite = readSwitch(m, "overwrite", false);
   return save;
 }
 
@@ -159,10 +173,7 @@ constexpr Row table[] = {
     {"undo", [](Members&) -> Action { return Undo{false}; }},
     {"redo", [](Members&) -> Action { return Undo{true}; }},
     {"save", readSave},
-    {"edits",
-     [](Members& m) -> Action {
-       return ListEdits{m.has("text") && switchOf(m.at("text"), m.need("text"))};
-     }},
+    {"edits", [](Members& m) -> Action { return ListEdits{readSwitch(m, "text", false)}; }},
     {"roots", [](Members&) -> Action { return ListRoots{}; }},
     {"parents",
      [](Members& m) -> Action { return ListParents{nodeOf(m.at("node"), m.need("node"))}; }},
@@ -172,11 +183,10 @@ constexpr Row table[] = {
      }},
     {"selection", [](Members&) -> Action { return ListSelection{}; }},
     {"pick", [](Members& m) -> Action { return readPick(m); }},
-    {"probe",
-     [](Members& m) -> Action {
-       return Probe{readPick(m), readSamples(m)};
-     }},
-    {"quit", [](Members&) -> Action { return Quit{}; }},
+    {"probe", readProbe},
+    {"measure", [](Members& m) -> Action { return Measure{readSamples(m)}; }},
+    {"recover", [](Members& m) -> Action { return Recover{readSwitch(m, "use", true)}; }},
+    {"quit", [](Members& m) -> Action { return Quit{readSwitch(m, "discard", false)}; }},
 };
 
 std::vector<std::string> commandNames() {

@@ -99,13 +99,22 @@ struct Pick {
 struct Probe {
   Pick place;
   std::optional<int> samples;
+  bool illuminance = false; // that of the surface there; otherwise its luminance
 };
-struct Quit {};
+struct Measure {
+  std::optional<int> samples;
+};
+struct Recover {
+  bool use = true; // false: they are thrown away
+};
+struct Quit {
+  bool discard = false; // edits that are not saved
+};
 
 using Action = std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute,
                             Describe, ListNames, ListViewpoints, Bind, Load, Replace, Render, Time,
                             Quit, PressKey, edits::Step, Undo, Save, ListEdits, ListRoots,
-                            ListParents, Select, ListSelection, Pick, Probe>;
+                            ListParents, Select, ListSelection, Pick, Probe, Measure, Recover>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

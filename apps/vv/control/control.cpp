@@ -11,14 +11,10 @@
 
 #include "control/client.h"
 #include "control/listener.h"
-#include "control/pictures_sent.h"
-#include "control/probing.h"
+#include "control/rendering.h"
 #include "control/world_commands.h"
-#include "libpicture/files/atomic_file.h"
 #include "process/messages.h"
 #include "report/describe.h"
-#include "run/outputs.h"
-#include "session/saving.h"
 
 namespace vv::control {
 
@@ -39,7 +35,6 @@ template <class... Actions> bool isOneOf(const Command& command) {
   return (std::holds_alternative<Actions>(command.action) || ...);
 }
 bool needsWorld(const Command& command) { return !isOneOf<Hello, Load, Quit>(command); }
-bool makesPicture(const Command& command) { return isOneOf<Render, Probe>(command); }
 bool picks(const Command& command) { return isOneOf<Pick, Probe>(command); }
 
 // A camera shader makes the rays of the picture, which no pick follows.
@@ -47,18 +42,6 @@ void refuseCameraShader(const Options& options, Session& session) {
   if (options.view.shader || session.pilot().camera().shader)
     throw CommandError("failed", "a camera shader makes the rays of the picture: nothing can be "
                                  "picked in it");
-}
-
-// Returns the settings of a picture that a probe reads: those of the picture that is shown, with
-// the samples of a finished one unless the probe says how many.
-picture::RenderSettings settingsOf(const Probe& probe, const Options& options, Session& session) {
-  picture::RenderSettings settings = options.render;
-  if (!settings.linear)
-    throw CommandError("failed", "--colour vrml97 makes colours for screens, not light");
-  settings.width = std::max(session.pictures().width(), 1);
-  settings.height = std::max(session.pictures().height(), 1);
-  settings.samples = probe.samples.value_or(samplesInWindow(options));
-  return settings;
 }
 
 } // namespace
@@ -72,18 +55,16 @@ struct Control::Impl {
 
   Session* session = nullptr;
   uint64_t generation = 0; // the browser's generation in the session
-  // The client whose picture is rendered or encoded; 0: none. Others wait for their turn.
+  // The client that something is rendered for; 0: none. Others wait for their turn.
   ClientId renderer = 0;
-  std::optional<Probing> probing; // that picture is read at one pixel
-  uint32_t channels = 0;          // the channels of its picture
+  Rendering rendering;
   // A world is being read. Commands that load others wait, so that only one is read at a time.
   bool loading = false;
-  std::optional<Encoding> encoding;
 
   std::unique_ptr<Listener> listener; // destroyed first: its thread uses the mailbox
 
   Impl(const Options& options, Host host)
-      : options(options), host(std::move(host)),
+      : options(options), host(std::move(host)), rendering(options),
         listener(listenAt(Address::parse(options.control), keysOf(options), mailbox)) {}
 
   // --- Letters ---
@@ -120,10 +101,9 @@ struct Control::Impl {
       if (client.waiting.empty() || client.busy != Client::Busy::no) continue;
       const Line& line = client.waiting.front().letter.line;
       if (loading && line.command &&
-          (std::holds_alternative<Load>(line.command->action) ||
-           (!session && needsWorld(*line.command))))
+          (isOneOf<Load, Recover>(*line.command) || (!session && needsWorld(*line.command))))
         continue;
-      if (line.command && makesPicture(*line.command) && renderer != 0) continue;
+      if (line.command && Rendering::makes(*line.command) && !rendering.isFree(session)) continue;
       if (line.command && picks(*line.command) && session && !session->viewers().own().isPlaced())
         continue;
       if (!first || client.waiting.front().order < first->waiting.front().order) first = &client;
@@ -197,7 +177,8 @@ struct Control::Impl {
     if (picks(command)) refuseCameraShader(options, *session);
     if (std::holds_alternative<Hello>(command.action)) {
       answer(letter, hello());
-    } else if (std::holds_alternative<Quit>(command.action)) {
+    } else if (const auto* quit = std::get_if<Quit>(&command.action)) {
+      if (quit->discard && session) session->editor().journal().throwAway();
       answer(letter, "null");
       host.quit();
     } else if (const auto* load = std::get_if<Load>(&command.action)) {
@@ -205,15 +186,15 @@ struct Control::Impl {
       if (std::find(load->urls.begin(), load->urls.end(), "-") != load->urls.end())
         throw CommandError("world", "load: \"-\" is standard input, which belongs to the one who "
                                     "started vv; the path of a file was expected");
-      host.open(load->urls);
-      loading = true;
-      client.busy = Client::Busy::loading;
-      client.underWay = std::move(letter);
-    } else if (makesPicture(command)) {
-      if (const auto* render = std::get_if<Render>(&command.action))
-        beginPicture(*render);
-      else
-        beginProbe(client, std::get<Probe>(command.action));
+      open(client, letter, {load->urls, "", {}});
+    } else if (const auto* recover = std::get_if<Recover>(&command.action);
+               recover && recover->use) {
+      open(client, letter,
+           {{session->browser().world().path}, "", {}, session->editor().journal().take()});
+    } else if (Rendering::makes(command)) {
+      rendering.begin(command, *session, [&](const Pick& place) {
+        return WorldCommands(*session, client, mailbox).pick(place);
+      });
       renderer = client.id;
       client.busy = Client::Busy::rendering;
       client.underWay = std::move(letter);
@@ -223,64 +204,26 @@ struct Control::Impl {
     }
   }
 
+  // Loads a world for a client, who waits for it.
+  void open(Client& client, Letter& letter, LoadRequest request) {
+    host.open(std::move(request));
+    loading = true;
+    client.busy = Client::Busy::loading;
+    client.underWay = std::move(letter);
+  }
+
   std::string hello() const {
     return fmt::format(R"({{"program":"vv","version":{},"protocol":{},"world":{}}})",
                        jsonText(version()), protocol,
                        session ? jsonText(session->browser().world().path) : "null");
   }
 
-  // --- Pictures ---
-
-  void beginPicture(const Render& render) {
-    static_cast<void>(formatOf(render));
-    channels = channelsOf(render, options.render.channels);
-    if (const std::string why = picture::whyNotRegular(render.file); !why.empty())
-      throw CommandError("file", "render: " + why);
-    if (!render.file.empty()) protectFilesOf(session->browser().world(), render.file);
-    Still still;
-    still.width = render.width.value_or(options.render.width);
-    still.height = render.height.value_or(options.render.height);
-    still.samples = render.samples.value_or(options.render.samples);
-    still.channels = channels;
-    session->pictures().requestStill(still);
-  }
-
-  void beginProbe(Client& client, const Probe& probe) {
-    Probing next = probingAt(probe, settingsOf(probe, options, *session));
-    next.hit = WorldCommands(*session, client, mailbox).pick(probe.place);
-    session->pictures().requestStill(next.still);
-    probing = std::move(next);
-  }
-
-  void followPicture() {
+  void followRendering() {
     if (renderer == 0) return;
-    Client& client = clients.at(renderer); // busy clients stay
-    if (encoding) {
-      if (!encoding->hasEnded()) return;
-      const Encoded encoded = encoding->take();
-      encoding.reset();
-      renderer = 0;
-      return finish(client, encoded.result, "render", encoded.failure);
-    }
-    std::optional<StillAnswer> still = session ? session->pictures().takeStill() : std::nullopt;
-    if (!still) return;
-    const std::optional<Probing> probed = std::exchange(probing, {});
-    if (!still->failure.empty()) {
-      renderer = 0;
-      return finish(client, "", "render", still->failure);
-    }
-    try {
-      if (probed) {
-        const std::string result = resultOf(*probed, still->picture);
-        renderer = 0;
-        return finish(client, result, "", "");
-      }
-      encoding.emplace(std::move(still->picture), channels,
-                       std::get<Render>(client.underWay.line.command->action));
-    } catch (const std::exception& error) {
-      renderer = 0;
-      finish(client, "", "limit", error.what());
-    }
+    const std::optional<Rendering::Outcome> outcome = rendering.follow(session);
+    if (!outcome) return;
+    Client& client = clients.at(std::exchange(renderer, 0)); // busy clients stay
+    finish(client, outcome->result, outcome->code, outcome->failure);
   }
 
   // --- Worlds ---
@@ -313,10 +256,11 @@ struct Control::Impl {
   }
 
   void detach(const char* why) {
-    if (renderer != 0 && !encoding)
+    if (renderer != 0 && !rendering.isEncoding()) {
+      rendering.giveUp(session);
       finish(clients.at(std::exchange(renderer, 0)), "", "render",
              fmt::format("{} before the picture was finished", why));
-    probing.reset();
+    }
     for (auto& [id, client] : clients) {
       if (session) WorldCommands::unsubscribeAll(session->browser(), client);
       client.numbers.releaseAll();
@@ -327,8 +271,8 @@ struct Control::Impl {
   // Answers what is under way. A picture that is being written gets a moment.
   void end() {
     constexpr double patience = .5; // seconds
-    if (encoding && encoding->hasEnded(patience)) followPicture();
-    encoding.reset();
+    if (rendering.waitForFile(patience)) followRendering();
+    rendering.giveUp(session);
     detach("vv ended");
   }
 
@@ -337,7 +281,7 @@ struct Control::Impl {
     if (current && !current->isFree()) return false;
     attach(current);
     noticeOtherWorld();
-    followPicture();
+    followRendering();
     loading = isLoading;
     const Clock::time_point end = Clock::now() + turn;
     while (Client* client = next()) {
@@ -345,7 +289,7 @@ struct Control::Impl {
       if (Clock::now() > end) break;
     }
     bury();
-    return session && session->pictures().stillWaits();
+    return session && (session->pictures().stillWaits() || session->measuring().isWaiting());
   }
 };
 

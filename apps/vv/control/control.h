@@ -10,12 +10,13 @@
 
 #include "options/options.h"
 #include "session/session.h"
+#include "session/world_loader.h"
 
 namespace vv::control {
 
 // Lists what a client may ask of the program.
 struct Host {
-  std::function<void(const std::vector<std::string>& urls)> open; // loads another world
+  std::function<void(LoadRequest request)> open; // loads another world
   std::function<void()> quit;
 };
 

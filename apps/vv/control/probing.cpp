@@ -50,4 +50,10 @@ std::string resultOf(const Probing& probing, const picture::Picture& picture) {
       triple(read.halfWidth), read.samples, read.trusted, probing.hit);
 }
 
+std::string resultOf(const picture::Measurement& read, const std::string& hit) {
+  return fmt::format(R"({{"illuminance":{},"half_width":{},"samples":{},"trusted":{},"hit":{}}})",
+                     numberText(read.value[0]), numberText(read.halfWidth[0]), read.samples[0],
+                     read.trusted[0] != 0, hit);
+}
+
 } // namespace vv::control

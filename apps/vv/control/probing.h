@@ -5,7 +5,7 @@
 #include <string>
 
 #include "control/command.h"
-#include "libpicture/renderer.h"
+#include "libpicture/measure.h"
 #include "session/still.h"
 
 namespace vv::control {
@@ -23,5 +23,7 @@ Probing probingAt(const Probe& probe, const picture::RenderSettings& settings);
 
 // Returns the result as JSON.
 std::string resultOf(const Probing& probing, const picture::Picture& picture);
+// Returns the result of a probe of illuminance, a sensor with one point. hit: what is seen there.
+std::string resultOf(const picture::Measurement& read, const std::string& hit);
 
 } // namespace vv::control

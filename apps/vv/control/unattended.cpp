@@ -28,11 +28,9 @@ class Unattended {
  public:
   explicit Unattended(const Options& options)
       : options_(options), problems_(options_),
-        control_(
-            std::make_unique<Control>(options_, Host{[this](const std::vector<std::string>& urls) {
-                                                       open({urls, "", {}});
-                                                     },
-                                                     [this] { ended_ = true; }})) {
+        control_(std::make_unique<Control>(
+            options_, Host{[this](LoadRequest request) { open(std::move(request)); },
+                           [this] { ended_ = true; }})) {
     options_.view.shader = readCameraShader(options_);
   }
 
@@ -76,11 +74,11 @@ class Unattended {
     if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
-    const auto [wrong, code] =
-        useWorld(std::move(answer),
-                 [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
-                   begin(std::move(world), fragment);
-                 });
+    const std::shared_ptr<LeftEdits> left = answer.left;
+    const auto [wrong, code] = useWorld(
+        std::move(answer), [&](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+          begin(std::move(world), fragment, left.get());
+        });
     if (wrong.empty()) return;
     sayError(wrong);
     control_->loadFailed(wrong);
@@ -89,7 +87,7 @@ class Unattended {
     ended_ = true;
   }
 
-  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, LeftEdits* left) {
     Session::Callbacks calls;
     calls.onAction = [](const InputEvent&, Action) {}; // nobody presses keys
     calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
@@ -99,10 +97,13 @@ class Unattended {
         std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), nullptr);
     if (options_.strict && Problems::any(fresh->browser().world()))
       throw Failure{exitProblems, "the world is not used, because of --strict"};
+    if (left) fresh->editor().journal().adopt(*left);
     fresh->pictures().setWatched(false);
     fresh->begin(options_.render.width, options_.render.height, {}, fragment);
     control_->detach();
+    keepEdits(session_.get());
     session_ = std::move(fresh); // ends the previous session
+    session_->editor().journal().look();
     hadWorld_ = true;
   }
 
@@ -115,6 +116,7 @@ class Unattended {
   }
 
   int end() {
+    keepEdits(session_.get());
     const int code = interrupted() ? exitInterrupted : failed_;
     control_.reset(); // sends the last answers, before the process may end
     stopOrExit(session_.get(), code, Control::isWriting() ? Others::work : Others::rest);

@@ -17,7 +17,7 @@ class WorldCommands {
       : session_(session), browser_(session.browser()), client_(client), mailbox_(mailbox) {}
 
   // Does a command and returns its result as JSON. Throws CommandError, and what the library
-  // throws. Hello, Load, Render, Probe and Quit are not commands of the world.
+  // throws. Hello, Load, Render, Probe, Measure and Quit are not commands of the world.
   std::string perform(const Command& command);
   // Returns what is seen at a place of the picture, or "null".
   std::string pick(const Pick& pick);
@@ -45,6 +45,7 @@ class WorldCommands {
   std::string undo(const Undo& undo);
   std::string save(const Save& save);
   std::string listEdits(const ListEdits& list);
+  std::string throwLeftAway();
   std::string listRoots();
   std::string listParents(const ListParents& list);
   std::string select(const Select& select);

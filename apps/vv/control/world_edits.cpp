@@ -53,12 +53,20 @@ std::string WorldCommands::save(const Save& save) {
 std::string WorldCommands::listEdits(const ListEdits& list) {
   WorldEditor& world = session_.editor();
   Editor& editor = world.editor();
-  std::string all =
-      fmt::format(R"({{"read_only":{},"changed":{},"changed_on_disk":{},"undo":{},"redo":{})",
-                  nameOrNull(editor.whyReadOnly()), editor.isChanged(), editor.isChangedOnDisk(),
-                  nameOrNull(editor.undoName()), nameOrNull(editor.redoName()));
+  const std::optional<FoundJournal>& left = world.journal().left();
+  std::string all = fmt::format(
+      R"({{"read_only":{},"changed":{},"changed_on_disk":{},"undo":{},"redo":{},"recoverable":{})",
+      nameOrNull(editor.whyReadOnly()), editor.isChanged(), editor.isChangedOnDisk(),
+      nameOrNull(editor.undoName()), nameOrNull(editor.redoName()),
+      left ? fmt::format(R"({{"file":{},"time":{}}})", jsonText(left->path), left->written)
+           : "null");
   if (list.withText) all += ",\"text\":" + jsonText(editor.text());
   return all + "}";
+}
+
+std::string WorldCommands::throwLeftAway() {
+  session_.editor().journal().throwLeftAway();
+  return "null";
 }
 
 std::string WorldCommands::listParents(const ListParents& list) {

@@ -69,19 +69,20 @@ bool isXml(WorldEditor& editor) {
 
 } // namespace
 
+NodeRef nodeOf(WorldEditor& editor, PickHit hit, bool group) {
+  // From the Shape upwards: what stands in the file, and is a group if one is wanted.
+  if (group) hit.path.pop_back();
+  const auto step = std::find_if(hit.path.rbegin(), hit.path.rend(), [&](const auto& one) {
+    return !editor.editor().placesOf(*one.node).empty();
+  });
+  return step == hit.path.rend() ? NodeRef() : step->node;
+}
+
 void selectAt(WorldEditor& editor, const EditView& view, double x, double y, bool group, bool add) {
   const CameraRay ray = rayThrough(view.camera, view.aspect, x, y);
   PickHit hit;
-  NodeRef found;
-  if (editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit)) {
-    // From the Shape upwards: what stands in the file, and is a group if one is wanted.
-    if (group) hit.path.pop_back();
-    const auto step = std::find_if(hit.path.rbegin(), hit.path.rend(), [&](const auto& one) {
-      return !editor.editor().placesOf(*one.node).empty();
-    });
-    if (step != hit.path.rend()) found = step->node;
-  }
-  editor.choose(found, add);
+  const bool isHit = editor.browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit);
+  editor.choose(isHit ? nodeOf(editor, std::move(hit), group) : NodeRef(), add);
 }
 
 void removeSelected(WorldEditor& editor) {

@@ -9,9 +9,11 @@
 
 namespace vv {
 
-// Selects the node at a place of the picture: the Shape there, or with `group` the nearest group
-// above it. Selects nothing if there is nothing. Nodes that are not in the world's file stand for
-// the node of the file that they belong to: an Inline, or an instance of a prototype.
+// Returns the node that was hit: the Shape, or with `group` the nearest group above it; null if
+// there is none. Nodes that are not in the world's file stand for the node of the file that they
+// belong to: an Inline, or an instance of a prototype.
+xvrml::NodeRef nodeOf(WorldEditor& editor, xvrml::PickHit hit, bool group);
+// Selects this node at a place of the picture, or nothing. add: as in WorldEditor::choose().
 void selectAt(WorldEditor& editor, const EditView& view, double x, double y, bool group, bool add);
 
 void removeSelected(WorldEditor& editor);

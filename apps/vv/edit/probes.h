@@ -1,5 +1,5 @@
-// probes.h: Places in the world whose light is read from still pictures, with error bars, and what
-// an edit has changed there. [the browser's thread]
+// probes.h: Places in the world, and rectangles of the picture, whose light is read from still
+// pictures, with error bars, and what an edit has changed there. [the browser's thread]
 #pragma once
 
 #include <array>
@@ -8,25 +8,26 @@
 #include <string>
 #include <vector>
 
-#include "edit/edit_model.h"
-#include "libpicture/pixel_reading.h"
+#include "edit/comparison.h"
+#include "edit/region.h"
 
 namespace vv {
 
 struct Probe {
-  enum class State : uint8_t { waiting, read, hidden, outside };
+  enum class State : uint8_t { waiting, read, hidden, outside, otherView };
+  struct Area { // a rectangle of the pictures of one view
+    Region region;
+    EditView view;
+    RegionReading reading;
+  };
 
   int number = 0;
-  std::array<double, 3> point{}; // in the world
+  std::array<double, 3> point{}; // in the world, if there is no area
+  std::optional<Area> area;
   State state = State::waiting;
-  picture::PixelReading now, before; // before: as it was kept
+  picture::PixelReading now;    // reading of its pixel, or mean of its area
+  picture::PixelReading before; // the same, as it was kept
   bool hasBefore = false;
-};
-
-// The change of a probe's light since it was kept.
-struct Difference {
-  double value = 0, halfWidth = 0; // cd/m2, with half of the 95 % interval
-  bool isSignificant = false;      // among all probes (Holm), at 5 %
 };
 
 // Returns what a probe says: "1  412 cd/m2 +- 1.5 %  trusted   B - A: -41 +- 8, significant".
@@ -38,26 +39,31 @@ class Probes {
   // Tells whether a probe has not been read yet.
   bool isWaiting() const;
   void add(const std::array<double, 3>& point);
+  // Adds a rectangle of the pictures of this view.
+  void add(const Region& region, const EditView& view);
   void clear();
   // Reads all probes from a picture of this view, which has picture::readingChannels and only
-  // unbiased samples. A probe behind something else, or where nothing is any more, is hidden.
-  // [while the world can be used]
+  // unbiased samples. A probe behind something else, or where nothing is any more, is hidden. A
+  // rectangle is read from pictures of its own view alone. [while the world can be used]
   void read(xvrml::Browser& browser, const picture::Picture& picture, const EditView& view);
   // Notes that the world or the view has changed: all probes wait for the next picture.
   void expire();
   // Keeps the light of all probes that have been read, to compare what follows with it.
   void keep();
+  // Lets the user's wish be known that the light is kept, and tells it once.
+  void askToKeep() { wantsKeep_ = true; }
+  bool takeKeep() { return std::exchange(wantsKeep_, false); }
   // Returns the changes of the probes, in their order; none where there is nothing to compare: the
-  // probe was not read, or from another view. The two pictures are taken as independent (Welch);
-  // where they share random numbers, the interval is too wide.
+  // probe was not read, or from another view. All are judged together.
   std::vector<std::optional<Difference>> differences() const;
   // Returns a table with a line for each probe.
   std::string csv() const;
 
  private:
   std::vector<Probe> probes_;
-  int last_ = 0; // the number of the last probe
-  xvrml::CameraSettings camera_{}, kept_{};
+  int last_ = 0;         // the number of the last probe
+  EditView view_, kept_; // views of the last picture, and of what was kept
+  bool wantsKeep_ = false;
 };
 
 } // namespace vv

@@ -21,9 +21,13 @@ using Imath::V3d;
 namespace {
 
 constexpr double degrees = 180 / std::numbers::pi;
+// The cosine between an axis and the direction to the viewer, below which the picture of a turn is
+// no circle any more.
+constexpr double leastFacing = 0.2;
 constexpr const char* verbs[] = {"Move", "Turn", "Scale"};
 
 V3d vectorOf(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+V3d vectorOf(const Vec3f& v) { return {double(v.x), double(v.y), double(v.z)}; }
 Vec3f floats(const V3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 // Returns where a ray meets the plane through a point that faces the camera.
@@ -70,6 +74,39 @@ std::string signOf(const std::string& key) {
 
 } // namespace
 
+V3d TransformFrame::axis(int axis, bool isOwn) const {
+  V3d unit(0);
+  unit[axis] = 1;
+  if (!isOwn) return unit;
+  V3d world;
+  toWorld.multDirMatrix(unit * rotation.toMatrix44(), world);
+  return world.length() > 0 ? world.normalized() : unit;
+}
+
+std::optional<TransformFrame> frameOf(Browser& browser, Node& node) {
+  NodePlacement placement;
+  if (!browser.locate(node, placement)) return {};
+  TransformFrame frame;
+  if (const size_t depth = placement.path.size(); depth > 1)
+    std::copy(placement.path[depth - 2].toWorld.begin(), placement.path[depth - 2].toWorld.end(),
+              &frame.toWorld.x[0][0]);
+  V3d centre(0);
+  if (const auto* const transform = nodeCast<nodes::Transform>(&node)) {
+    frame.translation = vectorOf(transform->translation);
+    frame.scale = vectorOf(transform->scale);
+    frame.rotation = turnOf(transform->rotation);
+    centre = vectorOf(transform->center);
+  }
+  frame.pivot = (frame.translation + centre) * frame.toWorld;
+  return frame;
+}
+
+double halfHeightAt(const EditView& view, const V3d& point) {
+  if (!(view.camera.fovy > 0)) return view.camera.height / 2;
+  const V3d eye = vectorOf(view.camera.matrix + 12), normal = vectorOf(view.camera.matrix + 8);
+  return std::abs((point - eye).dot(normal)) * std::tan(view.camera.fovy / 2);
+}
+
 TransformTool::TransformTool(WorldEditor& editor, Kind kind, const EditView& view, double x,
                              double y)
     : kind_(kind), view_(view), startX_(x), startY_(y) {
@@ -80,21 +117,12 @@ TransformTool::TransformTool(WorldEditor& editor, Kind kind, const EditView& vie
   try {
     if (!nodeCast<nodes::Transform>(editor.selected())) wrapSelected(editor);
     node_ = NodeRef(editor.selected());
-    const auto& transform = static_cast<const nodes::Transform&>(*node_);
-    NodePlacement placement;
-    if (!editor.browser().locate(*node_, placement))
-      throw EditError(fmt::format("{} is not in the scene", labelOf(*node_)));
-    const size_t depth = placement.path.size();
-    if (depth > 1)
-      std::copy(placement.path[depth - 2].toWorld.begin(), placement.path[depth - 2].toWorld.end(),
-                &toWorld_.x[0][0]);
-    translation_ = V3d(transform.translation.x, transform.translation.y, transform.translation.z);
-    scale_ = V3d(transform.scale.x, transform.scale.y, transform.scale.z);
-    rotation_ = turnOf(transform.rotation);
-    const V3d centre(transform.center.x, transform.center.y, transform.center.z);
-    pivot_ = (translation_ + centre) * toWorld_;
+    const std::optional<TransformFrame> frame = frameOf(editor.browser(), *node_);
+    if (!frame) throw EditError(fmt::format("{} is not in the scene", labelOf(*node_)));
+    frame_ = *frame;
     // Behind the viewer there is no place in the picture: turns and scales are about its middle.
-    if (!projectPoint(view.camera, view.aspect, &pivot_.x, pivotX_, pivotY_)) pivotX_ = pivotY_ = 0;
+    if (!projectPoint(view.camera, view.aspect, &frame_.pivot.x, pivotX_, pivotY_))
+      pivotX_ = pivotY_ = 0;
   } catch (...) {
     cancel(editor);
     throw;
@@ -147,16 +175,6 @@ double TransformTool::chosen(double byPointer, double step) {
   return amount_;
 }
 
-// Returns the axis that was chosen, as a unit vector in the world.
-V3d TransformTool::axisInWorld() const {
-  V3d axis(0);
-  axis[axis_] = 1;
-  if (!isLocal_) return axis;
-  V3d turned = axis * rotation_.toMatrix44(), world;
-  toWorld_.multDirMatrix(turned, world);
-  return world.length() > 0 ? world.normalized() : axis;
-}
-
 void TransformTool::point(WorldEditor& editor, double x, double y) {
   switch (kind_) {
   case Kind::move: return move(editor, x, y);
@@ -168,18 +186,16 @@ void TransformTool::point(WorldEditor& editor, double x, double y) {
 void TransformTool::move(WorldEditor& editor, double x, double y) {
   const CameraRay from = rayThrough(view_.camera, view_.aspect, startX_, startY_),
                   to = rayThrough(view_.camera, view_.aspect, x, y);
-  const V3d eye = vectorOf(view_.camera.matrix + 12), normal = vectorOf(view_.camera.matrix + 8);
+  const V3d normal = vectorOf(view_.camera.matrix + 8), &pivot = frame_.pivot;
   // A step of a power of ten that is well to be seen.
-  const double size = view_.camera.fovy > 0
-                          ? std::abs((pivot_ - eye).dot(normal)) * std::tan(view_.camera.fovy / 2)
-                          : view_.camera.height / 2;
+  const double size = halfHeightAt(view_, pivot);
   const double step = size > 0 ? std::pow(10, std::floor(std::log10(size / 5))) : 0;
   V3d way;
   if (axis_ >= 0) {
     const V3d axis = axisInWorld();
-    way = axis * chosen(alongLine(to, pivot_, axis) - alongLine(from, pivot_, axis), step);
+    way = axis * chosen(alongLine(to, pivot, axis) - alongLine(from, pivot, axis), step);
   } else {
-    way = inPlane(to, pivot_, normal) - inPlane(from, pivot_, normal);
+    way = inPlane(to, pivot, normal) - inPlane(from, pivot, normal);
     const double length = way.length();
     if (const double wanted = chosen(length, step); length > 0)
       way *= wanted / length;
@@ -187,27 +203,44 @@ void TransformTool::move(WorldEditor& editor, double x, double y) {
       way = vectorOf(view_.camera.matrix) * wanted; // a typed number alone: to the right
   }
   V3d own;
-  toWorld_.inverse().multDirMatrix(way, own);
-  editor.editor().set(*node_, "translation", floats(translation_ + own));
+  frame_.toWorld.inverse().multDirMatrix(way, own);
+  editor.editor().set(*node_, "translation", floats(frame_.translation + own));
 }
 
-void TransformTool::turn(WorldEditor& editor, double x, double y) {
-  const V3d toViewer = vectorOf(view_.camera.matrix + 8);
-  const V3d axis = axis_ >= 0 ? axisInWorld() : toViewer;
+// Returns by how many radians the pointer has turned about an axis.
+double TransformTool::angleTo(double x, double y, const V3d& axis) const {
+  const V3d toEye = vectorOf(view_.camera.matrix + 12) - frame_.pivot;
+  const V3d toViewer = axis_ >= 0 && view_.camera.fovy > 0 && toEye.length() > 0
+                           ? toEye.normalized()
+                           : vectorOf(view_.camera.matrix + 8);
+  const double facing = axis.dot(toViewer);
+  if (std::abs(facing) < leastFacing) {
+    // The axis lies in the picture: the pointer turns the near side as the rim of a wheel.
+    const V3d rim = axis.cross(toViewer).normalized();
+    const double across = (x - startX_) * view_.aspect, along = y - startY_;
+    return (across * rim.dot(vectorOf(view_.camera.matrix)) +
+            along * rim.dot(vectorOf(view_.camera.matrix + 4))) /
+           handleSize;
+  }
   const auto angleAt = [this](double atX, double atY) {
     return std::atan2(atY - pivotY_, (atX - pivotX_) * view_.aspect);
   };
-  double angle = angleAt(x, y) - angleAt(startX_, startY_);
-  if (axis.dot(toViewer) < 0) angle = -angle; // the picture turns as the pointer does
-  angle = std::remainder(angle, 2 * std::numbers::pi);
+  const double angle =
+      std::remainder(angleAt(x, y) - angleAt(startX_, startY_), 2 * std::numbers::pi);
+  return facing < 0 ? -angle : angle; // the picture turns as the pointer does
+}
+
+void TransformTool::turn(WorldEditor& editor, double x, double y) {
+  const V3d axis = axis_ >= 0 ? axisInWorld() : vectorOf(view_.camera.matrix + 8);
+  const double angle = angleTo(x, y, axis);
   V3d own;
-  toWorld_.inverse().multDirMatrix(axis, own);
+  frame_.toWorld.inverse().multDirMatrix(axis, own);
   if (own.length() == 0) return;
-  if (toWorld_.determinant() < 0) own = -own; // a mirrored parent turns the other way
+  if (frame_.toWorld.determinant() < 0) own = -own; // a mirrored parent turns the other way
   Quatd turn;
   turn.setAxisAngle(own.normalized(), chosen(angle * degrees, 5) / degrees);
   // Imath multiplies row vectors: the node's own turn comes first.
-  editor.editor().set(*node_, "rotation", rotationOf(turn * rotation_));
+  editor.editor().set(*node_, "rotation", rotationOf(turn * frame_.rotation));
 }
 
 void TransformTool::scale(WorldEditor& editor, double x, double y) {
@@ -217,7 +250,7 @@ void TransformTool::scale(WorldEditor& editor, double x, double y) {
   const double start = distance(startX_, startY_);
   const double factor = chosen(start > 1e-6 ? distance(x, y) / start : 1, 0.1);
   if (!(factor > 0)) return; // a scale is greater than 0
-  V3d size = scale_;
+  V3d size = frame_.scale;
   if (axis_ >= 0)
     size[axis_] *= factor;
   else

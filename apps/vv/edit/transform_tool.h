@@ -3,6 +3,7 @@
 // world can be used]
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <Imath/ImathMatrix.h>
@@ -11,6 +12,25 @@
 #include "edit/edit_model.h"
 
 namespace vv {
+
+// Where a node is moved, turned and scaled. A node that is no Transform gets one around it, which
+// has the values of a new one.
+struct TransformFrame {
+  Imath::M44d toWorld; // from the coordinates of the node's parent
+  Imath::V3d pivot;    // the node's centre in the world
+  Imath::V3d translation{0}, scale{1};
+  Imath::Quatd rotation;
+  // Returns an axis, 0 to 2, of the world or of the node, as a unit vector in the world. Without
+  // an axis of its own, because its parent is flat, a node has that of the world.
+  Imath::V3d axis(int axis, bool isOwn) const;
+};
+// Returns the frame of a node; nothing if it is not in the scene.
+std::optional<TransformFrame> frameOf(xvrml::Browser& browser, xvrml::Node& node);
+
+// The length of a handle, and the radius of a ring, in halves of the picture's height.
+inline constexpr double handleSize = 0.3;
+// Returns half the height of the picture, in lengths of the world, at the distance of a point.
+double halfHeightAt(const EditView& view, const Imath::V3d& point);
 
 class TransformTool {
  public:
@@ -34,11 +54,14 @@ class TransformTool {
   // Ends the step, or takes it back and selects what was selected before. Nothing follows then.
   void accept(WorldEditor& editor) { editor.editor().end(); }
   void cancel(WorldEditor& editor);
+  Kind kind() const { return kind_; }
+  int axis() const { return axis_; } // -1: none
   // Returns what is done, for the user: "Move along x: 0.35".
   std::string text() const;
 
  private:
-  Imath::V3d axisInWorld() const;
+  Imath::V3d axisInWorld() const { return frame_.axis(axis_, isLocal_); }
+  double angleTo(double x, double y, const Imath::V3d& axis) const;
   double chosen(double byPointer, double step);
   void move(WorldEditor& editor, double x, double y);
   void turn(WorldEditor& editor, double x, double y);
@@ -49,10 +72,7 @@ class TransformTool {
   double startX_, startY_, pivotX_ = 0, pivotY_ = 0; // places in the picture
   xvrml::MFNode selected_;                           // before it began
   xvrml::NodeRef node_;
-  Imath::M44d toWorld_; // from the coordinates of the node's parent
-  Imath::V3d pivot_;    // the node's centre in the world
-  Imath::V3d translation_, scale_;
-  Imath::Quatd rotation_;
+  TransformFrame frame_; // when it began
   int axis_ = -1;
   bool isLocal_ = false, snap_ = false;
   std::string typed_;

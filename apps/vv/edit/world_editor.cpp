@@ -60,6 +60,7 @@ std::string WorldEditor::redo() {
 
 void WorldEditor::save(const std::string& path, bool overwrite) {
   picture::saveEdits(editor_, browser_.world(), path, overwrite);
+  journal_.settle();
   ++saves_;
 }
 

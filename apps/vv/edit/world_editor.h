@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "edit/journal.h"
 #include "xvrml/edit.h"
 
 namespace vv {
@@ -44,6 +45,8 @@ class WorldEditor {
   std::string redo();
   // Tells whether there are edits that have not been saved.
   bool isChanged() const { return editor_.isChanged(); }
+  // Keeps them if the program is killed.
+  Journal& journal() { return journal_; }
   // Writes the file. See picture::saveEdits.
   void save(const std::string& path = "", bool overwrite = false);
   // How often the file has been saved: it differs then from what was read.
@@ -52,6 +55,7 @@ class WorldEditor {
  private:
   xvrml::Browser& browser_;
   xvrml::Editor editor_;
+  Journal journal_{editor_, browser_};
   xvrml::MFNode selection_;
   uint64_t saves_ = 0;
 };

@@ -86,8 +86,8 @@ std::string missingValue(std::string_view name) {
   return fmt::format("{}: a value was expected", name);
 }
 
-// --spp of --preview and of --measure without -o where it is not given
-constexpr int previewSamples = 4, measureSamples = 4096;
+// --spp of --preview where it is not given
+constexpr int previewSamples = 4;
 
 } // namespace
 
@@ -280,12 +280,12 @@ Options readCommandLine(int argc, char** argv) {
   if (options.from.size() == 1 || options.opensWindow())
     options.view.side = options.from.empty() ? std::optional<picture::Side>() : options.from[0];
   options.view.turns = options.turntable > 0;
-  options.render.samples =
-      options.samples.value_or(render.timeLimit > 0 && options.resume.empty()  ? 65536
-                               : render.error > 0                              ? 4096
-                               : options.measures() && options.outputs.empty() ? measureSamples
-                               : render.preview                                ? previewSamples
-                                                                               : render.samples);
+  options.render.samples = options.samples.value_or(
+      render.timeLimit > 0 && options.resume.empty()  ? 65536
+      : render.error > 0                              ? 4096
+      : options.measures() && options.outputs.empty() ? Options::measureSamples
+      : render.preview                                ? previewSamples
+                                                      : render.samples);
   return options;
 }
 

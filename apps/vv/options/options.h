@@ -92,6 +92,7 @@ struct Options {
   picture::RenderSettings render;
   picture::ClusterSettings cluster;
   std::optional<int> samples; // value of --samples; render.samples is the number in use
+  static constexpr int measureSamples = 4096; // for sensors, if nothing says how many
   picture::View view;
   std::optional<double> time; // seconds since the world was loaded
   // Seconds since 1970 when the world is loaded. None: xvrml::worldEpoch, or the real time in the

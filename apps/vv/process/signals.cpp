@@ -89,6 +89,9 @@ void deferInterrupt(bool on, unsigned seconds) {
   if (seconds > 0) install(SIGALRM, onInterrupt);
 }
 void interruptHandled() { ::alarm(0); }
+void limitInterrupt() {
+  if (interruptSeen && patience > 0) ::alarm(patience);
+}
 bool interrupted() { return interruptSeen; }
 int secondsInterrupted() { return interruptSeen ? int(steadySeconds() - interruptAt) : 0; }
 bool takeSaveRequest() { return saveWanted.exchange(false); }

@@ -18,6 +18,7 @@ void deferInterrupt(bool on, unsigned seconds = 0);
 bool interrupted();
 int secondsInterrupted(); // whole seconds since the interrupt; 0: there was none
 void interruptHandled();  // the render has stopped; the rest of the work has no time limit
+void limitInterrupt();    // after an interrupt, the rest of the work has the time limit again
 
 // Returns true once for each SIGUSR1.
 bool takeSaveRequest();

@@ -72,6 +72,41 @@ std::string wayToReach(const Measurement& m) {
 
 Json numberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
+Json sensorsOf(const std::vector<Measurement>& sensors) {
+  Json out = Json::array();
+  for (const Measurement& m : sensors) {
+    const Summary all(m);
+    Json points = Json::array();
+    for (size_t i = 0; i < m.value.size(); i++) {
+      double p[3];
+      m.sensor.pointAt(int(i) % m.sensor.columns, int(i) / m.sensor.columns, p);
+      const bool made = m.samples[i] > 0;
+      points.push_back({{"position", {p[0], p[1], p[2]}},
+                        {"value", made ? numberOrNull(double(m.value[i])) : Json(nullptr)},
+                        {"half_width", made ? numberOrNull(double(m.halfWidth[i])) : Json(nullptr)},
+                        {"trusted", m.trusted[i] != 0},
+                        {"samples", m.samples[i]}});
+    }
+    const double* d = m.sensor.direction;
+    out.push_back({{"name", m.sensor.name},
+                   {"quantity", quantityOf(m)},
+                   {"unit", unitOf(m)},
+                   {"direction", {d[0], d[1], d[2]}},
+                   {"columns", m.sensor.columns},
+                   {"rows", m.sensor.rows},
+                   {"mean", numberOrNull(all.mean)},
+                   {"mean_half_width", numberOrNull(all.halfWidth)},
+                   {"minimum", all.least},
+                   {"maximum", all.most},
+                   {"uniformity", all.uniformity()},
+                   {"relative_half_width", numberOrNull(m.stats.error.halfWidth)},
+                   {"unreached_lamps", m.stats.transport.unreachedLights},
+                   {"interrupted", m.interrupted},
+                   {"points", std::move(points)}});
+  }
+  return out;
+}
+
 // Says why a sensor has missed --error.
 std::string whyMissed(const Measurement& m, const Promise& promise) {
   const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
@@ -115,38 +150,12 @@ std::string measurementsJson(const std::vector<Measurement>& sensors,
   json["command"] = commandLine;
   json["interval"] = {{"level", .95}, {"method", "replicated nets, Student's t"}};
   json["units"] = {{"position", "m"}, {"illuminance", "lx"}, {"luminance", "cd/m2"}};
-  json["sensors"] = Json::array();
-  for (const Measurement& m : sensors) {
-    const Summary all(m);
-    Json points = Json::array();
-    for (size_t i = 0; i < m.value.size(); i++) {
-      double p[3];
-      m.sensor.pointAt(int(i) % m.sensor.columns, int(i) / m.sensor.columns, p);
-      const bool made = m.samples[i] > 0;
-      points.push_back({{"position", {p[0], p[1], p[2]}},
-                        {"value", made ? numberOrNull(double(m.value[i])) : Json(nullptr)},
-                        {"half_width", made ? numberOrNull(double(m.halfWidth[i])) : Json(nullptr)},
-                        {"trusted", m.trusted[i] != 0},
-                        {"samples", m.samples[i]}});
-    }
-    const double* d = m.sensor.direction;
-    json["sensors"].push_back({{"name", m.sensor.name},
-                               {"quantity", quantityOf(m)},
-                               {"unit", unitOf(m)},
-                               {"direction", {d[0], d[1], d[2]}},
-                               {"columns", m.sensor.columns},
-                               {"rows", m.sensor.rows},
-                               {"mean", numberOrNull(all.mean)},
-                               {"mean_half_width", numberOrNull(all.halfWidth)},
-                               {"minimum", all.least},
-                               {"maximum", all.most},
-                               {"uniformity", all.uniformity()},
-                               {"relative_half_width", numberOrNull(m.stats.error.halfWidth)},
-                               {"unreached_lamps", m.stats.transport.unreachedLights},
-                               {"interrupted", m.interrupted},
-                               {"points", std::move(points)}});
-  }
+  json["sensors"] = sensorsOf(sensors);
   return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
+
+std::string sensorsJson(const std::vector<Measurement>& sensors) {
+  return printableJson(sensorsOf(sensors).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string measurementText(const Measurement& m) {

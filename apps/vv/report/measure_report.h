@@ -14,6 +14,8 @@ std::string measurementsCsv(const std::vector<picture::Measurement>& sensors);
 // Returns the readings as JSON, schema 1.
 std::string measurementsJson(const std::vector<picture::Measurement>& sensors,
                              const std::string& commandLine);
+// Returns the readings as a JSON array without line feeds: the member "sensors" of the above.
+std::string sensorsJson(const std::vector<picture::Measurement>& sensors);
 // Describes one sensor in a line: mean with its interval, range, uniformity.
 std::string measurementText(const picture::Measurement& sensor);
 // The user asked for a target error (0: none), with at most so many samples. A time limit may end

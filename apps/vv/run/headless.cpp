@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "edit/journal_file.h"
 #include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "process/messages.h"
@@ -50,6 +51,9 @@ class Headless {
       const StageProgress reading("", "reading the world", options_.quiet);
       read = xvrml::loadWorld(options_.input, options_.load);
     }
+    if (const std::string edits = journalBeside(options_.input); !options_.quiet && !edits.empty())
+      say(fmt::format("vv: {} has unsaved edits in {}: vv edit offers them", options_.input,
+                      edits));
     const double before = secondsSinceStart();
     browser_ = startWorld(std::move(read), options_, problems_);
     const double startSeconds = secondsSinceStart() - before;

@@ -57,6 +57,10 @@ struct Undo {
 struct Save {
   bool overwrite = false;
 };
+struct Revert {};
+struct Recover {
+  bool use = true; // false: the edits that an earlier program has left are thrown away
+};
 struct PutProbe {
   Place place;
 };
@@ -65,8 +69,8 @@ struct ClearProbes {};
 struct Close {};
 
 using Command = std::variant<ShowRows, Search, Open, Select, SelectAt, Drag, EndDrag, Reset,
-                             json::edits::Step, Add, Duplicate, Remove, Wrap, Undo, Save, PutProbe,
-                             KeepProbes, ClearProbes, Close>;
+                             json::edits::Step, Add, Duplicate, Remove, Wrap, Undo, Save, Revert,
+                             Recover, PutProbe, KeepProbes, ClearProbes, Close>;
 
 // Reads a message {"type":"edit","command":...}. Throws json::CommandError.
 Command readCommand(json::Json message);

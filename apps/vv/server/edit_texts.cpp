@@ -117,6 +117,7 @@ const char* nameOf(Probe::State state) {
   case Probe::State::waiting: return "waiting";
   case Probe::State::hidden: return "hidden";
   case Probe::State::outside: return "outside";
+  case Probe::State::otherView: return "other_view";
   case Probe::State::read: break;
   }
   return "read";
@@ -183,12 +184,14 @@ std::string framesText(const EditModel& model) {
 }
 
 std::string historyText(WorldEditor& editor, const std::string& readOnly) {
+  const std::optional<FoundJournal>& left = editor.journal().left();
   return written({{"type", "history"},
                   {"undo", shortened(editor.editor().undoName(), mostNoteBytes)},
                   {"redo", shortened(editor.editor().redoName(), mostNoteBytes)},
                   {"unsaved", editor.isChanged()},
                   {"readOnly", readOnly},
-                  {"selected", editor.selection().size()}});
+                  {"selected", editor.selection().size()},
+                  {"left", left ? Json(left->written) : Json()}});
 }
 
 std::string probesText(const Probes& probes) {

@@ -74,7 +74,7 @@ void Editing::beginAnew() {
 void Editing::update(double now) {
   if (faces_.empty()) return;
   Session& session = world_.session();
-  reader_.update(session, probes_, now);
+  readProbes(session, now);
   const bool moves = session.pictures().isMoving();
   for (auto& [page, face] : faces_) {
     if (!face.isStale && now < face.next) continue;
@@ -237,7 +237,34 @@ void Editing::perform(uint64_t page, Face&, const edit::Save& save) {
   say(page, "saved", false);
 }
 
+void Editing::perform(uint64_t, Face&, const edit::Revert&) { world_.revert(); }
+
+void Editing::perform(uint64_t, Face&, const edit::Recover& recover) {
+  if (recover.use)
+    world_.recover();
+  else
+    editor().journal().throwLeftAway();
+}
+
 // --- Probes ---
+
+// Reads the probes from the still picture of the world as it is, a few times a second.
+void Editing::readProbes(Session& session, double now) {
+  constexpr double pause = 0.25;
+  if (probes_.all().empty()) return;
+  const bool outdated = session.viewers().own().isOutdated();
+  if (outdated) probes_.expire();
+  if (outdated || now < probesRead_ + pause) return;
+  session.pictures().wantReadings();
+  const uint64_t finished =
+      session.pictures().isFinished(session.pilot()) ? session.pictures().number() : 0;
+  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting()) return;
+  picture::Picture picture;
+  if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
+  probesRead_ = now;
+  finishedRead_ = finished;
+  probes_.read(session.browser(), picture, {session.pilot().camera(), session.pilot().aspect()});
+}
 
 void Editing::perform(uint64_t page, Face&, const edit::PutProbe& put) {
   if (probes_.all().size() >= size_t(maxProbes))

@@ -16,7 +16,6 @@
 #include "server/limits.h"
 #include "server/pages.h"
 #include "server/served_world.h"
-#include "session/probe_reader.h"
 
 namespace vv::server {
 
@@ -34,9 +33,7 @@ class Editing {
   void take(uint64_t page, const edit::Command& command);
   // Tells whether a page shows the editor. A click on its picture selects, then.
   bool isOpen(uint64_t page) const { return faces_.contains(page); }
-  // Ends all drags, so that what they have changed can be saved and undone.
-  void endDrags();
-  // There is a new session, whose world nobody has edited.
+  // The session ends, and the next one's world has not been edited.
   void beginAnew();
   // Tells the pages what has changed for them. now: seconds of any clock.
   void update(double now);
@@ -57,9 +54,12 @@ class Editing {
   EditView viewOf(uint64_t page);
   bool open(uint64_t page);
   void endDrag(Face& face);
+  // Ends all drags, so that what they have changed can be saved and undone.
+  void endDrags();
   void say(uint64_t page, const std::string& text, bool isError);
   void tell(uint64_t page, Face& face, const std::string& type, std::string text);
   void show(uint64_t page, Face& face);
+  void readProbes(Session& session, double now);
 
   void perform(uint64_t page, Face& face, const edit::ShowRows& rows);
   void perform(uint64_t page, Face& face, const edit::Search& search);
@@ -76,6 +76,8 @@ class Editing {
   void perform(uint64_t page, Face& face, const edit::Wrap& wrap);
   void perform(uint64_t page, Face& face, const edit::Undo& undo);
   void perform(uint64_t page, Face& face, const edit::Save& save);
+  void perform(uint64_t page, Face& face, const edit::Revert& revert);
+  void perform(uint64_t page, Face& face, const edit::Recover& recover);
   void perform(uint64_t page, Face& face, const edit::PutProbe& put);
   void perform(uint64_t page, Face& face, const edit::KeepProbes& keep);
   void perform(uint64_t page, Face& face, const edit::ClearProbes& clear);
@@ -86,7 +88,8 @@ class Editing {
   Host& host_;
   std::map<uint64_t, Face> faces_; // by page
   Probes probes_;
-  ProbeReader reader_;
+  double probesRead_ = 0;     // when
+  uint64_t finishedRead_ = 0; // the number of the finished frame that they were read from
 };
 
 } // namespace vv::server

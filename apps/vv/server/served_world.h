@@ -26,6 +26,8 @@ class ServedWorld {
     std::function<void(const std::string& url)> openPage;
     // Receives a message for everybody.
     std::function<void(const std::string& text)> onMessage;
+    // The session ends: its nodes are to be let go.
+    std::function<void()> onLeave;
   };
   // The options must outlive this object.
   ServedWorld(const Options& options, Callbacks callbacks);
@@ -34,6 +36,10 @@ class ServedWorld {
   void openFirst();
   // Reads the world again, in the background, and keeps the leader's view.
   void reload();
+  // Throws the edits that are not saved away, and reads the world again.
+  void revert();
+  // Loads the world with the edits that an earlier program has left. Throws xvrml::EditError.
+  void recover();
   // Reloads the world if --watch is given and a file has changed, but not by an edit. now: seconds
   // of any clock.
   void watch(double now);
@@ -54,7 +60,8 @@ class ServedWorld {
   void open(LoadRequest request, bool keepPlace);
   bool refuseWhileUnsaved() const;
   void openUrls(const std::vector<std::string>& urls, const std::string& base);
-  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, PictureSize size);
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, PictureSize size,
+             LeftEdits* left);
 
   const Options& options_;
   Callbacks callbacks_;
@@ -64,7 +71,8 @@ class ServedWorld {
   WorldWatch watch_{options_};
   std::string loading_;
   bool keepPlace_ = false;
-  uint64_t saves_ = 0; // saves of the session's editor when its files were watched
+  bool isReverted_ = false; // edits that are not saved are no reason to stay
+  uint64_t saves_ = 0;      // saves of the session's editor when its files were watched
 };
 
 } // namespace vv::server

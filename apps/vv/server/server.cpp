@@ -346,6 +346,9 @@ ServedWorld::Callbacks Server::callbacks() {
     onAction(view, action);
   };
   calls.openPage = [this](const std::string& url) { openPage(url); };
+  calls.onLeave = [this] {
+    if (editing_) editing_->beginAnew();
+  };
   calls.onMessage = [this](const std::string& text) { notify(0, text, 10); };
   return calls;
 }
@@ -393,7 +396,6 @@ void Server::takeWorld() {
       world_.session().addGuest(page.view, page.size.width, page.size.height);
   fitViews();
   reports_.beginAnew();
-  editing_->beginAnew();
   saves_->loseAll();
   isQuiet_ = false;
 }
@@ -468,10 +470,7 @@ void Server::tellOfCluster() {
 }
 
 int Server::end() {
-  editing_->endDrags();
-  if (world_.session().editor().isChanged())
-    sayWarning(fmt::format("the edits of {} have not been saved",
-                           world_.session().browser().world().path));
+  keepEdits(&world_.session());
   world_.end(exitDone);
   interruptHandled();
   return exitDone;

@@ -288,6 +288,7 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   facts_.preview = picture.preview;
   facts_.denoisedBy = picture.denoisedBy;
   facts_.purpose = picture.purpose;
+  facts_.scaleEnd = picture.scaleEnd;
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
     still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {

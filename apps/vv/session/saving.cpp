@@ -14,11 +14,18 @@
 
 namespace vv {
 
-int samplesInWindow(const Options& options) {
-  constexpr int standard = 256;
+namespace {
+
+// Returns the value of --samples, or else what the other options give, or else `standard`.
+int samplesOf(const Options& options, int standard) {
   const bool open = options.render.timeLimit > 0 || options.render.error > 0;
   return options.samples.value_or(open ? options.render.samples : standard);
 }
+
+} // namespace
+
+int samplesInWindow(const Options& options) { return samplesOf(options, 256); }
+int samplesOfSensors(const Options& options) { return samplesOf(options, Options::measureSamples); }
 
 std::string freeName(const std::string& world, const std::string& suffix) {
   std::string stem = fileNamePart(std::filesystem::path(world).stem().string());

@@ -12,6 +12,8 @@ namespace vv {
 
 // Returns the samples per pixel up to which the window refines its picture.
 int samplesInWindow(const Options& options);
+// Returns the samples of each point that a sensor reads while the world runs.
+int samplesOfSensors(const Options& options);
 
 // Returns an unused file name: world-1.png, world-2.png and so on in the working folder.
 std::string freeName(const std::string& world, const std::string& suffix);

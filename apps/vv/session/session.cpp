@@ -42,6 +42,11 @@ Options forWindow(const Options& options, const Session::Callbacks& calls, const
   return own;
 }
 
+// Returns the direction from which an action shows the whole world: frameAll or beginAgain.
+Fit::Direction directionOf(Action action) {
+  return action == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current;
+}
+
 // Adds an event to those that wait. Where moves follow each other, only the last one counts.
 void postpone(InputEvent event, std::deque<InputEvent>& later) {
   const bool moves = event.kind == InputEvent::Kind::move && !later.empty() &&
@@ -77,7 +82,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
     replay_ = std::make_unique<Replay>(
         own_.pilot, *script, [this](const InputEvent& event, Action action) {
           if (action == Action::frameAll || action == Action::beginAgain)
-            want(action);
+            own_.fit.want(directionOf(action));
           else if (action != Action::reload) // the script would begin again, and reload again
             callbacks_.onAction(event, action);
           if (held()) replay_->wait();
@@ -144,6 +149,7 @@ void Session::settleCamera() {
 void Session::advance(double seconds) {
   clock_.read(seconds,
               saver_.isWaiting() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
+  editor_.journal().advance(seconds);
   if (!resting()) return;
   if (own_.pictures.placeViewer(own_.pilot, own_.fit)) {
     settleCamera();
@@ -224,7 +230,7 @@ void Session::take(const InputEvent& event) {
     action = apart ? own_.pilot.windowAction(event, keysWhileHeld()) : own_.pilot.handle(event);
   if (!replay_) order_.note(action);
   if ((action == Action::frameAll || action == Action::beginAgain) && !replay_)
-    want(action);
+    own_.fit.want(directionOf(action));
   else if (action >= Action::save)
     callbacks_.onAction(event, action);
   const bool gaveUp = wasSaving && !saver_.isWaiting();
@@ -241,14 +247,10 @@ void Session::loadSome() {
 
 // --- The picture ---
 
-// Shows the whole world. fit: Action::frameAll or Action::beginAgain.
-void Session::want(Action fit) {
-  own_.fit.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
-}
-
 // Lets the viewers draw.
 void Session::takeTurns() {
   if (captures_.isPending()) return;
+  if (measuring_.isPending()) return measuring_.advance();
   if (!isLookChosen_ && !inlines_.isLoading()) {
     if (!shared_.isIdle()) return shared_.cancel();
     chooseLookOnce();
@@ -304,7 +306,7 @@ void Session::handle(const InputEvent& event, uint32_t viewer) {
 
 bool Session::release() {
   if (!resting() || !shared_.isIdle() || !own_.pictures.hasStarted() || saver_.isWaiting() ||
-      captures_.isPending() || own_.pictures.stillWaits())
+      captures_.isPending() || measuring_.isPending() || own_.pictures.stillWaits())
     return false;
   shared_.release();
   for (const auto& [number, viewer] : viewers_.all()) viewer->pictures.loseStill();
@@ -331,7 +333,7 @@ void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
 
 bool Session::isQuiet() const {
   const auto isQuiet = [](const auto& one) { return one.second->isQuiet(); };
-  return resting() && !inlines_.isLoading() && !captures_.isPending() &&
+  return resting() && !inlines_.isLoading() && !captures_.isPending() && !measuring_.isPending() &&
          std::all_of(viewers_.all().begin(), viewers_.all().end(), isQuiet);
 }
 

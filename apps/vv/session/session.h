@@ -18,6 +18,7 @@
 #include "session/captures.h"
 #include "session/inline_queue.h"
 #include "session/input/step_order.h"
+#include "session/measuring.h"
 #include "session/pick_preparation.h"
 #include "session/picture_saver.h"
 #include "session/replay.h"
@@ -86,6 +87,7 @@ class Session {
   PictureSaver& saver() { return saver_; }
   SessionViewers& viewers() { return viewers_; }
   Captures& captures() { return captures_; }
+  Measuring& measuring() { return measuring_; }
   Pilot& pilot() { return own_.pilot; }
   PictureLoop& pictures() { return own_.pictures; }
   const PictureLoop& pictures() const { return own_.pictures; }
@@ -127,7 +129,6 @@ class Session {
   void takeTurns();
   void loadSome();
   void chooseLookOnce();
-  void want(Action fit);
   void settleCamera();
   // Tells whether scripts wait: for a fit, or for a picture that is to be saved.
   bool held() const { return own_.fit.isPending() || saver_.isWaiting(); }
@@ -148,6 +149,7 @@ class Session {
   SessionViewers viewers_;
   SessionViewer& own_ = viewers_.own();
   Captures captures_{shared_};
+  Measuring measuring_{shared_};
   const uint32_t channels_; // channels of saved pictures
   PictureSaver saver_;
   SessionClock clock_;

@@ -31,6 +31,10 @@ std::string Session::takeMessage() {
     if (saver_.isWaiting()) saver_.fail(failure);
     return failure;
   }
+  if (const std::string kept = editor_.journal().takeMessage(); !kept.empty()) {
+    sayWarning(kept);
+    return kept;
+  }
   const std::string saved = saver_.takeMessage();
   return pilots.empty() ? saved : pilots;
 }

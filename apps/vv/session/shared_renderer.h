@@ -31,6 +31,11 @@ class SharedRenderer {
     if (started_.size() > remembered) started_.pop_front();
     return number;
   }
+  // Reads sensors as LiveRenderer::measure does. [idle]
+  void measure(const picture::LiveMeasure& measure) {
+    if (browser_.hasChanges()) ++world_;
+    live.measure(measure);
+  }
   // Returns the viewer of a frame that was started lately.
   uint32_t viewerOf(uint64_t number) const {
     for (const Started& one : started_)

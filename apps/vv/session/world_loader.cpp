@@ -14,6 +14,7 @@ std::atomic<int> threads{0};
 
 LoadAnswer load(const LoadRequest& request) {
   LoadAnswer answer;
+  answer.left = request.left;
   for (const std::string& url : request.urls) {
     std::string path = url, why;
     if (!request.base.empty()) {
@@ -23,7 +24,10 @@ LoadAnswer load(const LoadRequest& request) {
       answer.fragment = resolved.fragment;
     }
     try {
-      if (why.empty()) answer.world = xvrml::loadWorld(path, request.options);
+      if (why.empty())
+        answer.world = request.left ? xvrml::loadWorldFromMemory(request.left->content.text, path,
+                                                                 request.options)
+                                    : xvrml::loadWorld(path, request.options);
     } catch (const xvrml::LoadError& error) {
       why = error.diagnostic.text();
     } catch (const Failure& failure) { why = failure.text; } catch (const std::bad_alloc&) {

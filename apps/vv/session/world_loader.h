@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edit/journal.h"
 #include "options/values.h"
 #include "xvrml/world.h"
 
@@ -17,12 +18,14 @@ struct LoadRequest {
   std::vector<std::string> urls; // the first one that is a world is loaded; "-": standard input
   std::string base;              // File that the URLs are relative to; empty: they are paths.
   xvrml::LoadOptions options;
+  std::shared_ptr<LeftEdits> left{}; // the text is theirs; null: it is that of the file
 };
 
 struct LoadAnswer {
   std::unique_ptr<xvrml::World> world; // the loaded world; null: no URL could be read
   std::string fragment;                // fragment of the URL: a viewpoint
   std::string error;                   // why there is no world
+  std::shared_ptr<LeftEdits> left{};   // as it was asked for
 };
 
 // Tells what became of the world of an answer.

@@ -3,6 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "window/comparison_view.h"
+#include "window/gizmo_view.h"
 #include "window/window.h"
 
 namespace vv {
@@ -13,6 +17,9 @@ namespace {
 
 // How far the pointer may move between press and release of a click, as a part of the picture.
 constexpr double clickDistance = 0.012;
+// How far the pointer may be from the line of the wiper, in halves of the picture's width.
+constexpr double wiperReach = 0.02;
+constexpr const char* kindNames[] = {"move", "turn", "scale"};
 
 } // namespace
 
@@ -23,36 +30,46 @@ void Editing::open(bool open) {
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_, probes_);
+    panels_.emplace(*model_, probes_, [this] { save(); });
   }
   if (hasTool_) endTool(false);
   isOpen_ = open;
   pressed_.reset();
+  drag_ = Drag::none;
+  measures_ = false;
   if (open) {
-    screen_.setGui([this] { panels_->draw(); });
+    screen_.setGui([this] { draw(); });
   } else {
     screen_.setGui(nullptr);
+    if (comparison_.shown() != Comparison::Shown::present) comparison_.toggle(comparison_.shown());
+    showCover();
     if (model_) model_->setActive(false);
   }
 }
 
 void Editing::reset() {
-  hasTool_ = false;
+  questions_.clear();
+  hasOffered_ = hasTool_ = false;
   tool_.reset();
   panels_.reset();
   model_.reset();
   probes_.clear();
+  comparison_.clear();
+  showCover();
+  gizmo_.clear();
   if (isOpen_) open(true);
 }
 
-void Editing::leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay) {
-  if (model_ && model_->hasRequests())
-    return model_->request([this, go, stay](WorldEditor& later) { leave(later, go, stay); });
-  if (!editor.isChanged()) return go();
-  open(true);
-  if (!panels_) return go(); // there is no editor in this build
-  panels_->askToSave(std::move(go), std::move(stay));
-  screen_.redraw();
+void Editing::draw() {
+  const bool isUsed = tool_ && gizmo_.kind() == tool_->kind();
+  const InputEvent& at = drag_ == Drag::handle && pressed_ ? *pressed_ : pointer_;
+  const int pointed = isOverPicture_ && !hasTool_ ? gizmo_.axisAt(at.x, at.y) : -1;
+  drawGizmo(gizmo_, isUsed ? tool_->axis() : pointed);
+  drawComparison(comparison_, pointer_.x, pointer_.y);
+  if (pressed_ && (drag_ == Drag::measure || drag_ == Drag::select))
+    drawRectangle(regionBetween(pressed_->x, pressed_->y, pointer_.x, pointer_.y), "");
+  panels_->draw();
+  questions_.draw();
 }
 
 std::string Editing::takeMessage() {
@@ -71,14 +88,69 @@ bool Editing::take(InputEvent& event) {
   case Kind::press:
     // A click selects; a drag moves the viewer. With Alt both work the world's sensors.
     event.forView = !event.alt;
-    if (event.button == Button::left && !event.alt) pressed_ = event;
+    if (event.button != Button::left || event.alt) return false;
+    pressed_ = event;
+    drag_ = dragAt(event);
+    measures_ = false;
+    return drag_ != Drag::none;
+  case Kind::move:
+    if (drag_ != Drag::none) follow(event);
+    return drag_ != Drag::none;
+  case Kind::leave:
+    if (drag_ != Drag::tool) drag_ = Drag::none;
     return false;
-  case Kind::release:
-    if (event.button == Button::left) click(event);
-    return false;
+  case Kind::release: return event.button == Button::left && endDrag(event);
   case Kind::down: return press(event);
   default: return false;
   }
+}
+
+// Returns what a press of the left button begins to drag.
+Editing::Drag Editing::dragAt(const InputEvent& press) const {
+  if (measures_) return Drag::measure;
+  if (comparison_.shown() == Comparison::Shown::wiper &&
+      std::abs(press.x - comparison_.wiper()) < wiperReach)
+    return Drag::wiper;
+  if (gizmo_.axisAt(press.x, press.y) >= 0) return Drag::handle;
+  return press.control ? Drag::select : Drag::none;
+}
+
+bool Editing::isDragged(const InputEvent& event) const {
+  return pressed_ && std::hypot(event.x - pressed_->x, event.y - pressed_->y) > clickDistance;
+}
+
+void Editing::follow(const InputEvent& move) {
+  if (drag_ == Drag::wiper) comparison_.setWiper(move.x);
+  if (drag_ == Drag::handle && isDragged(move)) {
+    drag_ = Drag::tool;
+    const int axis = gizmo_.axisAt(pressed_->x, pressed_->y);
+    if (axis < 0) return; // it has gone meanwhile
+    beginTool(*gizmo_.kind(), axis, *pressed_);
+    isToolClick_ = true;
+    takeForTool(move);
+  }
+  screen_.redraw();
+}
+
+// Ends what the left button has dragged. Returns whether it was none of the session's.
+bool Editing::endDrag(const InputEvent& release) {
+  const Drag drag = std::exchange(drag_, Drag::none);
+  screen_.redraw();
+  if (isDragged(release) && (drag == Drag::measure || drag == Drag::select)) {
+    const Region region = regionBetween(pressed_->x, pressed_->y, release.x, release.y);
+    model_->request([this, drag, region, view = view_, add = release.shift](WorldEditor& editor) {
+      if (drag == Drag::measure)
+        probes_.add(region, view);
+      else
+        selectIn(editor, view, region, add);
+    });
+    pressed_.reset();
+  } else if (drag == Drag::measure) {
+    message_ = "drag from one corner of the rectangle to the other";
+  } else if (drag != Drag::wiper && drag != Drag::tool) {
+    click(release);
+  }
+  return drag != Drag::none;
 }
 
 void Editing::click(const InputEvent& event) {
@@ -101,7 +173,12 @@ bool Editing::press(const InputEvent& event) {
   if (event.control && (key == "Y" || key == "Z"))
     return request([](WorldEditor& editor) { editor.redo(); });
   if (event.control && key == "S") {
-    panels_->save();
+    save();
+    return true;
+  }
+  if (!event.control && !event.alt && event.shift && key == "V") {
+    measures_ = true;
+    message_ = "drag a rectangle over what is to be measured (Escape: none)";
     return true;
   }
   if (!event.control && !event.alt && key == "V")
@@ -114,23 +191,31 @@ bool Editing::press(const InputEvent& event) {
             throw EditError("there is nothing here to be measured");
           probes_.add(hit.point);
         });
-  if (!event.control && !event.alt && key == "B")
-    return request([this](WorldEditor& editor) {
-      if (editor.browser().hasChanges()) probes_.expire();
-      probes_.keep();
-    });
+  if (pressForComparison(event)) return true;
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
   if (event.control && key == "G") return request(wrapSelected);
   if (event.control || event.alt) return false;
   if (event.shift) return key == "D" && request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
   if (key == ".") return wantsFrame_ = true;
-  if (key == "G") return beginTool(TransformTool::Kind::move);
-  if (key == "R") return beginTool(TransformTool::Kind::turn);
-  if (key == "S") return beginTool(TransformTool::Kind::scale);
+  if (key == "G") return beginTool(TransformTool::Kind::move, -1, pointer_);
+  if (key == "R") return beginTool(TransformTool::Kind::turn, -1, pointer_);
+  if (key == "S") return beginTool(TransformTool::Kind::scale, -1, pointer_);
+  if (key == "T") {
+    gizmo_.cycle();
+    message_ = fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none");
+    return true;
+  }
+  if (key == "Escape" && (measures_ || drag_ == Drag::measure || drag_ == Drag::select)) {
+    measures_ = false;
+    pressed_.reset();
+    return true;
+  }
   if (key == "Escape")
     return request([this](WorldEditor& editor) {
-      if (editor.selection().empty())
+      if (comparison_.shown() != Comparison::Shown::present)
+        comparison_.toggle(comparison_.shown());
+      else if (editor.selection().empty())
         open(false);
       else
         editor.select({});
@@ -138,13 +223,31 @@ bool Editing::press(const InputEvent& event) {
   return false;
 }
 
-bool Editing::beginTool(TransformTool::Kind kind) {
+// Takes a key that is about A. Returns whether it is one.
+bool Editing::pressForComparison(const InputEvent& event) {
+  using Shown = Comparison::Shown;
+  if (event.control || event.alt || event.shift) return false;
+  if (event.text == "B") {
+    model_->request([this](WorldEditor& editor) { keepLight(editor); });
+    return true;
+  }
+  const Shown wanted = event.text == "\\"  ? Shown::a
+                       : event.text == "W" ? Shown::wiper
+                       : event.text == "D" ? Shown::difference
+                                           : Shown::present;
+  if (wanted == Shown::present) return false;
+  model_->request([this, wanted](WorldEditor&) { comparison_.toggle(wanted); });
+  return true;
+}
+
+bool Editing::beginTool(TransformTool::Kind kind, int axis, const InputEvent& at) {
   // Until it is ended the tool has its keys, also if it cannot begin: an axis is no other command.
   hasTool_ = true;
   isToolClick_ = hasToolFailed_ = false;
-  model_->request([this, kind, at = pointer_](WorldEditor& editor) {
+  model_->request([this, kind, axis, at](WorldEditor& editor) {
     hasToolFailed_ = true;
     tool_.emplace(editor, kind, view_, at.x, at.y);
+    if (axis >= 0) tool_->chooseAxis(axis);
     hasToolFailed_ = false;
   });
   return true;
@@ -186,6 +289,7 @@ bool Editing::takeForTool(const InputEvent& event) {
   case Kind::release:
     if (!isToolClick_) return false; // the session has seen the press
     endTool(event.button == Button::left);
+    if (event.button == Button::left) drag_ = Drag::none;
     return true;
   case Kind::down:
     if (hasToolFailed_ && (event.control || !(isAxis || TransformTool::isNumberKey(key))))
@@ -213,31 +317,69 @@ bool Editing::takeForTool(const InputEvent& event) {
 
 void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
+  if (isOpen_) offerLeft(session.editor());
   view_ = {session.pilot().camera(), session.pilot().aspect()};
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_));
-  readProbes(session, seconds);
+  if (!model_->readOnly().empty())
+    gizmo_.clear();
+  else if (gizmo_.place(session.editor(), view_))
+    screen_.redraw();
+  if (probes_.takeKeep()) keepLight(session.editor());
+  compare(session);
+  readStill(session, seconds);
+  if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
+  showCover();
 }
 
-// Reads the probes from the still picture of the world as it is, a few times a second.
-void Editing::readProbes(Session& session, double seconds) {
+void Editing::showCover() {
+  const Comparison::Cover& cover = comparison_.cover();
+  if (std::exchange(cover_, cover.number) != cover.number)
+    screen_.setCover(cover.width, cover.height, cover.rgb);
+  screen_.setCoverPart(comparison_.coverPart());
+}
+
+// Keeps the light of the probes, and the next still picture.
+void Editing::keepLight(WorldEditor& editor) {
+  if (editor.browser().hasChanges()) probes_.expire();
+  probes_.keep();
+  comparison_.ask(editor.editor().changes(), view_);
+}
+
+void Editing::compare(Session& session) {
+  const PictureLoop& pictures = session.pictures();
+  comparison_.follow(view_, pictures.width(), pictures.height(),
+                     {pictures.transformOf(session.pilot()), pictures.facts().scaleEnd},
+                     session.viewers().own().isOutdated());
+}
+
+// Reads the probes and what is compared from the still picture of the world as it is, a few times a
+// second.
+void Editing::readStill(Session& session, double seconds) {
   constexpr double interval = 0.25;
-  if (probes_.all().empty()) return;
+  const bool isCompared =
+      comparison_.wantsPicture() || comparison_.shown() == Comparison::Shown::difference;
+  if (probes_.all().empty() && !isCompared && !comparison_.isRefined(session.pictures().number()))
+    return;
   const bool outdated = session.viewers().own().isOutdated();
   if (outdated) probes_.expire();
-  if (outdated || seconds < probesRead_ + interval) return;
+  if (outdated || seconds < stillRead_ + interval) return;
   session.pictures().wantReadings();
-  const uint64_t finished =
-      session.pictures().isFinished(session.pilot()) ? session.pictures().number() : 0;
-  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting()) return;
+  const uint64_t number = session.pictures().number();
+  const uint64_t finished = session.pictures().isFinished(session.pilot()) ? number : 0;
+  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting() &&
+      !comparison_.wantsPicture())
+    return;
   picture::Picture picture;
   if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
-  probesRead_ = seconds;
+  stillRead_ = seconds;
   finishedRead_ = finished;
   probes_.read(session.browser(), picture, view_);
+  if (comparison_.take(picture, number, session.editor().editor().changes(), view_, finished != 0))
+    probes_.keep();
   screen_.redraw();
 }
 

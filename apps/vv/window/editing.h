@@ -1,22 +1,29 @@
-// editing.h: The editor in the window: its panels over the picture, its keys, and clicks that
-// select. It is open or not; edits stay when it is closed. [main thread]
+// editing.h: The editor in the window: its panels and handles over the picture, its keys, clicks
+// that select and drags that measure. It is open or not; edits stay when it is closed. [main
+// thread]
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
 
+#include "edit/comparison.h"
 #include "edit/edit_model.h"
+#include "edit/gizmo.h"
 #include "edit/transform_tool.h"
 #include "session/session.h"
+#include "session/world_loader.h"
 #include "window/editor_panels.h"
+#include "window/questions.h"
 #include "window/screen.h"
 
 namespace vv {
 
 class Editing {
  public:
-  explicit Editing(Screen& screen) : screen_(screen) {}
+  // recover: loads the world with the edits of an earlier session.
+  Editing(Screen& screen, Questions& questions, std::function<void(LoadRequest)> recover)
+      : screen_(screen), questions_(questions), recover_(std::move(recover)) {}
 
   bool isOpen() const { return isOpen_; }
   // Opens or closes the editor. Says why it cannot be opened by takeMessage().
@@ -30,35 +37,67 @@ class Editing {
   // has decided what becomes of edits that are not saved, and does not want to stay.
   // stay: is called otherwise; may be null.
   void leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay = {});
+  // Tells whether something has been asked for that has not been done yet.
+  bool isBusy() const { return model_ && model_->hasRequests(); }
+  // Tells whether a question may follow from an event, before those behind it are taken.
+  bool mayAsk(WorldEditor& editor, const InputEvent& event) const;
   // Forgets the world, because another takes its place.
   void reset();
   // Returns, once, what is to be said to the user.
   std::string takeMessage();
 
  private:
+  // A drag of the left button that is not the session's: of the line of the wiper, of a rectangle
+  // that measures or selects, or of a handle, at first without a tool.
+  enum class Drag : uint8_t { none, wiper, measure, select, handle, tool };
+
+  void draw();
+  void ask(Question question);
+  // Saves the file, or asks first if somebody else has changed it.
+  void save();
+  // Asks once whether the edits that an earlier session has left are used.
+  void offerLeft(WorldEditor& editor);
   bool press(const InputEvent& event);
+  bool pressForComparison(const InputEvent& event);
   void click(const InputEvent& event);
-  // The tool begins, is used and ends when the world can be used.
-  bool beginTool(TransformTool::Kind kind);
+  Drag dragAt(const InputEvent& press) const;
+  void follow(const InputEvent& move);
+  bool endDrag(const InputEvent& release);
+  // Tells whether the pointer has moved so far since the press that it is no click.
+  bool isDragged(const InputEvent& event) const;
+  // The tool begins, is used and ends when the world can be used. axis: -1: none. at: where the
+  // pointer is.
+  bool beginTool(TransformTool::Kind kind, int axis, const InputEvent& at);
   void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
   void endTool(bool accept);
   bool takeForTool(const InputEvent& event);
-  void readProbes(Session& session, double seconds);
+  void keepLight(WorldEditor& editor);
+  void compare(Session& session);
+  void showCover();
+  void readStill(Session& session, double seconds);
 
   Screen& screen_;
+  Questions& questions_;
+  const std::function<void(LoadRequest)> recover_;
   bool isOpen_ = false;
+  bool hasOffered_ = false;
   std::optional<EditModel> model_; // one for each world
   Probes probes_;
-  double probesRead_ = 0;     // when
-  uint64_t finishedRead_ = 0; // the number of the finished frame that they were read from
+  Comparison comparison_;
+  Gizmo gizmo_;
+  double stillRead_ = 0;      // when
+  uint64_t finishedRead_ = 0; // the number of the finished frame that was read
+  uint64_t cover_ = 0;        // the number of the comparison's cover that the screen shows
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then
-  InputEvent pointer_;                // where the pointer was last
-  bool isOverPicture_ = false;        // the pointer is there
-  bool hasTool_ = false;              // the tool gets the events; it may still have to begin
-  bool isToolClick_ = false;          // a button has been pressed for the tool
-  bool hasToolFailed_ = false;        // it could not begin
+  Drag drag_ = Drag::none;
+  bool measures_ = false;      // the next drag measures
+  InputEvent pointer_;         // where the pointer was last
+  bool isOverPicture_ = false; // the pointer is there
+  bool hasTool_ = false;       // the tool gets the events; it may still have to begin
+  bool isToolClick_ = false;   // a button has been pressed for the tool
+  bool hasToolFailed_ = false; // it could not begin
   std::optional<TransformTool> tool_;
   bool wantsFrame_ = false; // the viewer is to see what is selected
   std::string message_;

@@ -6,6 +6,7 @@
 #include <imgui_stdlib.h>
 
 #include "printable.h"
+#include "window/comparison_view.h"
 
 namespace vv {
 
@@ -28,20 +29,6 @@ bool button(const char* label, bool active, const std::string& hint) {
   return pressed;
 }
 
-// Begins a question, which waits for an answer while it is asked. Returns whether it is there; then
-// ImGui::EndPopup() ends it.
-bool beginQuestion(const char* title, bool isAsked, const char* text) {
-  if (isAsked && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return false;
-  ImGui::TextUnformatted(text);
-  return true;
-}
-
-// The answer that changes nothing, which Escape gives, too.
-bool harmlessAnswer(const char* label, const char* hint) {
-  return button(label, true, hint) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-}
-
 enum class Edge : uint8_t { left, right };
 
 // Places a panel at an edge of the window, in the whole height, with this part of its width. The
@@ -62,8 +49,6 @@ void EditorPanels::draw() {
   drawOutline();
   drawSheet();
   drawProbes();
-  drawQuestion();
-  drawOverwriteQuestion();
   model_.setActive(ImGui::IsAnyItemActive());
 }
 
@@ -82,7 +67,7 @@ void EditorPanels::drawTools() {
     model_.request([](WorldEditor& editor) { editor.undo(); });
   if (button("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
     model_.request([](WorldEditor& editor) { editor.redo(); });
-  if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)")) save();
+  if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)")) save_();
   ImGui::NewLine();
   if (button("Add", writable, "Add a node to the selected group, or behind the selected node"))
     ImGui::OpenPopup("##new");
@@ -168,6 +153,9 @@ void EditorPanels::drawProbes() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   for (const Probe& probe : probes_.all()) {
+    if (probe.area && areEqual(probe.area->view, view_))
+      drawRectangle(probe.area->region, std::to_string(probe.number).c_str());
+    if (probe.area) continue;
     double x = 0, y = 0;
     if (!projectPoint(view_.camera, view_.aspect, probe.point.data(), x, y)) continue;
     const ImVec2 at(float(1 + x) / 2 * size.x, float(1 - y) / 2 * size.y);
@@ -191,67 +179,14 @@ void EditorPanels::drawProbes() {
       ImGui::PopStyleColor();
     }
     ImGui::PopTextWrapPos();
-    if (button("Keep as A", true, "Compare what follows with the light of now (B)")) probes_.keep();
+    if (button("Keep as A", true, "Compare what follows with the light of now (B)"))
+      probes_.askToKeep();
     if (button("Copy", true, "Copy all as a table (CSV)"))
       ImGui::SetClipboardText(probes_.csv().c_str());
     if (button("Clear", true, "Remove all probes")) probes_.clear();
     ImGui::NewLine();
   }
   ImGui::End();
-}
-
-void EditorPanels::save() {
-  model_.request([this](WorldEditor& editor) {
-    asksToOverwrite_ = editor.editor().isChangedOnDisk() && !editor.editor().isInStep();
-    if (!asksToOverwrite_) editor.save();
-  });
-}
-
-void EditorPanels::askToSave(std::function<void()> go, std::function<void()> stay) {
-  go_ = std::move(go);
-  stay_ = std::move(stay);
-}
-
-// The answer is given when the question is closed, because it may end the world.
-void EditorPanels::drawQuestion() {
-  if (!beginQuestion("Unsaved edits", bool(go_), "The edits of this world have not been saved."))
-    return;
-  const bool saves = button("Save", true, "Write the file"),
-             throws = button("Throw away", true, "Go without saving"),
-             stays = harmlessAnswer("Stay", "Go on with this world (Escape)");
-  if (saves || throws || stays) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (!saves && !throws && !stays) return;
-  const std::function<void()> go = std::exchange(go_, nullptr),
-                              stay = std::exchange(stay_, nullptr);
-  if (saves)
-    model_.request([go, stay](WorldEditor& editor) {
-      try {
-        editor.save(); // if the file cannot be written, the world stays
-      } catch (...) {
-        if (stay) stay();
-        throw;
-      }
-      go();
-    });
-  else if (throws)
-    go();
-  else if (stay)
-    stay();
-}
-
-void EditorPanels::drawOverwriteQuestion() {
-  if (!beginQuestion("The file has changed", asksToOverwrite_,
-                     "Another program has changed or removed the file since it was read."))
-    return;
-  const bool replaces = button("Replace it", true, "Write the text with these edits over it"),
-             keeps = harmlessAnswer("Do not save", "Leave the file as it is (Escape)");
-  if (replaces || keeps) {
-    asksToOverwrite_ = false;
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
-  if (replaces) model_.request([](WorldEditor& editor) { editor.save("", true); });
 }
 
 } // namespace vv

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "edit/actions.h"
 #include "edit/edit_model.h"
@@ -14,16 +15,13 @@ namespace vv {
 
 class EditorPanels {
  public:
-  EditorPanels(EditModel& model, Probes& probes) : model_(model), probes_(probes) {}
+  // save: saves the file.
+  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
+      : model_(model), probes_(probes), save_(std::move(save)) {}
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
   void setView(const EditView& view) { view_ = view; }
-  // Asks whether edits are saved or thrown away before the world goes. go: is called then. stay: is
-  // called if the user wants to stay; may be null.
-  void askToSave(std::function<void()> go, std::function<void()> stay);
-  // Saves the file, or asks first if somebody else has changed it.
-  void save();
 
  private:
   void drawOutline();
@@ -32,15 +30,12 @@ class EditorPanels {
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
-  void drawQuestion();
-  void drawOverwriteQuestion();
 
   EditModel& model_;
   Probes& probes_;
   EditView view_;
   std::string search_;
-  std::function<void()> go_, stay_; // go_ null: nothing is asked
-  bool asksToOverwrite_ = false;
+  const std::function<void()> save_;
 };
 
 // Draws the widgets for a field, and asks for the edits that the user makes with them.

@@ -26,7 +26,9 @@ namespace {
 }
 
 // Tells whether a key has different positions on different keyboards; such keys are read as text.
-bool isTextKey(const std::string& key) { return key == "[" || key == "]" || key == "?"; }
+bool isTextKey(const std::string& key) {
+  return key == "[" || key == "]" || key == "?" || key == "\\";
+}
 
 void setModifiers(InputEvent& event, int modifiers) {
   event.shift = modifiers & KMOD_SHIFT;
@@ -72,7 +74,8 @@ struct Screen::Impl {
   SDL_Window* window = nullptr;
   SDL_Renderer* renderer = nullptr;
   SDL_Cursor *arrow = nullptr, *hand = nullptr;
-  Texture picture;
+  Texture picture, cover;
+  double coverPart = 1;
   std::array<Texture, places> panels;
   std::unique_ptr<Gui> gui;     // null: there are no widgets
   std::vector<uint32_t> pixels; // scratch storage for the picture
@@ -82,6 +85,7 @@ struct Screen::Impl {
   ~Impl() {
     gui.reset();
     picture.drop();
+    cover.drop();
     for (Texture& panel : panels) panel.drop();
     if (arrow) SDL_FreeCursor(arrow);
     if (hand) SDL_FreeCursor(hand);
@@ -99,6 +103,26 @@ struct Screen::Impl {
     event.y = 1 - (2 * y + 1.0) / std::max(1, h);
     setModifiers(event, SDL_GetModState());
     return event;
+  }
+
+  void fill(Texture& texture, int width, int height, const std::vector<uint8_t>& rgb) {
+    // SDL's own renderer can scale this format linearly.
+    if (!texture.fit(renderer, SDL_PIXELFORMAT_XRGB8888, width, height)) return;
+    pixels.resize(rgb.size() / 3);
+    for (size_t i = 0; i < pixels.size(); ++i)
+      pixels[i] =
+          uint32_t(rgb[3 * i]) << 16 | uint32_t(rgb[3 * i + 1]) << 8 | uint32_t(rgb[3 * i + 2]);
+    SDL_SetTextureScaleMode(texture.texture, SDL_ScaleModeLinear);
+    SDL_SetTextureBlendMode(texture.texture, SDL_BLENDMODE_NONE);
+    SDL_UpdateTexture(texture.texture, nullptr, pixels.data(), width * 4);
+    changed = true;
+  }
+
+  void drawCover(int width, int height) const {
+    if (!cover.texture) return;
+    const SDL_Rect from{0, 0, int(coverPart * cover.width + .5), cover.height};
+    const SDL_Rect to{0, 0, int(double(from.w) * width / cover.width + .5), height};
+    if (from.w > 0) SDL_RenderCopy(renderer, cover.texture, &from, &to);
   }
 
   static void key(InputEvent::Kind kind, const std::string& name, int modifiers,
@@ -218,11 +242,21 @@ Screen::Screen(const std::string& title, int width, int height) : impl_(std::mak
 
 Screen::~Screen() = default;
 
-void Screen::wait(double seconds, std::vector<InputEvent>& events) {
+namespace {
+int milliseconds(double seconds) { return std::clamp(int(seconds * 1000), 0, 1000); }
+} // namespace
+
+void Screen::wait(double seconds, std::vector<InputEvent>& events,
+                  const std::function<bool()>& isEnough) {
   SDL_Event event;
-  if (SDL_WaitEventTimeout(&event, std::clamp(int(seconds * 1000), 0, 1000)) == 0) return;
+  if (SDL_WaitEventTimeout(&event, milliseconds(seconds)) == 0) return;
   do impl_->take(event, events);
-  while (SDL_PollEvent(&event));
+  while (!isEnough() && SDL_PollEvent(&event));
+}
+
+void Screen::rest(double seconds) {
+  SDL_PumpEvents(); // the system must not take the window for one that hangs
+  SDL_Delay(uint32_t(milliseconds(seconds)));
 }
 
 int Screen::width() const {
@@ -248,16 +282,17 @@ bool Screen::visible() const {
 }
 
 void Screen::setPicture(int width, int height, const std::vector<uint8_t>& rgb) {
-  // SDL's own renderer can scale this format linearly.
-  if (!impl_->picture.fit(impl_->renderer, SDL_PIXELFORMAT_XRGB8888, width, height)) return;
-  impl_->pixels.resize(rgb.size() / 3);
-  for (size_t i = 0; i < impl_->pixels.size(); ++i)
-    impl_->pixels[i] =
-        uint32_t(rgb[3 * i]) << 16 | uint32_t(rgb[3 * i + 1]) << 8 | uint32_t(rgb[3 * i + 2]);
-  SDL_SetTextureScaleMode(impl_->picture.texture, SDL_ScaleModeLinear);
-  SDL_SetTextureBlendMode(impl_->picture.texture, SDL_BLENDMODE_NONE);
-  SDL_UpdateTexture(impl_->picture.texture, nullptr, impl_->pixels.data(), width * 4);
+  impl_->fill(impl_->picture, width, height, rgb);
+}
+
+void Screen::setCover(int width, int height, const std::vector<uint8_t>& rgb) {
+  if (width > 0) return impl_->fill(impl_->cover, width, height, rgb);
+  impl_->cover.drop();
   impl_->changed = true;
+}
+
+void Screen::setCoverPart(double part) {
+  if (std::exchange(impl_->coverPart, part) != part) impl_->changed = true;
 }
 
 void Screen::setPanel(Place place, const Panel& panel) {
@@ -287,6 +322,7 @@ void Screen::present() {
   SDL_RenderClear(r);
   if (impl_->picture.texture) SDL_RenderCopy(r, impl_->picture.texture, nullptr, nullptr);
   const int w = width(), h = height();
+  impl_->drawCover(w, h);
   for (int place = 0; place < places; ++place) {
     if (place == bottom && impl_->gui) impl_->gui->draw(); // messages stand before the widgets
     const Texture& panel = impl_->panels[size_t(place)];

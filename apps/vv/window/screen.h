@@ -21,15 +21,21 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  // Waits for events for at most `seconds` and appends those that have arrived.
-  void wait(double seconds, std::vector<InputEvent>& events);
-  int width() const; // pixels
+  // Waits for events for at most `seconds` and appends those that have arrived. After each of them
+  // isEnough() tells whether those behind it stay for the next call.
+  void wait(double seconds, std::vector<InputEvent>& events, const std::function<bool()>& isEnough);
+  void rest(double seconds); // waits, and leaves all events for later
+  int width() const;         // pixels
   int height() const;
   double scale() const; // pixels per unit of the desktop; above 1 on a high-resolution screen
   bool visible() const; // true if any part of the window is visible
 
   // rgb: bytes, first row at the top; the picture fills the window.
   void setPicture(int width, int height, const std::vector<uint8_t>& rgb);
+  // Shows another picture, which would fill the window, over the left part of the picture. width
+  // 0: none.
+  void setCover(int width, int height, const std::vector<uint8_t>& rgb);
+  void setCoverPart(double part);                              // from 0 to 1, of the width
   enum Place : uint8_t { right, top, bottom, middle, places }; // each covers those before it
   void setPanel(Place place, const Panel& panel);
   // Shows panels of widgets over the picture, below the texts at the bottom and in the middle. They

@@ -3,10 +3,7 @@
 #include "window/window.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <set>
@@ -29,6 +26,7 @@
 #include "session/world_watch.h"
 #include "start/world_start.h"
 #include "window/editing.h"
+#include "window/input_recording.h"
 #include "window/screen.h"
 #include "window/sound/speaker.h"
 #include "xvrml/node_plugin.h"
@@ -48,27 +46,19 @@ class Window {
       : options_(options), arguments_(arguments), problems_(options_),
         screen_("vv", options.render.width, options.render.height), speaker_(mixer_) {
     options_.view.shader = readCameraShader(options_);
-    if (!options_.recordInput.empty()) {
-      record_.open(options_.recordInput, std::ios::binary | std::ios::trunc);
-      if (!record_)
-        throw Failure{exitRender,
-                      fmt::format("--record-input: cannot write {}", options_.recordInput)};
-    }
     painter_ = std::make_unique<PanelPainter>(int(14 * screen_.scale()));
     deferInterrupt(true, 1); // before clients hear of the address: its socket file must not stay
     if (!options_.control.empty())
       control_ = std::make_unique<control::Control>(
-          options_, control::Host{[this](const std::vector<std::string>& urls) {
-                                    leaveWorld(
-                                        [this, urls] {
-                                          open({urls, "", {}}, false);
-                                        },
-                                        [this] {
-                                          control_->loadFailed("the user keeps this world, whose "
-                                                               "edits are not saved");
-                                        });
-                                  },
-                                  [this] { ended_ = true; }});
+          options_,
+          control::Host{[this](const LoadRequest& request) {
+                          leaveWorld([this, request] { open(request, request.left != nullptr); },
+                                     [this] {
+                                       control_->loadFailed("the user keeps this world, whose "
+                                                            "edits are not saved");
+                                     });
+                        },
+                        [this] { ended_ = true; }});
   }
 
   int run();
@@ -98,15 +88,8 @@ class Window {
   // --- Worlds ---
   void open(LoadRequest request, bool keepPlace);
   void takeWorld();
-  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment);
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, LeftEdits* left);
 
-  // Records a line of input. After a failed write nothing more is written, because a script with a
-  // gap would replay wrongly.
-  void record(const std::string& line);
-
-  // Ends the recording, because the time of another world begins at 0. Returns what is said of it.
-  std::string endRecording();
-  void recordingFailed(int reason);
   void reload();
   // Goes on at once, or when the user has decided what becomes of edits that are not saved.
   void leaveWorld(std::function<void()> go, std::function<void()> stay = {});
@@ -138,12 +121,15 @@ class Window {
   Mixer mixer_;
   Speaker speaker_;
   WorldLoader loader_;
-  std::ofstream record_;
+  InputRecording recording_{options_.recordInput,
+                            [this](const std::string& text) { message(text, 1e9); }};
   std::unique_ptr<PanelPainter> painter_;
   std::unique_ptr<Session> session_;          // null: no world has been loaded yet
   std::unique_ptr<control::Control> control_; // null: no program controls the world
   WorldWatch watch_{options_};
-  Editing editing_{screen_};
+  Questions questions_{screen_};
+  Editing editing_{screen_, questions_,
+                   [this](LoadRequest edits) { open(std::move(edits), true); }};
   uint64_t saves_ = 0; // times that the file of the world has been saved
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;
@@ -191,7 +177,13 @@ void Window::wait(double time) {
   const bool soon = session_ && (session_->pictures().isDrawing() || session_->pictures().isDue());
   const bool idle = !session_ || !screen_.visible() || (input_.empty() && session_->isQuiet());
   const double most = idle && !control_ ? .05 : .004;
-  screen_.wait(soon ? .001 : std::min(time, most), events_);
+  const bool isBusy =
+      session_ && !session_->saver().isWaiting() &&
+      (!input_.empty() || !session_->viewers().own().waiting.empty() || editing_.isBusy());
+  const auto mayAsk = [this](const InputEvent& event) {
+    return session_ && editing_.mayAsk(session_->editor(), event);
+  };
+  questions_.wait(soon ? .001 : std::min(time, most), mayAsk, isBusy, events_);
 }
 
 bool Window::isTime(double time, double next, double period) const {
@@ -273,9 +265,10 @@ void Window::takeWorld() {
   LoadAnswer answer;
   if (!loader_.take(answer)) return;
   loading_.clear();
+  const std::shared_ptr<LeftEdits> left = answer.left;
   const auto [wrong, code] = useWorld(
-      std::move(answer), [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
-        begin(std::move(world), fragment);
+      std::move(answer), [&](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+        begin(std::move(world), fragment, left.get());
       });
   if (wrong.empty()) return;
   sayError(wrong);
@@ -284,7 +277,8 @@ void Window::takeWorld() {
   if (!session_) failed_ = code;
 }
 
-void Window::begin(std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+void Window::begin(std::unique_ptr<xvrml::World> world, const std::string& fragment,
+                   LeftEdits* left) {
   std::optional<Session::Place> place;
   if (keepPlace_) place = session_->place();
   world->options.loadInlines = true;
@@ -298,51 +292,31 @@ void Window::begin(std::unique_ptr<xvrml::World> world, const std::string& fragm
   if (session_) options.recordInput.clear();
   const bool scripted = !session_ || keepPlace_;
   if (!options.recordInput.empty())
-    calls.record = [this](double time, const InputEvent& event) { record(inputLine(time, event)); };
+    calls.record = [this](double time, const InputEvent& event) {
+      recording_.write(inputLine(time, event));
+    };
   auto fresh = std::make_unique<Session>(std::move(world), options, problems_, std::move(calls),
                                          scripted ? options_.script.get() : nullptr);
+  if (left) fresh->editor().journal().adopt(*left);
   width_ = screen_.width();
   height_ = screen_.height();
   fresh->pictures().setMotion(motion_);
   fresh->begin(width_, height_, place, fragment);
   mixer_.set({});
   const std::string saved = session_ ? session_->saver().end() : "";
-  const std::string recorded = session_ ? endRecording() : "";
+  const std::string recorded = session_ ? recording_.end() : "";
   if (control_) control_->detach();
   editing_.reset();
   saves_ = 0;
+  keepEdits(session_.get());
   session_ = std::move(fresh); // ends the previous session
+  session_->editor().journal().look();
   failed_ = exitDone;
   first_ = true;
   message(saved.empty() ? recorded : saved, 6);
   const std::string& path = session_->browser().world().path;
   screen_.setTitle(path + " - vv");
   watch_.follow(session_->browser().world());
-}
-
-void Window::record(const std::string& line) {
-  if (!record_) return;
-  errno = 0;
-  if (!(record_ << line << std::flush)) recordingFailed(errno);
-}
-
-std::string Window::endRecording() {
-  if (!record_.is_open()) return {};
-  errno = 0;
-  if (record_ && (record_.close(), !record_)) recordingFailed(errno);
-  if (!record_) return {};
-  const std::string text = fmt::format("--record-input: {} ends here, because a recording is "
-                                       "that of one world",
-                                       options_.recordInput);
-  sayWarning(text);
-  return text;
-}
-
-void Window::recordingFailed(int reason) {
-  const std::string text = fmt::format("--record-input: cannot write {}: {}", options_.recordInput,
-                                       std::strerror(reason ? reason : EIO));
-  sayError(text);
-  message(text, 1e9);
 }
 
 void Window::reload() {
@@ -412,7 +386,7 @@ void Window::showHelp(bool shown) {
 
 // A recording would not have the edits, and its replay would show another world.
 void Window::edit() {
-  if (record_.is_open() || options_.script)
+  if (recording_.isOn() || options_.script)
     return message("no editor here: recordings and scripts of input have no edits", 4);
   editing_.open(!editing_.isOpen());
 }
@@ -477,11 +451,11 @@ void Window::sound() {
 }
 
 int Window::end() {
-  errno = 0;
-  if (record_.is_open() && record_ && (record_.close(), !record_)) recordingFailed(errno);
-  const int code = interrupted()                     ? exitInterrupted
-                   : failed_ == exitDone && !record_ ? exitRender
-                                                     : failed_;
+  keepEdits(session_.get());
+  recording_.close();
+  const int code = interrupted()                                   ? exitInterrupted
+                   : failed_ == exitDone && recording_.hasFailed() ? exitRender
+                                                                   : failed_;
   if (session_) session_->saver().end();
   control_.reset(); // sends the last answers, before the process may end
   stopOrExit(session_.get(), code, control::Control::isWriting() ? Others::work : Others::rest);

@@ -509,9 +509,18 @@ class Control:
 
     def edits(self, *, text: bool = False) -> Dict[str, Any]:
         """Returns the state of the file: read_only (why, or None), changed, changed_on_disk, the
-        names of the steps to undo and redo; with text=True also the edited text."""
+        names of the steps to undo and redo, recoverable: what an earlier session has left (file,
+        time), or None; with text=True also the edited text."""
         result: Dict[str, Any] = self.call("edits", text=text)
         return result
+
+    def recover(self, *, use: bool = True, timeout: Optional[float] = None) -> Optional[str]:
+        """Loads the world with the edits that an earlier session has left unsaved, and returns its
+        path, as `load` does; with use=False they are thrown away, and None is returned."""
+        world: Optional[str] = self._call("recover", {"use": use}, timeout)
+        if use:
+            self._callbacks.clear()
+        return world
 
     def roots(self) -> List[Dict[str, Any]]:
         """Returns the outermost nodes: node, type, name."""
@@ -551,14 +560,31 @@ class Control:
               x: float,
               y: float,
               *,
+              quantity: str = "luminance",
               samples: Optional[int] = None,
               timeout: Optional[float] = None) -> Dict[str, Any]:
         """Measures the light of a pixel of the true picture. Returns its luminance in cd/m2,
         half_width of the 95 % interval, radiance and radiance_half_width of the three colours,
         samples, trusted: whether the intervals can be trusted, which takes 32 samples or more, and
-        hit: what pick returns. samples: of the pixel; None: as many as the window takes."""
+        hit: what pick returns. samples: of the pixel; None: as many as the window takes.
+        With quantity="illuminance" it measures the light that falls on the surface that is seen
+        there: illuminance in lux instead of luminance and radiance. samples: of the point; None:
+        4,096, or as many as the command line says."""
         given = {} if samples is None else {"samples": samples}
-        result: Dict[str, Any] = self._call("probe", {"x": x, "y": y, **given}, timeout)
+        members = {"x": x, "y": y, "quantity": quantity, **given}
+        result: Dict[str, Any] = self._call("probe", members, timeout)
+        return result
+
+    def measure(self,
+                *,
+                samples: Optional[int] = None,
+                timeout: Optional[float] = None) -> List[Dict[str, Any]]:
+        """Reads all ORTSensors of the world as it is now. Returns them in the order of the file, as
+        "sensors" of `vv --measure FILE.json` has them: name, quantity, unit, mean, mean_half_width,
+        minimum, maximum, uniformity, points and so on. samples: of each point; None: 4,096, or as
+        many as the command line says."""
+        given = {} if samples is None else {"samples": samples}
+        result: List[Dict[str, Any]] = self._call("measure", given, timeout)
         return result
 
     def bind(self, viewpoint: Union[str, int]) -> None:
@@ -620,9 +646,10 @@ class Control:
         now: float = self._call("time", members, None)["now"]
         return now
 
-    def quit(self) -> None:
-        """Ends vv."""
-        self.call("quit")
+    def quit(self, *, discard: bool = False) -> None:
+        """Ends vv. Edits that are not saved are kept for the next session, unless discard is
+        true."""
+        self.call("quit", discard=discard)
 
 
 def connect(address: str,

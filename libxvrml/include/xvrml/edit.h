@@ -5,8 +5,8 @@
 // began: of a field that an interpolator moves, only a value that was edited is written. Undo
 // restores what the edit has changed, and nothing else.
 //
-// Files of VRML97, X3D ClassicVRML and X3D in XML can be edited, also packed with gzip. Nodes that
-// stand in the world's own file can be edited, and what has been inserted there; nodes in the
+// Files of VRML97 and X3D (ClassicVRML, XML and JSON) can be edited, also packed with gzip. Nodes
+// that stand in the world's own file can be edited, and what has been inserted there; nodes in the
 // bodies of prototypes, of Inlines and of Scripts cannot.
 //
 // All functions are for the thread that owns the world. A function that throws EditError has
@@ -77,7 +77,7 @@ class Editor {
   // field's range, or with a number that is not finite.
   void set(Node& node, std::string_view field, Value value);
   // Inserts a node that is given as text in the encoding of the file, with all that is in it: in
-  // XML as one element.
+  // XML as one element, in JSON as an object with one member.
   // Returns the node. In an SFNode it takes the place of the present one. Names that the file has
   // already get a number behind them. Throws EditError if the text cannot be read as one node
   // without routes and prototypes, or the node cannot stand there.
@@ -116,6 +116,19 @@ class Editor {
   bool isChangedOnDisk() const;
   // To be called when bytes() has been written to the file.
   void saved();
+
+  // --- Edits that outlive the program ---
+  // Returns the text of the file with all edits so far, also within a step and after another world
+  // has taken the place of this one. It is not read back, and meant to be kept beside the file.
+  // Throws EditError if nothing has been edited.
+  std::string draft();
+  // Returns the text of the file that is on the disk now, unpacked. Throws EditError if it cannot
+  // be read.
+  std::string textOnDisk();
+  // Says that the world was loaded from this text (loadWorldFromMemory with the file's path), which
+  // draft() gave an earlier program: it counts as edits that have not been saved, which undo()
+  // cannot take back. To be called before any edit. Throws EditError if the file cannot be edited.
+  void adopt(std::string text);
 
  private:
   struct Impl;

@@ -75,6 +75,9 @@ class Editor {
       button("undo", "Undo", "Undo (Ctrl+Z)", () => this.edit("undo")),
       button("redo", "Redo", "Do again (Ctrl+Y)", () => this.edit("redo")),
       button("save", "Save", "Save the file in place (Ctrl+S)", () => this.edit("save")),
+      button("revert", "Revert", "Read the file again, without these edits", () =>
+        this.askToRevert(),
+      ),
       make("select", { id: "kinds", label: "Node to add" }),
       button("add", "Add", "Add it to the selected group, or behind the selected node", () =>
         this.edit("add", { kind: $("kinds").value }),
@@ -332,7 +335,7 @@ class Editor {
     $("undo").title = `Undo ${message.undo} (Ctrl+Z)`;
     $("redo").disabled = !message.redo;
     $("redo").title = `Do again: ${message.redo} (Ctrl+Y)`;
-    $("save").disabled = !message.unsaved;
+    for (const id of ["save", "revert"]) $(id).disabled = !message.unsaved;
     $("add").disabled = !isEditable;
     for (const id of ["copy", "group", "remove"])
       $(id).disabled = !isEditable || message.selected === 0;
@@ -341,6 +344,8 @@ class Editor {
     $("readonly").textContent = message.readOnly;
     document.body.dataset.unsaved = message.unsaved;
     this.fields.setEditable(isEditable);
+    if (message.left !== null && message.left !== this.offered) this.offerLeft(message.left);
+    this.offered = message.left;
   }
 
   on_probes(message) {
@@ -358,6 +363,7 @@ class Editor {
       waiting: "waits for a still picture",
       hidden: "not seen from here",
       outside: "outside of the picture",
+      other_view: "of another view",
     };
     if (probe.state !== "read") return states[probe.state];
     const digits = (number) => (number === null ? "?" : Number(number.toPrecision(3)));
@@ -381,23 +387,44 @@ class Editor {
     this.silence = setTimeout(() => ($("said").textContent = ""), saidSeconds * 1000);
   }
 
-  askToReplace(text) {
-    const answer = (overwrite) => {
-      $("panel").close();
-      if (overwrite) this.edit("save", { overwrite });
-    };
-    page.showPanel(
-      make(
-        "div",
-        { id: "question" },
-        make("p", { textContent: text }),
-        button("replace", "Replace it", "Write the text with these edits over it", () =>
-          answer(true),
-        ),
-        button("dont", "Do not save", "Leave the file as it is (Escape)", () => answer(false)),
-      ),
+  // --- Questions ---
+
+  // answers: name of the button, text, what it does; the last one changes nothing.
+  ask(text, answers) {
+    const buttons = answers.map(([id, label, title, action]) =>
+      button(id, label, title, () => {
+        $("panel").close();
+        action();
+      }),
     );
-    $("dont").focus();
+    const question = make("p", { textContent: text });
+    page.showPanel(make("div", { id: "question" }, question, ...buttons));
+    buttons.at(-1).focus();
+  }
+
+  askToReplace(text) {
+    const replace = () => this.edit("save", { overwrite: true });
+    this.ask(text, [
+      ["replace", "Replace it", "Write the text with these edits over it", replace],
+      ["dont", "Do not save", "Leave the file as it is (Escape)", () => {}],
+    ]);
+  }
+
+  askToRevert() {
+    this.ask("The edits of this world have not been saved.", [
+      ["throw", "Throw them away", "Read the file again", () => this.edit("revert")],
+      ["stay", "Stay", "Go on with these edits (Escape)", () => {}],
+    ]);
+  }
+
+  offerLeft(seconds) {
+    const when = new Date(seconds * 1000).toLocaleString();
+    const recover = (use) => () => this.edit("recover", { use });
+    this.ask(`Edits of ${when} have not been saved: the vv that kept them has ended.`, [
+      ["use", "Use them", "Load the world with them; the file stays until you save", recover(true)],
+      ["throw", "Throw them away", "Remove what is kept", recover(false)],
+      ["later", "Decide later", "Ask again when the page is opened (Escape)", () => {}],
+    ]);
   }
 }
 

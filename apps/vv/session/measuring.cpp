@@ -1,0 +1,35 @@
+#include "session/measuring.h"
+
+#include <utility>
+
+namespace vv {
+
+void Measuring::want(const picture::LiveMeasure& measure, Done done) {
+  wanted_ = measure;
+  done_ = std::move(done);
+}
+
+void Measuring::giveUp() {
+  if (!isPending()) return;
+  if (!isWaiting()) shared_.cancel();
+  wanted_.reset();
+  end({{}, "the measurement was given up"});
+}
+
+void Measuring::advance() {
+  if (isWaiting()) {
+    if (!shared_.isIdle()) {
+      if (!shared_.isMoving()) shared_.cancel();
+      return;
+    }
+    shared_.measure(*std::exchange(wanted_, std::nullopt));
+  } else if (const std::optional<picture::LiveReadings> readings = shared_.live.takeReadings()) {
+    end(*readings);
+  }
+}
+
+void Measuring::end(const picture::LiveReadings& readings) {
+  std::exchange(done_, nullptr)(readings);
+}
+
+} // namespace vv

@@ -1,0 +1,101 @@
+#include "window/comparison_view.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace vv {
+
+namespace {
+
+constexpr ImU32 lineColour = IM_COL32(255, 170, 40, 220), shadow = IM_COL32(0, 0, 0, 170);
+constexpr float top = 40; // below the overlay
+
+// Draws a text in the middle of the picture, or so that it ends or begins at a place.
+void drawLabel(const char* text, float x, float part) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  const ImVec2 at(x - part * size.x, top);
+  list.AddRectFilled(ImVec2(at.x - 5, at.y - 3), ImVec2(at.x + size.x + 5, at.y + size.y + 3),
+                     shadow);
+  list.AddText(at, lineColour, text);
+}
+
+void drawWiper(double place) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float x = float(1 + place) / 2 * size.x;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddLine(ImVec2(x, 0), ImVec2(x, size.y), shadow, 4);
+  list.AddLine(ImVec2(x, 0), ImVec2(x, size.y), lineColour, 2);
+  list.AddCircleFilled(ImVec2(x, size.y / 2), 6, lineColour);
+  drawLabel("A", x - 12, 1);
+  drawLabel("B", x + 12, 0);
+}
+
+// A line of the legend behind a square of its colour.
+void entry(ImU32 colour, const std::string& text) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float side = ImGui::GetTextLineHeight();
+  ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + side, at.y + side), colour);
+  ImGui::Dummy(ImVec2(side, side));
+  ImGui::SameLine();
+  ImGui::TextUnformatted(text.c_str());
+}
+
+std::string changeAt(const ChangePicture& changes, double x, double y) {
+  const int column = std::clamp(int((1 + x) / 2 * changes.width), 0, changes.width - 1),
+            row = std::clamp(int((1 - y) / 2 * changes.height), 0, changes.height - 1);
+  const float change = changes.changes[size_t(row) * size_t(changes.width) + size_t(column)];
+  return change == 0 ? "no significant change" : fmt::format("{:+.3g} cd/m2", change);
+}
+
+void drawLegend(const Comparison& comparison, double x, double y) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(size.x / 2, top), ImGuiCond_Always, ImVec2(.5f, 0));
+  if (ImGui::Begin("##difference", nullptr,
+                   ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                       ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoInputs)) {
+    const ChangePicture* const changes = comparison.changes();
+    ImGui::TextUnformatted("B - A");
+    if (!changes) {
+      ImGui::TextUnformatted("waits for a still picture");
+    } else {
+      entry(IM_COL32(255, 150, 20, 255),
+            fmt::format("+ brighter, up to {:+.3g} cd/m2", changes->most));
+      entry(IM_COL32(70, 140, 255, 255),
+            fmt::format("- darker, down to {:+.3g} cd/m2", changes->least));
+      entry(IM_COL32(110, 110, 110, 255), "no significant change (5 %, all pixels together)");
+      ImGui::TextUnformatted(fmt::format("{} of {} pixels with trusted error bars, of {}",
+                                         changes->significant, changes->judged,
+                                         changes->changes.size())
+                                 .c_str());
+      ImGui::TextUnformatted(("here: " + changeAt(*changes, x, y)).c_str());
+    }
+  }
+  ImGui::End();
+}
+
+} // namespace
+
+void drawComparison(const Comparison& comparison, double x, double y) {
+  switch (comparison.shown()) {
+  case Comparison::Shown::present: break;
+  case Comparison::Shown::a: drawLabel("A", ImGui::GetIO().DisplaySize.x / 2, .5f); break;
+  case Comparison::Shown::wiper: drawWiper(comparison.wiper()); break;
+  case Comparison::Shown::difference: drawLegend(comparison, x, y); break;
+  }
+}
+
+void drawRectangle(const Region& region, const char* text) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const ImVec2 corner(float(1 + region.left) / 2 * size.x, float(1 - region.top) / 2 * size.y);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRect(corner,
+               ImVec2(float(1 + region.right) / 2 * size.x, float(1 - region.bottom) / 2 * size.y),
+               lineColour, 0, 0, 1.5f);
+  list.AddText(ImVec2(corner.x + 4, corner.y + 2), lineColour, text);
+}
+
+} // namespace vv

@@ -1,0 +1,193 @@
+"""Tests comparisons, rectangles and handles of the editor in vv's window with real clicks and keys."""
+import re
+
+import pytest
+
+from conftest import HEADER
+from window_driver import framebuffer, screen, window  # noqa: F401
+
+# At 600x400 the panels leave the picture from -0.48 to 0.4. The boxes are at -0.32 and 0.32.
+WORLD = HEADER + """
+Viewpoint { position 0 0 10 fieldOfView 0.785398 }
+NavigationInfo { headlight FALSE type [ "EXAMINE" "ANY" ] }
+DirectionalLight { direction 0 0 -1 }
+DEF LEFT Transform { translation -2 0 0 children Shape {
+  appearance Appearance { material Material { diffuseColor .5 .5 .5 } } geometry Box { size 1 1 1 } } }
+DEF RIGHT Transform { translation 2 0 0 children Shape {
+  appearance Appearance { material Material { diffuseColor .5 .5 .5 } } geometry Box { size 1 1 1 } } }
+"""
+HALF = 4.1421  # half the height of what is seen at the boxes
+RIGHT = 2 / (1.5 * HALF)  # where the right one is seen
+ARROW = 0.3 / 1.5  # the length of an arrow in the picture
+
+
+@pytest.fixture(autouse=True)
+def needs_the_editor(vv):
+    if re.search(r"^edit +no", vv("--list-features").text, re.M):
+        pytest.skip("vv is built without the editor")
+
+
+class Editor:
+    """The editor in a window, and what the screen shows of it."""
+
+    def __init__(self, window, screen):
+        self.window, self.screen = window, screen
+        window.key("e")
+
+    def corner(self):
+        text = self.window.tool("getwindowgeometry", "--shell", self.window.id)
+        return [int(re.search(rf"{n}=(-?\d+)", text)[1]) for n in ("X", "Y")]
+
+    def rows(self):
+        left, top = self.corner()
+        return [row[left:left + 600] for row in framebuffer(self.screen[1])[top:top + 400]]
+
+    def at(self, x, y):
+        return self.rows()[int((1 - y) / 2 * 400)][int((x + 1) / 2 * 600)]
+
+    def until(self, test, what):
+        self.window.wait(lambda: test(self.rows()), what)
+
+    def says(self):
+        """Returns what the bottom of the window shows between the panels."""
+        return [row[160:410] for row in self.rows()[384:]]
+
+    def keep(self):
+        """Keeps A, and waits for the long message that says that it has all its samples."""
+        self.window.key("b")
+        self.until(lambda rows: any(min(p) > 150 for row in rows[384:] for p in row[250:400]), "A")
+
+    def drag(self, *places, keys=()):
+        for key in keys:
+            self.window.tool("keydown", key)
+        self.window.drag(*places)
+        for key in keys:
+            self.window.tool("keyup", key)
+
+
+@pytest.fixture
+def editor(window, screen):
+    return Editor(window(WORLD, "--size", "600x400", "--spp", 64), screen)
+
+
+def text(vv):
+    return (vv.folder / "world.wrl").read_text()
+
+
+def saved(w, vv, test):
+    """Saves until the file is as expected, and returns its text."""
+
+    def tried():
+        w.key("ctrl+s")
+        return test(text(vv))
+
+    w.wait(tried, "the file")
+    return text(vv)
+
+
+def is_grey(colour):
+    return 90 < min(colour) and max(colour) - min(colour) < 12
+
+
+def is_dark(colour):
+    return max(colour) < 40
+
+
+def is_loss(colour):
+    return colour[2] > 200 and colour[0] < 110
+
+
+def pixel(rows, x, y):
+    return rows[int((1 - y) / 2 * 400)][int((x + 1) / 2 * 600)]
+
+
+def remove_the_right_box(editor):
+    editor.until(lambda rows: is_grey(pixel(rows, RIGHT, .05)), "the box")
+    editor.keep()
+    editor.window.click(RIGHT, .05)
+    editor.window.key("Delete")
+    editor.until(lambda rows: is_dark(pixel(rows, RIGHT, .05)), "no box")
+
+
+def test_a_picture_is_kept_shown_and_compared(editor):
+    w = editor.window
+    remove_the_right_box(editor)
+    w.key("backslash")
+    editor.until(lambda rows: is_grey(pixel(rows, RIGHT, .05)), "A")
+    w.key("backslash")
+    editor.until(lambda rows: is_dark(pixel(rows, RIGHT, .05)), "the present picture")
+    w.key("w")  # A is at the left of the middle
+    editor.until(lambda rows: max(pixel(rows, 0, -.5)) > 120, "the line")
+    assert is_dark(editor.at(RIGHT, .05))
+    editor.drag(0, -.5, RIGHT + .05, -.5)
+    editor.until(lambda rows: is_grey(pixel(rows, RIGHT, .05)), "A at the left of the line")
+    w.key("d")
+    editor.until(lambda rows: is_loss(pixel(rows, RIGHT, .05)), "the loss")
+    assert not is_loss(editor.at(-RIGHT, .05)) and max(editor.at(-RIGHT, .05)) < 120
+    w.key("Escape")
+    editor.until(lambda rows: is_dark(pixel(rows, RIGHT, .05)), "the present picture")
+    assert w.program.poll() is None
+
+
+def test_another_view_is_not_compared(editor):
+    w = editor.window
+    remove_the_right_box(editor)
+    w.key("backslash")
+    editor.until(lambda rows: is_grey(pixel(rows, RIGHT, .05)), "A")
+    before = editor.says()
+    editor.drag(0, -.6, .02, -.6)  # turns the world
+    editor.until(lambda rows: is_dark(pixel(rows, RIGHT, .05)), "the present picture")
+    w.wait(lambda: editor.says() != before, "why not")
+
+
+def test_handles_move_turn_and_scale(editor, vv):
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, -RIGHT, .05)), "the box")
+    w.move(-RIGHT, .05)
+    w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
+    arrow = -RIGHT + .7 * ARROW
+    editor.until(lambda rows: pixel(rows, arrow, 0)[0] > 150 > pixel(rows, arrow, 0)[1], "the arrow")
+    editor.drag(arrow, 0, arrow + .15, 0)
+    now = saved(w, vv, lambda t: t != WORLD)
+    place = re.search(r"LEFT Transform { translation (\S+) 0 0 children", now)
+    assert float(place[1]) == pytest.approx(-2 + .15 * 1.5 * HALF, abs=.05)
+    w.key("ctrl+z", "t")
+    saved(w, vv, lambda t: t == WORLD)
+    across, up = .3 * .7071 / 1.5, .3 * .7071
+    editor.drag(-RIGHT + across, up, -RIGHT - across, up)
+    now = saved(w, vv, lambda t: t != WORLD)
+    angle = re.search(r"rotation 0 0 1 (\S+)", now)
+    assert float(angle[1]) == pytest.approx(1.5708, abs=.05)
+    w.key("ctrl+z", "t")
+    saved(w, vv, lambda t: t == WORLD)
+    editor.drag(-RIGHT + ARROW, 0, -RIGHT + 2 * ARROW, 0)
+    now = saved(w, vv, lambda t: t != WORLD)
+    scale = re.search(r"scale (\S+) 1 1", now)
+    assert float(scale[1]) == pytest.approx(2, abs=.1)
+
+
+def test_a_drag_with_ctrl_selects_what_is_seen_in_a_rectangle(editor, vv):
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, -RIGHT, .05)), "the box")
+    editor.drag(-.1, .4, .39, -.4, keys=["ctrl"])
+    editor.drag(.1, .4, -.47, -.4, keys=["ctrl", "shift"])
+    w.key("Delete")
+    now = saved(w, vv, lambda t: t != WORLD)
+    assert "Shape" not in now and "LEFT" in now and "RIGHT" in now
+
+
+def test_a_rectangle_is_measured(editor):
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, -RIGHT, .05)), "the box")
+    w.key("shift+v")
+    editor.drag(-.4, .6, .3, .4)
+    line = int(.2 * 400)  # the upper edge
+
+    def is_drawn(rows):
+        return any(row[260][0] > row[260][2] + 60 for row in rows[line - 1:line + 2])
+
+    editor.until(is_drawn, "the rectangle")
+    # The list of the probes is at the bottom, between the panels.
+    editor.until(lambda rows: sum(max(p) > 150 for row in rows[300:370] for p in row[170:400]) > 50,
+                 "the list")
+    assert w.program.poll() is None

@@ -1,0 +1,168 @@
+// xvrml_edit_places.cpp: Tests where nodes of a file may stand: not in themselves, and also in
+// fields that could not be read as a whole; and lists of many nodes in one line.
+#include "unit/xvrml_edit_support.h"
+#include "xvrml/set_field.h"
+
+namespace {
+
+using namespace edit_test;
+
+class EditedPlaces : public Edited {};
+INSTANTIATE_TEST_SUITE_P(World, EditedPlaces, testing::Bool(),
+                         [](const auto& info) { return info.param ? "Running" : "Resting"; });
+
+constexpr const char* loop = "this Group would become a part of itself";
+
+TEST_P(EditedPlaces, NoNodeHoldsItself) {
+  load("DEF G Group { children Group { children DEF K Collision { } } }\n");
+  Node &group = node("G"), &collision = node("K");
+  const NodeSlot slots[] = {
+      {&group, "children", 0}, {&collision, "children", 0}, {&collision, "proxy", 0}};
+  for (const NodeSlot& slot : slots) {
+    EXPECT_EQ(refusal([&] { editor->use(slot, group); }), loop);
+    EXPECT_EQ(refusal([&] { editor->move({nullptr, "", 0}, slot); }), loop);
+  }
+  EXPECT_NE(refusal([&] {
+              editor->insert({&group, "children", 0}, "Group { children USE G }");
+            }),
+            "done");
+  undoAll();
+}
+
+TEST_P(EditedPlaces, NoNodeHoldsItselfThroughAnInstance) {
+  load("PROTO P [ field SFNode one NULL exposedField MFNode kids [ ] ] { Group { children [ Group "
+       "{ children IS kids } Collision { proxy IS one } ] } }\n"
+       "DEF I P { kids DEF G Group { } one DEF H Group { } }\n");
+  for (const char* name : {"G", "H"})
+    EXPECT_EQ(refusal([&] {
+                editor->use({&node(name), "children", 0}, node("I"));
+              }),
+              "this P would become a part of itself");
+  EXPECT_EQ(refusal([&] {
+              editor->use({&node("I"), "kids", 0}, node("I"));
+            }),
+            "this P would become a part of itself");
+  EXPECT_EQ(refusal([&] {
+              editor->move({nullptr, "", 0}, {&node("H"), "children", 0});
+            }),
+            "this P would become a part of itself");
+  undoAll();
+}
+
+TEST_P(EditedPlaces, NodesOfInlinesHoldNoneOfTheFile) {
+  folder.write("in.wrl", "#VRML V2.0 utf8\nDEF X Group { }\n");
+  load("DEF G Group { children DEF I Inline { url \"in.wrl\" } }\n");
+  const Scope* const content = inlineScope(node("I"));
+  ASSERT_TRUE(content);
+  EXPECT_NE(refusal([&] {
+              editor->use({content->roots[0].get(), "children", 0}, node("G"));
+            }).find("not in the world's own file"),
+            std::string::npos);
+}
+
+// Scripts may have taken apart in the running world what the file still holds together.
+TEST_P(EditedPlaces, TheFileHasNoLoopsThatTheWorldHasNot) {
+  load("DEF A Group { children DEF B Group { } }\nDEF C Group { children USE B }\n");
+  if (browser)
+    browser->set(node("A"), "children", MFNode{});
+  else
+    setField(world(), node("A"), "children", MFNode{});
+  EXPECT_EQ(refusal([&] { editor->use({&node("B"), "children", 0}, node("A")); }), loop);
+  EXPECT_EQ(refusal([&] { editor->move({nullptr, "", 0}, {&node("B"), "children", 0}); }), loop);
+}
+
+TEST_P(EditedPlaces, AStepThatCannotBeUndoneStaysDone) {
+  load("DEF A Group { children DEF B Group { } }\nDEF C Group { children USE B }\n");
+  editor->begin("Step");
+  editor->remove({&node("A"), "children", 0});
+  editor->set(node("A"), "bboxSize", Vec3f{1, 1, 1});
+  editor->end();
+  const std::string now = editor->text();
+  if (!browser) return;
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{NodeRef(&node("A"))}));
+  EXPECT_THROW(editor->undo(), EditError);
+  EXPECT_EQ(editor->text(), now);
+  EXPECT_EQ(editor->undoName(), "Step");
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
+  undoAll();
+}
+
+// Nodes in fields that could not be read as a whole are edited in their places.
+TEST(EditorPlaces, NodesInFieldsThatCouldNotBeRead) {
+  const Folder folder;
+  for (const auto& [name, head, body, edited] :
+       {std::tuple<std::string, std::string, std::string, std::string>{
+            "f.wrl", "#VRML V2.0 utf8\n",
+            "Group { children DEF X PointLight { } children Shape { } }\nGroup { children USE X "
+            "}\n",
+            "Group { children DEF Y PointLight { on FALSE } children Shape { } }\n"
+            "Group { children USE Y }\n"},
+        {"f.wrl", "#VRML V2.0 utf8\n",
+         "Shape { geometry DEF X PointLight { } # c\n}\nGroup { children [ USE X ] }\n",
+         "Shape { geometry DEF Y PointLight { on FALSE } # c\n}\nGroup { children [ USE Y ] }\n"},
+        {"f.wrl", "#VRML V2.0 utf8\n",
+         "DEF M Material { }\nShape { appearance Appearance { material USE M } }\n"
+         "Group { children [ Box { } DEF X PointLight { } ] }\n",
+         "DEF M Material { }\nShape { appearance Appearance { material USE M } }\n"
+         "Group { children [ Box { } DEF Y PointLight { on FALSE } ] }\n"},
+        {"f.x3d", "<X3D version='3.3'><Scene>\n",
+         "<Shape><PointLight DEF='X' containerField='geometry'/></Shape>\n"
+         "<Group><PointLight USE='X'/></Group>\n</Scene></X3D>\n",
+         "<Shape><PointLight DEF='Y' containerField='geometry' on='false'/></Shape>\n"
+         "<Group><PointLight USE='Y'/></Group>\n</Scene></X3D>\n"}}) {
+    const auto loaded = loadWorld(folder.write(name, head + body));
+    Editor editor(*loaded);
+    EXPECT_EQ(editor.text(), head + body);
+    const auto found = loaded->scope.names.find("X");
+    if (found == loaded->scope.names.end()) continue; // the reader keeps no name there
+    Node& lamp = *found->second;
+    editor.set(lamp, "on", false);
+    editor.rename(lamp, "Y");
+    EXPECT_EQ(editor.text(), head + edited);
+    while (editor.undo()) {}
+    EXPECT_EQ(editor.text(), head + body);
+  }
+}
+
+TEST_P(EditedPlaces, ANameOfSeveralNodesFallsToTheLastOne) {
+  load("DEF A Group { }\nDEF A Shape { }\nDEF A PointLight { }\n");
+  editor->remove({nullptr, "", 2});
+  EXPECT_EQ(text(), "DEF A Group { }\nDEF A Shape { }\n");
+  EXPECT_EQ(node("A").type().name, "Shape");
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text(), "DEF A Shape { }\n");
+  undoAll();
+  while (editor->undo()) {}
+  EXPECT_EQ(node("A").type().name, "PointLight");
+}
+
+// A Script may hold itself: the counts of places do not show when it is gone.
+TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
+  load("DEF S Script { eventIn SFBool b eventOut SFBool c field SFNode self USE S }\n"
+       "DEF L PointLight { }\nROUTE S.c TO L.on\n");
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text(), "DEF L PointLight { }\n");
+  undoAll();
+}
+
+TEST(EditorPlaces, LongLines) {
+  const Folder folder;
+  std::string text = "#VRML V2.0 utf8\nDEF G Group { children [ ";
+  for (int i = 0; i < 20'000; ++i) text += "Group { children [ Shape { } ] } ";
+  text += "] }\n";
+  const auto world = loadWorld(folder.write("w.wrl", text));
+  Editor editor(*world);
+  Node& group = *world->scope.names.at("G");
+  ASSERT_EQ(editor.whyReadOnly(), "");
+  editor.begin("Many");
+  for (int i = 0; i < 1'000; ++i) {
+    Node& inner = *field<MFNode>(group, "children")[size_t(i) * 20];
+    editor.set(inner, "bboxSize", Vec3f{1, 1, 1});
+  }
+  editor.remove({&group, "children", 0});
+  editor.end();
+  EXPECT_EQ(editor.text().size(), text.size() + 999 * std::string("bboxSize 1 1 1 ").size() -
+                                      std::string("Group { children [ Shape { } ] } ").size());
+}
+
+} // namespace
