@@ -1,4 +1,5 @@
-// frame.h: completes a unit vector to an orthonormal frame. Pure functions. [any thread]
+// orthonormal_basis.h: completes a unit vector to an orthonormal frame. Pure functions. [any
+// thread]
 //
 // No such frame is continuous over all directions. Where it jumps, neighbouring samples choose
 // unrelated points on a light, which makes noise. T. Duff et al., "Building an Orthonormal Basis,

@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <climits>
 #include <cstdio>
+#include <string_view>
 #include <type_traits>
 
 #include "scene/transports.h"
@@ -19,12 +20,14 @@ template <auto member> void set(Frame& frame, double value) {
 }
 
 constexpr size_t size = sizeof(RTqualityInfo);
+constexpr bool mayDiffer = true;
 
 // Columns of info: size, setting, name, real, range, default, 0 is automatic, choices, text.
 constexpr QualitySetting table[] = {
     {{size, RT_SAMPLES_PER_PIXEL, "samples", 0, 1, 65536, 16, 0, nullptr, "samples per pixel"},
      get<&Frame::samples>,
-     set<&Frame::samples>},
+     set<&Frame::samples>,
+     mayDiffer},
     {{size, RT_MAX_DEPTH, "depth", 0, 0, 10000, 25, 0, nullptr,
       "maximum number of surfaces on a path"},
      get<&Frame::depth>,
@@ -34,7 +37,8 @@ constexpr QualitySetting table[] = {
      [](const Frame& frame) { return double(static_cast<int>(frame.seed)); },
      [](Frame& frame, double value) {
        frame.seed = static_cast<uint32_t>(static_cast<int>(value));
-     }},
+     },
+     mayDiffer},
     {{size, RT_SHADOWS, "shadows", 0, 0, 1, 1, 0, "off on", "whether lights cast shadows"},
      get<&Frame::shadows>,
      set<&Frame::shadows>},
@@ -53,7 +57,8 @@ constexpr QualitySetting table[] = {
     {{size, RT_TIME_LIMIT, "time_limit", 1, 0, 1e6, 0, 0, nullptr,
       "seconds after which no further round of samples begins; 0: none"},
      get<&Frame::timeLimit>,
-     set<&Frame::timeLimit>},
+     set<&Frame::timeLimit>,
+     mayDiffer},
     {{size, RT_ENERGY_CUT, "energy_cut", 1, 0, 1, 1.0 / 4096, 0, nullptr,
       "fraction of the camera ray below which the transport whitted ends branches"},
      get<&Frame::energyCut>,
@@ -65,7 +70,8 @@ constexpr QualitySetting table[] = {
     {{size, RT_PROGRESSIVE, "progressive", 0, 0, 1, 0, 0, "off on",
       "whether the whole picture is made early and then improved"},
      get<&Frame::progressive>,
-     set<&Frame::progressive>},
+     set<&Frame::progressive>,
+     mayDiffer},
     {{size, RT_FRAMES_IN_FLIGHT, "frames_in_flight", 0, 1, 64, 1, 0, nullptr,
       "backend=cluster: frames that rtSwapBuffers leaves unfinished"},
      nullptr,
@@ -89,7 +95,8 @@ constexpr QualitySetting table[] = {
     {{size, RT_VIEW, "view", 0, 0, double(INT32_MAX), 0, 0, nullptr,
       "number of the sequence of frames that motion refers to"},
      get<&Frame::view>,
-     set<&Frame::view>},
+     set<&Frame::view>,
+     mayDiffer},
     {{size, RT_MEASURE, "measure", 0, RT_MEASURE_NOTHING, RT_MEASURE_ILLUMINANCE,
       RT_MEASURE_NOTHING, 0, "nothing luminance illuminance",
       "whether pixels are photometric readings"},
@@ -108,6 +115,18 @@ std::string qualityFault(const RTqualityInfo& info, double value) {
   std::snprintf(text, sizeof text, "%s: %.10g to %.10g%s expected, not %.10g", info.name,
                 info.minimum, info.maximum, info.zeroIsAuto ? ", or 0," : "", value);
   return text;
+}
+
+std::string qualityText(const RTqualityInfo& info, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  if (!info.choices) return text;
+  std::string_view left = info.choices;
+  for (double choice = info.minimum; choice < value; choice++) {
+    const size_t blank = left.find(' ');
+    left.remove_prefix(blank == left.npos ? left.size() : blank + 1);
+  }
+  return std::string(left.substr(0, left.find(' ')));
 }
 
 std::span<const QualitySetting> qualitySettings() { return table; }

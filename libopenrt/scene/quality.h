@@ -17,6 +17,8 @@ struct QualitySetting {
   // Read and write the setting of a frame. Null for settings that are not part of a frame.
   double (*get)(const edit::FrameSettingsT& frame);
   void (*set)(edit::FrameSettingsT& frame, double value);
+  // Whether sums of frames with different values may be added, or continued (frame_sums.cpp).
+  bool mayDiffer = false;
 
   // Returns whether the value is in the range, and whole if the setting is. 0 may be allowed
   // outside of the range.
@@ -28,6 +30,9 @@ struct QualitySetting {
 
 // Returns "depth: 0 to 10000 expected, not -1".
 std::string qualityFault(const RTqualityInfo& info, double value);
+
+// Returns a value as people write it: the name of a choice, or a number.
+std::string qualityText(const RTqualityInfo& info, double value);
 
 std::span<const QualitySetting> qualitySettings();
 // Returns null for an unknown setting.

@@ -12,13 +12,17 @@
 
 namespace openrt {
 
-// How a transport shades hits. PathTracer::shadings (render/path/path_tracer.h) has the functions,
-// in this order.
-enum class Shading : uint8_t {
-  byShade, // by `shade`, and by lobes only if a class has no `shade`
-  byLobes, // by lobes, and by `shade` only if a class has no lobes
-  count
-};
+// The ways in which transports shade hits: the name of each, and the function of PathTracer
+// (render/path/path_tracer.h) that does it.
+//   byShade  by `shade`, and by lobes only if a class has no `shade`
+//   byLobes  by lobes, and by `shade` only if a class has no lobes
+#define OPENRT_SHADINGS(X)                                                                         \
+  X(byShade, shadeByShade)                                                                         \
+  X(byLobes, shadeByLobes)
+
+#define OPENRT_ENUMERATOR(name, function) name,
+enum class Shading : uint8_t { OPENRT_SHADINGS(OPENRT_ENUMERATOR) };
+#undef OPENRT_ENUMERATOR
 
 // The texts are described at RTtransportInfo.
 struct TransportTraits {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libpicture/transport.h"
+
 namespace picture {
 
 namespace {
@@ -155,8 +157,8 @@ FrameSize Pacing::settle(int width, int height, int samples) const {
 }
 
 Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
-  const bool direct = stats.transport.chosen == RT_TRANSPORT_DIRECT ||
-                      stats.transport.chosen == RT_TRANSPORT_WHITTED;
+  const RTtransportInfo transport = transportInfo(stats.transport.chosen);
+  const bool direct = transport.name && !transport.tracesPaths;
   if (stats.rays.camera > 0 && direct)
     return rebuilt ? Pacing::Light::sparseDirect : Pacing::Light::direct;
   return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;

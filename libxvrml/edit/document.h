@@ -70,6 +70,12 @@ class Document {
   // Returns the value that a field had before it was changed first; null: it has not been changed,
   // or it holds nodes that the text has.
   const Value* originalOf(const Node& node, const FieldInfo& field) const;
+  // Calls visit(node, field, value) for each field that has been changed, with the value that it
+  // had before it was changed first.
+  template <class Visit> void forEachChanged(const Visit& visit) const {
+    for (const auto& [node, fields] : originals_)
+      for (const auto& [name, value] : fields) visit(*node, *node->type().find(name), value);
+  }
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
   void insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node);

@@ -4,7 +4,11 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
 
 #include "edit/document.h"
 #include "edit/live_world.h"
@@ -46,6 +50,10 @@ class EditedFile {
   // Throws EditError if the text of a field could not be read.
   void checkReadable(const Node& node, const FieldInfo& field);
 
+  // See Editor.
+  std::vector<NodeRef> nodesAt(std::span<const SourcePosition> places);
+  std::vector<ChangedField> changedFields() const;
+
   std::string text();
   std::string bytes();
   bool isChangedOnDisk();
@@ -57,6 +65,8 @@ class EditedFile {
 
  private:
   const MFNode& liveList(const Slot& slot);
+  // Finds the nodes of the live world that begin at places of its file, given by placeKey().
+  std::unordered_map<uint64_t, NodeRef> liveNodesAt(const std::unordered_set<uint64_t>& places);
 
   std::unique_ptr<LiveWorld> live_;
   std::unique_ptr<Document> document_; // read at the first edit

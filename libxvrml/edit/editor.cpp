@@ -8,6 +8,7 @@
 #include "base/lexer.h"
 #include "base/rotation.h"
 #include "base/visit_storage.h"
+#include "edit/declaration.h"
 #include "edit/in_place_writer.h"
 #include "edit/node_edits.h"
 #include "enough_stack.h"
@@ -88,6 +89,11 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
   return places;
 }
 
+std::vector<NodeRef> Editor::nodesAt(std::span<const SourcePosition> places) {
+  return impl_->file.nodesAt(places);
+}
+std::vector<ChangedField> Editor::changedFields() const { return impl_->file.changedFields(); }
+
 void Editor::begin(std::string name) { impl_->history.begin(std::move(name)); }
 void Editor::end() { impl_->history.end(); }
 void Editor::cancel() { impl_->history.cancel(); }
@@ -107,6 +113,9 @@ bool Editor::redo() {
 std::string Editor::undoName() const { return impl_->history.undoName(); }
 std::string Editor::redoName() const { return impl_->history.redoName(); }
 uint64_t Editor::changes() const { return impl_->history.changes(); }
+uint64_t Editor::editsOf(const Node& node, std::string_view field) const {
+  return impl_->history.editsOf(node, field);
+}
 
 void Editor::set(Node& node, std::string_view field, Value value) {
   const Twin twin = impl_->file.twinOf(node);
@@ -208,6 +217,21 @@ NodeRef Editor::duplicate(const NodeSlot& given) {
   return copy;
 }
 
+NodeRef Editor::separate(const NodeSlot& given) {
+  const Slot slot = impl_->file.slotOf(given, true);
+  const Twin twin = impl_->file.twinOf(*impl_->file.nodeAt(slot));
+  const std::string& type = twin.live->type().name;
+  if (placesOf(*twin.live).size() < 2)
+    throw EditError(fmt::format("this {} stands only here", type));
+  const std::string text =
+      onStackOf(deepestStack, [&] { return writeNode(impl_->file.document(), *twin.document); });
+  OpenStep step(impl_->history, fmt::format("Separate {}", type));
+  if (!slot.isSingle()) remove(given);
+  NodeRef copy = insert(given, text);
+  step.close();
+  return copy;
+}
+
 NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
   const Slot slot = impl_->file.slotOf(given, true);
   const NodeType* const known = findNodeType(type);
@@ -247,6 +271,57 @@ void Editor::rename(Node& node, const std::string& name) {
   OpenStep step(impl_->history, fmt::format("Rename {}", node.type().name));
   impl_->nodes.rename(twin, name);
   step.close();
+}
+
+NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) {
+  const Twin twin = impl_->file.twinOf(node);
+  Document& document = impl_->file.document();
+  const std::string what = fmt::format("{}.{}", node.type().name, field);
+  if (!dynamic_cast<const DeclaringNode*>(&node))
+    throw EditError(fmt::format("{} has no fields of its own", node.type().name));
+  if (node.type().find(field)) throw EditError(fmt::format("there is a field {} already", what));
+  if (document.world().head.version.encoding == Encoding::x3dJson)
+    throw EditError(
+        fmt::format("{} cannot be declared in JSON: write the field into the file", what));
+  const std::vector<NodeSlot> places = placesOf(node);
+  if (places.empty()) throw EditError(fmt::format("this {} is not in the file", node.type().name));
+  const std::string text =
+      withDeclaration(onStackOf(deepestStack, [&] { return writeNode(document, *twin.document); }),
+                      document.world().head.version, field, value);
+  // A route leads between nodes with names, by which they are found in the live world.
+  struct Link {
+    Route route;
+    NodeRef from, to;
+  };
+  std::vector<Link> links;
+  const auto liveOf = [&](const NodeRef& own) {
+    const auto& names = impl_->file.world().scope.names;
+    const auto found = names.find(own->defName);
+    if (found == names.end() || document.find(found->second->source) != own.get())
+      throw EditError(fmt::format("{} cannot be declared: a route leads to or from a node whose "
+                                  "name is not its own",
+                                  what));
+    return found->second;
+  };
+  for (const Route& route : document.scope().routes)
+    if (route.from == twin.document || route.to == twin.document)
+      links.push_back({route, liveOf(route.from), liveOf(route.to)});
+  OpenStep step(impl_->history, fmt::format("Set {}", what));
+  NodeRef made;
+  for (const NodeSlot& place : places) {
+    const FieldInfo* const holder = place.parent ? place.parent->type().find(place.field) : nullptr;
+    if (!holder || holder->type == FieldType::MFNode) remove(place);
+    if (made)
+      use(place, *made);
+    else
+      made = insert(place, text);
+  }
+  if (!node.defName.empty() && made->defName != node.defName) rename(*made, node.defName);
+  for (const Link& one : links)
+    addRoute(one.from == twin.live ? *made : *one.from, one.route.fromField,
+             one.to == twin.live ? *made : *one.to, one.route.toField);
+  step.close();
+  return made;
 }
 
 void Editor::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {

@@ -83,6 +83,17 @@ bool History::redo() {
   return true;
 }
 
+uint64_t History::editsOf(const Node& node, std::string_view field) const {
+  const auto count = [&](const std::vector<Edit>& edits) {
+    return uint64_t(std::count_if(edits.begin(), edits.end(), [&](const Edit& edit) {
+      return edit.node == &node && edit.field == field;
+    }));
+  };
+  uint64_t all = count(open_.edits);
+  for (size_t i = 0; i < done_; ++i) all += count(steps_[i].edits);
+  return all;
+}
+
 std::string History::undoName() const { return done_ > 0 ? steps_[done_ - 1].name : ""; }
 std::string History::redoName() const { return done_ < steps_.size() ? steps_[done_].name : ""; }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "xvrml/node.h"
@@ -33,6 +34,8 @@ class History {
   std::string undoName() const;
   std::string redoName() const;
   uint64_t changes() const { return changes_; }
+  // Returns how many edits that are not undone have set a field.
+  uint64_t editsOf(const Node& node, std::string_view field) const;
   // Returns whether the edits are others than when the file was saved.
   bool isChanged() const { return done_ != savedAt_ || (isOpen() && !open_.edits.empty()); }
   void saved() { savedAt_ = done_; }

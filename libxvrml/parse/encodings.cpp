@@ -39,6 +39,11 @@ bool isMesh(Encoding encoding) {
   return info && info->readMesh;
 }
 
+std::string_view meshSuffixes(Encoding encoding) {
+  const EncodingInfo* info = encodingInfo(encoding);
+  return info ? info->meshSuffixes : std::string_view();
+}
+
 const EncodingInfo* recogniseEncoding(std::string_view text, std::string_view path) {
   for (const EncodingInfo& info : encodingTable)
     if (info.recognises && info.recognises(text, path)) return &info;

@@ -34,7 +34,7 @@ def completed(script, function, words):
 
 with tempfile.TemporaryDirectory() as scratch:
     scratch = pathlib.Path(scratch)
-    for name in ("world one.wrl", "two.wrz", "notes.txt"):
+    for name in ("world one.wrl", "two.wrz", "part.stl", "notes.txt"):
         (scratch / name).touch()
     (scratch / "folder").mkdir()
     for program in map(pathlib.Path, sys.argv[2:]):
@@ -78,7 +78,8 @@ with tempfile.TemporaryDirectory() as scratch:
                                    (["vv", "--preset",
                                      ""], {"studio", "product", "technical",
                                            "pcb"}), (["vv", "--preset", "p"], {"product", "pcb"}),
-                                   (["vv", ""], {"world one.wrl", "two.wrz", "folder"}),
+                                   (["vv", ""], {"world one.wrl", "two.wrz", "part.stl",
+                                                 "folder"}),
                                    (["vv", "-o", "n"], {"notes.txt"}), (["vv", "--shader-path",
                                                                          ""], set())):
                 got = completed(bash, function, words)

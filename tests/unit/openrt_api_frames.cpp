@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "scene/quality.h"
 #include "unit/openrt_api_support.h"
@@ -123,6 +124,26 @@ TEST(QualityTable, DefaultsAreThoseOfTheSchema) {
     const bool differs = quality == RT_SAMPLES_PER_PIXEL || quality == RT_MAX_DEPTH;
     EXPECT_EQ(setting.get(missing), differs ? 0 : setting.info.defaultValue) << setting.info.name;
   }
+}
+
+TEST(QualityTable, ValuesAreWrittenAsTheirChoices) {
+  const auto text = [](RTenum quality, double value) {
+    return qualityText(findQuality(quality)->info, value);
+  };
+  EXPECT_EQ(text(RT_MAX_DEPTH, 25), "25");
+  EXPECT_EQ(text(RT_TRANSPORT, RT_TRANSPORT_AUTO), "auto");
+  EXPECT_EQ(text(RT_TRANSPORT, RT_TRANSPORT_LIGHT), "light");
+  EXPECT_EQ(text(RT_SHADOWS, 1), "on");
+  EXPECT_EQ(text(RT_DEPTH_ALONG, RT_DEPTH_ALONG_RAY), "ray");
+}
+
+// All settings decide what sums hold, except those that say how far a picture has come.
+TEST(QualityTable, SumsOfOtherSettingsAreNotMixed) {
+  std::vector<std::string> mayDiffer;
+  for (const QualitySetting& setting : qualitySettings())
+    if (setting.get && setting.mayDiffer) mayDiffer.push_back(setting.info.name);
+  EXPECT_EQ(mayDiffer,
+            (std::vector<std::string>{"samples", "seed", "time_limit", "progressive", "view"}));
 }
 
 TEST_F(Frames, TheTableOfTransportsIsWhatIsAccepted) {

@@ -158,4 +158,12 @@ TEST(ParserUrl, WhatIsNotFollowed) {
   EXPECT_NE(resolveUrl("#P", "-", {}).error, "");
 }
 
+TEST(ParserSource, MeshesHaveSuffixesAndWorldsHaveNone) {
+  EXPECT_EQ(meshSuffixes(Encoding::gltf), ".gltf .glb");
+  for (int i = 0; i < encodingCount(); ++i) {
+    const auto encoding = static_cast<Encoding>(i);
+    EXPECT_EQ(isMesh(encoding), !meshSuffixes(encoding).empty()) << encodingName(encoding);
+  }
+}
+
 } // namespace

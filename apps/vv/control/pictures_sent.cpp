@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base64.h"
 #include "libpicture/files/atomic_file.h"
 
 namespace vv::control {
@@ -26,7 +27,7 @@ Encoded encoded(const picture::Picture& picture, uint32_t channels, const Render
         fmt::format(R"("format":{},"width":{},"height":{})", jsonText(format.suffixes[0]),
                     picture.width, picture.height);
     if (render.file.empty())
-      return {fmt::format(R"({{{},"data":"{}"}})", facts, base64(bytes)), ""};
+      return {fmt::format(R"({{{},"data":"{}"}})", facts, base64Of(bytes)), ""};
     picture::writeRegularFile(render.file, bytes);
     return {fmt::format(R"({{{},"file":{}}})", facts, jsonText(render.file)), ""};
   } catch (const std::bad_alloc&) {
@@ -99,19 +100,5 @@ bool Encoding::hasEnded(double seconds) const {
 Encoded Encoding::take() { return task_->future.get(); }
 
 bool Encoding::working() { return threads > 0; }
-
-std::string base64(std::string_view bytes) {
-  constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t three = 0; // 24 bits; missing bytes are 0
-    const size_t there = std::min<size_t>(3, bytes.size() - i);
-    for (size_t k = 0; k < 3; ++k)
-      three = three << 8 | (k < there ? static_cast<uint8_t>(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k) text += k <= there ? letters[three >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 } // namespace vv::control

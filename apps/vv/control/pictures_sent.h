@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "control/command.h"
 #include "libpicture/files/formats.h"
@@ -42,8 +41,5 @@ class Encoding {
   struct Task;
   std::shared_ptr<Task> task_;
 };
-
-// Returns bytes in base64 (RFC 4648, section 4).
-std::string base64(std::string_view bytes);
 
 } // namespace vv::control

@@ -8,6 +8,8 @@
 #include <Imath/ImathMatrixAlgo.h>
 #include <fmt/format.h>
 
+#include "edit/node_fields.h"
+
 namespace vv {
 
 using namespace xvrml;
@@ -15,19 +17,8 @@ using namespace xvrml;
 namespace {
 
 constexpr NewNode table[] = {
-    {"Box", "Shape { appearance Appearance { material Material { } } geometry Box { } }",
-     "<Shape><Appearance><Material/></Appearance><Box/></Shape>"},
-    {"Sphere", "Shape { appearance Appearance { material Material { } } geometry Sphere { } }",
-     "<Shape><Appearance><Material/></Appearance><Sphere/></Shape>"},
-    {"Cylinder", "Shape { appearance Appearance { material Material { } } geometry Cylinder { } }",
-     "<Shape><Appearance><Material/></Appearance><Cylinder/></Shape>"},
-    {"Cone", "Shape { appearance Appearance { material Material { } } geometry Cone { } }",
-     "<Shape><Appearance><Material/></Appearance><Cone/></Shape>"},
-    {"Transform", "Transform { children [ ] }", "<Transform></Transform>"},
-    {"PointLight", "PointLight { }", "<PointLight/>"},
-    {"SpotLight", "SpotLight { }", "<SpotLight/>"},
-    {"DirectionalLight", "DirectionalLight { }", "<DirectionalLight/>"},
-};
+    {"Box", true},        {"Sphere", true},      {"Cylinder", true},   {"Cone", true},
+    {"Transform", false}, {"PointLight", false}, {"SpotLight", false}, {"DirectionalLight", false}};
 
 MFNode selectionOf(WorldEditor& editor) {
   if (editor.selection().empty()) throw EditError("nothing is selected");
@@ -57,14 +48,6 @@ NodeSlot placeForNew(WorldEditor& editor) {
         return place;
       }
   return editor.endOf(nullptr, "");
-}
-
-void addText(WorldEditor& editor, const std::string& text) {
-  editor.select({editor.editor().insert(placeForNew(editor), text)});
-}
-
-bool isXml(WorldEditor& editor) {
-  return editor.browser().world().head.version.encoding == Encoding::x3dXml;
 }
 
 } // namespace
@@ -121,7 +104,15 @@ void wrapSelected(WorldEditor& editor) {
 std::span<const NewNode> newNodes() { return table; }
 
 void add(WorldEditor& editor, const NewNode& node) {
-  addText(editor, isXml(editor) ? node.xml : node.classic);
+  NodeRef made;
+  editor.step(fmt::format("Add {}", node.name), [&] {
+    made = insertNew(editor, placeForNew(editor), node.isGeometry ? "Shape" : node.name);
+    if (!node.isGeometry) return;
+    const NodeRef appearance = insertNew(editor, {made.get(), "appearance", 0}, "Appearance");
+    insertNew(editor, {appearance.get(), "material", 0}, "Material");
+    insertNew(editor, {made.get(), "geometry", 0}, node.name);
+  });
+  editor.select({made});
 }
 
 void addViewpoint(WorldEditor& editor, const EditView& view) {
@@ -130,18 +121,22 @@ void addViewpoint(WorldEditor& editor, const EditView& view) {
   std::copy(m, m + 16, &matrix.x[0][0]);
   const Imath::Quatd turn = Imath::extractQuat(matrix);
   const Imath::V3d axis = turn.angle() > 1e-9 ? turn.axis() : Imath::V3d(0, 0, 1);
-  const std::string position = fmt::format("{:.7g} {:.7g} {:.7g}", m[12], m[13], m[14]),
-                    orientation = fmt::format("{:.7g} {:.7g} {:.7g} {:.7g}", axis.x, axis.y, axis.z,
-                                              turn.angle());
   if (view.camera.fovy == 0) throw EditError("a parallel view cannot be added as a Viewpoint");
   const double angle = view.aspect >= 1
                            ? view.camera.fovy
                            : 2 * std::atan(std::tan(view.camera.fovy / 2) * view.aspect);
-  const char* const form =
-      isXml(editor)
-          ? "<Viewpoint description='view' position='{}' orientation='{}' fieldOfView='{:.7g}'/>"
-          : "Viewpoint {{ description \"view\" position {} orientation {} fieldOfView {:.7g} }}";
-  addText(editor, fmt::format(fmt::runtime(form), position, orientation, angle));
+  NodeRef made;
+  editor.step("Add Viewpoint", [&] {
+    made = insertNew(editor, placeForNew(editor), "Viewpoint");
+    const auto set = [&](const char* field, Value value) {
+      editor.editor().set(*made, field, std::move(value));
+    };
+    set("description", std::string("view"));
+    set("position", Vec3f{float(m[12]), float(m[13]), float(m[14])});
+    set("orientation", Rotation{float(axis.x), float(axis.y), float(axis.z), float(turn.angle())});
+    set("fieldOfView", float(angle));
+  });
+  editor.select({made});
 }
 
 } // namespace vv

@@ -22,9 +22,8 @@ void wrapSelected(WorldEditor& editor);      // puts a Transform around each, an
 
 // A node that a user can add.
 struct NewNode {
-  const char* name;
-  const char* classic; // as text of VRML97 and of X3D ClassicVRML
-  const char* xml;     // as text of X3D in XML
+  const char* name; // the type of a node, or of the geometry of a Shape
+  bool isGeometry;
 };
 std::span<const NewNode> newNodes();
 // Adds a node to the group that is selected, or else behind what is selected, or else at the end of

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "edit/shader_parameters.h"
+
 namespace vv {
 
 using namespace xvrml;
@@ -41,6 +43,11 @@ bool boxOf(Browser& browser, const NodeRef& node, std::array<std::array<double, 
   return true;
 }
 
+void refuseWithinStep(WorldEditor& editor) {
+  if (editor.editor().isInStep())
+    throw EditError("end the other edit first: Enter keeps a move, Escape takes it back");
+}
+
 } // namespace
 
 bool EditModel::isSelected(const Node& node) const {
@@ -48,20 +55,76 @@ bool EditModel::isSelected(const Node& node) const {
                      [&node](const NodeRef& one) { return one.get() == &node; });
 }
 
+void EditModel::edit(Command command) {
+  finishDrag();
+  request([command = std::move(command)](WorldEditor& editor) {
+    refuseWithinStep(editor);
+    command(editor);
+  });
+}
+
 void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
-  if (!std::exchange(isDragging_, true))
-    request([name = fmt::format("Set {}.{}", node->type().name, field.name)](WorldEditor& editor) {
-      editor.editor().begin(name);
+  const Dragged dragged{node, field.name};
+  if (dragged_ != dragged) {
+    finishDrag();
+    dragged_ = dragged;
+    if (node->type().find(field.name)) begin(dragged);
+  }
+  if (!node->type().find(field.name)) {
+    undeclared_ = std::move(value);
+    return;
+  }
+  request([this, node, name = field.name, value = std::move(value)](WorldEditor& editor) {
+    if (!isRefused_) editor.editor().set(*node, name, value);
+  });
+}
+
+void EditModel::begin(const Dragged& dragged) {
+  const PropertyRow* const row = sheet_.node == dragged.node ? sheet_.find(dragged.field) : nullptr;
+  request(
+      [this, dragged, shown = row ? row->edits : 0, isShown = row != nullptr](WorldEditor& editor) {
+        isRefused_ = true;
+        refuseWithinStep(editor);
+        const std::string what = fmt::format("{}.{}", dragged.node->type().name, dragged.field);
+        const uint64_t edits = editor.editor().editsOf(*dragged.node, dragged.field);
+        if (isShown && edits != shown && own_ != std::pair(dragged, edits))
+          throw EditError(
+              fmt::format("another program has edited {} meanwhile: its value stays", what));
+        isRefused_ = false;
+        editor.editor().begin("Set " + what);
+      });
+}
+
+void EditModel::finishDrag() {
+  if (!dragged_) return;
+  const Dragged dragged = *std::exchange(dragged_, std::nullopt);
+  if (std::optional<Value> value = std::exchange(undeclared_, std::nullopt))
+    return request([dragged, value = std::move(*value)](WorldEditor& editor) {
+      refuseWithinStep(editor);
+      declareParameter(editor, dragged.node, dragged.field, value);
     });
-  request([node, name = field.name, value = std::move(value)](WorldEditor& editor) {
-    editor.editor().set(*node, name, value);
+  request([this, dragged](WorldEditor& editor) {
+    if (std::exchange(isRefused_, false)) return;
+    editor.editor().end();
+    own_ = {dragged, editor.editor().editsOf(*dragged.node, dragged.field)};
   });
 }
 
 void EditModel::setActive(bool active) {
   if (std::exchange(isActive_, active) && !active) isStale_ = true;
-  if (!active && std::exchange(isDragging_, false))
-    request([](WorldEditor& editor) { editor.editor().end(); });
+  if (!active) finishDrag();
+}
+
+void EditModel::hideSelected() {
+  request([this](WorldEditor& editor) { hiding_.hideSelected(editor); });
+}
+
+void EditModel::isolateSelected() {
+  request([this](WorldEditor& editor) { hiding_.isolateSelected(editor); });
+}
+
+void EditModel::showAll() {
+  request([this](WorldEditor& editor) { hiding_.showAll(editor); });
 }
 
 void EditModel::setOpen(const NodeRef& node, bool open) {
@@ -97,26 +160,34 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
       shown_ = NodeRef(node);
   }
   if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
-  const bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
   }
+  reads |= problems_.update(editor, seconds);
   std::vector<Line> frames = framesOf(editor, view);
   return std::exchange(frames_, frames) != frames || reads;
+}
+
+void EditModel::readSheet(WorldEditor& editor) {
+  sheet_ = sheetOf(editor, NodeRef(editor.selected()));
+  if (sheet_.hasLook && looks_.empty()) looks_ = looksFor(editor);
+  if (sheet_.node && hiding_.contains(*sheet_.node))
+    sheet_.note +=
+        std::string(sheet_.note.empty() ? "" : "; ") + "hidden for now, which is not saved";
 }
 
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
   if (std::exchange(isStale_, false)) {
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
-    if (!isActive_ || sheet_.node.get() != editor.selected())
-      sheet_ = sheetOf(editor, NodeRef(editor.selected()));
+    if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
     undoName_ = editor.editor().undoName();
     redoName_ = editor.editor().redoName();
     unsaved_ = editor.isChanged();
   } else if (sheet_.node && !isActive_) {
-    refresh(sheet_);
+    refresh(editor, sheet_);
   }
   if (!shown_) return;
   const NodeRef wanted = std::exchange(shown_, NodeRef());

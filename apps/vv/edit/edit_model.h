@@ -6,10 +6,14 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "edit/hiding.h"
 #include "edit/outline.h"
+#include "edit/problems.h"
 #include "edit/properties.h"
 #include "edit/world_editor.h"
 
@@ -36,11 +40,17 @@ class EditModel {
   // The fields of the node that was selected last. A face may change the values of its rows, which
   // are read again when the world can be used.
   PropertySheet& sheet() { return sheet_; }
+  // The looks that the selected Shapes can have. Empty until a Shape has been selected.
+  const std::vector<Look>& looks() const { return looks_; }
+  // How many nodes are hidden for now.
+  size_t hiddenCount() const { return hiding_.count(); }
   const std::string& undoName() const { return undoName_; }
   const std::string& redoName() const { return redoName_; }
   bool hasUnsaved() const { return unsaved_; }
   // Why the file cannot be edited; "": it can, or this is not known yet.
   const std::string& readOnly() const { return readOnly_; }
+  // The messages about the world.
+  ProblemList& problems() { return problems_; }
   // The edges of a box around each node that is selected.
   const std::vector<Line>& frames() const { return frames_; }
   // Returns the camera that looks as the viewer does and shows what is selected; the viewer's own
@@ -53,13 +63,22 @@ class EditModel {
 
   // --- What is asked for ---
   void request(Command command) { commands_.push_back(std::move(command)); }
+  // Requests an edit of a panel, which is a step of its own: it is refused while another step is
+  // open, because that may still be taken back with all that is in it.
+  void edit(Command command);
   bool hasRequests() const { return !commands_.empty(); }
-  // Sets a field. All values until no widget is active any more are one step.
+  // Sets a field. All values until no widget is active any more are one step. It is refused if
+  // another program has edited the field since it was shown. A parameter of a shader that is not
+  // declared yet gets its last value then.
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
   void setActive(bool active);
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
+  // Hide nodes for now, or show them again. This is no edit.
+  void hideSelected();
+  void isolateSelected();
+  void showAll();
   // Selects a node, shows its row, and adds to the selection or replaces it.
   void select(const xvrml::NodeRef& node, bool add);
 
@@ -69,17 +88,34 @@ class EditModel {
   bool update(WorldEditor& editor, const EditView& view, bool moves, double seconds);
 
  private:
+  // A field that widgets change.
+  struct Dragged {
+    xvrml::NodeRef node;
+    std::string field;
+    bool operator==(const Dragged&) const = default;
+  };
+
+  void begin(const Dragged& dragged);
+  void finishDrag();
   void read(WorldEditor& editor);
+  void readSheet(WorldEditor& editor);
   std::vector<Line> framesOf(WorldEditor& editor, const EditView& view) const;
 
   std::deque<Command> commands_;
   Outline outline_;
   std::vector<OutlineRow> rows_;
   PropertySheet sheet_;
+  ProblemList problems_;
   xvrml::MFNode selection_;
   std::string undoName_, redoName_, readOnly_, message_, search_;
   std::vector<Line> frames_;
-  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isDragging_ = false, isActive_ = false;
+  std::vector<Look> looks_;
+  Hiding hiding_;
+  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isActive_ = false;
+  std::optional<Dragged> dragged_;         // what the step changes that is open
+  std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
+  bool isRefused_ = false;                 // the open step must not be
+  std::pair<Dragged, uint64_t> own_;       // the last field that was dragged, and its edits then
   int scroll_ = -1;
   xvrml::NodeRef shown_; // the node whose row is to be scrolled to
   double readAt_ = 0;

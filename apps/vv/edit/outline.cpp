@@ -57,6 +57,10 @@ struct Open {
   int depth;
 };
 
+PlacedNode placed(const Open& open) {
+  return {open.node, NodeRef(open.slot.parent), open.slot.field, open.slot.index};
+}
+
 std::vector<Open> rootPlaces(const World& world) {
   std::vector<Open> places;
   const std::vector<NodeRef>& roots = world.scope.roots;
@@ -91,7 +95,8 @@ std::vector<OutlineRow> Outline::rows(const World& world) const {
   while (!open.empty()) {
     const Open place = std::move(open.back());
     open.pop_back();
-    OutlineRow row{place.node, place.depth, labelOf(*place.node), false, false, false};
+    OutlineRow row{place.node, place.depth, labelOf(*place.node), false,
+                   false,      false,       placed(place)};
     if (place.slot.parent && !place.slot.field.empty() && place.slot.field != "children")
       row.label = place.slot.field + ": " + row.label;
     row.isUse = !seen.insert(place.node.get());
@@ -126,7 +131,7 @@ std::vector<OutlineRow> Outline::find(const World& world, std::string_view text,
     open.pop_back();
     if (!seen.insert(place.node.get())) continue;
     if (matches(*place.node, text))
-      found.push_back({place.node, 0, labelOf(*place.node), false, false, false});
+      found.push_back({place.node, 0, labelOf(*place.node), false, false, false, placed(place)});
     appendChildPlaces(open, place);
   }
   return found;

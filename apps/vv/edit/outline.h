@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "xvrml/edit.h"
+#include "edit/node_fields.h"
 #include "xvrml/world.h"
 
 namespace vv {
@@ -19,6 +19,7 @@ struct OutlineRow {
   std::string label; // "LAMP  PointLight"
   bool canOpen = false, isOpen = false;
   bool isUse = false; // the node stands further up, too
+  PlacedNode place{}; // this one of its places
 };
 
 class Outline {

@@ -1,17 +1,24 @@
 #include "edit/properties.h"
 
+#include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "edit/choices.h"
 #include "edit/outline.h"
+#include "edit/shader_parameters.h"
 #include "xvrml/numbers.h"
+#include "xvrml/value_text.h"
 
 namespace vv {
 
 using namespace xvrml;
 
 namespace {
+
+constexpr size_t mostUsable = 40; // nodes of the file that are offered
 
 size_t sizeOf(const Value& value) {
   return std::visit(
@@ -24,23 +31,88 @@ size_t sizeOf(const Value& value) {
       value);
 }
 
-PropertyRow rowOf(const Node& node, const FieldInfo& field) {
+bool holdsNodes(const FieldInfo& field) {
+  return field.type == FieldType::SFNode || field.type == FieldType::MFNode;
+}
+
+std::string helpOf(const FieldInfo& field, const std::string& text, const FieldRange& range) {
+  std::string help =
+      fmt::format("{} {} {}", accessName(field.access), fieldTypeName(field.type), field.name);
+  if (!text.empty()) help += "\n" + text;
+  if (range.bounded()) help += "\nrange " + xvrml::describe(range);
+  return help;
+}
+
+void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
+  row.value = node.get(*row.field);
+  row.size = sizeOf(row.value);
+  row.isDefault = row.value == row.defaultValue;
+  row.isLong = row.size > PropertySheet::mostElements;
+  row.edits = editor.editor().editsOf(node, row.field->name);
+  if (row.isLong) row.value = Value();
+}
+
+PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field) {
   PropertyRow row;
   row.field = &field;
-  row.value = node.get(field);
-  row.size = sizeOf(row.value);
-  row.isDefault = row.value == field.defaultValue;
-  row.isLong = row.size > PropertySheet::mostElements;
-  if (row.isLong) row.value = Value();
+  row.defaultValue = field.defaultValue;
+  row.help = helpOf(field, field.text, field.range);
+  row.choices = choicesOf(field);
+  if (holdsNodes(field)) {
+    row.addable = typesFor(field);
+    row.usable = nodesFor(editor.browser().world(), field, mostUsable);
+  }
+  readValue(editor, node, row);
   return row;
 }
 
-std::string noteOf(WorldEditor& editor, const Node& node) {
+// Adds the parameters of a shader's class that the node does not declare, and says of the others
+// what the class says.
+void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, PropertySheet& sheet) {
+  const picture::ShaderClass* const known = classOf(editor, shader);
+  if (!known) return;
+  for (const picture::ShaderParameter& parameter : known->parameters) {
+    const std::optional<FieldInfo> field = fieldFor(parameter);
+    if (!field) continue;
+    const auto declared =
+        std::find_if(sheet.rows.begin(), sheet.rows.end(),
+                     [&](const PropertyRow& row) { return row.field->name == parameter.name; });
+    if (declared != sheet.rows.end()) {
+      if (!declared->field->declared) continue; // a field of the node itself has this name
+      declared->help = helpOf(*declared->field, field->text, field->range);
+      if (declared->field->type != field->type) continue;
+      declared->defaultValue = field->defaultValue;
+      declared->isDefault = !declared->isLong && declared->value == declared->defaultValue;
+      continue;
+    }
+    PropertyRow row;
+    row.parameter = std::make_shared<const FieldInfo>(*field);
+    row.field = row.parameter.get();
+    row.value = row.defaultValue = field->defaultValue;
+    row.help = helpOf(*field, field->text, field->range);
+    row.isDefault = true;
+    row.isDeclared = false;
+    row.isInOptions = isInOptions(shader, field->name);
+    sheet.rows.push_back(std::move(row));
+  }
+}
+
+// Counts where the nodes of the sheet stand, in one walk.
+std::unordered_map<const Node*, size_t> placesIn(WorldEditor& editor, const PropertySheet& sheet) {
+  MFNode nodes{sheet.node, sheet.look.appearance};
+  for (const PropertyRow& row : sheet.rows) {
+    if (const auto* const one = std::get_if<SFNode>(&row.value)) nodes.push_back(*one);
+    if (const auto* const list = std::get_if<MFNode>(&row.value))
+      nodes.insert(nodes.end(), list->begin(), list->end());
+  }
+  return countPlaces(editor.browser().world(), nodes);
+}
+
+std::string noteOf(const Node& node, size_t places) {
   std::string note;
   if (const auto* instance = nodeCast<ProtoInstance>(&node))
     note = fmt::format("an instance of PROTO {}: its body is edited by these fields",
                        instance->declaration->type->name);
-  const size_t places = editor.editor().placesOf(node).size();
   if (places == 0) return "not in the world's file: it belongs to an Inline, a PROTO or a Script";
   if (places > 1)
     note += fmt::format("{}stands in {} places: an edit changes all of them",
@@ -50,19 +122,38 @@ std::string noteOf(WorldEditor& editor, const Node& node) {
 
 } // namespace
 
+const PropertyRow* PropertySheet::find(const std::string& field) const {
+  const auto found = std::find_if(rows.begin(), rows.end(),
+                                  [&](const PropertyRow& row) { return row.field->name == field; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
 PropertySheet sheetOf(WorldEditor& editor, const NodeRef& node) {
   PropertySheet sheet;
   if (!node) return sheet;
   sheet.node = node;
   sheet.title = labelOf(*node);
-  sheet.note = noteOf(editor, *node);
   for (const FieldInfo& field : node->type().fields)
-    if (holdsValue(field) && !field.isMetadata) sheet.rows.push_back(rowOf(*node, field));
+    if (holdsValue(field) && !field.isMetadata) sheet.rows.push_back(rowOf(editor, *node, field));
+  if (const auto* const shader = nodeCast<nodes::ORTShader>(node))
+    addParameters(editor, *shader, sheet);
+  sheet.hasLook = nodeCast<nodes::Shape>(node) != nullptr;
+  if (sheet.hasLook) sheet.look = lookOf(*node);
+  const std::unordered_map<const Node*, size_t> counts = placesIn(editor, sheet);
+  const auto places = [&](const NodeRef& one) { return one ? counts.at(one.get()) : 0; };
+  sheet.note = noteOf(*node, places(node));
+  sheet.look.places = places(sheet.look.appearance);
+  for (PropertyRow& row : sheet.rows) {
+    if (const auto* const one = std::get_if<SFNode>(&row.value)) row.places = {places(*one)};
+    if (const auto* const list = std::get_if<MFNode>(&row.value))
+      for (const NodeRef& one : *list) row.places.push_back(places(one));
+  }
   return sheet;
 }
 
-void refresh(PropertySheet& sheet) {
-  for (PropertyRow& row : sheet.rows) row = rowOf(*sheet.node, *row.field);
+void refresh(WorldEditor& editor, PropertySheet& sheet) {
+  for (PropertyRow& row : sheet.rows)
+    if (row.isDeclared) readValue(editor, *sheet.node, row);
 }
 
 } // namespace vv

@@ -2,19 +2,33 @@
 // world can be used]
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "edit/world_editor.h"
+#include "edit/looks.h"
+#include "edit/node_fields.h"
 
 namespace vv {
 
 struct PropertyRow {
-  const xvrml::FieldInfo* field = nullptr; // a row of the node's type
-  xvrml::Value value;                      // empty for lists that are too long to be shown
-  size_t size = 0;                         // elements of a list
+  // A row of the node's type, or the field that its ORTShader could declare for a parameter.
+  const xvrml::FieldInfo* field = nullptr;
+  std::shared_ptr<const xvrml::FieldInfo> parameter; // keeps the latter
+  xvrml::Value value; // empty for lists that are too long to be shown
+  xvrml::Value defaultValue;
+  size_t size = 0; // elements of a list
   bool isDefault = false;
-  bool isLong = false; // the list has more than `mostElements`
+  bool isLong = false;      // the list has more than `mostElements`
+  bool isDeclared = true;   // false: the shader gets the field when it is changed
+  bool isInOptions = false; // the options of the shader set the parameter, which is not shown
+  uint64_t edits = 0;       // Editor::editsOf() when the value was read
+  std::string help;         // type, range and what the field does
+  std::vector<std::string> choices; // words that a field of strings may hold
+  // --- Fields of nodes ---
+  std::vector<size_t> places;                  // in how many places each node of the value stands
+  std::vector<const xvrml::NodeType*> addable; // what may be added
+  std::vector<xvrml::NodeRef> usable;          // nodes of the file that may stand here, too
 };
 
 struct PropertySheet {
@@ -24,12 +38,18 @@ struct PropertySheet {
   std::string title;   // "LAMP  PointLight"
   std::string note;    // what is special: places, prototype; "" if nothing is
   std::vector<PropertyRow> rows;
+  bool hasLook = false; // the node is a Shape
+  ShapeLook look;
+
+  // Returns the row of a field; null: there is none.
+  const PropertyRow* find(const std::string& field) const;
 };
 
-// Returns the sheet of a node: its fields and exposedFields, without metadata.
+// Returns the sheet of a node: its fields and exposedFields, without metadata, and the parameters
+// of a shader's class.
 PropertySheet sheetOf(WorldEditor& editor, const xvrml::NodeRef& node);
 // Reads the values again. Other nodes, and nodes of a Script whose fields have changed, need
 // sheetOf.
-void refresh(PropertySheet& sheet);
+void refresh(WorldEditor& editor, PropertySheet& sheet);
 
 } // namespace vv

@@ -1,22 +1,60 @@
 #include "edit/world_editor.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "libpicture/files/save_edits.h"
+#include "xvrml/walk.h"
 
 namespace vv {
 
 using namespace xvrml;
 
+namespace {
+
+// Returns the nodes that stand in the world's file.
+SeenNodes standing(const World& world) {
+  SeenNodes nodes;
+  walk(rootsOf(world.scope), nodes,
+       [](Node& node, std::vector<Node*>& open) { appendChildren(node, open); });
+  return nodes;
+}
+
+bool allIn(const MFNode& nodes, const SeenNodes& known) {
+  return std::all_of(nodes.begin(), nodes.end(),
+                     [&](const NodeRef& node) { return known.contains(node.get()); });
+}
+
+} // namespace
+
+const std::vector<picture::ShaderClass>& WorldEditor::shaderClasses() {
+  if (!shaderClasses_) {
+    shaderClasses_.emplace();
+    std::vector<std::string> problems; // vv --list-shaders says them
+    try {
+      shaderClasses_ = picture::installedShaders(shaderPath_, problems);
+    } catch (const std::runtime_error&) {} // there are no classes then
+  }
+  return *shaderClasses_;
+}
+
+void WorldEditor::select(MFNode nodes) {
+  constexpr size_t mostKept = 64;
+  if (nodes == selection_) return;
+  earlier_.push_back(std::exchange(selection_, std::move(nodes)));
+  if (earlier_.size() > mostKept) earlier_.pop_front();
+}
+
 void WorldEditor::choose(const NodeRef& node, bool add) {
-  if (!add) selection_.clear();
-  const auto known = std::find(selection_.begin(), selection_.end(), node);
-  if (known != selection_.end())
-    selection_.erase(known);
+  MFNode nodes = add ? selection_ : MFNode();
+  const auto known = std::find(nodes.begin(), nodes.end(), node);
+  if (known != nodes.end())
+    nodes.erase(known);
   else if (node)
-    selection_.push_back(node);
+    nodes.push_back(node);
+  select(std::move(nodes));
 }
 
 void WorldEditor::step(const std::string& name, const std::function<void()>& edits) {
@@ -50,7 +88,15 @@ NodeSlot WorldEditor::endOf(Node* parent, const std::string& field) const {
 
 std::string WorldEditor::undo() {
   const std::string name = editor_.undoName();
-  return editor_.undo() ? name : std::string();
+  const bool stood = allIn(selection_, standing(browser_.world()));
+  if (!editor_.undo()) return {};
+  if (!stood) return name; // it has been removed before, or is in no file
+  const SeenNodes now = standing(browser_.world());
+  while (!allIn(selection_, now) && !earlier_.empty()) {
+    selection_ = std::move(earlier_.back());
+    earlier_.pop_back();
+  }
+  return name;
 }
 
 std::string WorldEditor::redo() {

@@ -4,27 +4,35 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "edit/journal.h"
+#include "libpicture/shader_classes.h"
 #include "xvrml/edit.h"
 
 namespace vv {
 
 class WorldEditor {
  public:
-  // The browser must outlive the editor. The file is read at the first edit.
-  explicit WorldEditor(xvrml::Browser& browser) : browser_(browser), editor_(browser) {}
+  // The browser must outlive the editor. The file is read at the first edit. shaderPath: folders of
+  // shader plug-ins that are searched first.
+  explicit WorldEditor(xvrml::Browser& browser, std::string shaderPath = {})
+      : browser_(browser), editor_(browser), shaderPath_(std::move(shaderPath)) {}
 
   xvrml::Editor& editor() { return editor_; }
   xvrml::Browser& browser() { return browser_; }
+  // The classes of the shader plug-ins that are installed. They are read at the first call.
+  const std::vector<picture::ShaderClass>& shaderClasses();
 
   // The nodes that are selected, in the order of their selection. A node stays selected when it has
   // been removed from the world, until another is selected.
   const xvrml::MFNode& selection() const { return selection_; }
-  void select(xvrml::MFNode nodes) { selection_ = std::move(nodes); }
+  void select(xvrml::MFNode nodes);
   // Selects a node, or adds it to what is selected; a node that is selected then is taken out. Null
   // selects nothing more.
   void choose(const xvrml::NodeRef& node, bool add);
@@ -40,7 +48,8 @@ class WorldEditor {
   // Returns the place behind the last node of a field, or behind the last root for null; in an
   // SFNode the only place.
   xvrml::NodeSlot endOf(xvrml::Node* parent, const std::string& field) const;
-  // Undo the last step, or do it again. Return its name; empty: there is none. Throw EditError.
+  // Undo the last step, or do it again. Return its name; empty: there is none. Throw EditError. If
+  // undo takes a selected node away, what was selected before it is selected again.
   std::string undo();
   std::string redo();
   // Tells whether there are edits that have not been saved.
@@ -56,7 +65,10 @@ class WorldEditor {
   xvrml::Browser& browser_;
   xvrml::Editor editor_;
   Journal journal_{editor_, browser_};
+  const std::string shaderPath_;
+  std::optional<std::vector<picture::ShaderClass>> shaderClasses_;
   xvrml::MFNode selection_;
+  std::deque<xvrml::MFNode> earlier_; // selections before this one, the last one last
   uint64_t saves_ = 0;
 };
 

@@ -78,6 +78,16 @@ std::vector<std::string> topics() {
   return out;
 }
 
+// Returns "STL .stl, PLY .ply, ...": the encodings of meshes.
+std::string meshNames() {
+  std::string names;
+  for (int i = 0; i < xvrml::encodingCount(); ++i)
+    if (const auto encoding = static_cast<xvrml::Encoding>(i); xvrml::isMesh(encoding))
+      names += fmt::format("{}{} {}", names.empty() ? "" : ", ", encodingName(encoding),
+                           meshSuffixes(encoding));
+  return names;
+}
+
 std::string usage() {
   return "vv: renders worlds in VRML and X3D, and meshes.\n"
          "\n"
@@ -92,8 +102,8 @@ std::string usage() {
          "  vv serve world.wrl              shows the world on a page for browsers; prints its "
          "address\n"
          "\n"
-         "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), STL, PLY, OBJ, OFF or "
-         "glTF\n(.gltf, .glb), packed with gzip or not; - is standard input.\n";
+         "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), or a mesh\n(" +
+         meshNames() + "), packed with gzip or not; - is standard input.\n";
 }
 
 std::string describeExitCodes() {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/hit_pictures.h"
+#include "libpicture/transport.h"
 #include "process/messages.h"
 #include "process/signals.h"
 
@@ -122,9 +123,7 @@ bool Audit::run(const picture::View& view) {
     reference_ = fmt::format("a picture of {} samples and the other pictures of the series", most);
     // Other transports leave light out, and say so.
     const RTenum transport = result.stats.transport.chosen;
-    if ((transport == RT_TRANSPORT_PATH || transport == RT_TRANSPORT_LIGHT) &&
-        !hitEmitters(view, result))
-      return false;
+    if (picture::transportInfo(transport).tracesPaths && !hitEmitters(view, result)) return false;
   }
   if (progress_) progress_("");
   coverage_ = picture::countCoverage(shots, reference, width, height, tileEdge);

@@ -11,7 +11,6 @@
 #include "edit/actions.h"
 #include "server/limits.h"
 #include "xvrml/numbers.h"
-#include "xvrml/value_text.h"
 
 namespace vv::server::edit {
 
@@ -21,7 +20,7 @@ using json::jsonText;
 
 namespace {
 
-constexpr size_t mostNameBytes = 1024, mostNoteBytes = 400, mostFrames = 1200;
+constexpr size_t mostNameBytes = 1024, mostNoteBytes = 400, mostHelpBytes = 1000, mostFrames = 1200;
 
 std::string written(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -76,32 +75,29 @@ void appendLinks(std::string& out, const Value& value, json::NodeNumbers& number
   out += ']';
 }
 
-std::string rangeText(const FieldRange& range) {
-  std::string text;
-  if (!range.bounded()) return text;
-  text = fmt::format(R"(,"range":{})", jsonText(describe(range)));
-  // An input of a page has closed ranges only.
+// An input of a page has closed ranges only.
+void appendRange(std::string& out, const FieldRange& range) {
   if (std::isfinite(range.minimum))
-    fmt::format_to(std::back_inserter(text), R"(,"least":{})", range.minimum);
+    fmt::format_to(std::back_inserter(out), R"(,"least":{})", range.minimum);
   if (std::isfinite(range.maximum))
-    fmt::format_to(std::back_inserter(text), R"(,"most":{})", range.maximum);
-  return text;
+    fmt::format_to(std::back_inserter(out), R"(,"most":{})", range.maximum);
 }
 
 // Colours are codes of sRGB, as they stand in files, except the parameters of shaders.
-bool isLinear(const Node& node, const FieldInfo& field) {
-  return field.declared && node.type().is("shader");
+bool isLinear(const Node& node, const PropertyRow& row) {
+  return node.type().is("shader") && (row.field->declared || !row.isDeclared);
 }
 
 std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers& numbers) {
   const FieldInfo& field = *row.field;
   std::string out =
-      fmt::format(R"({{"field":{},"type":"{}","access":"{}","default":{},"size":{},"text":{})",
-                  jsonText(field.name), fieldTypeName(field.type), accessName(field.access),
-                  row.isDefault, row.size, jsonText(shortened(field.text, mostNoteBytes)));
-  out += rangeText(field.range);
-  if (isLinear(node, field)) out += ",\"linear\":true";
-  if (row.isLong || roughSize(row.value) > size_t(maxValueBytes)) {
+      fmt::format(R"({{"field":{},"type":"{}","default":{},"declared":{},"size":{},"help":{})",
+                  jsonText(field.name), fieldTypeName(field.type), row.isDefault, row.isDeclared,
+                  row.size, jsonText(shortened(row.help, mostHelpBytes)));
+  appendRange(out, field.range);
+  if (isLinear(node, row)) out += ",\"linear\":true";
+  if (!row.choices.empty()) out += ",\"choices\":" + written(row.choices);
+  if (row.isLong || row.isInOptions || roughSize(row.value) > size_t(maxValueBytes)) {
     out += ",\"long\":true";
   } else if (field.type == FieldType::SFNode || field.type == FieldType::MFNode) {
     appendLinks(out, row.value, numbers);

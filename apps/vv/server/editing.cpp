@@ -9,6 +9,7 @@
 #include "as_json/fields.h"
 #include "as_json/perform_step.h"
 #include "edit/actions.h"
+#include "edit/shader_parameters.h"
 #include "server/edit_texts.h"
 
 namespace vv::server {
@@ -46,7 +47,7 @@ void Editing::join(uint64_t page) { host_.sendText(page, "", edit::editorText())
 void Editing::leave(uint64_t page) {
   const auto found = faces_.find(page);
   if (found == faces_.end()) return;
-  endDrag(found->second);
+  endDrag(page, found->second);
   faces_.erase(found);
 }
 
@@ -157,6 +158,13 @@ void Editing::perform(uint64_t page, Face&, const edit::SelectAt& select) {
 // While several pages drag, what they change is one step.
 void Editing::perform(uint64_t, Face& face, const edit::Drag& drag) {
   const NodeRef node = nodeOf(face.numbers, drag.node);
+  const PropertySheet& sheet = face.model.sheet();
+  const PropertyRow* const row = sheet.node == node ? sheet.find(drag.field) : nullptr;
+  if (row && !row->isDeclared) {
+    Value value = json::readValue(drag.value, *node, *row->field, {});
+    face.parameter = {node, drag.field, std::move(value)};
+    return;
+  }
   const FieldInfo& field = valueField(*node, drag.field);
   Value value = json::readValue(drag.value, *node, field, {});
   if (!std::exchange(face.isDragging, true))
@@ -164,22 +172,31 @@ void Editing::perform(uint64_t, Face& face, const edit::Drag& drag) {
   editor().editor().set(*node, field.name, std::move(value));
 }
 
-void Editing::perform(uint64_t, Face& face, const edit::EndDrag&) { endDrag(face); }
+void Editing::perform(uint64_t page, Face& face, const edit::EndDrag&) { endDrag(page, face); }
 
-void Editing::endDrag(Face& face) {
+void Editing::endDrag(uint64_t page, Face& face) {
   if (std::exchange(face.isDragging, false)) editor().editor().end();
+  const std::optional<Face::Parameter> parameter = std::exchange(face.parameter, std::nullopt);
+  if (!parameter) return;
+  try {
+    declareParameter(editor(), parameter->shader, parameter->name, parameter->value);
+  } catch (const std::exception& error) { say(page, error.what(), true); }
 }
 
 void Editing::endDrags() {
-  for (auto& [page, face] : faces_) endDrag(face);
+  for (auto& [page, face] : faces_) endDrag(page, face);
 }
 
 void Editing::perform(uint64_t, Face& face, const edit::Reset& reset) {
   const NodeRef node = nodeOf(face.numbers, reset.node);
   const FieldInfo& field = valueField(*node, reset.field);
+  // A parameter of a shader has the default of its class.
+  const PropertySheet& sheet = face.model.sheet();
+  const PropertyRow* const row = sheet.node == node ? sheet.find(field.name) : nullptr;
+  const Value value = row ? row->defaultValue : field.defaultValue;
   endDrags();
   editor().step(fmt::format("Reset {}.{}", node->type().name, field.name),
-                [&] { editor().editor().set(*node, field.name, field.defaultValue); });
+                [&] { editor().editor().set(*node, field.name, value); });
 }
 
 // --- Nodes ---

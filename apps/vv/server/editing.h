@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "as_json/node_numbers.h"
@@ -46,6 +47,13 @@ class Editing {
     int first = 0, count = 0;                // the rows of the outline that it shows
     std::map<std::string, std::string> told; // the last message of each type
     bool isDragging = false;
+    // The parameter of a shader that is dragged, which gets a field at the end.
+    struct Parameter {
+      xvrml::NodeRef shader;
+      std::string name;
+      xvrml::Value value;
+    };
+    std::optional<Parameter> parameter;
     bool isStale = true; // it is told at once, whatever has changed
     double next = 0;     // when it is told again
   };
@@ -53,7 +61,7 @@ class Editing {
   WorldEditor& editor() { return world_.session().editor(); }
   EditView viewOf(uint64_t page);
   bool open(uint64_t page);
-  void endDrag(Face& face);
+  void endDrag(uint64_t page, Face& face);
   // Ends all drags, so that what they have changed can be saved and undone.
   void endDrags();
   void say(uint64_t page, const std::string& text, bool isError);

@@ -144,7 +144,7 @@ class Session {
   Problems& problems_;
   Callbacks callbacks_;
   std::unique_ptr<xvrml::Browser> browser_;
-  WorldEditor editor_{*browser_};
+  WorldEditor editor_{*browser_, options_.render.shaderPath};
   SharedRenderer shared_;
   SessionViewers viewers_;
   SessionViewer& own_ = viewers_.own();

@@ -13,12 +13,19 @@ void Questions::draw() {
   if (!ImGui::IsPopupOpen(question.title)) ImGui::OpenPopup(question.title);
   if (!ImGui::BeginPopupModal(question.title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
   ++frames_;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float right = ImGui::GetIO().DisplaySize.x - 4 * style.WindowPadding.x;
+  ImGui::PushTextWrapPos(right);
   ImGui::TextUnformatted(printable(question.text).c_str());
+  ImGui::PopTextWrapPos();
   const Question::Answer* given = nullptr;
   for (const Question::Answer& answer : question.answers) {
+    // In a small window the answers take several lines.
+    const float width = ImGui::CalcTextSize(answer.label).x + 2 * style.FramePadding.x;
+    if (&answer != &question.answers.front()) ImGui::SameLine();
+    if (ImGui::GetCursorPosX() + width > right) ImGui::NewLine();
     if (ImGui::Button(answer.label)) given = &answer;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", answer.hint);
-    ImGui::SameLine();
   }
   const auto isPressed = [](ImGuiKey key) {
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);

@@ -57,6 +57,7 @@ void Editing::reset() {
   comparison_.clear();
   showCover();
   gizmo_.clear();
+  report_.reset();
   if (isOpen_) open(true);
 }
 
@@ -73,6 +74,7 @@ void Editing::draw() {
 }
 
 std::string Editing::takeMessage() {
+  if (std::string text = report_.takeMessage(); !text.empty()) return text;
   if (!message_.empty() || !model_) return std::exchange(message_, {});
   return model_->takeMessage();
 }
@@ -333,6 +335,7 @@ void Editing::update(Session& session, double seconds) {
   readStill(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
+  if (panels_->takeReportWish()) report_.begin(session, probes_, arguments_);
 }
 
 void Editing::showCover() {

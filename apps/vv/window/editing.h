@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "edit/comparison.h"
 #include "edit/edit_model.h"
@@ -13,6 +14,7 @@
 #include "edit/transform_tool.h"
 #include "session/session.h"
 #include "session/world_loader.h"
+#include "session/world_report.h"
 #include "window/editor_panels.h"
 #include "window/questions.h"
 #include "window/screen.h"
@@ -21,9 +23,12 @@ namespace vv {
 
 class Editing {
  public:
-  // recover: loads the world with the edits of an earlier session.
-  Editing(Screen& screen, Questions& questions, std::function<void(LoadRequest)> recover)
-      : screen_(screen), questions_(questions), recover_(std::move(recover)) {}
+  // arguments: those of the command line, for the command in reports. recover: loads the world with
+  // the edits of an earlier session. The references must live as long.
+  Editing(Screen& screen, Questions& questions, const std::vector<std::string>& arguments,
+          std::function<void(LoadRequest)> recover)
+      : screen_(screen), questions_(questions), arguments_(arguments),
+        recover_(std::move(recover)) {}
 
   bool isOpen() const { return isOpen_; }
   // Opens or closes the editor. Says why it cannot be opened by takeMessage().
@@ -78,7 +83,9 @@ class Editing {
 
   Screen& screen_;
   Questions& questions_;
+  const std::vector<std::string>& arguments_;
   const std::function<void(LoadRequest)> recover_;
+  WorldReport report_;
   bool isOpen_ = false;
   bool hasOffered_ = false;
   std::optional<EditModel> model_; // one for each world

@@ -1,12 +1,14 @@
 #include "window/editor_panels.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "printable.h"
 #include "window/comparison_view.h"
+#include "window/property_widgets.h"
 
 namespace vv {
 
@@ -29,13 +31,24 @@ bool button(const char* label, bool active, const std::string& hint) {
   return pressed;
 }
 
+// A button of a row of buttons that goes on in the next line where the panel is too narrow.
+bool toolButton(const char* label, bool active, const std::string& hint) {
+  const float width = ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x;
+  if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x &&
+      ImGui::GetContentRegionAvail().x < width)
+    ImGui::NewLine();
+  return button(label, active, hint);
+}
+
 enum class Edge : uint8_t { left, right };
 
-// Places a panel at an edge of the window, in the whole height, with this part of its width. The
-// user may make it wider or narrower.
-void placePanel(Edge edge, float part) {
+// Places a panel at an edge of the window, in the whole height: with the width that the user has
+// chosen, or with this part of the window's width. The user may make it wider or narrower.
+void placePanel(Edge edge, float chosen, float part) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float least = std::min(120.f, size.x / 2), width = std::clamp(part * size.x, least, 300.f);
+  const float least = std::min(120.f, size.x / 2),
+              width = chosen > 0 ? std::clamp(chosen, least, size.x / 2)
+                                 : std::clamp(part * size.x, least, 300.f);
   ImGui::SetNextWindowSize(ImVec2(width, size.y), ImGuiCond_Appearing);
   ImGui::SetNextWindowSizeConstraints(ImVec2(least, size.y), ImVec2(size.x / 2, size.y));
   const float x = edge == Edge::left ? 0.f : 1.f;
@@ -44,12 +57,30 @@ void placePanel(Edge edge, float part) {
 
 } // namespace
 
+EditorPanels::EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
+    : model_(model), probes_(probes), save_(std::move(save)),
+      widths_(readPanelWidths(panelStateFile())) {}
+
 void EditorPanels::draw() {
   drawFrames();
   drawOutline();
   drawSheet();
   drawProbes();
+  drawProblems(model_);
+  if (isResized_ && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    isResized_ = false;
+    writePanelWidths(panelStateFile(), widths_);
+  }
   model_.setActive(ImGui::IsAnyItemActive());
+}
+
+// Notes the width of the present panel when the user drags its edge. A smaller window makes panels
+// narrower, too; that is no choice.
+void EditorPanels::watchWidth(float& drawn, float& chosen) {
+  const float before = std::exchange(drawn, ImGui::GetWindowWidth());
+  if (before == 0 || before == drawn || !ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+  chosen = drawn;
+  isResized_ = true;
 }
 
 void EditorPanels::drawFrames() const {
@@ -63,35 +94,63 @@ void EditorPanels::drawFrames() const {
 
 void EditorPanels::drawTools() {
   const bool writable = model_.readOnly().empty(), any = model_.sheet().node && writable;
-  if (button("Undo", !model_.undoName().empty(), "Undo " + model_.undoName() + " (Ctrl+Z)"))
-    model_.request([](WorldEditor& editor) { editor.undo(); });
-  if (button("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
-    model_.request([](WorldEditor& editor) { editor.redo(); });
-  if (button("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)")) save_();
-  ImGui::NewLine();
-  if (button("Add", writable, "Add a node to the selected group, or behind the selected node"))
+  if (toolButton("Undo", !model_.undoName().empty(), "Undo " + model_.undoName() + " (Ctrl+Z)"))
+    model_.edit([](WorldEditor& editor) { editor.undo(); });
+  if (toolButton("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
+    model_.edit([](WorldEditor& editor) { editor.redo(); });
+  if (toolButton("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)")) save_();
+  if (toolButton("Add", writable, "Add a node to the selected group, or behind the selected node"))
     ImGui::OpenPopup("##new");
-  if (button("Copy", any, "Duplicate what is selected (Shift+D)"))
-    model_.request(duplicateSelected);
-  if (button("Group", any, "Put a Transform around what is selected (Ctrl+G)"))
-    model_.request(wrapSelected);
-  if (button("Remove", any, "Remove what is selected (X, Delete)")) model_.request(removeSelected);
+  if (toolButton("Copy", any, "Duplicate what is selected (Shift+D)"))
+    model_.edit(duplicateSelected);
+  if (toolButton("Group", any, "Put a Transform around what is selected (Ctrl+G)"))
+    model_.edit(wrapSelected);
+  if (toolButton("Remove", any, "Remove what is selected (X, Delete)")) model_.edit(removeSelected);
+  if (toolButton("View", true, "Hide nodes for now, and show them again"))
+    ImGui::OpenPopup("##view");
   ImGui::NewLine();
+  drawReports();
   if (ImGui::BeginPopup("##new")) {
     for (const NewNode& one : newNodes())
       if (ImGui::Selectable(one.name))
-        model_.request([&one](WorldEditor& editor) { add(editor, one); });
+        model_.edit([&one](WorldEditor& editor) { add(editor, one); });
     if (ImGui::Selectable("Viewpoint from here"))
-      model_.request([view = view_](WorldEditor& editor) { addViewpoint(editor, view); });
+      model_.edit([view = view_](WorldEditor& editor) { addViewpoint(editor, view); });
+    ImGui::EndPopup();
+  }
+  if (ImGui::BeginPopup("##view")) {
+    drawViewItems();
     ImGui::EndPopup();
   }
 }
 
+// Draws the items of a menu that change what is seen and selected, and not the file.
+void EditorPanels::drawViewItems() {
+  if (ImGui::MenuItem("Hide")) model_.hideSelected();
+  if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
+  if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
+  if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
+}
+
+void EditorPanels::drawReports() {
+  ProblemList& problems = model_.problems();
+  // The identifier behind ### stays when the number changes.
+  const std::string label = "Problems (" + std::to_string(problems.count()) + ")###problems";
+  if (toolButton(label.c_str(), problems.count() > 0 || problems.isOpen(),
+                 "Messages about the world"))
+    problems.setOpen(!problems.isOpen());
+  wantsReport_ |= toolButton("Report", true, "Write a page and a table beside the file");
+  ImGui::NewLine();
+}
+
 void EditorPanels::drawOutline() {
-  placePanel(Edge::left, 0.26f);
+  placePanel(Edge::left, widths_.outline, 0.26f);
   if (ImGui::Begin("##outline", nullptr, panelFlags)) {
+    watchWidth(outlineWidth_, widths_.outline);
     drawTools();
     if (!model_.readOnly().empty()) ImGui::TextWrapped("%s", model_.readOnly().c_str());
+    if (model_.hiddenCount() > 0)
+      ImGui::TextWrapped("%zu nodes are hidden: View, Show all", model_.hiddenCount());
     ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##search", "Search names, types and fields", &search_))
       model_.search(search_);
@@ -103,6 +162,7 @@ void EditorPanels::drawOutline() {
       clipper.Begin(int(rows.size()), ImGui::GetTextLineHeightWithSpacing());
       while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) drawRow(rows[size_t(i)], i);
+      drawRowMenu();
     }
     ImGui::EndChild();
   }
@@ -122,15 +182,40 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
   // Names are those of a hostile file: behind "##" nothing would be shown.
   if (ImGui::Selectable("##row", model_.isSelected(*row.node)))
     model_.select(row.node, ImGui::GetIO().KeyShift || ImGui::GetIO().KeyCtrl);
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
+    // The rows may change while the menu is open.
+    menuRow_ = row;
+    opensMenu_ = true;
+    if (!model_.isSelected(*row.node)) model_.select(row.node, false);
+  }
   ImGui::SameLine(0, 0);
   ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
   if (row.isUse) ImGui::PopStyleColor();
   ImGui::PopID();
 }
 
+void EditorPanels::drawRowMenu() {
+  if (std::exchange(opensMenu_, false)) ImGui::OpenPopup("##row");
+  if (!ImGui::BeginPopup("##row")) return;
+  drawViewItems();
+  ImGui::Separator();
+  ImGui::BeginDisabled(!model_.readOnly().empty());
+  const auto item = [this](const char* label, void (*edit)(WorldEditor&, const PlacedNode&)) {
+    if (ImGui::MenuItem(label))
+      model_.edit([edit, place = menuRow_.place](WorldEditor& editor) { edit(editor, place); });
+  };
+  item("Move up", [](WorldEditor& editor, const PlacedNode& place) { moveBy(editor, place, -1); });
+  item("Move down", [](WorldEditor& editor, const PlacedNode& place) { moveBy(editor, place, 1); });
+  item("Make this one separate", separateAt);
+  item("Remove from here", removeAt);
+  ImGui::EndDisabled();
+  ImGui::EndPopup();
+}
+
 void EditorPanels::drawSheet() {
-  placePanel(Edge::right, 0.3f);
+  placePanel(Edge::right, widths_.sheet, 0.3f);
   if (ImGui::Begin("##sheet", nullptr, panelFlags)) {
+    watchWidth(sheetWidth_, widths_.sheet);
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
       ImGui::TextWrapped("Click on something in the picture or in the outline to select it.");
@@ -140,6 +225,7 @@ void EditorPanels::drawSheet() {
       if (!sheet.note.empty()) ImGui::TextWrapped("%s", printable(sheet.note).c_str());
       ImGui::Separator();
       ImGui::BeginDisabled(!model_.readOnly().empty());
+      if (sheet.hasLook) drawLook(model_, sheet);
       for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row);
       ImGui::EndDisabled();
       ImGui::PopID();

@@ -10,23 +10,29 @@
 #include "edit/actions.h"
 #include "edit/edit_model.h"
 #include "edit/probes.h"
+#include "window/panel_state.h"
 
 namespace vv {
 
 class EditorPanels {
  public:
   // save: saves the file.
-  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
-      : model_(model), probes_(probes), save_(std::move(save)) {}
+  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save);
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
   void setView(const EditView& view) { view_ = view; }
+  // Tells, once, whether the user has asked for a report.
+  bool takeReportWish() { return std::exchange(wantsReport_, false); }
 
  private:
   void drawOutline();
   void drawTools();
+  void drawViewItems();
+  void drawReports();
   void drawRow(const OutlineRow& row, int number);
+  void drawRowMenu();
+  void watchWidth(float& drawn, float& chosen);
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
@@ -36,9 +42,15 @@ class EditorPanels {
   EditView view_;
   std::string search_;
   const std::function<void()> save_;
+  OutlineRow menuRow_; // the row that the menu is about
+  bool opensMenu_ = false;
+  PanelWidths widths_;                      // what the user has chosen
+  float outlineWidth_ = 0, sheetWidth_ = 0; // as the panels were drawn last
+  bool isResized_ = false;                  // the user drags the edge of a panel
+  bool wantsReport_ = false;
 };
 
-// Draws the widgets for a field, and asks for the edits that the user makes with them.
-void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);
+// Draws the list of the messages about the world, if it is open.
+void drawProblems(EditModel& model);
 
 } // namespace vv

@@ -14,6 +14,8 @@ bool Gui::take(const SDL_Event&) { return false; }
 void Gui::draw() {}
 bool Gui::hasChanged() const { return false; }
 
+EditorPanels::EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
+    : model_(model), probes_(probes), save_(std::move(save)) {}
 void EditorPanels::draw() {}
 void Questions::draw() {}
 

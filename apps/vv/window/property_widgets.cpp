@@ -5,14 +5,12 @@
 #include <type_traits>
 #include <utility>
 
-#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "printable.h"
-#include "window/editor_panels.h"
+#include "window/property_widgets.h"
 #include "xvrml/numbers.h"
-#include "xvrml/value_text.h"
 
 namespace vv {
 
@@ -28,19 +26,16 @@ template <class Number> constexpr ImGuiDataType dataType =
                                      : ImGuiDataType_S32;
 
 // Returns how much a number changes with each pixel of a drag.
-template <class Number> float speedOf(const Number* numbers, int count) {
+template <class Number> float speedOf(Number number) {
   if constexpr (std::is_integral_v<Number>) return 0.1f;
-  double most = 0;
-  for (int i = 0; i < count; ++i) most = std::max(most, std::abs(double(numbers[i])));
-  return float(most > 0 && std::isfinite(most) ? most * 0.01 : 0.01);
+  const double size = std::abs(double(number));
+  return float(size > 0 && std::isfinite(size) ? size * 0.01 : 0.01);
 }
 
-// Returns how numbers are shown. A drag rounds to this, so that files get short numbers.
-template <class Number> const char* formOf(const Number* numbers, int count) {
+// Returns how a number is shown. A drag rounds to this, so that files get short numbers.
+template <class Number> const char* formOf(Number number) {
   if constexpr (std::is_integral_v<Number>) return "%d";
-  const bool large = std::any_of(numbers, numbers + count,
-                                 [](Number one) { return std::abs(double(one)) >= 1e4; });
-  return large ? "%.7g" : "%.4g";
+  return std::abs(double(number)) >= 1e4 ? "%.7g" : "%.4g";
 }
 
 // Returns whether a change of the last item counts: at once while it is dragged, and when it is
@@ -51,10 +46,21 @@ bool counts(bool changes) {
 
 // The functions edit() draw the widget of a value, and return whether the user has changed it.
 
+// Each number of a vector has a drag of its own, with its own speed.
 template <class Number> bool dragNumbers(Number* numbers, int count) {
-  return counts(ImGui::DragScalarN("##value", dataType<Number>, numbers, count,
-                                   speedOf(numbers, count), nullptr, nullptr,
-                                   formOf(numbers, count)));
+  constexpr float gap = 2;
+  const float width =
+      std::max(1.f, (ImGui::CalcItemWidth() - gap * float(count - 1)) / float(count));
+  bool changes = false;
+  for (int i = 0; i < count; ++i) {
+    if (i > 0) ImGui::SameLine(0, gap);
+    ImGui::PushID(i);
+    ImGui::SetNextItemWidth(width);
+    changes |= counts(ImGui::DragScalar("##value", dataType<Number>, numbers + i,
+                                        speedOf(numbers[i]), nullptr, nullptr, formOf(numbers[i])));
+    ImGui::PopID();
+  }
+  return changes;
 }
 
 bool edit(bool& value) { return ImGui::Checkbox("##value", &value); }
@@ -73,8 +79,9 @@ bool edit(ColorRGBA& value) {
   return counts(ImGui::ColorEdit4("##value", &value.r, ImGuiColorEditFlags_Float));
 }
 
+// An axis, and the angle in degrees.
 bool edit(Rotation& value) {
-  bool changes = counts(ImGui::DragFloat3("##axis", &value.x, 0.01f, 0, 0, "%.4g"));
+  const bool changes = dragNumbers(&value.x, 3);
   auto angle = float(double(value.angle) * degrees);
   ImGui::SetNextItemWidth(-1);
   const bool turned = ImGui::DragFloat("##angle", &angle, 0.5f, 0, 0, "%.4g degrees");
@@ -94,18 +101,24 @@ concept Editable = requires(T& value) {
   edit(value);
 };
 
-void drawLink(EditModel& model, const NodeRef& node, int number) {
-  if (!node) return ImGui::TextDisabled("NULL");
-  ImGui::PushID(number);
-  if (ImGui::Button("##link", ImVec2(-1, 0))) model.select(node, false);
-  const ImVec2 corner = ImGui::GetItemRectMin(), inner = ImGui::GetStyle().FramePadding;
-  const std::string label = labelOf(*node);
-  ImGui::GetWindowDrawList()->AddText(ImVec2(corner.x + inner.x, corner.y + inner.y),
-                                      ImGui::GetColorU32(ImGuiCol_Text), label.c_str());
-  ImGui::PopID();
+// A text, or one of the words that the field may hold.
+bool edit(std::string& value, const std::vector<std::string>& choices) {
+  if (choices.empty()) return edit(value);
+  ImGui::SetNextItemWidth(std::max(1.f, ImGui::CalcItemWidth() - ImGui::GetFrameHeight() - 2));
+  bool changes = edit(value);
+  ImGui::SameLine(0, 2);
+  if (ImGui::BeginCombo("##choices", nullptr, ImGuiComboFlags_NoPreview)) {
+    for (const std::string& one : choices)
+      if (ImGui::Selectable(one.c_str(), one == value)) {
+        value = one;
+        changes = true;
+      }
+    ImGui::EndCombo();
+  }
+  return changes;
 }
 
-template <class T> bool editList(std::vector<T>& list) {
+template <class T> bool editList(std::vector<T>& list, const std::vector<std::string>& choices) {
   bool changes = false;
   for (size_t i = 0; i < list.size(); ++i) {
     ImGui::PushID(int(i));
@@ -114,6 +127,8 @@ template <class T> bool editList(std::vector<T>& list) {
       bool value = list[i];
       changes |= edit(value);
       list[i] = value;
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      changes |= edit(list[i], choices);
     } else {
       changes |= edit(list[i]);
     }
@@ -125,62 +140,73 @@ template <class T> bool editList(std::vector<T>& list) {
     return true;
   }
   if (list.size() < PropertySheet::mostElements && ImGui::Button("+")) {
-    list.push_back(list.empty() ? T() : T(list.back()));
+    T added = list.empty() ? T() : T(list.back());
+    if constexpr (std::is_same_v<T, std::string>)
+      if (list.empty() && !choices.empty()) added = choices.front();
+    list.push_back(std::move(added));
     return true;
   }
   return changes;
 }
 
 // Returns whether the user has changed the value.
-bool drawValue(EditModel& model, PropertyRow& row) {
+bool drawValue(PropertyRow& row) {
   return std::visit(
       [&](auto& value) {
         using T = std::remove_cvref_t<decltype(value)>;
-        if constexpr (std::is_same_v<T, NodeRef>) {
-          drawLink(model, value, 0);
-        } else if constexpr (std::is_same_v<T, MFNode>) {
-          for (size_t i = 0; i < value.size(); ++i) drawLink(model, value[i], int(i));
-        } else if constexpr (isList<T>) {
-          if constexpr (Editable<ElementOf<T>> && !std::is_same_v<T, Image>) return editList(value);
+        ImGui::SetNextItemWidth(-1);
+        if constexpr (isList<T>) {
+          if constexpr (Editable<ElementOf<T>> && !std::is_same_v<T, MFImage>)
+            return editList(value, row.choices);
+        } else if constexpr (std::is_same_v<T, std::string>) {
+          return edit(value, row.choices);
         } else if constexpr (Editable<T>) {
-          ImGui::SetNextItemWidth(-1);
           return edit(value);
         }
+        ImGui::TextDisabled("%s", std::string(fieldTypeName(row.field->type)).c_str());
         return false;
       },
       row.value);
 }
 
-void showTooltip(const FieldInfo& field) {
-  if (!ImGui::IsItemHovered()) return;
-  std::string text =
-      fmt::format("{} {} {}", accessName(field.access), fieldTypeName(field.type), field.name);
-  if (!field.text.empty()) text += "\n" + field.text;
-  if (field.range.bounded()) text += "\nrange " + xvrml::describe(field.range);
-  ImGui::SetTooltip("%s", printable(text).c_str());
+// Draws the name: grey for a default, and bold for what has been edited since the file was read.
+void drawName(const PropertyRow& row) {
+  const ImU32 colour = ImGui::GetColorU32(row.isDefault ? ImGuiCol_TextDisabled : ImGuiCol_Text);
+  const std::string name = printable(row.field->name);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(name.c_str());
+  ImGui::PopStyleColor();
+  if (row.edits > 0)
+    ImGui::GetWindowDrawList()->AddText(ImVec2(at.x + 0.7f, at.y), colour, name.c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(row.help).c_str());
 }
 
 } // namespace
 
 void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   const FieldInfo& field = *row.field;
-  ImGui::PushID(&field);
-  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(
-                                           row.isDefault ? ImGuiCol_TextDisabled : ImGuiCol_Text));
-  ImGui::TextUnformatted(printable(field.name).c_str());
-  ImGui::PopStyleColor();
-  showTooltip(field);
-  if (ImGui::BeginPopupContextItem("##menu")) {
+  const bool holdsNodes = field.type == FieldType::SFNode || field.type == FieldType::MFNode;
+  ImGui::PushID(field.name.data(), field.name.data() + field.name.size());
+  drawName(row);
+  if (!holdsNodes && row.isDeclared && ImGui::BeginPopupContextItem("##menu")) {
     if (ImGui::Selectable("Reset to the default") && !row.isDefault)
-      model.drag(node, field, field.defaultValue);
+      model.drag(node, field, row.defaultValue);
     ImGui::EndPopup();
   }
   if (row.isLong) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s of %zu", std::string(fieldTypeName(field.type)).c_str(), row.size);
-    return ImGui::PopID();
   }
-  if (drawValue(model, row)) model.drag(node, field, row.value);
+  if (row.isInOptions) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("(options)");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("The options of this shader set it.");
+  } else if (holdsNodes) {
+    drawNodes(model, node, row);
+  } else if (!row.isLong && drawValue(row)) {
+    model.drag(node, field, row.value);
+  }
   ImGui::PopID();
 }
 

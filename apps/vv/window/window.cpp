@@ -128,7 +128,7 @@ class Window {
   std::unique_ptr<control::Control> control_; // null: no program controls the world
   WorldWatch watch_{options_};
   Questions questions_{screen_};
-  Editing editing_{screen_, questions_,
+  Editing editing_{screen_, questions_, arguments_,
                    [this](LoadRequest edits) { open(std::move(edits), true); }};
   uint64_t saves_ = 0; // times that the file of the world has been saved
   picture::LivePicture picture_;

@@ -13,14 +13,13 @@
 #include "render/frame/result_codec.h"
 #include "render/wave/light_stride.h"
 #include "scene/quality.h"
-#include "scene/transports.h"
 
 namespace openrt {
 namespace {
 
 [[noreturn]] void refuse(const std::string& why) { throw SumsError(why); }
 
-// A setting of frames that sums depend on, with its name in messages.
+// A property of frames, beside quality settings, that sums depend on, with its name in messages.
 struct Setting {
   const char* name;
   std::string (*value)(const edit::FrameSettingsT& frame);
@@ -33,27 +32,11 @@ std::string textOfNames(const edit::FrameSettingsT& frame) {
   const std::vector<uint32_t>& names = frame.unitedNames;
   return std::to_string(XXH3_64bits(names.data(), names.size() * sizeof(uint32_t)));
 }
-std::string textOfTransport(const edit::FrameSettingsT& frame) {
-  return traitsOf(frame.transport).name;
-}
 using F = edit::FrameSettingsT;
 constexpr Setting settings[] = {
     {"width", text<&F::width>},
     {"height", text<&F::height>},
     {"set of channels", text<&F::channels>},
-    {"transport", textOfTransport},
-    {"maximum depth", text<&F::depth>},
-    {"shadows", text<&F::shadows>},
-    {"number of replicates", text<&F::replicates>},
-    {"target error", text<&F::targetError>},
-    {"energy cut", text<&F::energyCut>},
-    {"clamp", text<&F::clamp>},
-    {"tile size", text<&F::tile>},
-    {"follow_images", text<&F::followImages>},
-    {"jitter", text<&F::jitter>},
-    {"light stride", text<&F::lightStride>},
-    {"measure", text<&F::measure>},
-    {"depth_along", text<&F::depthAlong>},
     {"x of its rectangle", text<&F::scissorX>},
     {"y of its rectangle", text<&F::scissorY>},
     {"width of its rectangle", text<&F::scissorWidth>},
@@ -72,10 +55,16 @@ void checkIdentity(const SumsIdentity& a, const SumsIdentity& b, const char* her
 }
 
 void checkSettings(const edit::FrameSettingsT& a, const edit::FrameSettingsT& b, const char* here) {
+  const auto refuseOther = [here](const char* name, const std::string& one,
+                                  const std::string& other) {
+    refuse(std::string("it was made with another ") + name + " (" + one + ") than " + here + " (" +
+           other + ")");
+  };
   for (const Setting& s : settings)
-    if (s.value(a) != s.value(b))
-      refuse(std::string("it was made with another ") + s.name + " (" + s.value(a) + ") than " +
-             here + " (" + s.value(b) + ")");
+    if (s.value(a) != s.value(b)) refuseOther(s.name, s.value(a), s.value(b));
+  for (const QualitySetting& s : qualitySettings())
+    if (s.get && !s.mayDiffer && s.get(a) != s.get(b))
+      refuseOther(s.info.name, qualityText(s.info, s.get(a)), qualityText(s.info, s.get(b)));
 }
 
 void checkScene(const SumsIdentity& a, const SumsIdentity& b, const char* here) {

@@ -21,7 +21,6 @@
 #include "render/frame/result_codec.h"
 #include "scene/channels.h"
 #include "scene/quality.h"
-#include "scene/transports.h"
 
 namespace openrt {
 namespace {
@@ -115,13 +114,10 @@ edit::FrameSettingsT readFrame(Reader& r) {
   edit::FrameSettingsT frame;
   flatbuffers::GetRoot<edit::FrameSettings>(aligned.data())->UnPackTo(&frame);
   const bool fits = isPictureSize(frame.width, frame.height) && frame.channels != 0 &&
-                    (frame.channels & ~allChannels) == 0 && frame.samples >= 1 &&
-                    frame.samples <= mostSamples && isTransport(frame.transport) &&
-                    (frame.tile == 0 || (frame.tile >= 4 && frame.tile <= 128)) &&
-                    frame.lightStride >= 1 && frame.lightStride <= 4 && frame.timeLimit == 0 &&
-                    frame.targetError >= 0 && frame.targetError <= 1 && frame.depthAlong <= 1 &&
-                    frame.scissorX < largestSide && frame.scissorY < largestSide &&
-                    frame.scissorWidth <= largestSide && frame.scissorHeight <= largestSide &&
+                    (frame.channels & ~allChannels) == 0 && !invalidQuality(frame) &&
+                    frame.timeLimit == 0 && frame.scissorX < largestSide &&
+                    frame.scissorY < largestSide && frame.scissorWidth <= largestSide &&
+                    frame.scissorHeight <= largestSide &&
                     (frame.scissorWidth == 0) == (frame.scissorHeight == 0);
   if (!fits) damaged("its settings are not those of a picture");
   return frame;

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <atomic>
-#include <iterator>
 
 #include "render/film/ledger.h"
 #include "render/lights/unsampled_lights.h"
@@ -84,15 +83,17 @@ class PathTracer {
   }
   void traceWave(Wave& wave, PixelSamples& found);
 
-  // Shade the hits of a bucket, each as the value of Shading with its name says. A transport that
-  // shades in a way of its own has a function here, in a file of its own.
-  void shadeByShade(const Points& points, const Bucket& bucket, const PathStates& states,
-                    PixelSamples& found);
-  void shadeByLobes(const Points& points, const Bucket& bucket, const PathStates& states,
-                    PixelSamples& found);
-  static constexpr decltype(&PathTracer::shadeByShade) shadings[] = {&PathTracer::shadeByShade,
-                                                                     &PathTracer::shadeByLobes};
-  static_assert(std::size(shadings) == size_t(Shading::count));
+  // Shade the hits of a bucket, each as its row of OPENRT_SHADINGS says. A transport that shades in
+  // a way of its own has its function in a file of its own.
+#define OPENRT_DECLARE_SHADING(name, function)                                                     \
+  void function(const Points& points, const Bucket& bucket, const PathStates& states,              \
+                PixelSamples& found);
+  OPENRT_SHADINGS(OPENRT_DECLARE_SHADING)
+#undef OPENRT_DECLARE_SHADING
+#define OPENRT_LIST_SHADING(name, function) &PathTracer::function,
+  static constexpr decltype(&PathTracer::shadeByShade) shadings[] = {
+      OPENRT_SHADINGS(OPENRT_LIST_SHADING)};
+#undef OPENRT_LIST_SHADING
   void scatter(const Points& points, const Bucket& bucket, const PathStates& states,
                PixelSamples& found);
   SentLight sentLight(const RtsBatch& batch, const RtsSurface& surface) const;

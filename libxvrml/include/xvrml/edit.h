@@ -14,6 +14,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,6 +27,15 @@ namespace xvrml {
 // Says in one sentence why an edit is not possible.
 struct EditError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+// A field of a node of the file that edits have changed since the file was read.
+struct ChangedField {
+  uint32_t line = 0; // where the node begins in the file as it was read; 0: the roots of the file
+  std::string type, name; // the node's type, and its name behind DEF as it is now
+  std::string field;      // "DEF": the name of the node
+  // Values as VRML97 writes them, cut to a readable length. For nodes these say how many there are.
+  std::string before, now;
 };
 
 // A place for a node: in a field of a node or, without a parent, among the roots of the file.
@@ -68,9 +78,22 @@ class Editor {
   // Grows with each edit, undo and redo, so that who shows the world knows when to look again.
   uint64_t changes() const;
 
+  // Returns how many edits of those that are not undone have set a field. Edits of one step that
+  // follow each other are one.
+  uint64_t editsOf(const Node& node, std::string_view field) const;
+
   // Returns the places where a node stands in the world now: once where it is defined, and once for
   // each USE. Places in Inlines and in the bodies of prototypes are left out.
   std::vector<NodeSlot> placesOf(const Node& node);
+
+  // Returns for each place in the world's file, as it was read, the innermost node whose text holds
+  // it, as the messages about the file have places; null if there is none, or it is not in the
+  // world any more. In a file that cannot be edited only a node that begins there is found.
+  std::vector<NodeRef> nodesAt(std::span<const SourcePosition> places);
+  // Returns the fields that differ from the file as it was read, in the order of the file. Fields
+  // of nodes that have been inserted are not listed: the field that holds them is. Routes are not,
+  // either.
+  std::vector<ChangedField> changedFields() const;
 
   // --- Edits ---
   // Sets a field that holds no nodes. Throws EditError for a value of another type, out of the
@@ -92,11 +115,19 @@ class Editor {
   // Inserts a copy of the node at a place behind it (in an MFNode or among the roots), with names
   // of its own, as the file has it: not as it has moved since the world began.
   NodeRef duplicate(const NodeSlot& slot);
+  // Puts a copy of the node at a place there, with names of its own. Returns the copy, which can be
+  // edited without the other places of the node. Throws EditError if there are none.
+  NodeRef separate(const NodeSlot& slot);
   // Puts a new grouping node of this type around the node at a place. Returns the new node.
   NodeRef wrap(const NodeSlot& slot, std::string_view type = "Transform");
   // Gives a node a DEF name, or another one, in all of its references. Throws EditError for a name
   // that is none or that another node has.
   void rename(Node& node, const std::string& name);
+  // Declares an exposedField of a node that can have fields of its own (ORTShader), with this
+  // value. Another node takes its place, or all of its places, with its name and its routes.
+  // Returns that node. Throws EditError for nodes that declare nothing, and for a field that the
+  // node has.
+  NodeRef declare(Node& node, std::string_view field, const Value& value);
   // Add or remove a route between nodes of the file. Nodes without names get some.
   void addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
   void removeRoute(Node& from, std::string_view out, Node& to, std::string_view in);

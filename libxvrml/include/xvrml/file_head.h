@@ -27,6 +27,9 @@ int encodingCount();
 std::string_view encodingName(Encoding encoding);
 // Returns whether a file is a mesh. Its nodes follow X3D 4.0. [any thread]
 bool isMesh(Encoding encoding);
+// Returns the suffixes of names of meshes, separated by blanks: ".gltf .glb". Empty for an encoding
+// of worlds. [any thread]
+std::string_view meshSuffixes(Encoding encoding);
 
 // The encoding and the version of the standard that a file follows. VRML 1.0 is version 1.0, VRML97
 // is 2.0, X3D begins with 3.0.

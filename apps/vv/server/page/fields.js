@@ -5,6 +5,7 @@
 
 const counts = { Float: 1, Double: 1, Time: 1, Int32: 1, Color: 3, ColorRGBA: 4, Rotation: 4 };
 const degrees = 180 / Math.PI;
+let lists = 0; // of words, so far
 
 // label: what a screen reader says.
 export function make(tag, { label, ...properties } = {}, ...children) {
@@ -162,17 +163,23 @@ function switchWidget(label, change) {
   return { element: input, set: (value) => (input.checked = value), isActive: () => false };
 }
 
-function textWidget(label, change) {
-  const input = make("textarea", { rows: 1, spellcheck: false, label });
+// choices: words that are proposed.
+function textWidget(label, choices, change) {
+  const words = make("datalist", { id: `words-${++lists}` });
+  words.append(...(choices ?? []).map((word) => make("option", { value: word })));
+  const input = choices
+    ? make("input", { type: "text", spellcheck: false, label })
+    : make("textarea", { rows: 1, spellcheck: false, label });
+  if (choices) input.setAttribute("list", words.id);
   let shown = "";
   input.addEventListener("change", () => {
     if (input.value !== shown) change((shown = input.value), true);
   });
   return {
-    element: input,
+    element: choices ? make("span", { className: "text" }, input, words) : input,
     set: (value) => {
       input.value = shown = value;
-      input.rows = Math.min(8, value.split("\n").length);
+      if (!choices) input.rows = Math.min(8, value.split("\n").length);
     },
     isActive: () => document.activeElement === input && input.value !== shown,
   };
@@ -181,7 +188,7 @@ function textWidget(label, change) {
 // Returns the widget of one element of a type, such as "Vec3f"; null: there is none.
 function elementWidget(type, facts, label, change) {
   if (type === "Bool") return switchWidget(label, change);
-  if (type === "String") return textWidget(label, change);
+  if (type === "String") return textWidget(label, facts.choices, change);
   if (type === "Rotation") return rotationWidget(label, change);
   const count = countOf(type);
   if (type.startsWith("Color")) return colourWidget(facts, label, count, change);
@@ -252,7 +259,7 @@ export class Fields {
 
   // Says which fields there are: while that stays, only values are set.
   shapeOf(message) {
-    const rows = message.fields.map((f) => [f.field, f.type, f.long, f.links?.length]);
+    const rows = message.fields.map((f) => [f.field, f.type, f.long, f.declared, f.links?.length]);
     return JSON.stringify([message.node, rows]);
   }
 
@@ -289,8 +296,7 @@ export class Fields {
 
   make(facts) {
     const name = make("span", { className: "name", textContent: facts.field });
-    const range = facts.range ? `\nrange ${facts.range}` : "";
-    name.title = `${facts.access} ${facts.type} ${facts.field}\n${facts.text}${range}`;
+    name.title = facts.help;
     const reset = make("button", {
       type: "button",
       className: "reset",
@@ -337,7 +343,7 @@ export class Fields {
   update(row, facts) {
     row.facts = facts;
     row.element.classList.toggle("default", facts.default);
-    row.reset.hidden = facts.default || Boolean(facts.links);
+    row.reset.hidden = facts.default || !facts.declared || Boolean(facts.links);
     if (row.widget && !row.widget.isActive()) row.widget.set(facts.value);
     facts.links?.forEach((one, i) => {
       const child = row.element.querySelector(".links").children[i];

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "parse/mesh/gltf/base64.h"
+#include "base64.h"
 #include "srgb.h"
 
 namespace xvrml::gltf {

@@ -1,11 +1,10 @@
-// base64.h: encodes bytes for data: URLs (RFC 4648). A pure function, any thread.
+// base64.h: Encodes bytes as text (RFC 4648, section 4), for data: URLs and JSON. Pure functions.
+// [any thread]
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
-
-namespace xvrml::gltf {
 
 // Appends the base64 text of the bytes.
 inline void appendBase64(std::string_view bytes, std::string& text) {
@@ -21,4 +20,8 @@ inline void appendBase64(std::string_view bytes, std::string& text) {
   }
 }
 
-} // namespace xvrml::gltf
+inline std::string base64Of(std::string_view bytes) {
+  std::string text;
+  appendBase64(bytes, text);
+  return text;
+}

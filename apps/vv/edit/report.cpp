@@ -1,0 +1,200 @@
+#include "edit/report.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base64.h"
+#include "printable.h"
+
+namespace vv {
+
+namespace {
+
+constexpr size_t mostFields = 40; // rows of the page; the table has all
+
+// The page runs no program and loads nothing, whatever the texts in it are.
+constexpr std::string_view head = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<style>
+@page { size: A4; margin: 15mm }
+body { font: 10pt/1.35 sans-serif; color: #111; background: #fff; max-width: 180mm; margin: 1em auto }
+h1 { font-size: 15pt; margin: 0 0 .2em } h2 { font-size: 11pt; margin: 1.1em 0 .3em }
+img { max-width: 100%; max-height: 95mm; display: block }
+table { border-collapse: collapse; width: 100% }
+th, td { text-align: left; vertical-align: top; padding: .15em .6em .15em 0; border-bottom: 1px solid #ccc }
+td.n, th.n { text-align: right; font-variant-numeric: tabular-nums }
+code { font: 8.5pt/1.3 monospace; white-space: pre-wrap; overflow-wrap: anywhere }
+figure { margin: 0 0 .6em } .weak { color: #555 }
+</style>
+)";
+
+// Returns a text that a page shows as it is.
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : printable(text)) {
+    switch (c) {
+    case '&': out += "&amp;"; break;
+    case '<': out += "&lt;"; break;
+    case '>': out += "&gt;"; break;
+    case '"': out += "&quot;"; break;
+    case '\'': out += "&#39;"; break;
+    default: out += c;
+    }
+  }
+  return out;
+}
+
+// Returns a text as a field of CSV (RFC 4180). One that a spreadsheet would take for a formula gets
+// an apostrophe before it.
+std::string quoted(std::string_view text) {
+  const auto isNumber = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  const bool isFormula =
+      !text.empty() &&
+      (text[0] == '=' || text[0] == '@' ||
+       ((text[0] == '+' || text[0] == '-') && !(text.size() > 1 && isNumber(text[1]))));
+  std::string out = isFormula ? "\"'" : "\"";
+  for (const char c : printable(text)) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string interval(double value, double halfWidth, bool sign = false) {
+  return sign ? fmt::format("{:+.4g} ± {:.2g}", value, halfWidth)
+              : fmt::format("{:.4g} ± {:.2g}", value, halfWidth);
+}
+
+const char* verdictOf(const Difference& change) {
+  if (change.isSignificant) return "significant";
+  return change.value == 0 && change.halfWidth == 0 ? "unchanged" : "not yet certain";
+}
+
+const char* stateOf(const Probe& probe) {
+  switch (probe.state) {
+  case Probe::State::waiting: return "not read yet";
+  case Probe::State::hidden: return "not seen";
+  case Probe::State::outside: return "outside of the picture";
+  default: return probe.now.trusted ? "trusted" : "not trusted";
+  }
+}
+
+// Returns what a field belongs to: "LAMP  PointLight", or "PointLight" without a name.
+std::string ownerOf(const xvrml::ChangedField& field) {
+  if (field.type.empty()) return "the file";
+  return field.name.empty() ? field.type : field.name + "  " + field.type;
+}
+
+const std::optional<Difference>& changeOf(const Report& report, size_t probe) {
+  static const std::optional<Difference> none;
+  return probe < report.changes.size() ? report.changes[probe] : none;
+}
+
+void addPictures(const Report& report, std::string& out) {
+  for (const ReportPicture& one : report.pictures) {
+    out += fmt::format("<figure><img alt=\"{}\" src=\"data:image/png;base64,", escaped(one.title));
+    appendBase64(one.png, out);
+    out += fmt::format("\">\n<figcaption>{}, {} x {} pixels. To make it again{}:<br><code>{}</code>"
+                       "</figcaption></figure>\n",
+                       escaped(one.title), one.width, one.height,
+                       report.isUnsaved ? ", save the edits first" : "", escaped(one.command));
+  }
+}
+
+void addProbes(const Report& report, std::string& out) {
+  if (report.probes.empty()) return;
+  out += "<h2>Luminance at the probes</h2>\n<table><tr><th>probe<th>place<th class=n>before (A), "
+         "cd/m²<th class=n>now (B), cd/m²<th class=n>B - A<th></tr>\n";
+  for (size_t i = 0; i < report.probes.size(); ++i) {
+    const Probe& probe = report.probes[i];
+    const bool isRead = probe.state == Probe::State::read;
+    const std::optional<Difference>& change = changeOf(report, i);
+    const std::string before =
+        change ? interval(probe.before.luminance, probe.before.luminanceHalfWidth) : "";
+    const std::string now =
+        isRead ? interval(probe.now.luminance, probe.now.luminanceHalfWidth) : "";
+    const std::string verdict =
+        change ? fmt::format("{}, {}", verdictOf(*change), stateOf(probe)) : stateOf(probe);
+    out += fmt::format("<tr><td>{}<td>{:.4g} {:.4g} {:.4g}<td class=n>{}<td class=n>{}<td "
+                       "class=n>{}<td>{}</tr>\n",
+                       probe.number, probe.point[0], probe.point[1], probe.point[2], before, now,
+                       change ? interval(change->value, change->halfWidth, true) : "", verdict);
+  }
+  out += "</table>\n<p class=weak>± is half of the 95 % interval. A change is significant at 5 % "
+         "for all probes together (Holm), if both intervals can be trusted.</p>\n";
+}
+
+void addFields(const Report& report, std::string& out) {
+  out += "<h2>Edited since the file was read</h2>\n";
+  if (report.fields.empty()) {
+    out += "<p>No field differs.</p>\n";
+    return;
+  }
+  out += "<table><tr><th>node<th>line<th>field<th>before<th>now</tr>\n";
+  const size_t shown = std::min(report.fields.size(), mostFields);
+  for (size_t i = 0; i < shown; ++i) {
+    const xvrml::ChangedField& field = report.fields[i];
+    out += fmt::format("<tr><td>{}<td>{}<td>{}<td><code>{}</code><td><code>{}</code></tr>\n",
+                       escaped(ownerOf(field)), field.line > 0 ? std::to_string(field.line) : "",
+                       escaped(field.field), escaped(field.before), escaped(field.now));
+  }
+  out += "</table>\n";
+  if (shown < report.fields.size())
+    out += fmt::format("<p class=weak>and {} more, which the table beside this page has.</p>\n",
+                       report.fields.size() - shown);
+}
+
+} // namespace
+
+std::string reportPage(const Report& report) {
+  const std::string world = escaped(report.world);
+  std::string out(head);
+  out += fmt::format("<title>{} - report</title>\n</head>\n<body>\n<h1>{}</h1>\n<p "
+                     "class=weak>{}. {}{}</p>\n",
+                     world, world, escaped(report.program),
+                     report.problems == 0   ? "No problems are known."
+                     : report.problems == 1 ? "1 problem is known: vv --check shows it."
+                                            : fmt::format("{} problems are known: vv --check "
+                                                          "shows them.",
+                                                          report.problems),
+                     report.isUnsaved ? " The edits have not been saved." : "");
+  addPictures(report, out);
+  addProbes(report, out);
+  addFields(report, out);
+  return out + "</body>\n</html>\n";
+}
+
+std::string reportTable(const Report& report) {
+  std::string out = "kind,name,field,x,y,z,before,before_half_width,now,now_half_width,difference,"
+                    "difference_half_width,remark\n";
+  for (const ReportPicture& one : report.pictures)
+    out += fmt::format("picture,{},,{},{},,,,,,,,{}\n", quoted(one.title), one.width, one.height,
+                       quoted(one.command));
+  for (size_t i = 0; i < report.probes.size(); ++i) {
+    const Probe& probe = report.probes[i];
+    const std::optional<Difference>& change = changeOf(report, i);
+    out += fmt::format("probe,{},luminance,{:.9g},{:.9g},{:.9g},", probe.number, probe.point[0],
+                       probe.point[1], probe.point[2]);
+    out += change ? fmt::format("{:.9g},{:.9g},", probe.before.luminance,
+                                probe.before.luminanceHalfWidth)
+                  : ",,";
+    out += probe.state == Probe::State::read
+               ? fmt::format("{:.9g},{:.9g},", probe.now.luminance, probe.now.luminanceHalfWidth)
+               : ",,";
+    out += change ? fmt::format("{:.9g},{:.9g},{}\n", change->value, change->halfWidth,
+                                quoted(fmt::format("{}, {}", verdictOf(*change), stateOf(probe))))
+                  : fmt::format(",,{}\n", quoted(stateOf(probe)));
+  }
+  for (const xvrml::ChangedField& field : report.fields)
+    out += fmt::format("field,{},{},,,,{},,{},,,,{}\n", quoted(ownerOf(field)), quoted(field.field),
+                       quoted(field.before), quoted(field.now),
+                       field.line > 0 ? quoted(fmt::format("line {}", field.line)) : "");
+  return out;
+}
+
+} // namespace vv

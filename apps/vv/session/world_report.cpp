@@ -1,0 +1,125 @@
+#include "session/world_report.h"
+
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <future>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "edit/report.h"
+#include "libpicture/false_colour.h"
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/files/formats.h"
+#include "process/messages.h"
+#include "report/describe.h"
+
+namespace vv {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Identifies reports among those who ask for pictures.
+constexpr uint64_t asker = uint64_t(1) << 40;
+
+bool exists(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(path, error));
+}
+
+// Returns a free name for the page and the table, without their suffixes: "FOLDER/world-report",
+// then "FOLDER/world-report-2" and so on.
+std::string freeReportName(const std::string& world) {
+  const fs::path file(world == "-" ? "vv" : world);
+  const std::string stem = (file.parent_path() / file.stem()).string() + "-report";
+  for (int i = 1; i < 100'000; ++i) {
+    const std::string name = i == 1 ? stem : fmt::format("{}-{}", stem, i);
+    if (!exists(name + ".html") && !exists(name + ".csv")) return name;
+  }
+  return stem;
+}
+
+// Writes both files. Returns what the user is told.
+std::string write(const Report& report, const std::string& name) {
+  try {
+    picture::writeRegularFile(name + ".html", reportPage(report));
+    picture::writeRegularFile(name + ".csv", reportTable(report));
+    return fmt::format("report saved as {0}.html and {0}.csv", name);
+  } catch (const std::bad_alloc&) {
+    return "no report: not enough memory";
+  } catch (const std::exception& error) { return fmt::format("no report: {}", error.what()); }
+}
+
+// Returns the picture as it is shown.
+picture::Picture shown(const picture::Picture& picture, const std::optional<double>& falseColour) {
+  if (!falseColour) return picture::withChannels(picture, RT_RGBA);
+  return picture::falseColours(picture, *falseColour > 0 ? falseColour : std::nullopt);
+}
+
+} // namespace
+
+struct WorldReport::Work {
+  std::string message;
+  bool waits = false;             // for the picture
+  std::future<std::string> files; // valid: they are being written
+};
+
+WorldReport::WorldReport() : work_(std::make_shared<Work>()) {}
+WorldReport::~WorldReport() = default;
+
+void WorldReport::begin(Session& session, const Probes& probes,
+                        const std::vector<std::string>& arguments) {
+  if (work_->waits) return session.captures().giveUp(asker);
+  if (work_->files.valid()) return;
+  WorldEditor& editor = session.editor();
+  const xvrml::World& world = session.browser().world();
+  Report report;
+  report.world = world.path;
+  report.program = "vv " + version();
+  report.isUnsaved = editor.isChanged();
+  report.problems = world.diagnostics.errors() + world.diagnostics.warnings();
+  report.probes = probes.all();
+  report.changes = probes.differences();
+  report.fields = editor.editor().changedFields();
+  report.pictures.push_back({"The view", "", 0, 0, session.command(arguments)});
+  work_->waits = true;
+  work_->message = "the report waits for its picture; Report again gives it up";
+  session.capture(0, asker,
+                  [work = work_, report, falseColour = session.pilot().falseColour(),
+                   path = world.path](const picture::Picture* made) mutable {
+                    work->waits = false;
+                    if (!made) {
+                      work->message = "no report: its picture was given up";
+                      return;
+                    }
+                    work->message.clear();
+                    work->files =
+                        std::async(std::launch::async,
+                                   [report = std::move(report), path,
+                                    picture = shown(*made, falseColour)]() mutable -> std::string {
+                                     report.pictures.front().width = picture.width;
+                                     report.pictures.front().height = picture.height;
+                                     try {
+                                       report.pictures.front().png = picture::encodePng(picture);
+                                     } catch (const std::exception& error) {
+                                       return fmt::format("no report: {}", error.what());
+                                     }
+                                     return write(report, freeReportName(path));
+                                   });
+                  });
+}
+
+void WorldReport::reset() { work_ = std::make_shared<Work>(); }
+
+std::string WorldReport::takeMessage() {
+  if (work_->files.valid() &&
+      work_->files.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    work_->message = work_->files.get();
+    say("vv: " + work_->message);
+  }
+  return std::exchange(work_->message, {});
+}
+
+} // namespace vv

@@ -1,0 +1,33 @@
+// world_report.h: Makes the report of a session: it asks for the true picture of the instant, and
+// writes a page and a table beside the file of the world. Owned by the window. [the browser's
+// thread]
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "edit/probes.h"
+#include "session/session.h"
+
+namespace vv {
+
+class WorldReport {
+ public:
+  WorldReport();
+  ~WorldReport(); // Waits for the files.
+  // Begins a report, or gives up the one that still waits for its picture. arguments: of the
+  // command line. [while the world can be used]
+  void begin(Session& session, const Probes& probes, const std::vector<std::string>& arguments);
+  // Forgets the session, because it ends.
+  void reset();
+  // Returns, once, what has become of the report, which is also printed; "" if there is nothing to
+  // say.
+  std::string takeMessage();
+
+ private:
+  struct Work;
+  std::shared_ptr<Work> work_; // the callback of the picture has it, too
+};
+
+} // namespace vv
