@@ -33,9 +33,16 @@ void check(const vv::server::Message& message) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const vv::server::ReadMessage read = vv::server::readMessage(text);
-  require(read.message.has_value() == read.fault.empty());
-  if (read.message) check(*read.message);
-  require(!read.message || size <= size_t(vv::server::maxMessageBytes));
+  using vv::server::Rights;
+  for (const Rights rights : {Rights::view, Rights::edit}) {
+    const vv::server::ReadMessage read = vv::server::readMessage(text, rights);
+    require(read.message.has_value() == read.fault.empty());
+    if (!read.message) continue;
+    check(*read.message);
+    const bool edits = read.message->type == vv::server::Message::Type::edit;
+    require(edits == read.message->editCommand.has_value());
+    require(!edits || rights == Rights::edit);
+    require(size <= size_t(edits ? vv::server::maxEditBytes : vv::server::maxMessageBytes));
+  }
   return 0;
 }

@@ -55,6 +55,11 @@ class Served:
         assert found, (self.url, self.errors, self.program.poll())
         self.host, self.port = found[1].strip("[]"), int(found[2])
         self.token = found[4]
+        self.edit_token = None
+        if "--edit" in arguments:
+            edits = self.program.stdout.readline()
+            self.edit_token = re.fullmatch(r"http://.+/\?token=([0-9a-f]{32})  edits the world\n",
+                                           edits)[1]
 
     def get(self, path="/", headers=None, method="GET", host="127.0.0.1"):
         connection = http.client.HTTPConnection(host, self.port, timeout=PATIENCE)
@@ -68,6 +73,14 @@ class Served:
         page = Page(self.port, **more)
         if width:
             page.send(type="size", width=width, height=height)
+        return page
+
+    def join_editor(self, width=160, height=120):
+        """Returns a page that may edit and has the editor open."""
+        page = self.join(width, height, path="/live?token=" + self.edit_token)
+        page.told("editor")
+        page.edit("rows", first=0, count=100)
+        page.told("rows")
         return page
 
     def cpu(self):
@@ -218,6 +231,9 @@ class Page:
 
     def send_text(self, text):
         self.send_frame(1, text.encode() if isinstance(text, str) else text)
+
+    def edit(self, command, **members):
+        self.send(type="edit", command=command, **members)
 
     def click(self, x, y):
         self.send(type="move", x=x, y=y)

@@ -12,9 +12,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "control/address.h"
 #include "control/connection.h"
 #include "control/listener.h"
-#include "control/address.h"
 #include "options/values.h"
 
 using namespace vv::control;

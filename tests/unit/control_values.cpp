@@ -7,8 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "control/field_json.h"
-#include "control/node_numbers.h"
+#include "as_json/field_json.h"
+#include "as_json/node_numbers.h"
+#include "control/limits.h"
 #include "xvrml/world.h"
 
 using namespace xvrml;
@@ -61,7 +62,7 @@ class ControlValues : public testing::Test {
   }
 
   std::unique_ptr<World> world;
-  NodeNumbers numbers;
+  NodeNumbers numbers{limits.nodes};
 };
 
 TEST_F(ControlValues, EveryTypeGoesThereAndBack) {

@@ -12,7 +12,8 @@ namespace vv::server {
 
 // Stands for the files that CMake puts into vv.
 std::span<const PageFile> pageFiles() {
-  static const PageFile files[] = {{"page.html", "<html>"}, {"page.js", "js"}};
+  static const PageFile files[] = {
+      {"page.html", R"(<html><script src="page.js" type="module"></script>)"}, {"page.js", "js"}};
   return files;
 }
 
@@ -21,7 +22,7 @@ namespace {
 constexpr const char* secret = "0123456789abcdef";
 
 Verdict verdict(Credentials credentials, std::string_view token) {
-  return judge(credentials, token);
+  return judge(credentials, {token, {}});
 }
 
 TEST(ServerAccess, TextsAreComparedAsAWhole) {
@@ -92,7 +93,7 @@ TEST(ServerAccess, WithoutATokenOnlyThisMachineIsServed) {
 TEST(ServerAccess, AWebSocketSaysWhichPageHasOpenedIt) {
   using vv::server::Asked;
   const auto socket = [](const Credentials& c, std::string_view token) {
-    return judge(c, token, Asked::socket);
+    return judge(c, {token, {}}, Asked::socket);
   };
   EXPECT_EQ(socket({"localhost:8097", "", "", ""}, ""), Verdict::noOrigin);
   EXPECT_EQ(socket({"localhost:8097", "http://localhost:8097", "", ""}, ""), Verdict::allowed);
@@ -110,6 +111,23 @@ TEST(ServerAccess, ATokenComesByQueryOrCookie) {
   EXPECT_EQ(verdict({host, "https://evil.example", secret, ""}, secret), Verdict::wrongOrigin);
 }
 
+TEST(ServerAccess, TheEditTokenOpensThePageAndTheEditor) {
+  const std::string_view host = "localhost:8097", other = "fedcba9876543210";
+  const Tokens both{secret, other}, editOnly{"", other}, viewOnly{secret, ""};
+  EXPECT_EQ(judge({host, "", "", other}, both), Verdict::withQuery);
+  EXPECT_EQ(judge({host, "", other, ""}, both), Verdict::allowed);
+  EXPECT_EQ(judge({host, "", other, ""}, viewOnly), Verdict::wrongToken);
+  EXPECT_EQ(judge({host, "", "", other}, editOnly), Verdict::withQuery);
+  EXPECT_EQ(judge({host, "", "", secret}, editOnly), Verdict::allowed);
+  EXPECT_EQ(judge({host, "", "", ""}, editOnly), Verdict::allowed);
+  EXPECT_EQ(judge({"evil.example", "", other, ""}, editOnly), Verdict::wrongHost);
+  EXPECT_TRUE(mayEdit({host, "", "", other}, both));
+  EXPECT_TRUE(mayEdit({host, "", other, ""}, editOnly));
+  EXPECT_FALSE(mayEdit({host, "", secret, secret}, both));
+  EXPECT_FALSE(mayEdit({host, "", "", ""}, both));
+  EXPECT_FALSE(mayEdit({host, "", "", ""}, viewOnly));
+}
+
 Answer answerFor(Verdict verdict, std::string_view path, Downloads& downloads) {
   Request request;
   request.method = "GET";
@@ -118,6 +136,20 @@ Answer answerFor(Verdict verdict, std::string_view path, Downloads& downloads) {
   request.token = secret;
   request.cookieName = "vv-token-80";
   return answerTo(request, downloads, 0);
+}
+
+TEST(ServerAnswer, OnlyEditorsGetTheEditor) {
+  Downloads downloads;
+  Request request;
+  request.method = "GET";
+  request.path = "/";
+  request.verdict = Verdict::allowed;
+  EXPECT_EQ(*answerTo(request, downloads, 0).body, pageFiles()[0].content);
+  request.mayEdit = true;
+  const std::string page = *answerTo(request, downloads, 0).body;
+  EXPECT_NE(page.find("edit.css"), std::string::npos);
+  EXPECT_NE(page.find(R"(<script src="edit.js" type="module">)"), std::string::npos);
+  EXPECT_EQ(page.find("page.js"), std::string::npos);
 }
 
 std::string headerOf(const Answer& answer, std::string_view name) {

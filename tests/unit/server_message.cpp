@@ -120,5 +120,91 @@ TEST(ServerMessage, RefusesLongTexts) {
             fmt::format("it is longer than maxMessageBytes ({})", maxMessageBytes));
 }
 
+template <class T> T edited(const std::string& members) {
+  const ReadMessage read = readMessage(R"({"type":"edit",)" + members + "}", Rights::edit);
+  EXPECT_TRUE(read.message) << members << ": " << read.fault;
+  if (!read.message || !read.message->editCommand) return {};
+  EXPECT_EQ(read.message->type, Type::edit);
+  const T* const command = std::get_if<T>(&*read.message->editCommand);
+  EXPECT_TRUE(command) << members;
+  return command ? *command : T{};
+}
+
+std::string editFault(const std::string& members) {
+  const ReadMessage read = readMessage(R"({"type":"edit",)" + members + "}", Rights::edit);
+  EXPECT_FALSE(read.message) << members;
+  return read.fault;
+}
+
+TEST(ServerMessage, ReadsEveryEdit) {
+  EXPECT_EQ(edited<edit::ShowRows>(R"("command":"rows","first":1000000,"count":40)").first,
+            1000000);
+  EXPECT_EQ(edited<edit::Search>(R"("command":"search","text":"la")").text, "la");
+  EXPECT_FALSE(edited<edit::Open>(R"("command":"open","node":3,"open":false)").open);
+  EXPECT_FALSE(edited<edit::Select>(R"("command":"select","node":null)").node);
+  EXPECT_EQ(edited<edit::Select>(R"("command":"select","node":7,"add":true)").node, 7u);
+  EXPECT_TRUE(edited<edit::SelectAt>(R"("command":"select_at","x":0,"y":-1,"group":true)").group);
+  const auto drag =
+      edited<edit::Drag>(R"("command":"drag","node":1,"field":"point","value":[[0,1,2]])");
+  EXPECT_EQ(drag.field, "point");
+  EXPECT_EQ(drag.value[0][2], 2);
+  edited<edit::EndDrag>(R"("command":"end_drag")");
+  EXPECT_EQ(edited<edit::Reset>(R"("command":"reset","node":1,"field":"on")").node, 1u);
+  const auto step = edited<json::edits::Step>(
+      R"("command":"step","name":"Name it","edits":[{"edit":"rename","node":1,"name":"A"}])");
+  EXPECT_EQ(step.name, "Name it");
+  EXPECT_EQ(step.edits.size(), 1u);
+  EXPECT_EQ(edited<edit::Add>(R"("command":"add","kind":"Box")").kind, "Box");
+  edited<edit::Duplicate>(R"("command":"duplicate")");
+  edited<edit::Remove>(R"("command":"remove")");
+  edited<edit::Wrap>(R"("command":"wrap")");
+  EXPECT_FALSE(edited<edit::Undo>(R"("command":"undo")").again);
+  EXPECT_TRUE(edited<edit::Undo>(R"("command":"redo")").again);
+  EXPECT_TRUE(edited<edit::Save>(R"("command":"save","overwrite":true)").overwrite);
+  edited<edit::Revert>(R"("command":"revert")");
+  EXPECT_FALSE(edited<edit::Recover>(R"("command":"recover","use":false)").use);
+  EXPECT_EQ(edited<edit::PutProbe>(R"("command":"probe","x":0.5,"y":0)").place.x, 0.5);
+  edited<edit::KeepProbes>(R"("command":"keep_probes")");
+  edited<edit::ClearProbes>(R"("command":"clear_probes")");
+  edited<edit::Close>(R"("command":"close")");
+}
+
+TEST(ServerMessage, RefusesEditsThatAreNone) {
+  const auto has = [](const std::string& members, const std::string& part) {
+    const std::string fault = editFault(members);
+    EXPECT_NE(fault.find(part), std::string::npos) << members << ": " << fault;
+  };
+  has(R"("command":"quit")", "there is no command");
+  has(R"("command":7)", "a text was expected");
+  has(R"("command":"undo","name":1)", "there is no member");
+  has(R"("command":"rows","first":-1,"count":3)", "from 0 to");
+  has(R"("command":"rows","first":0,"count":501)", "from 0 to 500");
+  has(R"("command":"rows","first":0.5,"count":1)", "a whole number");
+  has(R"("command":"open","node":-1,"open":true)", "the number of a node");
+  has(R"("command":"open","node":"LAMP","open":true)", "the number of a node");
+  has(R"("command":"select","node":1.5)", "the number of a node");
+  has(R"("command":"select_at","x":1.01,"y":0)", "from -1 to 1");
+  has(R"("command":"drag","node":1,"field":"a")", "\"value\" is missing");
+  has(R"("command":"drag","node":1,"field":"a","value":)" + std::string(9, '[') +
+          std::string(9, ']'),
+      "lineDepth");
+  has(R"("command":"step","name":"","edits":[])", "a name");
+  has(R"("command":"step","name":"x","edits":[])", "an array of objects");
+  has(R"("command":"search","text":")" + std::string(257, 'a') + "\"", "at most 256 bytes");
+  has(R"("command":"search","text":")" + std::string(maxEditBytes, 'a') + "\"", "lineBytes");
+  has(R"("command":"undo","command":"redo")", "twice");
+}
+
+TEST(ServerMessage, OnlyEditorsEdit) {
+  const std::string undo = R"({"type":"edit","command":"undo"})";
+  EXPECT_TRUE(faultOf(undo).starts_with("type: one of "));
+  EXPECT_TRUE(readMessage(undo, Rights::edit).message);
+  // Their other messages are read as those of everybody.
+  EXPECT_TRUE(readMessage(R"({"type":"leave"})", Rights::edit).message);
+  EXPECT_FALSE(readMessage(R"({"type":"leave","x":[1]})", Rights::edit).message);
+  EXPECT_FALSE(
+      readMessage(R"({"type":"leave"})" + std::string(maxMessageBytes, ' '), Rights::edit).message);
+}
+
 } // namespace
 } // namespace vv::server

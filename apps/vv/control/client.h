@@ -6,8 +6,9 @@
 #include <map>
 #include <string>
 
+#include "as_json/node_numbers.h"
+#include "control/limits.h"
 #include "control/mailbox.h"
-#include "control/node_numbers.h"
 #include "xvrml/browser.h"
 
 namespace vv::control {
@@ -25,7 +26,7 @@ struct Client {
   bool hasLeft = false;
   bool isServed = false; // a command has been begun: it hears of other worlds
 
-  NodeNumbers numbers;
+  NodeNumbers numbers{limits.nodes};
   struct Subscription {
     xvrml::NodeRef node;
     uint64_t number = 0; // the number that Browser::listen gave

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "control/members.h"
+#include "as_json/members.h"
 
 namespace vv::control {
 

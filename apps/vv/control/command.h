@@ -10,8 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "control/edit_step.h"
-#include "control/node_name.h"
+#include "as_json/edit_step.h"
+#include "as_json/node_name.h"
+#include "control/limits.h"
 
 namespace vv::control {
 

@@ -3,12 +3,13 @@
 
 #include <cstddef>
 
+#include "as_json/json_line.h"
+
 namespace vv::control {
 
-struct Limits {
-  size_t lineBytes = size_t(32) << 20;    // bytes of one line from a client
-  size_t lineDepth = 32;                  // arrays and objects within each other in a line
-  size_t lineValues = 2'000'000;          // values of one line
+using namespace json; // commands and answers are JSON
+
+struct Limits : LineLimits {
   size_t waitingBytes = size_t(64) << 20; // lines that wait for the world; then nothing is read
   size_t unreadBytes = size_t(64) << 20;  // answers and events that a client has not read
   size_t clients = 32;                    // clients at a time

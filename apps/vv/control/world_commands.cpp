@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "control/field_json.h"
-#include "control/fields.h"
+#include "as_json/field_json.h"
+#include "as_json/fields.h"
 #include "nearest.h"
 #include "xvrml/walk.h"
 

@@ -238,7 +238,7 @@ template <Job job> void ask(Options& o, const std::string&) { o.jobs.push_back(j
 
 constexpr const char *sequenceNeeds =
                          "--frames and --turntable need -o (or --check, to test a world)",
-                     *pageNeeds = "--port, --address and --token need {}";
+                     *pageNeeds = "--port, --address, --token and --edit need {}";
 
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
@@ -684,6 +684,10 @@ const OptionInfo table[] = {
        notEmpty(v, "new, @FILE or a token");
        o.serve.token = v;
      },
+     with(needs("vv serve", pageNeeds))},
+    {"--edit", "", "Page",
+     "Let those edit the world who open the second address that vv serve prints (docs/editor.md).",
+     [](Options& o, const std::string&) { o.serve.edit = true; },
      with(needs("vv serve", pageNeeds))},
     {"--control", "ADDRESS", "Control",
      "Let programs read and change the world, by lines of JSON at this address: 127.0.0.1:PORT, "

@@ -77,6 +77,7 @@ struct ServeOptions {
   std::string address; // IP address; empty: this machine alone
   // A text, @FILE, or "new" for random characters; empty: as the environment says, or none.
   std::string token;
+  bool edit = false; // those who have a second token may edit the world
 };
 
 // Says which seeds a picture is made of.

@@ -42,6 +42,11 @@ bool isLoopbackAddress(std::string_view host) {
   return dots == 3;
 }
 
+// Tells whether a text is a token that is in use.
+bool isToken(std::string_view text, std::string_view token) {
+  return !token.empty() && equalInConstantTime(text, token);
+}
+
 } // namespace
 
 bool equalInConstantTime(std::string_view a, std::string_view b) {
@@ -99,19 +104,23 @@ bool isSameOrigin(std::string_view origin, std::string_view host) {
   return false;
 }
 
-Verdict judge(const Credentials& credentials, std::string_view token, Asked asked) {
+Verdict judge(const Credentials& credentials, const Tokens& tokens, Asked asked) {
   // Without this a page that has given its own name the address of this machine could steer.
-  if (token.empty() && !isLoopbackHost(credentials.host)) return Verdict::wrongHost;
+  if (tokens.view.empty() && !isLoopbackHost(credentials.host)) return Verdict::wrongHost;
   if (!credentials.origin.empty() && !isSameOrigin(credentials.origin, credentials.host))
     return Verdict::wrongOrigin;
   if (credentials.origin.empty() && asked == Asked::socket) return Verdict::noOrigin;
-  if (token.empty()) return Verdict::allowed;
-  if (!credentials.token.empty() && equalInConstantTime(credentials.token, token))
+  if (isToken(credentials.token, tokens.view) || isToken(credentials.token, tokens.edit))
     return Verdict::withQuery;
-  if (!credentials.cookie.empty() && equalInConstantTime(credentials.cookie, token))
+  if (tokens.view.empty() || isToken(credentials.cookie, tokens.view) ||
+      isToken(credentials.cookie, tokens.edit))
     return Verdict::allowed;
   return credentials.token.empty() && credentials.cookie.empty() ? Verdict::tokenMissing
                                                                  : Verdict::wrongToken;
+}
+
+bool mayEdit(const Credentials& credentials, const Tokens& tokens) {
+  return isToken(credentials.token, tokens.edit) || isToken(credentials.cookie, tokens.edit);
 }
 
 std::string_view textOf(Verdict verdict) {

@@ -30,20 +30,26 @@ struct Credentials {
   std::string_view host, origin, cookie; // headers; cookie: the value of our cookie
   std::string_view token;                // the token of the query
 };
+// The tokens in use. Without a view token only this machine may ask, and without an edit token
+// nobody may edit. Who has the edit token may look, too.
+struct Tokens {
+  std::string_view view, edit; // empty: none
+};
 // A page, or a WebSocket, which must say which page has opened it.
 enum class Asked : uint8_t { page, socket };
 
 enum class Verdict {
   allowed,
   withQuery,    // allowed, by the token in the query: it can be replaced by the cookie
-  wrongHost,    // no token is in use, and the name of the host is not that of this machine
+  wrongHost,    // no view token is in use, and the name of the host is not that of this machine
   wrongOrigin,  // a page of another site asks
   noOrigin,     // a WebSocket does not say which page has opened it
   tokenMissing, // neither cookie nor query has a token
   wrongToken
 };
-// token: the one in use; empty: none, and then only this machine may ask.
-Verdict judge(const Credentials& credentials, std::string_view token, Asked asked = Asked::page);
+Verdict judge(const Credentials& credentials, const Tokens& tokens, Asked asked = Asked::page);
+// Tells whether a visitor who is allowed has the edit token, in the query or in the cookie.
+bool mayEdit(const Credentials& credentials, const Tokens& tokens);
 // Returns what the visitor is told; empty for the first two verdicts.
 std::string_view textOf(Verdict verdict);
 

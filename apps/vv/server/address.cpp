@@ -52,6 +52,12 @@ std::string hostName() {
   return ::gethostname(name, sizeof name - 1) == 0 && *name ? name : "localhost";
 }
 
+std::string urlWith(const HostOptions& host, int port, const std::string& query) {
+  const std::string name =
+      isEveryAddress(host.addresses[0]) ? hostName() : inUrl(host.addresses[0]);
+  return fmt::format("http://{}:{}/{}", name, port, query);
+}
+
 } // namespace
 
 HostOptions hostOptionsOf(const ServeOptions& options) {
@@ -61,6 +67,7 @@ HostOptions hostOptionsOf(const ServeOptions& options) {
   if (!address.empty() && address != "localhost" && !isIpAddress(address))
     throw UsageError(fmt::format("--address: an IP address was expected, not \"{}\"", address));
   host.token = tokenOf(options);
+  if (options.edit) host.editToken = newToken();
   const bool local = options.address.empty() || isLoopbackHost(inUrl(options.address));
   if (!local && host.token.empty())
     throw UsageError(fmt::format("--address {} lets other machines see the world: it needs a token "
@@ -74,12 +81,14 @@ HostOptions hostOptionsOf(const ServeOptions& options) {
 }
 
 std::string urlOf(const ServeOptions& options, const HostOptions& host, int port) {
-  const std::string name =
-      isEveryAddress(host.addresses[0]) ? hostName() : inUrl(host.addresses[0]);
-  const std::string token = host.token.empty()       ? ""
-                            : options.token == "new" ? "?token=" + host.token
-                                                     : "?token=...";
-  return fmt::format("http://{}:{}/{}", name, port, token);
+  return urlWith(host, port,
+                 host.token.empty()       ? ""
+                 : options.token == "new" ? "?token=" + host.token
+                                          : "?token=...");
+}
+
+std::string editUrlOf(const HostOptions& host, int port) {
+  return host.editToken.empty() ? "" : urlWith(host, port, "?token=" + host.editToken);
 }
 
 } // namespace vv::server

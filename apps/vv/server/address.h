@@ -15,5 +15,7 @@ HostOptions hostOptionsOf(const ServeOptions& options);
 
 // Returns the URL of the page. A token that this program has made is part of it.
 std::string urlOf(const ServeOptions& options, const HostOptions& host, int port);
+// Returns the URL of the page for those who may edit; "" if nobody may.
+std::string editUrlOf(const HostOptions& host, int port);
 
 } // namespace vv::server

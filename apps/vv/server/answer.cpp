@@ -52,8 +52,21 @@ Answer cookieAnswer(const Request& request) {
   return answer;
 }
 
-Answer contentOf(std::string_view name, Downloads& downloads, double seconds) {
-  if (name.empty()) name = "page.html";
+// Returns the page with the editor. Other visitors get the page as it is.
+std::string withEditor(std::string_view page) {
+  constexpr std::string_view script = R"(<script src="page.js" type="module"></script>)";
+  std::string text(page);
+  if (const size_t at = text.find(script); at != text.npos)
+    text.replace(at, script.size(),
+                 "<link rel=\"stylesheet\" href=\"edit.css\">\n"
+                 "<script src=\"edit.js\" type=\"module\"></script>");
+  return text;
+}
+
+Answer contentOf(const Request& request, std::string_view name, Downloads& downloads,
+                 double seconds) {
+  const bool isPage = name.empty() || name == "page.html";
+  if (isPage) name = "page.html";
   if (name.starts_with(savedFolder)) {
     const Downloads::File file = downloads.find(name, seconds);
     if (!file.content) return textAnswer(404, "This picture is not kept any more: save it again.");
@@ -64,7 +77,12 @@ Answer contentOf(std::string_view name, Downloads& downloads, double seconds) {
   }
   for (const PageFile& file : pageFiles())
     if (file.name == name)
-      return {200, typeOf(name), {}, std::make_shared<const std::string>(file.content)};
+      return {200,
+              typeOf(name),
+              {},
+              std::make_shared<const std::string>(isPage && request.mayEdit
+                                                      ? withEditor(file.content)
+                                                      : std::string(file.content))};
   return textAnswer(404, "There is no such page.");
 }
 
@@ -108,7 +126,7 @@ Answer answerTo(const Request& request, Downloads& downloads, double seconds) {
   if (name.starts_with('/')) name.remove_prefix(1);
   if (request.verdict == Verdict::withQuery && name.empty())
     return withHeaders(cookieAnswer(request));
-  return withHeaders(contentOf(name, downloads, seconds));
+  return withHeaders(contentOf(request, name, downloads, seconds));
 }
 
 } // namespace vv::server

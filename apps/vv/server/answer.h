@@ -51,7 +51,8 @@ struct Answer {
 struct Request {
   std::string_view method, path; // path: as it came, "/" at the beginning
   Verdict verdict = Verdict::tokenMissing;
-  std::string_view token;      // the one in use
+  std::string_view token;      // the one that the visitor has shown; empty: none
+  bool mayEdit = false;        // the visitor gets the page with the editor
   std::string_view cookieName; // for the token
   bool secure = false;         // the visitor uses TLS, with a proxy in between
 };

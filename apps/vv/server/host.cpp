@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -71,6 +72,7 @@ struct Socket {
   std::string picture;
   std::string refusal; // not empty: why the connection is closed as soon as possible
   bool known = false;  // the server was told of it
+  Rights rights = Rights::view;
 
   bool isSending() const {
     return !refusal.empty() || !named.empty() || !texts.empty() || !picture.empty();
@@ -109,6 +111,7 @@ struct Host::Impl {
   std::map<uint64_t, Socket> sockets;
   std::unordered_map<lws*, uint64_t> numbers;
   std::unordered_map<lws*, Transfer> transfers;
+  std::unordered_set<lws*> editors; // connections that have shown the edit token
   IdleConnections<lws*> idlers;
   uint64_t lastSocket = 0;
 
@@ -134,7 +137,10 @@ struct Host::Impl {
       return answer(connection, {static_cast<char*>(in), length});
     case LWS_CALLBACK_HTTP_WRITEABLE: return sendBody(connection);
     case LWS_CALLBACK_CLOSED_HTTP: transfers.erase(connection); return 0;
-    case LWS_CALLBACK_WSI_DESTROY: idlers.remove(connection); return 0;
+    case LWS_CALLBACK_WSI_DESTROY:
+      idlers.remove(connection);
+      editors.erase(connection);
+      return 0;
     case LWS_CALLBACK_ESTABLISHED:
       idlers.remove(connection);
       join(connection);
@@ -162,19 +168,29 @@ struct Host::Impl {
     return lws_http_transaction_completed(connection) ? -1 : 0;
   }
 
-  Verdict judgeRequest(lws* connection, Asked asked) const {
+  Tokens tokens() const { return {options.token, options.editToken}; }
+
+  // Calls use() with what a browser sends about its user. Returns what that returns.
+  template <class Use> auto withCredentials(lws* connection, const Use& use) const {
     const std::string host = headerOf(connection, WSI_TOKEN_HOST),
                       origin = headerOf(connection, WSI_TOKEN_ORIGIN),
                       cookies = headerOf(connection, WSI_TOKEN_HTTP_COOKIE),
                       token = tokenOfQuery(connection);
-    return judge({host, origin, cookieNamed(cookies, cookieName), token}, options.token, asked);
+    return use(Credentials{host, origin, cookieNamed(cookies, cookieName), token});
   }
 
   // Tells whether a connection may become a WebSocket: 0 yes, 1 no, -1 hang up.
   int confirm(lws* connection, const char* protocol) {
     if (!protocol || ::strcasecmp(protocol, "websocket") != 0) return -1;
     const bool known = headerOf(connection, WSI_TOKEN_GET_URI) == socketPath;
-    const std::string_view refusal = textOf(judgeRequest(connection, Asked::socket));
+    const std::string_view refusal = withCredentials(connection, [&](const Credentials& shown) {
+      // A proxy may send the requests of several visitors on one connection.
+      if (mayEdit(shown, tokens()))
+        editors.insert(connection);
+      else
+        editors.erase(connection);
+      return textOf(judge(shown, tokens(), Asked::socket));
+    });
     if (known && refusal.empty()) return 0;
     const std::string text(known ? refusal : "There is no such page.");
     return lws_return_http_status(connection, known ? 403 : 404, text.c_str()) < 0 ? -1 : 1;
@@ -183,8 +199,11 @@ struct Host::Impl {
   int answer(lws* connection, std::string_view path) {
     Request request;
     request.path = path;
-    request.verdict = judgeRequest(connection, Asked::page);
-    request.token = options.token;
+    withCredentials(connection, [&](const Credentials& shown) {
+      request.verdict = judge(shown, tokens());
+      request.mayEdit = mayEdit(shown, tokens());
+    });
+    request.token = request.mayEdit ? options.editToken : options.token;
     request.cookieName = cookieName;
     request.secure = usesTls(connection);
     const bool head = lws_hdr_total_length(connection, WSI_TOKEN_HEAD_URI) > 0;
@@ -250,7 +269,8 @@ struct Host::Impl {
     const auto known = std::count_if(sockets.begin(), sockets.end(),
                                      [](const auto& one) { return one.second.known; });
     socket.known = known < maxViewers;
-    if (socket.known) return tell({HostEvent::Kind::joined, number, {}});
+    if (editors.contains(connection)) socket.rights = Rights::edit;
+    if (socket.known) return tell({HostEvent::Kind::joined, number, {}, socket.rights});
     socket.refusal = fmt::format("there are {} pages already (maxViewers)", maxViewers);
     lws_callback_on_writable(connection); // sendNext() closes it
   }
@@ -262,7 +282,7 @@ struct Host::Impl {
     const bool known = sockets[number].known;
     sockets.erase(number);
     numbers.erase(found);
-    if (known) tell({HostEvent::Kind::left, number, {}});
+    if (known) tell({HostEvent::Kind::left, number, {}, {}});
   }
 
   // Closes a connection with a reason of at most 123 bytes. Returns what the callback returns.
@@ -283,13 +303,15 @@ struct Host::Impl {
       return close(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, "maxMessagesPerSecond");
     if (lws_frame_is_binary(connection))
       return close(connection, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "texts were expected");
-    if (socket.partial.size() + bytes.size() > size_t(maxMessageBytes))
-      return close(connection, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "maxMessageBytes");
+    const bool edits = socket.rights == Rights::edit;
+    if (socket.partial.size() + bytes.size() > size_t(edits ? maxEditBytes : maxMessageBytes))
+      return close(connection, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE,
+                   edits ? "maxEditBytes" : "maxMessageBytes");
     socket.partial += bytes;
     if (!lws_is_final_fragment(connection)) return 0;
-    ReadMessage read = readMessage(std::exchange(socket.partial, {}));
+    ReadMessage read = readMessage(std::exchange(socket.partial, {}), socket.rights);
     if (!read.message) return close(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, read.fault);
-    tell({HostEvent::Kind::message, found->second, std::move(*read.message)});
+    tell({HostEvent::Kind::message, found->second, std::move(*read.message), socket.rights});
     return 0;
   }
 

@@ -16,8 +16,9 @@ namespace vv::server {
 struct HostOptions {
   // IP addresses to listen at. The first one must work; others are left out if they do not.
   std::vector<std::string> addresses;
-  int port = 0;      // 0: any free port
-  std::string token; // empty: none, for loopback addresses
+  int port = 0;          // 0: any free port
+  std::string token;     // empty: none, for loopback addresses
+  std::string editToken; // opens the page for those who may edit; empty: nobody may
 };
 
 struct HostEvent {
@@ -25,6 +26,7 @@ struct HostEvent {
   Kind kind;
   uint64_t page; // number of the connection; never used again
   Message message;
+  Rights rights = Rights::view; // what the page may do
 };
 
 // Tells whether a text is an IP address in numbers. [any thread]

@@ -29,6 +29,16 @@ inline constexpr int maxRequests = 64;
 inline constexpr int maxIdleConnections = 48;
 inline constexpr int maxOpensPerMinute = 6;
 inline constexpr int maxOpenBurst = 4;
+inline constexpr int maxEditors = 8;
+inline constexpr int maxEditBytes = 65'536;
+inline constexpr int maxEditDepth = 8;
+inline constexpr int maxEditValues = 20'000;
+inline constexpr int maxEditsOfStep = 100;
+inline constexpr int maxRowsShown = 500;
+inline constexpr int maxValueBytes = 32'768;
+inline constexpr int maxSheetBytes = 262'144;
+inline constexpr int maxNodeNumbers = 20'000;
+inline constexpr int maxProbes = 50;
 
 inline constexpr Limit limits[] = {
     {"maxViewers", maxViewers, "pages that are connected at a time"},
@@ -51,6 +61,16 @@ inline constexpr Limit limits[] = {
     {"maxOpensPerMinute", maxOpensPerMinute,
      "pages of the web that a world opens per minute, on average"},
     {"maxOpenBurst", maxOpenBurst, "pages of the web that a world opens at once"},
+    {"maxEditors", maxEditors, "pages that have the editor open at a time"},
+    {"maxEditBytes", maxEditBytes, "bytes of one message that edits the world"},
+    {"maxEditDepth", maxEditDepth, "arrays and objects within each other in such a message"},
+    {"maxEditValues", maxEditValues, "values in such a message"},
+    {"maxEditsOfStep", maxEditsOfStep, "edits of one step"},
+    {"maxRowsShown", maxRowsShown, "rows of the outline that a page gets at once"},
+    {"maxValueBytes", maxValueBytes, "bytes of a field's value; longer ones are not shown"},
+    {"maxSheetBytes", maxSheetBytes, "bytes of the fields of a node; further ones are not shown"},
+    {"maxNodeNumbers", maxNodeNumbers, "nodes that a page can name; older ones are forgotten"},
+    {"maxProbes", maxProbes, "probes of the light"},
 };
 
 } // namespace vv::server

@@ -192,14 +192,28 @@ Message messageOf(std::string_view type, Members& from) {
   return message;
 }
 
+// Reads the message of a page that may edit; none: it is no edit.
+std::optional<Message> readEdit(std::string_view text) {
+  const json::LineLimits allowed{maxEditBytes, maxEditDepth, maxEditValues};
+  Json object = json::readJsonLine(text, allowed);
+  const auto type = object.find("type");
+  if (type == object.end() || *type != "edit") return {};
+  Message message;
+  message.type = Message::Type::edit;
+  message.editCommand = edit::readCommand(std::move(object));
+  return message;
+}
+
 } // namespace
 
-ReadMessage readMessage(std::string_view text) {
+ReadMessage readMessage(std::string_view text, Rights rights) {
   try {
-    if (text.size() > size_t(maxMessageBytes))
-      throw Fault(fmt::format("it is longer than maxMessageBytes ({})", maxMessageBytes));
     // The parser takes this for the end of the text.
     if (text.find('\0') != text.npos) throw Fault("it is no JSON");
+    if (rights == Rights::edit)
+      if (std::optional<Message> edit = readEdit(text)) return {std::move(edit), {}};
+    if (text.size() > size_t(maxMessageBytes))
+      throw Fault(fmt::format("it is longer than maxMessageBytes ({})", maxMessageBytes));
     FlatObject reader;
     if (!Json::sax_parse(text.begin(), text.end(), &reader)) throw Fault("it is no JSON");
     Members members(std::move(reader.object));
@@ -207,7 +221,9 @@ ReadMessage readMessage(std::string_view text) {
     Message message = messageOf(type, members);
     members.end();
     return {std::move(message), {}};
-  } catch (const Fault& fault) { return {std::nullopt, fault.what()}; }
+  } catch (const Fault& fault) {
+    return {std::nullopt, fault.what()};
+  } catch (const json::CommandError& error) { return {std::nullopt, error.what()}; }
 }
 
 } // namespace vv::server

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/edit_command.h"
 #include "session/input/input.h"
 
 namespace vv::server {
@@ -21,7 +22,8 @@ struct Message {
     own,       // the page wants a view of its own
     follow,    // the page wants the view of the one who leads
     save,      // format: the picture is wanted as a file
-    command    // the command of the view is wanted
+    command,   // the command of the view is wanted
+    edit       // editCommand: the world is edited
   };
   enum class Format : uint8_t { png, exr };
 
@@ -31,6 +33,7 @@ struct Message {
   InputEvent input;
   int number = 0;
   Format format = Format::png;
+  std::optional<edit::Command> editCommand;
 };
 
 struct ReadMessage {
@@ -38,6 +41,9 @@ struct ReadMessage {
   std::string fault;              // why
 };
 
-ReadMessage readMessage(std::string_view text);
+// Says what a page may do beside looking: from others than editors no edits are read.
+enum class Rights : uint8_t { view, edit };
+
+ReadMessage readMessage(std::string_view text, Rights rights = Rights::view);
 
 } // namespace vv::server

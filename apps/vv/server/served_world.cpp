@@ -16,7 +16,7 @@ ServedWorld::ServedWorld(const Options& options, Callbacks callbacks)
 void ServedWorld::openFirst() {
   std::unique_ptr<xvrml::World> world =
       xvrml::loadWorld(options_.input, loadOptionsForShowing(options_));
-  begin(std::move(world), "", {options_.render.width, options_.render.height});
+  begin(std::move(world), "", {options_.render.width, options_.render.height}, nullptr);
 }
 
 void ServedWorld::reload() {
@@ -25,11 +25,33 @@ void ServedWorld::reload() {
   open({{path}, "", {}}, true);
 }
 
+void ServedWorld::revert() {
+  session_->editor().journal().throwAway();
+  isReverted_ = true;
+  reload();
+}
+
+void ServedWorld::recover() {
+  WorldEditor& editor = session_->editor();
+  if (editor.isChanged()) throw xvrml::EditError("save or undo the edits of now first");
+  open({{session_->browser().world().path}, "", {}, editor.journal().take()}, true);
+}
+
 void ServedWorld::watch(double now) {
+  if (std::exchange(saves_, session_->editor().saves()) != saves_)
+    watch_.follow(session_->browser().world());
   if (watch_.changed(now)) reload();
 }
 
+// Another world takes the place of this one. Tells everybody if edits would be lost by that.
+bool ServedWorld::refuseWhileUnsaved() const {
+  if (isReverted_ || !session_->editor().isChanged()) return false;
+  callbacks_.onMessage("the world has edits that are not saved: save or undo them first");
+  return true;
+}
+
 void ServedWorld::open(LoadRequest request, bool keepPlace) {
+  if (refuseWhileUnsaved()) return;
   request.options = loadOptionsForShowing(options_);
   keepPlace_ = keepPlace;
   loading_ = request.urls.empty() ? "" : request.urls[0];
@@ -48,18 +70,21 @@ bool ServedWorld::take(PictureSize size) {
   LoadAnswer answer;
   if (!loader_.take(answer)) return false;
   loading_.clear();
+  if (refuseWhileUnsaved()) return false; // they were made while it was read
+  const std::shared_ptr<LeftEdits> left = answer.left;
   const std::string wrong = useWorld(std::move(answer), [&](std::unique_ptr<xvrml::World> world,
                                                             const std::string& fragment) {
-                              begin(std::move(world), fragment, size);
+                              begin(std::move(world), fragment, size, left.get());
                             }).wrong;
   if (wrong.empty()) return true;
+  isReverted_ = false;
   sayError(wrong);
   callbacks_.onMessage(wrong);
   return false;
 }
 
 void ServedWorld::begin(std::unique_ptr<xvrml::World> world, const std::string& fragment,
-                        PictureSize size) {
+                        PictureSize size, LeftEdits* left) {
   std::optional<Session::Place> place;
   if (std::exchange(keepPlace_, false) && session_) place = session_->place();
   world->options.loadInlines = true;
@@ -73,9 +98,30 @@ void ServedWorld::begin(std::unique_ptr<xvrml::World> world, const std::string& 
   };
   auto fresh =
       std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), nullptr);
+  if (left) fresh->editor().journal().adopt(*left);
   fresh->begin(size.width, size.height, place, fragment);
+  callbacks_.onLeave();
+  keepEdits(session_.get());
   session_ = std::move(fresh); // ends the previous session
+  if (options_.serve.edit) session_->editor().journal().look();
   watch_.follow(session_->browser().world());
+  saves_ = 0;
+  isReverted_ = false;
+}
+
+std::optional<InputEvent> ServedWorld::viewpointEvent(int number) {
+  std::vector<xvrml::ViewpointInfo> list;
+  for (const xvrml::ViewpointName& one : session_->browser().viewpoints())
+    list.push_back({one.name, one.description, one.node, {}});
+  if (size_t(number) >= list.size()) return {};
+  InputEvent event;
+  event.kind = InputEvent::Kind::viewpoint;
+  for (const std::string& text :
+       {std::to_string(number), list[size_t(number)].name, list[size_t(number)].description}) {
+    event.text = text;
+    if (picture::findViewpoint(list, text) == number) return event;
+  }
+  return {};
 }
 
 } // namespace vv::server

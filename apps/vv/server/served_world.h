@@ -26,6 +26,8 @@ class ServedWorld {
     std::function<void(const std::string& url)> openPage;
     // Receives a message for everybody.
     std::function<void(const std::string& text)> onMessage;
+    // The session ends: its nodes are to be let go.
+    std::function<void()> onLeave;
   };
   // The options must outlive this object.
   ServedWorld(const Options& options, Callbacks callbacks);
@@ -34,13 +36,21 @@ class ServedWorld {
   void openFirst();
   // Reads the world again, in the background, and keeps the leader's view.
   void reload();
-  // Reloads the world if --watch is given and a file has changed. now: seconds of any clock.
+  // Throws the edits that are not saved away, and reads the world again.
+  void revert();
+  // Loads the world with the edits that an earlier program has left. Throws xvrml::EditError.
+  void recover();
+  // Reloads the world if --watch is given and a file has changed, but not by an edit. now: seconds
+  // of any clock.
   void watch(double now);
   // Takes over a world that has been read meanwhile. Returns true if there is a new session, which
   // has no guests. size: of the leader's pictures.
   bool take(PictureSize size);
 
   Session& session() { return *session_; }
+  // Returns the event that goes to a viewpoint of the list. Names are not always unique: the text
+  // must lead to this one.
+  std::optional<InputEvent> viewpointEvent(int number);
   // Returns the name of the world that is being read; "": none.
   const std::string& loading() const { return loading_; }
   // Ends the session, or the process with `code` (session/ending.h).
@@ -48,8 +58,10 @@ class ServedWorld {
 
  private:
   void open(LoadRequest request, bool keepPlace);
+  bool refuseWhileUnsaved() const;
   void openUrls(const std::vector<std::string>& urls, const std::string& base);
-  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, PictureSize size);
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, PictureSize size,
+             LeftEdits* left);
 
   const Options& options_;
   Callbacks callbacks_;
@@ -59,6 +71,8 @@ class ServedWorld {
   WorldWatch watch_{options_};
   std::string loading_;
   bool keepPlace_ = false;
+  bool isReverted_ = false; // edits that are not saved are no reason to stay
+  uint64_t saves_ = 0;      // saves of the session's editor when its files were watched
 };
 
 } // namespace vv::server

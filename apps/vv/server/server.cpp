@@ -16,6 +16,7 @@
 #include "process/signals.h"
 #include "report/cluster_report.h"
 #include "server/address.h"
+#include "server/editing.h"
 #include "server/host.h"
 #include "server/pages.h"
 #include "server/reports.h"
@@ -84,11 +85,7 @@ class Server {
 
   // Gives the pictures of each view the size of its page, as far as its share of the pixels allows.
   void fitViews();
-  void input(uint64_t number, const Page& page, const InputEvent& event);
-
-  // Returns the event that goes to a viewpoint of the list. Names are not always unique: the text
-  // must lead to this one.
-  std::optional<InputEvent> viewpointEvent(int number);
+  void input(uint64_t number, const Page& page, InputEvent event);
 
   // --- The world ---
 
@@ -148,6 +145,7 @@ class Server {
 
   std::unique_ptr<Host> host_;
   std::unique_ptr<Saves> saves_;
+  std::unique_ptr<Editing> editing_;
   TaskThreads encoder_; // the last member: its tasks use the others
 };
 
@@ -157,8 +155,11 @@ int Server::run() {
   saves_ = std::make_unique<Saves>(
       options_, pages_, world_, reports_, *host_,
       [this](uint32_t view, const std::string& text) { notify(view, text, 6); });
+  editing_ = std::make_unique<Editing>(pages_, world_, *host_);
   deferInterrupt(true, interruptSeconds);
   writeOut(urlOf(options_.serve, hostOptions_, host_->port()) + "\n");
+  if (const std::string url = editUrlOf(hostOptions_, host_->port()); !url.empty())
+    writeOut(url + "  edits the world\n");
   std::fflush(stdout);
   while (!interrupted()) {
     wait();
@@ -172,7 +173,9 @@ int Server::run() {
     takePictures();
     sendPictures();
     tellOfCluster();
-    if (world_.session().resting()) reports_.tell(time, watched_ && !isQuiet_, *host_);
+    if (!world_.session().resting()) continue;
+    editing_->update(time);
+    reports_.tell(time, watched_ && !isQuiet_, *host_);
   }
   return end();
 }
@@ -238,6 +241,7 @@ void Server::handle(const HostEvent& event) {
   case HostEvent::Kind::joined:
     pages_.join(event.page, now());
     host_->sendText(event.page, "", helloText());
+    if (event.rights == Rights::edit) editing_->join(event.page);
     break;
   case HostEvent::Kind::left: leave(event.page); break;
   case HostEvent::Kind::message:
@@ -251,6 +255,7 @@ void Server::leave(uint64_t number) {
   if (!page) return;
   page->saving = Page::Saving::nothing; // nobody is to be told
   saves_->giveUp(number);
+  editing_->leave(number);
   if (page->role == Page::Role::leader)
     world_.session().handle(leaving());
   else if (page->role == Page::Role::own)
@@ -280,7 +285,7 @@ void Server::handle(uint64_t number, Page& page, const Message& message) {
   case Message::Type::size: resize(page, pictureSizeFor(message.width, message.height)); break;
   case Message::Type::input: input(number, page, message.input); break;
   case Message::Type::viewpoint:
-    if (const auto event = viewpointEvent(message.number)) input(number, page, *event);
+    if (const auto event = world_.viewpointEvent(message.number)) input(number, page, *event);
     break;
   case Message::Type::own:
     if (const uint32_t view = pages_.separate(number)) {
@@ -298,6 +303,7 @@ void Server::handle(uint64_t number, Page& page, const Message& message) {
   }
   case Message::Type::save: saves_->want(number, message.format); break;
   case Message::Type::command: sendCommand(number, page); break;
+  case Message::Type::edit: editing_->take(number, *message.editCommand); break;
   case Message::Type::shown: break; // acknowledge()
   }
 }
@@ -323,28 +329,15 @@ void Server::fitViews() {
   }
 }
 
-void Server::input(uint64_t number, const Page& page, const InputEvent& event) {
+void Server::input(uint64_t number, const Page& page, InputEvent event) {
   const bool escapes = event.kind == InputEvent::Kind::down && event.text == "Escape";
   if (page.saving == Page::Saving::picture && escapes) return saves_->giveUp(number);
   if (page.role == Page::Role::follower) return;
   if (event.kind == InputEvent::Kind::press || event.kind == InputEvent::Kind::release)
     clicked_ = number;
+  // A click in the editor selects, and works the world's sensors only with Alt.
+  event.forView = editing_->isOpen(number) && !event.alt;
   world_.session().handle(event, page.view);
-}
-
-std::optional<InputEvent> Server::viewpointEvent(int number) {
-  std::vector<xvrml::ViewpointInfo> list;
-  for (const xvrml::ViewpointName& one : world_.session().browser().viewpoints())
-    list.push_back({one.name, one.description, one.node, {}});
-  if (size_t(number) >= list.size()) return {};
-  InputEvent event;
-  event.kind = InputEvent::Kind::viewpoint;
-  for (const std::string& text :
-       {std::to_string(number), list[size_t(number)].name, list[size_t(number)].description}) {
-    event.text = text;
-    if (picture::findViewpoint(list, text) == number) return event;
-  }
-  return {};
 }
 
 ServedWorld::Callbacks Server::callbacks() {
@@ -353,6 +346,9 @@ ServedWorld::Callbacks Server::callbacks() {
     onAction(view, action);
   };
   calls.openPage = [this](const std::string& url) { openPage(url); };
+  calls.onLeave = [this] {
+    if (editing_) editing_->beginAnew();
+  };
   calls.onMessage = [this](const std::string& text) { notify(0, text, 10); };
   return calls;
 }
@@ -474,6 +470,7 @@ void Server::tellOfCluster() {
 }
 
 int Server::end() {
+  keepEdits(&world_.session());
   world_.end(exitDone);
   interruptHandled();
   return exitDone;

@@ -1,10 +1,10 @@
-#include "control/fields.h"
+#include "as_json/fields.h"
 
 #include <fmt/format.h>
 
-#include "control/members.h"
+#include "as_json/members.h"
 
-namespace vv::control {
+namespace vv::json {
 
 using namespace xvrml;
 
@@ -52,4 +52,4 @@ const FieldInfo& storedField(const Node& node, const std::string& name) {
   return *field;
 }
 
-} // namespace vv::control
+} // namespace vv::json

@@ -1,11 +1,11 @@
-#include "control/edit_step.h"
+#include "as_json/edit_step.h"
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
 #include <utility>
 
-namespace vv::control::edits {
+namespace vv::json::edits {
 
 namespace {
 
@@ -43,7 +43,7 @@ class Reader {
   EditedNode nodeOf(const std::string& where, const Json& json) const {
     if (!json.is_object())
       return std::visit([](const auto& name) -> EditedNode { return name; },
-                        control::nodeOf(where, json));
+                        json::nodeOf(where, json));
     const auto edit = json.find("edit");
     if (json.size() != 1 || edit == json.end() || !edit->is_number_unsigned() ||
         edit->get<uint64_t>() >= edits_.size() || !makesNode(edits_[edit->get<size_t>()]))
@@ -140,4 +140,4 @@ Step readStep(Members& members, size_t mostEdits) {
   return step;
 }
 
-} // namespace vv::control::edits
+} // namespace vv::json::edits

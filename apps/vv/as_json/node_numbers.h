@@ -8,10 +8,13 @@
 
 #include "xvrml/node.h"
 
-namespace vv::control {
+namespace vv::json {
 
 class NodeNumbers {
  public:
+  // most: numbers that are not released.
+  explicit NodeNumbers(size_t most) : most_(most) {}
+
   // Returns the number of a node; a new one if it has none. Throws CommandError ("limit").
   uint64_t of(const xvrml::NodeRef& node);
   // Returns null if the number was not given out or has been released.
@@ -22,9 +25,10 @@ class NodeNumbers {
   size_t size() const { return nodes_.size(); }
 
  private:
+  size_t most_;
   std::unordered_map<uint64_t, xvrml::NodeRef> nodes_;
   std::unordered_map<const xvrml::Node*, uint64_t> numbers_;
   uint64_t last_ = 0;
 };
 
-} // namespace vv::control
+} // namespace vv::json

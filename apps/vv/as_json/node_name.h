@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-namespace vv::control {
+namespace vv::json {
 
 // A node as a client names it: a DEF name of the world, or a number that the client was given.
 using NodeName = std::variant<std::string, uint64_t>;
@@ -16,4 +16,4 @@ struct FieldName {
   std::string field;
 };
 
-} // namespace vv::control
+} // namespace vv::json

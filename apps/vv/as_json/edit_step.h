@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "control/members.h"
+#include "as_json/members.h"
 
-namespace vv::control::edits {
+namespace vv::json::edits {
 
 // A node that an earlier edit of the step makes: the index of that edit.
 struct Made {
@@ -78,4 +78,4 @@ struct Step {
 // Reads the members of the command "edit". Throws CommandError.
 Step readStep(Members& members, size_t mostEdits);
 
-} // namespace vv::control::edits
+} // namespace vv::json::edits

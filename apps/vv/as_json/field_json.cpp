@@ -1,4 +1,4 @@
-#include "control/field_json.h"
+#include "as_json/field_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "xvrml/numbers.h"
 #include "xvrml/world.h"
 
-namespace vv::control {
+namespace vv::json {
 
 using namespace xvrml;
 
@@ -313,4 +313,4 @@ void appendValue(std::string& out, const Value& value, const NumberOfNode& numbe
   std::visit(Writer{out, numberOf}, value);
 }
 
-} // namespace vv::control
+} // namespace vv::json

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "control/json_line.h"
-#include "control/node_name.h"
+#include "as_json/json_line.h"
+#include "as_json/node_name.h"
 
-namespace vv::control {
+namespace vv::json {
 
 [[noreturn]] void refuse(const std::string& where, const std::string& expected, const Json& got);
 
@@ -63,4 +63,4 @@ class Members {
   std::vector<std::string> known_;
 };
 
-} // namespace vv::control
+} // namespace vv::json

@@ -8,7 +8,7 @@
 
 #include "xvrml/node.h"
 
-namespace vv::control {
+namespace vv::json {
 
 bool isReadable(const xvrml::FieldInfo& field);
 bool isWritable(const xvrml::FieldInfo& field);
@@ -26,4 +26,4 @@ const xvrml::FieldInfo& writableField(const xvrml::Node& node, const std::string
 // Returns a field or exposedField, by its own name.
 const xvrml::FieldInfo& storedField(const xvrml::Node& node, const std::string& name);
 
-} // namespace vv::control
+} // namespace vv::json

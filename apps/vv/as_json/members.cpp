@@ -1,11 +1,11 @@
-#include "control/members.h"
+#include "as_json/members.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "nearest.h"
 
-namespace vv::control {
+namespace vv::json {
 
 void refuse(const std::string& where, const std::string& expected, const Json& got) {
   throw CommandError("command",
@@ -105,4 +105,4 @@ void Members::rest() {
                                                 shownJson(name), nearTo(name, known_)));
 }
 
-} // namespace vv::control
+} // namespace vv::json

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include "control/json_line.h"
+#include "as_json/json_line.h"
 #include "xvrml/node.h"
 
-namespace vv::control {
+namespace vv::json {
 
 // Returns the node that a JSON value names. Throws CommandError.
 using FindNode = std::function<xvrml::NodeRef(const Json& name)>;
@@ -26,4 +26,4 @@ xvrml::Value readValue(const Json& json, const xvrml::Node& owner, const xvrml::
 // Appends a value as JSON. Numbers that are not finite become null. Throws what numberOf throws.
 void appendValue(std::string& out, const xvrml::Value& value, const NumberOfNode& numberOf);
 
-} // namespace vv::control
+} // namespace vv::json

@@ -1,17 +1,17 @@
-#include "control/node_numbers.h"
+#include "as_json/node_numbers.h"
 
 #include <fmt/format.h>
 
-#include "control/json_line.h"
+#include "as_json/json_line.h"
 
-namespace vv::control {
+namespace vv::json {
 
 uint64_t NodeNumbers::of(const xvrml::NodeRef& node) {
   if (const auto found = numbers_.find(node.get()); found != numbers_.end()) return found->second;
-  if (nodes_.size() >= limits.nodes)
+  if (nodes_.size() >= most_)
     throw CommandError("limit", fmt::format("this client has nodes={} numbers of nodes; release "
                                             "those that it needs no more",
-                                            limits.nodes));
+                                            most_));
   nodes_.emplace(++last_, node);
   numbers_.emplace(node.get(), last_);
   return last_;
@@ -35,4 +35,4 @@ void NodeNumbers::releaseAll() {
   nodes_.clear();
 }
 
-} // namespace vv::control
+} // namespace vv::json

@@ -1,11 +1,11 @@
-#include "control/json_line.h"
+#include "as_json/json_line.h"
 
 #include <set>
 #include <vector>
 
 #include <fmt/format.h>
 
-namespace vv::control {
+namespace vv::json {
 
 namespace {
 
@@ -14,7 +14,7 @@ namespace {
 // object if it has to ask somebody.
 class Watch : public nlohmann::json_sax<Json> {
  public:
-  explicit Watch(const Limits& limits) : limits_(limits) {}
+  explicit Watch(const LineLimits& limits) : limits_(limits) {}
 
   bool null() override { return count(); }
   bool boolean(bool) override { return count(); }
@@ -57,14 +57,14 @@ class Watch : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  const Limits& limits_;
+  const LineLimits& limits_;
   size_t values_ = 0;
   std::vector<std::set<std::string>> names_; // names in objects around, and none in arrays
 };
 
 } // namespace
 
-Json readJsonLine(std::string_view line, const Limits& allowed) {
+Json readJsonLine(std::string_view line, const LineLimits& allowed) {
   if (line.size() > allowed.lineBytes)
     throw CommandError(
         "limit", fmt::format("the line is longer than lineBytes={} bytes", allowed.lineBytes));
@@ -98,4 +98,4 @@ std::string shownJson(const Json& value) {
   return text;
 }
 
-} // namespace vv::control
+} // namespace vv::json

@@ -1,0 +1,36 @@
+// edit_texts.h: Writes what the editor of a page shows as JSON: rows of the outline, the fields of
+// a node, what can be undone, and probes. Pure functions, apart from the numbers of nodes that they
+// give out. Everything is bounded, whatever the world holds. docs/serve.md lists the messages.
+// [the browser's thread]
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "as_json/node_numbers.h"
+#include "edit/edit_model.h"
+#include "edit/probes.h"
+
+namespace vv::server::edit {
+
+// The choice of `add` that is no row of newNodes().
+inline constexpr const char* viewpointKind = "Viewpoint from here";
+
+// Tells a page that it may edit, and what it can add.
+std::string editorText();
+// Returns some rows of the outline, and how many there are.
+std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int first, int count);
+// Tells a page to show a row, which others have selected.
+std::string revealText(int row);
+std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers);
+// Returns the lines around what is selected, in the picture.
+std::string framesText(const EditModel& model);
+// Returns what can be undone and done again, and whether there are edits that are not saved.
+std::string historyText(WorldEditor& editor, const std::string& readOnly);
+std::string probesText(const Probes& probes);
+// Tells the user something. isError: a command was refused.
+std::string saidText(const std::string& text, bool isError);
+// Asks whether a file is to be replaced that another program has changed.
+std::string questionText();
+
+} // namespace vv::server::edit
