@@ -23,7 +23,7 @@ struct Light {
   Color ambient = {0, 0, 0, 1}, diffuse = {0, 0, 0, 1}, specular = {0, 0, 0, 1};
   Color position = {0, 0, 1, 0};               // in eye space
   std::array<float, 3> direction = {0, 0, -1}; // axis of the spot, in eye space
-  float exponent = 0, cutoff = 180; // spot: falloff and angle in degrees
+  float exponent = 0, cutoff = 180;            // spot: falloff and angle in degrees
   std::array<float, 3> attenuation = {1, 0, 0};
   bool operator==(const Light&) const = default;
 };

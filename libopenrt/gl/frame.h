@@ -80,10 +80,11 @@ struct Draw {
   Material material;
 };
 
-// The lights that are on, and the ambient light of all of them.
+// The lights that are on, the ambient light of all of them, and their specular colours in
+// proportion to their diffuse ones.
 struct LightSet {
   std::array<Light, lightCount> lights;
-  std::array<float, 3> ambient = {0, 0, 0};
+  std::array<float, 3> ambient = {0, 0, 0}, specularShare = {0, 0, 0};
   bool operator==(const LightSet&) const = default;
 };
 

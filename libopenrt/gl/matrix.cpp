@@ -145,6 +145,11 @@ bool finite(const Matrix& m) {
   return true;
 }
 
+bool mirrors(const Matrix& m) {
+  const Vector x = {m[0], m[1], m[2]}, y = {m[4], m[5], m[6]}, n = cross(x, y);
+  return n[0] * m[8] + n[1] * m[9] + n[2] * m[10] < 0;
+}
+
 Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }

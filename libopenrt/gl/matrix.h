@@ -28,6 +28,8 @@ Vector project(const Matrix& m, const Vector& point);
 // Returns whether the bottom row is 0 0 0 1.
 bool affine(const Matrix& m);
 bool finite(const Matrix& m);
+// Returns whether the matrix turns left hands into right ones.
+bool mirrors(const Matrix& m);
 
 inline Vector operator-(const Vector& a, const Vector& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};

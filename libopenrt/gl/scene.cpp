@@ -103,8 +103,9 @@ void Scene::useMaterials(const Frame& frame, const LightSet& lights) {
     same.push_back(unused);
     setMaterial(paints_[unused], material, lights);
   }
-  for (Paint& paint : paints_) // ambient light is part of what materials emit
-    if (paint.lastFrame == frame_ && paint.ambient != lights.ambient)
+  for (Paint& paint : paints_) // materials depend on ambient light and on specular colours
+    if (paint.lastFrame == frame_ &&
+        (paint.ambient != lights.ambient || paint.specularShare != lights.specularShare))
       setMaterial(paint, paint.material, lights);
 }
 
@@ -112,15 +113,16 @@ void Scene::setMaterial(Paint& paint, const Material& material, const LightSet& 
   const int kind = linear() && material.lit && !material.replace ? physicalKind : openGlKind;
   if (!paint.shader || paint.kind != kind) {
     if (paint.shader) rtDeleteShader(paint.shader);
-    paint.shader =
-        rtNewShader(kind == openGlKind ? classOf("X3DMaterial") : classOf("Physical", "physical"));
     for (auto& [hash, shape] : shapes_)
       for (Instance& instance : shape.instances)
-        if (instance.shader == paint.shader) instance.shader = 0;
+        if (instance.shader == paint.shader) instance.shader = 0; // its override has ended
+    paint.shader =
+        rtNewShader(kind == openGlKind ? classOf("X3DMaterial") : classOf("Physical", "physical"));
   }
   paint.kind = kind;
   paint.material = material;
   paint.ambient = lights.ambient;
+  paint.specularShare = lights.specularShare;
   rtBindShader(paint.shader);
   if (kind == openGlKind)
     setOpenGlMaterial(material, lights);
@@ -138,16 +140,11 @@ void Scene::setOpenGlMaterial(const Material& m, const LightSet& lights) {
     const Material::Side& s = m.sides[side];
     std::array<float, 3> diffuse, emissive, specular;
     for (size_t c = 0; c < 3; c++) {
-      float direct = 0, highlight = 0;
-      for (const Light& lamp : lights.lights) {
-        direct += lamp.on ? lamp.diffuse[c] : 0;
-        highlight += lamp.on ? lamp.specular[c] : 0;
-      }
       const float ambient = m.tracksAmbient ? 0 : s.ambient[c] * lights.ambient[c];
       diffuse[c] = m.replace ? 0 : s.diffuse[c];
       emissive[c] = m.replace ? 1 : s.emission[c] + ambient;
       if (linear()) emissive[c] = decoded(emissive[c]);
-      specular[c] = m.replace || !(direct > 0) ? 0 : s.specular[c] * highlight / direct;
+      specular[c] = m.replace ? 0 : s.specular[c] * lights.specularShare[c];
     }
     const bool back = side == 1;
     set(back ? "backDiffuseColor" : "diffuseColor", diffuse);
@@ -248,6 +245,7 @@ void Scene::forget() {
   shapes_.clear();
   for (const Paint& paint : paints_) rtDeleteShader(paint.shader);
   paints_.clear();
+  for (Lamp& lamp : lamps_) lamp.light = Light();
 }
 
 bool Scene::show(const Frame& frame) {

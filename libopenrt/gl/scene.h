@@ -44,7 +44,7 @@ class Scene {
   struct Paint { // a shader of a material
     RTid shader = 0;
     Material material;
-    std::array<float, 3> ambient;
+    std::array<float, 3> ambient, specularShare; // those of the lights
     int kind = 0;
     uint64_t lastFrame = 0;
   };

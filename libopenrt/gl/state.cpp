@@ -30,12 +30,19 @@ void copyColor(const Color& from, float (&to)[3]) { std::copy_n(from.begin(), 3,
 
 LightSet lightsOf(const Lighting& lighting) {
   LightSet set;
+  std::array<float, 3> diffuse = {0, 0, 0};
   for (size_t c = 0; c < 3; c++) set.ambient[c] = lighting.ambient[c];
   for (size_t i = 0; i < lightCount; i++) {
     if (!lighting.lights[i].on) continue;
     set.lights[i] = lighting.lights[i];
-    for (size_t c = 0; c < 3; c++) set.ambient[c] += lighting.lights[i].ambient[c];
+    for (size_t c = 0; c < 3; c++) {
+      set.ambient[c] += lighting.lights[i].ambient[c];
+      set.specularShare[c] += lighting.lights[i].specular[c];
+      diffuse[c] += lighting.lights[i].diffuse[c];
+    }
   }
+  for (size_t c = 0; c < 3; c++)
+    set.specularShare[c] = diffuse[c] > 0 ? set.specularShare[c] / diffuse[c] : 0;
   return set;
 }
 
@@ -120,6 +127,8 @@ Material State::material(bool colored, const Color& color) const {
     out.shininess = face.shininess;
     out.alpha = alphaCounts ? std::clamp(face.diffuse[3], 0.0f, 1.0f) : 1.0f;
   }
+  // Triangles face where their normals point before the matrix mirrors them (mesh.h).
+  if (lit && !now.polygon.cull && mirrors(modelview())) std::swap(m.sides[0], m.sides[1]);
   m.lit = lit;
   m.colored = colored;
   m.tracksAmbient =

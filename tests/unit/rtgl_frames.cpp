@@ -235,6 +235,25 @@ TEST_F(Gl, CullingLeavesOutOneSide) {
   }
 }
 
+TEST_F(Gl, NormalsChooseTheLitSideAlsoUnderMirrors) {
+  const float light[4] = {0, 0, 1, 0};
+  glEnable(GL_LIGHTING);
+  glEnable(GL_LIGHT0);
+  glLightfv(GL_LIGHT0, GL_POSITION, light);
+  for (const float mirror : {1.0f, -1.0f}) {
+    glLoadIdentity();
+    glScalef(mirror, 1, 1);
+    for (const float side : {1.0f, -1.0f}) {
+      clear();
+      glNormal3f(0, 0, side);
+      square(0.5f);
+      ASSERT_TRUE(rtglEndFrame());
+      const int wanted = side > 0 ? int(255 * (.8 + .04)) : int(255 * .04);
+      expectNear(pixel(16, 16), {wanted, wanted, wanted});
+    }
+  }
+}
+
 TEST_F(Gl, AbsentCallsAreRefusedOnceByName) {
   glStencilFunc(GL_ALWAYS, 0, 1);
   glStencilFunc(GL_ALWAYS, 0, 1);
