@@ -35,6 +35,10 @@ endfunction()
 set(same "(= ${PROJECT_VERSION}-1)")
 openrt_package(libopenrt libopenrt0 libs "" "ray tracing API in OpenGL's manner"
   "A C library that renders triangles, spheres and other primitives by ray\ntracing on the CPU, answers ray queries and runs shaders, lights, cameras and\nenvironments as plug-ins. The package holds the library and its plug-ins.")
+if(TARGET rtut)
+  openrt_package(librtut librtut0 libs "libopenrt0 ${same}" "windows for OpenGL programs that OpenRT draws"
+    "Windows, events and pictures in files, in GLUT's manner, for programs that draw\nwith OpenRT's header for OpenGL 1.1.")
+endif()
 openrt_package(libxvrml libxvrml0 libs "libopenrt0 ${same}" "VRML97 scene graph"
   "Reads, runs and writes VRML97 worlds (ISO/IEC 14772-1): all nodes, events,\nsensors, prototypes and Scripts, and draws them through OpenRT. The package\nholds the libraries, the script engines and the process that Scripts run in.")
 openrt_package(dev libopenrt-dev libdevel "libopenrt0 ${same}, libxvrml0 ${same}, libimath-dev"

@@ -22,7 +22,7 @@ build=(
   libsdl2-dev libimgui-dev                             # the window and its editor
   libwebsockets-dev                                    # the page of vv serve
 )
-tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy chromium chromium-driver)
+tests=(libglut-dev libglu1-mesa-dev libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy chromium chromium-driver)
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 

@@ -36,6 +36,13 @@ TABLE = [
                                                                    "shader", "frame", "query",
                                                                    "worker", "sums")),
         "the application API, C99"),
+    part(
+        "gl-h",
+        " ".join(f"libopenrt/include/openrt/{name}.h"
+                 for name in ("gl", "gl_types", "gl_values", "gl_functions", "gl_names")),
+        "OpenGL 1.1 and GLU, C99", "api-h"),
+    part("rtut-h", "libopenrt/include/openrt/rtut.h", "windows in GLUT's manner, C99",
+         "api-h gl-h"),
     part("shader-sdk", "libopenrt/include/openrt/", "what a shader plug-in sees, C99 and C++"),
     part("xvrml-h", "libxvrml/include/xvrml/", "worlds, nodes, events: the public C++ headers"),
     part("script-sdk", "libxvrml/include/xvrml/xscript.h libxvrml/include/xvrml/xscript_types.h",
@@ -98,6 +105,11 @@ TABLE = [
     part("openrt-api-sums", "libopenrt/api/sums.cpp",
          "the rt* functions for kept sums, which are used without a context",
          "api-h openrt-scene render-frame openrt-api"),
+    part("rtgl", "libopenrt/gl/",
+         "OpenGL 1.1 on top of the public headers: records frames, and keeps their scene",
+         "api-h gl-h"),
+    part("rtut", "libopenrt/rtut/", "windows, events and pictures in files, in GLUT's manner",
+         "api-h gl-h rtut-h"),
     part("openrt-tools", "libopenrt/tools/", "openrt-replay and openrt-worker",
          "api-h openrt-scene openrt-shading openrt-backend backend-record backend-cluster common"),
     part("xvrml-base", "libxvrml/base/ libxvrml/nodes/",
@@ -185,13 +197,13 @@ TABLE = [
          "picture vv-process vv-options vv-report vv-input vv-session vv-run vv-control vv-window vv-server common"),
     part("binding", "bindings/", "the Python package", "api-h xvrml-h mapper-h picture common"),
     part("example", "examples/", "programs for readers",
-         "api-h shader-sdk script-sdk xvrml-h mapper-h"),
+         "api-h gl-h rtut-h shader-sdk script-sdk xvrml-h mapper-h"),
     part("test", "tests/", "tests, benchmarks and audits"),
 ]
 PARTS = {prefix: p.name for p in TABLE for prefix in p.prefixes}
 ARROWS = {p.name: p.includes for p in TABLE}
 ARROWS["test"] = frozenset(ARROWS)
-PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
+PUBLIC = {"api-h", "gl-h", "rtut-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
 # Third-party headers that only some parts may include.
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
@@ -200,7 +212,7 @@ FOREIGN = [
     (re.compile(
         r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "vv-window", "test"}, "picture and font libraries"),
-    (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"vv-window"}, "SDL"),
+    (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"vv-window", "rtut"}, "SDL"),
     (re.compile(r"imgui"), {"vv-window"}, "Dear ImGui"),
     (re.compile(r"libwebsockets"), {"vv-server"}, "libwebsockets"),
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "picture", "test"}, "the ffmpeg libraries"),

@@ -13,7 +13,13 @@
 namespace vrml97 {
 namespace {
 
-enum FogType : int32_t { noFog = 0, linearFog = 1, exponentialFog = 2 };
+enum FogType : int32_t {
+  noFog = 0,
+  linearFog = 1,
+  exponentialFog = 2,
+  expFog = 3, // OpenGL's GL_EXP and GL_EXP2
+  exp2Fog = 4
+};
 
 struct EnvironmentParams {
   RtsFloats skyColor, skyAngle, groundColor, groundAngle;
@@ -27,6 +33,7 @@ struct EnvironmentParams {
   RtsTexture lightMap;
   float lightColor[3];
   float lightMatrix[16];
+  float fogStart;
 };
 
 #define VRML97_PANORAMA(name, index, text)                                                         \
@@ -82,8 +89,9 @@ const RtsParam environmentParams[] = {
      offsetof(EnvironmentParams, fogType),
      {0.0f},
      0.0f,
-     2.0f,
-     "0: clear air, 1: linear, 2: exponential"},
+     4.0f,
+     "0: clear air, 1: linear, 2: exponential; OpenGL's, for a distance d: 3: exp(-d / fogRange), "
+     "4: exp(-(d / fogRange)^2)"},
     {"fogColor",
      RTS_COLOR,
      offsetof(EnvironmentParams, fogColor),
@@ -139,6 +147,13 @@ const RtsParam environmentParams[] = {
      0.0f,
      0.0f,
      "matrix from local directions to those of the light; only its 3x3 part counts"},
+    {"fogStart",
+     RTS_FLOAT,
+     offsetof(EnvironmentParams, fogStart),
+     {0.0f},
+     -noLimit,
+     noLimit,
+     "distance at which linear fog begins"},
 };
 
 // Colours at angles from a pole. The first angle is 0; angles are clamped to 0..limit and never
@@ -316,12 +331,14 @@ VRML97_CLONES void fogDistances(const float* __restrict m, uint32_t n, const flo
   }
 }
 
-// Linear fog, clause 4.14.4: (v - d) / v within the range, 0 beyond.
-VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restrict distance,
-                                  float* __restrict fraction) {
+// Linear fog, clause 4.14.4: (v - d) / (v - start) between start and range, 0 beyond. The start is
+// 0 in VRML97.
+VRML97_CLONES void linearFraction(float start, float range, uint32_t n,
+                                  const float* __restrict distance, float* __restrict fraction) {
+  const float width = larger(range - start, 1e-37f);
   for (uint32_t i = 0; i < n; i++) {
-    const float f = (range - distance[i]) / range;
-    fraction[i] = larger(f, 0.0f);
+    const float f = (range - distance[i]) / width;
+    fraction[i] = smaller(larger(f, 0.0f), 1.0f);
   }
 }
 
@@ -335,6 +352,15 @@ VRML97_CLONES void exponentialFraction(float range, uint32_t n, const float* __r
   }
 }
 
+// The fog of OpenGL 1.1 (section 3.10): exp(-d / v), or exp(-(d / v)^2) if squared.
+VRML97_CLONES void expFraction(bool squared, float range, uint32_t n,
+                               const float* __restrict distance, float* __restrict fraction) {
+  for (uint32_t i = 0; i < n; i++) {
+    const float x = distance[i] / range;
+    fraction[i] = expNegative(squared ? -x * x : -x);
+  }
+}
+
 void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                const float* const fromEye[3], float* const color[3], float* fraction) {
   const auto& p = *static_cast<const EnvironmentParams*>(params);
@@ -343,8 +369,12 @@ void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_
   if (p.fogType == noFog || !(p.fogRange > 0.0f)) return constant(1.0f, lanes, fraction);
   float* distance = host->scratch(batch, lanes);
   fogDistances(p.fogMatrix, lanes, fromEye[0], fromEye[1], fromEye[2], distance);
-  (p.fogType == exponentialFog ? exponentialFraction : linearFraction)(p.fogRange, lanes, distance,
-                                                                       fraction);
+  switch (p.fogType) {
+  case exponentialFog: return exponentialFraction(p.fogRange, lanes, distance, fraction);
+  case expFog:
+  case exp2Fog: return expFraction(p.fogType == exp2Fog, p.fogRange, lanes, distance, fraction);
+  default: return linearFraction(p.fogStart, p.fogRange, lanes, distance, fraction);
+  }
 }
 
 // A Background is visible but lights nothing (clause 6.5); an EnvironmentLight does.

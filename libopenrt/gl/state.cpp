@@ -1,0 +1,299 @@
+// state.cpp: Records vertices, display lists and frames.
+#include "gl/state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace rtgl {
+namespace {
+
+constexpr int maxListDepth = 64; // OpenGL 1.1, table 6.24
+constexpr size_t maxAttributes = 16;
+
+// Applies glColorMaterial: the current colour replaces properties of the material.
+void track(const Lighting& lighting, const Color& color, std::array<Face, 2>& faces) {
+  for (size_t side = 0; side < 2; side++) {
+    if (lighting.colorFace == (side == 0 ? GL_BACK : GL_FRONT)) continue;
+    Face& face = faces[side];
+    switch (lighting.colorMode) {
+    case GL_EMISSION: face.emission = color; break;
+    case GL_SPECULAR: face.specular = color; break;
+    case GL_AMBIENT: face.ambient = color; break;
+    case GL_DIFFUSE: face.diffuse = color; break;
+    default: face.ambient = face.diffuse = color; break;
+    }
+  }
+}
+
+void copyColor(const Color& from, float (&to)[3]) { std::copy_n(from.begin(), 3, to); }
+
+LightSet lightsOf(const Lighting& lighting) {
+  LightSet set;
+  std::array<float, 3> diffuse = {0, 0, 0};
+  for (size_t c = 0; c < 3; c++) set.ambient[c] = lighting.ambient[c];
+  for (size_t i = 0; i < lightCount; i++) {
+    if (!lighting.lights[i].on) continue;
+    set.lights[i] = lighting.lights[i];
+    for (size_t c = 0; c < 3; c++) {
+      set.ambient[c] += lighting.lights[i].ambient[c];
+      set.specularShare[c] += lighting.lights[i].specular[c];
+      diffuse[c] += lighting.lights[i].diffuse[c];
+    }
+  }
+  for (size_t c = 0; c < 3; c++)
+    set.specularShare[c] = diffuse[c] > 0 ? set.specularShare[c] / diffuse[c] : 0;
+  return set;
+}
+
+} // namespace
+
+void State::begin(GLenum mode) {
+  if (open()) fail(GL_INVALID_OPERATION, "glEnd is missing");
+  if (mode > GL_POLYGON) fail(GL_INVALID_ENUM, "no such primitive");
+  chunk_ = std::make_shared<Chunk>();
+  chunk_->mode = mode;
+  recording_ = compiles() ? Current() : now.current;
+}
+
+void State::vertex(float x, float y, float z) {
+  if (!open()) return; // undefined in OpenGL
+  Chunk& chunk = *chunk_;
+  chunk.vertices.push_back({{x, y, z}, recording_.normal, recording_.texCoord, recording_.color});
+  if (!compiles()) return;
+  if (!chunk.setsColor) chunk.inheritsColor = chunk.vertices.size();
+  if (!chunk.setsNormal) chunk.inheritsNormal = chunk.vertices.size();
+  if (!chunk.setsTexCoord) chunk.inheritsTexCoord = chunk.vertices.size();
+}
+
+void State::setColor(const Color& color) {
+  if (!open()) {
+    listed("glColor", [color](State& s) { s.now.current.color = color; });
+    return;
+  }
+  recording_.color = color;
+  chunk_->setsColor = true;
+}
+
+void State::setNormal(float x, float y, float z) {
+  if (!open()) {
+    listed("glNormal", [=](State& s) { s.now.current.normal = {x, y, z}; });
+    return;
+  }
+  recording_.normal = {x, y, z};
+  chunk_->setsNormal = true;
+}
+
+void State::setTexCoord(float s, float t) {
+  if (!open()) {
+    listed("glTexCoord", [=](State& state) { state.now.current.texCoord = {s, t}; });
+    return;
+  }
+  recording_.texCoord = {s, t};
+  chunk_->setsTexCoord = true;
+}
+
+void State::end() {
+  if (!open()) fail(GL_INVALID_OPERATION, "glBegin is missing");
+  const std::shared_ptr<Chunk> chunk = std::exchange(chunk_, nullptr);
+  chunk->after = recording_;
+  chunk->finish();
+  if (compiles()) add([chunk](State& s) { s.draw(chunk); });
+  if (executes()) draw(chunk);
+}
+
+Material State::material(bool colored, const Color& color) const {
+  const Lighting& lighting = now.lighting;
+  const bool lit = lighting.on;
+  std::array<Face, 2> faces = lighting.faces;
+  if (!lit)
+    for (Face& face : faces) {
+      face.ambient = face.diffuse = face.specular = {0, 0, 0, color[3]};
+      face.emission = color;
+      face.shininess = 0;
+    }
+  else if (lighting.colorMaterial && !colored)
+    track(lighting, color, faces);
+  Material m{};
+  const bool alphaCounts = now.pixels.blend || now.pixels.alphaTest;
+  for (size_t side = 0; side < 2; side++) {
+    const Face& face = faces[lighting.twoSide ? side : 0];
+    const bool dark = side == 1 && lit && !lighting.twoSide; // light comes to the front only
+    Material::Side& out = m.sides[side];
+    copyColor(dark ? Color{0, 0, 0, 0} : face.diffuse, out.diffuse);
+    copyColor(dark ? Color{0, 0, 0, 0} : face.specular, out.specular);
+    copyColor(face.ambient, out.ambient);
+    copyColor(face.emission, out.emission);
+    out.shininess = face.shininess;
+    out.alpha = alphaCounts ? std::clamp(face.diffuse[3], 0.0f, 1.0f) : 1.0f;
+  }
+  // Triangles face where their normals point before the matrix mirrors them (mesh.h).
+  if (lit && !now.polygon.cull && mirrors(modelview())) std::swap(m.sides[0], m.sides[1]);
+  m.lit = lit;
+  m.colored = colored;
+  m.tracksAmbient =
+      colored && lit &&
+      (lighting.colorMode == GL_AMBIENT_AND_DIFFUSE || lighting.colorMode == GL_AMBIENT);
+  m.twoSide = lit;
+  m.blend = now.pixels.blend && now.pixels.source == GL_SRC_ALPHA;
+  m.vertexAlpha = colored && alphaCounts;
+  m.alphaTest = now.pixels.alphaTest && now.pixels.alphaFunction != GL_ALWAYS;
+  m.alphaReference = m.alphaTest ? now.pixels.alphaReference : 0;
+  m.texture = now.texturing.on ? textures.imageOf(now.texturing.bound) : 0;
+  if (m.texture) {
+    m.replace = now.texturing.mode == GL_REPLACE || now.texturing.mode == GL_DECAL;
+    const Matrix& t = textureMatrix();
+    const size_t from[6] = {0, 1, 4, 5, 12, 13};
+    for (size_t i = 0; i < 6; i++) m.textureTransform[i] = static_cast<float>(t[from[i]]);
+  }
+  return m;
+}
+
+// Opens the frame with the first draw: projection and fog hold for all of it. Returns whether the
+// draw belongs to the frame.
+bool State::beginsFrame() {
+  if (!frame_.projection) {
+    frame_.projection = projection();
+    frame_.fog = now.fog;
+    frame_.width = now.viewport[2];
+    frame_.height = now.viewport[3];
+  } else if (*frame_.projection != projection()) {
+    refuse("a second projection in a frame",
+           "a frame has one camera, that of its first primitive; draw overlays in the space of the "
+           "eye");
+    return false;
+  }
+  return true;
+}
+
+// Returns the modelview matrix. Without a depth test, what is drawn later lies a little nearer to
+// the eye, so that it covers what was drawn in the same place before.
+Matrix State::placed() const {
+  if (now.depth.test) return modelview();
+  const auto order = static_cast<double>(frame_.draws.size());
+  const Matrix& p = projection();
+  if (p[15] == 0) {
+    const double nearer = std::max(1 - 2e-5 * order, 0.5);
+    return scaling(nearer, nearer, nearer) * modelview();
+  }
+  return translation(0, 0, p[10] == 0 ? 0 : order * 2e-5 / std::abs(p[10])) * modelview();
+}
+
+void State::draw(const ChunkPtr& recorded) {
+  const Current before = now.current;
+  const ChunkPtr chunk = recorded->inherits() ? recorded->resolved(before) : recorded;
+  if (recorded->setsColor) now.current.color = recorded->after.color;
+  if (recorded->setsNormal) now.current.normal = recorded->after.normal;
+  if (recorded->setsTexCoord) now.current.texCoord = recorded->after.texCoord;
+  if (chunk->vertices.empty() || !beginsFrame()) return;
+  if (!affine(modelview()))
+    return refuse("a modelview matrix with a projection", "put the projection on GL_PROJECTION");
+
+  const Lighting& lighting = now.lighting;
+  if (lighting.on) {
+    const LightSet lights = lightsOf(lighting);
+    if (!frame_.lights)
+      frame_.lights = lights;
+    else if (*frame_.lights != lights)
+      refuse("a change of the lights within a frame",
+             "the lights of the first primitive that is lit light the whole frame");
+  }
+  Part part;
+  part.chunk = chunk;
+  part.textured = now.texturing.on && textures.imageOf(now.texturing.bound) != 0;
+  const bool replaced =
+      part.textured && (now.texturing.mode == GL_REPLACE || now.texturing.mode == GL_DECAL);
+  part.colored = chunk->colorsVary && !replaced && (!lighting.on || lighting.colorMaterial);
+  part.lit = lighting.on;
+  part.flat = lighting.shadeModel == GL_FLAT && (part.lit || part.colored);
+  part.cull = now.polygon.cull;
+  part.cullFace = now.polygon.cullFace;
+  part.frontFace = now.polygon.frontFace;
+  part.polygonMode = now.polygon.mode;
+  part.lineWidth = now.lineWidth;
+  part.pointSize = now.pointSize;
+
+  const bool inherited = !chunk->colorsVary && chunk->inheritsColor == chunk->vertices.size();
+  const Material m = material(part.colored, inherited ? before.color : chunk->color);
+  const Matrix matrix = placed();
+  if (now.depth.test && !frame_.draws.empty() && frame_.draws.back().matrix == matrix &&
+      frame_.draws.back().material == m)
+    frame_.draws.back().parts.push_back(std::move(part));
+  else
+    frame_.draws.push_back({{std::move(part)}, matrix, m});
+}
+
+void State::newList(GLuint name, GLenum mode) {
+  if (name == 0) fail(GL_INVALID_VALUE, "0 names no list");
+  if (mode != GL_COMPILE && mode != GL_COMPILE_AND_EXECUTE) fail(GL_INVALID_ENUM, "no such mode");
+  if (compiles() || open()) fail(GL_INVALID_OPERATION, "glEndList or glEnd is missing");
+  list_ = std::make_shared<List>();
+  listName_ = name;
+  listMode_ = mode;
+}
+
+void State::endList() {
+  if (!compiles() || open()) fail(GL_INVALID_OPERATION, "no list is open, or glEnd is missing");
+  lists[listName_] = std::exchange(list_, nullptr);
+  listName_ = 0;
+}
+
+void State::callList(GLuint name) {
+  const auto found = lists.find(name);
+  if (found == lists.end() || listDepth_ >= maxListDepth) return; // nothing happens in OpenGL, too
+  const std::shared_ptr<const List> list = found->second;         // it may be deleted by itself
+  listDepth_++;
+  for (const Command& command : list->commands) {
+    try {
+      command(*this);
+    } catch (const Failure& failure) { record(failure.code, "glCallList: " + failure.text); }
+  }
+  listDepth_--;
+}
+
+std::vector<Matrix>& State::stack() {
+  return now.matrixMode == GL_PROJECTION ? projection_
+         : now.matrixMode == GL_TEXTURE  ? texture_
+                                         : modelview_;
+}
+
+size_t State::depthOf(GLenum mode) const {
+  return mode == GL_PROJECTION ? projection_.size()
+         : mode == GL_TEXTURE  ? texture_.size()
+                               : modelview_.size();
+}
+
+void State::pushAttributes(GLbitfield mask) {
+  if (attributes_.size() >= maxAttributes) fail(GL_STACK_OVERFLOW, "too many glPushAttrib");
+  attributes_.emplace_back(mask, now);
+}
+
+void State::popAttributes() {
+  if (attributes_.empty()) fail(GL_STACK_UNDERFLOW, "glPushAttrib is missing");
+  restore(attributes_.back().second, attributes_.back().first, now);
+  attributes_.pop_back();
+}
+
+void State::clear(GLbitfield mask) {
+  if (mask & GL_STENCIL_BUFFER_BIT)
+    refuse("glClear(GL_STENCIL_BUFFER_BIT)", "there are no stencils; see glStencilFunc");
+  if (mask & GL_ACCUM_BUFFER_BIT)
+    refuse("glClear(GL_ACCUM_BUFFER_BIT)", "there is no accumulation buffer; see glAccum");
+  if (!(mask & GL_COLOR_BUFFER_BIT)) return;
+  frame_ = Frame();
+  frame_.clear = now.pixels.clear;
+  cleared_ = true;
+}
+
+bool State::endFrame() {
+  if (frame_.width == 0) {
+    frame_.width = now.viewport[2];
+    frame_.height = now.viewport[3];
+  }
+  const Frame frame = std::exchange(frame_, Frame());
+  frame_.clear = frame.clear;
+  cleared_ = false;
+  return scene.show(frame);
+}
+
+} // namespace rtgl
