@@ -1,0 +1,96 @@
+"""A session with the editor as a designer has it, with real keys and clicks: the light on a wall is
+measured, a lamp is moved, the change is significant, undone, done again and saved."""
+import csv
+import difflib
+import re
+
+import pytest
+
+from conftest import HEADER
+from window_driver import screen, window  # noqa: F401
+
+# A lamp of 100 cd in all directions, 5 m before a wall, with a mark beside it.
+WORLD = HEADER + """
+NavigationInfo { headlight FALSE }
+Viewpoint { position 0 0 10 fieldOfView 0.785398 }
+DEF LAMP Transform { translation 0 0 0 # moved by hand
+  children [
+    ORTLight { shader ORTShader { name "Luminaire" file "luminaire" options "1f lumen 1256.6371" } }
+    Transform { translation .8 .4 0 children Shape {
+      appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+        options "color reflectance 0 0 0" } }
+      geometry Box { size .5 .5 .5 } } } ] }
+DEF WALL Transform { translation 0 0 -6 children Shape { # black
+  appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+    options "color reflectance 0 0 0" } }
+  geometry Box { size 30 30 2 } } }
+"""
+REPORT = (128, 62)  # the button, in pixels
+
+
+@pytest.fixture(autouse=True)
+def needs_the_editor(vv):
+    if re.search(r"^edit +no", vv("--list-features").text, re.M):
+        pytest.skip("vv is built without the editor")
+
+
+class Reports:
+    """Asks for reports and reads their tables."""
+
+    def __init__(self, window, folder):
+        self.window, self.folder, self.number = window, folder, 0
+
+    def probe(self):
+        self.number += 1
+        self.window.tool("mousemove", "--window", self.window.id, *REPORT)
+        self.window.tool("click", 1)
+        self.window.said("report saved as", self.number)
+        name = "world-report.csv" if self.number == 1 else f"world-report-{self.number}.csv"
+        rows = [r for r in csv.DictReader((self.folder / name).open()) if r["kind"] == "probe"]
+        return rows[0] if rows else None
+
+    def until(self, test):
+        def tried():
+            row = self.probe()
+            return row if row and test(row) else None
+
+        return self.window.wait(tried, "the probe")
+
+
+def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv):
+    w = window(WORLD, "--size", "600x400", "--spp", "64")
+    w.key("e")
+    reports = Reports(w, vv.folder)
+    w.move(0, 0)
+    w.key("u")
+    row = reports.until(lambda r: r["now"])
+    assert row["field"] == "illuminance"
+    assert (float(row["x"]), float(row["y"]), float(row["z"])) == pytest.approx((0, 0, -5), abs=.02)
+    assert float(row["now"]) == pytest.approx(4, rel=.01)
+    w.key("b")
+    # The group of the mark is the lamp.
+    w.move(.129, .097)
+    w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
+    w.key("g", "z", "minus", "1", "Return")
+    row = reports.until(lambda r: r["difference"])
+    assert float(row["before"]) == pytest.approx(4, rel=.01)
+    assert float(row["now"]) == pytest.approx(6.25, rel=.01)
+    assert float(row["difference"]) == pytest.approx(2.25, rel=.03)
+    assert row["remark"] == "significant, trusted"
+    w.key("ctrl+z")
+    row = reports.until(lambda r: r["now"] and float(r["now"]) < 5)
+    assert float(row["now"]) == float(row["before"]), "the same samples give the same light"
+    assert row["remark"] == "unchanged, trusted" or float(row["difference"]) == 0
+    w.key("ctrl+y")
+    w.key("ctrl+s")
+    file = vv.folder / "world.wrl"
+    w.wait(lambda: file.read_text() != WORLD, "the file")
+    changes = [
+        line for line in difflib.unified_diff(WORLD.split("\n"), file.read_text().split("\n"), n=0)
+        if line[0] in "+-" and line[:3] not in ("+++", "---")
+    ]
+    assert changes == [
+        "-DEF LAMP Transform { translation 0 0 0 # moved by hand",
+        "+DEF LAMP Transform { translation 0 0 -1 # moved by hand"
+    ]
+    assert w.end() == 0
