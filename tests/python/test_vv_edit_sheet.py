@@ -31,8 +31,7 @@ class Panels:
 
     def __init__(self, window, vv):
         self.state = vv.folder / "state"
-        self.window = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}",
-                             env={"XDG_STATE_HOME": str(self.state)})
+        self.window = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}")
         self.vv = vv
         self.window.key("e")
 
