@@ -127,8 +127,6 @@ Material State::material(bool colored, const Color& color) const {
     out.shininess = face.shininess;
     out.alpha = alphaCounts ? std::clamp(face.diffuse[3], 0.0f, 1.0f) : 1.0f;
   }
-  // Triangles face where their normals point before the matrix mirrors them (mesh.h).
-  if (lit && !now.polygon.cull && mirrors(modelview())) std::swap(m.sides[0], m.sides[1]);
   m.lit = lit;
   m.colored = colored;
   m.tracksAmbient =
@@ -208,7 +206,10 @@ void State::draw(const ChunkPtr& recorded) {
   part.flat = lighting.shadeModel == GL_FLAT && (part.lit || part.colored);
   part.cull = now.polygon.cull;
   part.cullFace = now.polygon.cullFace;
-  part.frontFace = now.polygon.frontFace;
+  // OpenGL looks at the corners after the matrix, which may mirror them, OpenRT before it.
+  part.frontFace = !mirrors(modelview())                    ? now.polygon.frontFace
+                   : now.polygon.frontFace == GLenum(GL_CW) ? GLenum(GL_CCW)
+                                                            : GLenum(GL_CW);
   part.polygonMode = now.polygon.mode;
   part.lineWidth = now.lineWidth;
   part.pointSize = now.pointSize;

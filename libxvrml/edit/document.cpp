@@ -114,8 +114,10 @@ const FieldText* Document::textOf(const Node& node, const FieldInfo& field) cons
 // had that it gives.
 void Document::touch(Node& node, const FieldInfo& field) {
   auto& kept = originals_[&node];
-  if (!kept.contains(field.name) && !(holdsNodes(field) && textOf(node, field)))
-    kept.emplace(field.name, node.get(field));
+  if (!kept.contains(field.name)) {
+    const bool isInText = holdsNodes(field) && textOf(node, field);
+    kept.emplace(field.name, isInText ? std::nullopt : std::optional<Value>(node.get(field)));
+  }
   if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
 }
 
@@ -128,7 +130,16 @@ const Value* Document::originalOf(const Node& node, const FieldInfo& field) cons
   const auto known = originals_.find(&node);
   if (known == originals_.end()) return nullptr;
   const auto found = known->second.find(field.name);
-  return found == known->second.end() ? nullptr : &found->second;
+  return found == known->second.end() || !found->second ? nullptr : &*found->second;
+}
+
+// Returns the nodes that a text gives a field.
+Value Document::nodesInText(const Node& node, const FieldInfo& field) const {
+  MFNode nodes;
+  for (const NodePlace& one : textOf(node, field)->nodes)
+    if (one.taken) nodes.emplace_back(const_cast<Node*>(one.node));
+  if (field.type == FieldType::MFNode) return nodes;
+  return nodes.empty() ? NodeRef() : nodes.front();
 }
 
 MFNode& Document::listToChange(Node* parent, const FieldInfo* field) {

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -74,7 +75,10 @@ class Document {
   // had before it was changed first.
   template <class Visit> void forEachChanged(const Visit& visit) const {
     for (const auto& [node, fields] : originals_)
-      for (const auto& [name, value] : fields) visit(*node, *node->type().find(name), value);
+      for (const auto& [name, value] : fields) {
+        const FieldInfo& field = *node->type().find(name);
+        visit(*node, field, value ? *value : nodesInText(*node, field));
+      }
   }
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
@@ -98,6 +102,7 @@ class Document {
 
   void index(DocumentText& text);
   void touch(Node& node, const FieldInfo& field);
+  Value nodesInText(const Node& node, const FieldInfo& field) const;
   MFNode& listToChange(Node* parent, const FieldInfo* field);
 
   const LoadOptions options_;
@@ -106,7 +111,9 @@ class Document {
   std::set<std::string, std::less<>> repeated_;
   NodeMap<Known> known_;                                 // the nodes of all texts
   std::unordered_map<const Node*, std::string> renamed_; // with the names in their texts
-  std::unordered_map<const Node*, std::map<std::string, Value, std::less<>>> originals_;
+  // Values before the first change; empty for nodes that the text gives.
+  std::unordered_map<const Node*, std::map<std::string, std::optional<Value>, std::less<>>>
+      originals_;
   Standing standing_;
 };
 

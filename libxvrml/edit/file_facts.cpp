@@ -97,7 +97,8 @@ std::vector<ChangedField> EditedFile::changedFields() const {
     return a.first != b.first ? a.first < b.first : a.second.field < b.second.field;
   });
   const MFNode& roots = document_->listOf(nullptr, nullptr);
-  const std::vector<NodePlace>& read = document_->file().layout.roots;
+  std::vector<NodePlace> read = document_->file().layout.roots;
+  std::erase_if(read, [](const NodePlace& place) { return !place.taken; });
   if (!std::equal(
           roots.begin(), roots.end(), read.begin(), read.end(),
           [](const NodeRef& node, const NodePlace& place) { return node.get() == place.node; }))

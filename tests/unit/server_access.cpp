@@ -182,7 +182,7 @@ TEST(ServerAnswer, TheTokenOfTheAddressBecomesACookie) {
   EXPECT_EQ(headerOf(answer, "location"), "./");
   EXPECT_EQ(headerOf(answer, "set-cookie"),
             std::string("vv-token-80=") + secret + "; Path=/; HttpOnly; SameSite=Lax");
-  EXPECT_EQ(*answerFor(Verdict::allowed, "/", downloads).body, "<html>");
+  EXPECT_EQ(*answerFor(Verdict::allowed, "/", downloads).body, pageFiles()[0].content);
 }
 
 TEST(ServerAnswer, FilesAreFoundByTheirWholeName) {

@@ -94,10 +94,11 @@ std::string Editing::takeMessage() {
 
 bool Editing::take(InputEvent& event) {
   using Kind = InputEvent::Kind;
-  if (!isOpen_) return false;
+  // Where the pointer is counts when the editor is opened.
   if (event.kind == Kind::move) pointer_ = event;
   if (event.kind == Kind::move || event.kind == Kind::leave)
     isOverPicture_ = event.kind == Kind::move;
+  if (!isOpen_) return false;
   if (hasTool_ && takeForTool(event)) return true;
   switch (event.kind) {
   case Kind::press:
@@ -390,8 +391,9 @@ void Editing::readStill(Session& session, double seconds) {
   const double interval = comparison_.shown() == Comparison::Shown::difference ? 1 : 0.25;
   const bool isCompared =
       comparison_.wantsPicture() || comparison_.shown() == Comparison::Shown::difference;
-  if (probes_.all().empty() && !isCompared && !comparison_.isRefined(session.pictures().number()))
+  if (!probes_.readPictures() && !isCompared && !comparison_.isRefined(session.pictures().number()))
     return;
+  if (session.captures().isPending()) return; // other channels would cancel its frame
   const bool outdated = session.viewers().own().isOutdated();
   if (outdated) probes_.expire();
   if (outdated || seconds < stillRead_ + interval) return;
