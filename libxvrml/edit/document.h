@@ -71,14 +71,10 @@ class Document {
   // Returns the value that a field had before it was changed first; null: it has not been changed,
   // or it holds nodes that the text has.
   const Value* originalOf(const Node& node, const FieldInfo& field) const;
-  // Calls visit(node, field, value) for each field that has been changed, with the value that it
-  // had before it was changed first.
+  // Calls visit(node, originals) for each node of which fields have been changed; originals has
+  // the values before, by the names of the fields; none: nodes that the text has.
   template <class Visit> void forEachChanged(const Visit& visit) const {
-    for (const auto& [node, fields] : originals_)
-      for (const auto& [name, value] : fields) {
-        const FieldInfo& field = *node->type().find(name);
-        visit(*node, field, value ? *value : nodesInText(*node, field));
-      }
+    for (const auto& [node, originals] : originals_) visit(*node, originals);
   }
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;

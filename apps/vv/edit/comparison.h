@@ -72,6 +72,8 @@ class Comparison {
   void ask(uint64_t changes, const EditView& view);
   bool hasA() const { return a_.width > 0; }
   bool isComplete() const { return isComplete_; } // A has all its samples
+  // Returns A; null: there is none.
+  const picture::Picture* a() const { return hasA() ? &a_ : nullptr; }
   // Returns why a picture of this view and size cannot be compared with A; "": it can be.
   std::string whyNot(const EditView& view, int width, int height) const;
   // Shows something, or if it is shown, the present picture again. Throws xvrml::EditError without

@@ -357,7 +357,7 @@ void Editing::update(Session& session, double seconds) {
   readSensors(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
-  if (panels_->takeReportWish()) report_.begin(session, probes_, arguments_);
+  if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
 }
 
 void Editing::showCover() {
