@@ -89,18 +89,24 @@ void Document::index(DocumentText& text) {
       const FieldInfo* const info = node.type().find(field.name);
       field.faithful = info && isFaithful(text, node, *info, field);
     }
-    text.byPlace.emplace(placeKey(node.source.line, node.source.column), &node);
+    text.byPlace.emplace_back(placeKey(node.source.line, node.source.column), &node);
     known_.insert(&node, {&text, &place});
     if (!node.defName.empty() && !names.insert(node.defName).second) repeated_.insert(node.defName);
   }
+  std::sort(text.byPlace.begin(), text.byPlace.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
 Node* Document::find(const SourcePosition& place) const {
   if (!place.file) return nullptr;
   const auto text = byName_.find(*place.file);
   if (text == byName_.end()) return nullptr;
-  const auto found = text->second->byPlace.find(placeKey(place.line, place.column));
-  return found == text->second->byPlace.end() ? nullptr : found->second;
+  const auto& places = text->second->byPlace;
+  const uint64_t key = placeKey(place.line, place.column);
+  const auto found =
+      std::lower_bound(places.begin(), places.end(), key,
+                       [](const auto& one, uint64_t wanted) { return one.first < wanted; });
+  return found == places.end() || found->first != key ? nullptr : found->second;
 }
 
 const FieldText* Document::textOf(const Node& node, const FieldInfo& field) const {

@@ -22,7 +22,7 @@ struct DocumentText {
   std::string text;
   TextLayout layout;
   std::unique_ptr<World> world;
-  std::unordered_map<uint64_t, Node*> byPlace; // by line and column
+  std::vector<std::pair<uint64_t, Node*>> byPlace; // sorted by line and column
 };
 
 class Document {
