@@ -254,8 +254,8 @@ def test_the_step_of_the_document(start, tmp_path):
 
 def words_of(rows):
     """Returns the names in the first column of a table's rows."""
-    return sorted(name for row in re.findall(r"^\| (`.*?) \|", rows, re.M)
-                  for name in re.findall(r"`(\w+)`", row))
+    return sorted({name for row in re.findall(r"^\| (`.*?) \|", rows, re.M)
+                   for name in re.findall(r"`(\w+)`", row)})
 
 
 def test_the_commands_of_the_document():
