@@ -266,7 +266,7 @@ def test_the_commands_of_the_document():
                   index("std::vector<std::string> commandNames")]
     assert words_of("\n".join(tables)) == sorted(re.findall(r'^    \{"(\w+)"', rows, re.M))
     edits = page.split("| edit | members |\n")[1].split("\n\n")[0]
-    source = (ROOT / "apps/vv/control/edit_step.cpp").read_text()
+    source = (ROOT / "apps/vv/as_json/edit_step.cpp").read_text()
     rows = source[source.index("Reader::table[10] = {"):]
     assert words_of(edits) == sorted(re.findall(r'\{"(\w+)", &Reader', rows))
 
