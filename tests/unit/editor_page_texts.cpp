@@ -104,9 +104,8 @@ TEST(EditorPageTexts, ManyFieldsAreCutOff) {
 
 TEST(EditorPageTexts, AStepOfAPageIsAllOrNothing) {
   Shown shown("DEF L PointLight { intensity .5 }");
-  const vv::json::edits::FindNamed find = [&](const vv::json::NodeName&) {
-    return shown.world.node("L");
-  };
+  const xvrml::NodeRef lamp = shown.world.node("L");
+  const vv::json::edits::FindNamed find = [&](const vv::json::NodeName&) { return lamp; };
   const auto perform = [&](const char* edits) {
     vv::json::Members members("edit", Json::parse(edits));
     const vv::json::edits::Step step = vv::json::edits::readStep(members, 10);
