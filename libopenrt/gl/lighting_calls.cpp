@@ -242,11 +242,9 @@ void rtglGetMaterialfv(GLenum face, GLenum name, GLfloat* out) { getMaterial(fac
 void rtglGetMaterialiv(GLenum face, GLenum name, GLint* out) { getMaterial(face, name, out); }
 void rtglColorMaterial(GLenum face, GLenum mode) {
   listed("glColorMaterial", [=](State& s) {
-    if (mode == GL_EMISSION || mode == GL_SPECULAR)
-      s.refuse("glColorMaterial(GL_EMISSION or GL_SPECULAR) with colours of vertices",
-               "the colours of vertices are diffuse; colours of whole primitives work");
     s.now.lighting.colorFace = face;
     s.now.lighting.colorMode = mode;
+    s.trackColor();
   });
 }
 void rtglFogf(GLenum name, GLfloat value) {

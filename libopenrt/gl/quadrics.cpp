@@ -1,5 +1,6 @@
 // quadrics.cpp: Implements spheres, cylinders and disks of GLU, with its facets and texture
 // coordinates.
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <numbers>
@@ -68,6 +69,8 @@ template <class At> void grid(const RTUquadric& q, int columns, int rows, const 
       Point corners[4] = {at(column, row), at(column + 1, row), at(column + 1, row + 1),
                           at(column, row + 1)};
       if (q.orientation == RTU_INSIDE) std::swap(corners[1], corners[3]);
+      if (row + 1 == rows) // the provoking vertex of GLU at the upper end, which may be a pole
+        std::rotate(corners, corners + 2, corners + 4);
       Vector sum = {0, 0, 0};
       for (const Point& p : corners)
         for (size_t c = 0; c < 3; c++) sum[c] += p.normal[c];

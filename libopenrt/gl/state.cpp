@@ -68,11 +68,19 @@ void State::vertex(float x, float y, float z) {
 
 void State::setColor(const Color& color) {
   if (!open()) {
-    listed("glColor", [color](State& s) { s.now.current.color = color; });
+    listed("glColor", [color](State& s) {
+      s.now.current.color = color;
+      s.trackColor();
+    });
     return;
   }
   recording_.color = color;
   chunk_->setsColor = true;
+}
+
+void State::trackColor() {
+  Lighting& lighting = now.lighting;
+  if (lighting.colorMaterial) track(lighting, now.current.color, lighting.faces);
 }
 
 void State::setNormal(float x, float y, float z) {
@@ -127,8 +135,6 @@ Material State::material(bool colored, const Color& color) const {
     out.shininess = face.shininess;
     out.alpha = alphaCounts ? std::clamp(face.diffuse[3], 0.0f, 1.0f) : 1.0f;
   }
-  // Triangles face where their normals point before the matrix mirrors them (mesh.h).
-  if (lit && !now.polygon.cull && mirrors(modelview())) std::swap(m.sides[0], m.sides[1]);
   m.lit = lit;
   m.colored = colored;
   m.tracksAmbient =
@@ -185,6 +191,7 @@ void State::draw(const ChunkPtr& recorded) {
   if (recorded->setsColor) now.current.color = recorded->after.color;
   if (recorded->setsNormal) now.current.normal = recorded->after.normal;
   if (recorded->setsTexCoord) now.current.texCoord = recorded->after.texCoord;
+  trackColor();
   if (chunk->vertices.empty() || !beginsFrame()) return;
   if (!affine(modelview()))
     return refuse("a modelview matrix with a projection", "put the projection on GL_PROJECTION");
@@ -201,14 +208,22 @@ void State::draw(const ChunkPtr& recorded) {
   Part part;
   part.chunk = chunk;
   part.textured = now.texturing.on && textures.imageOf(now.texturing.bound) != 0;
+  if (part.textured) textures.use(now.texturing.bound);
   const bool replaced =
       part.textured && (now.texturing.mode == GL_REPLACE || now.texturing.mode == GL_DECAL);
   part.colored = chunk->colorsVary && !replaced && (!lighting.on || lighting.colorMaterial);
+  if (part.colored && lighting.on &&
+      (lighting.colorMode == GL_EMISSION || lighting.colorMode == GL_SPECULAR))
+    refuse("glColorMaterial(GL_EMISSION or GL_SPECULAR) with colours of vertices",
+           "the colours of vertices are diffuse; colours of whole primitives work");
   part.lit = lighting.on;
   part.flat = lighting.shadeModel == GL_FLAT && (part.lit || part.colored);
   part.cull = now.polygon.cull;
   part.cullFace = now.polygon.cullFace;
-  part.frontFace = now.polygon.frontFace;
+  // OpenGL looks at the corners after the matrix, which may mirror them, OpenRT before it.
+  part.frontFace = !mirrors(modelview())                    ? now.polygon.frontFace
+                   : now.polygon.frontFace == GLenum(GL_CW) ? GLenum(GL_CCW)
+                                                            : GLenum(GL_CW);
   part.polygonMode = now.polygon.mode;
   part.lineWidth = now.lineWidth;
   part.pointSize = now.pointSize;
@@ -265,13 +280,16 @@ size_t State::depthOf(GLenum mode) const {
 
 void State::pushAttributes(GLbitfield mask) {
   if (attributes_.size() >= maxAttributes) fail(GL_STACK_OVERFLOW, "too many glPushAttrib");
-  attributes_.emplace_back(mask, now);
+  attributes_.push_back({mask, now, textures.at(now.texturing.bound)});
 }
 
 void State::popAttributes() {
   if (attributes_.empty()) fail(GL_STACK_UNDERFLOW, "glPushAttrib is missing");
-  restore(attributes_.back().second, attributes_.back().first, now);
+  const Saved saved = attributes_.back();
   attributes_.pop_back();
+  restore(saved.attributes, saved.mask, now);
+  if (!(saved.mask & GL_TEXTURE_BIT)) return;
+  static_cast<TextureProperties&>(textures.at(now.texturing.bound)) = saved.texture;
 }
 
 void State::clear(GLbitfield mask) {

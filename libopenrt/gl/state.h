@@ -68,6 +68,8 @@ class State {
   bool open() const { return chunk_ != nullptr; }
   void vertex(float x, float y, float z);
   void setColor(const Color& color);
+  // Lets the material follow the current colour, if glColorMaterial asks for it.
+  void trackColor();
   void setNormal(float x, float y, float z);
   void setTexCoord(float s, float t);
   // Draws a chunk under what is current.
@@ -119,7 +121,12 @@ class State {
   int listDepth_ = 0;
 
   std::vector<Matrix> modelview_{identity}, projection_{identity}, texture_{identity};
-  std::vector<std::pair<GLbitfield, Attributes>> attributes_;
+  struct Saved { // by glPushAttrib
+    GLbitfield mask;
+    Attributes attributes;
+    TextureProperties texture; // those of the bound texture
+  };
+  std::vector<Saved> attributes_;
   Frame frame_;
   bool cleared_ = false;
 };

@@ -67,6 +67,7 @@ bool isWithout(GLenum capability) {
 void turn(State& s, GLenum capability, bool on) {
   if (bool* flag = flagOf(s.now, capability)) {
     *flag = on;
+    s.trackColor();
     return;
   }
   for (const Refused& refused : refusedCapabilities)

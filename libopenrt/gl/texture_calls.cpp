@@ -60,7 +60,6 @@ void setParameter(State& s, GLenum target, GLenum name, float value) {
   case GL_TEXTURE_PRIORITY: break;
   default: fail(GL_INVALID_ENUM, "no such property");
   }
-  s.textures.setProperties(texture);
 }
 
 void parameterCall(GLenum target, GLenum name, float value) {

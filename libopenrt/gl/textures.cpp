@@ -34,8 +34,16 @@ void Textures::load(Texture& texture) {
   setProperties(texture);
 }
 
-void Textures::setProperties(const Texture& texture) const {
+void Textures::use(GLuint name) {
+  const auto found = textures_.find(name);
+  if (found == textures_.end()) return;
+  const TextureProperties& wanted = found->second;
+  if (found->second.given != wanted) setProperties(found->second);
+}
+
+void Textures::setProperties(Texture& texture) const {
   if (!texture.id) return;
+  texture.given = texture;
   rtBindTexture(texture.id);
   rtTexParameteri(RT_TEXTURE_WRAP_S, wrapOf(texture.wrapS));
   rtTexParameteri(RT_TEXTURE_WRAP_T, wrapOf(texture.wrapT));
@@ -46,7 +54,7 @@ void Textures::setProperties(const Texture& texture) const {
 void Textures::decode(bool srgb) {
   if (srgb == srgb_) return;
   srgb_ = srgb;
-  for (const auto& [name, texture] : textures_) setProperties(texture);
+  for (auto& [name, texture] : textures_) setProperties(texture);
 }
 
 } // namespace rtgl

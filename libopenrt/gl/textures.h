@@ -13,12 +13,16 @@ struct Picture {
   std::vector<unsigned char> texels;         // rows from the bottom up, tightly packed
 };
 
-struct Texture {
-  RTid id = 0; // 0 as long as there is no picture
-  Picture picture;
+struct TextureProperties {
   GLenum wrapS = GL_REPEAT, wrapT = GL_REPEAT, magFilter = GL_LINEAR,
          minFilter = GL_NEAREST_MIPMAP_LINEAR;
-  Color border = {0, 0, 0, 0};
+  bool operator==(const TextureProperties&) const = default;
+};
+
+struct Texture : TextureProperties {
+  RTid id = 0; // 0 as long as there is no picture
+  Picture picture;
+  TextureProperties given; // what OpenRT has been told
 };
 
 class Textures {
@@ -30,13 +34,16 @@ class Textures {
   // Returns the texture of OpenRT, or 0 if the name has no picture.
   RTid imageOf(GLuint name) const;
   void remove(GLuint name);
-  // Give picture and properties to OpenRT.
+  // Gives the picture to OpenRT.
   void load(Texture& texture);
-  void setProperties(const Texture& texture) const;
+  // Gives OpenRT the properties that a texture has when something is drawn with it. They may change
+  // before the frame ends.
+  void use(GLuint name);
   // Tells whether colours are decoded from sRGB.
   void decode(bool srgb);
 
  private:
+  void setProperties(Texture& texture) const;
   std::map<GLuint, Texture> textures_;
   bool srgb_ = false;
 };

@@ -89,18 +89,24 @@ void Document::index(DocumentText& text) {
       const FieldInfo* const info = node.type().find(field.name);
       field.faithful = info && isFaithful(text, node, *info, field);
     }
-    text.byPlace.emplace(placeKey(node.source.line, node.source.column), &node);
+    text.byPlace.emplace_back(placeKey(node.source.line, node.source.column), &node);
     known_.insert(&node, {&text, &place});
     if (!node.defName.empty() && !names.insert(node.defName).second) repeated_.insert(node.defName);
   }
+  std::sort(text.byPlace.begin(), text.byPlace.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
 Node* Document::find(const SourcePosition& place) const {
   if (!place.file) return nullptr;
   const auto text = byName_.find(*place.file);
   if (text == byName_.end()) return nullptr;
-  const auto found = text->second->byPlace.find(placeKey(place.line, place.column));
-  return found == text->second->byPlace.end() ? nullptr : found->second;
+  const auto& places = text->second->byPlace;
+  const uint64_t key = placeKey(place.line, place.column);
+  const auto found =
+      std::lower_bound(places.begin(), places.end(), key,
+                       [](const auto& one, uint64_t wanted) { return one.first < wanted; });
+  return found == places.end() || found->first != key ? nullptr : found->second;
 }
 
 const FieldText* Document::textOf(const Node& node, const FieldInfo& field) const {
@@ -114,8 +120,10 @@ const FieldText* Document::textOf(const Node& node, const FieldInfo& field) cons
 // had that it gives.
 void Document::touch(Node& node, const FieldInfo& field) {
   auto& kept = originals_[&node];
-  if (!kept.contains(field.name) && !(holdsNodes(field) && textOf(node, field)))
-    kept.emplace(field.name, node.get(field));
+  if (!kept.contains(field.name)) {
+    const bool isInText = holdsNodes(field) && textOf(node, field);
+    kept.emplace(field.name, isInText ? std::nullopt : std::optional<Value>(node.get(field)));
+  }
   if (auto* instance = nodeCast<ProtoInstance>(&node)) instance->give(field);
 }
 
@@ -128,7 +136,16 @@ const Value* Document::originalOf(const Node& node, const FieldInfo& field) cons
   const auto known = originals_.find(&node);
   if (known == originals_.end()) return nullptr;
   const auto found = known->second.find(field.name);
-  return found == known->second.end() ? nullptr : &found->second;
+  return found == known->second.end() || !found->second ? nullptr : &*found->second;
+}
+
+// Returns the nodes that a text gives a field.
+Value Document::nodesInText(const Node& node, const FieldInfo& field) const {
+  MFNode nodes;
+  for (const NodePlace& one : textOf(node, field)->nodes)
+    if (one.taken) nodes.emplace_back(const_cast<Node*>(one.node));
+  if (field.type == FieldType::MFNode) return nodes;
+  return nodes.empty() ? NodeRef() : nodes.front();
 }
 
 MFNode& Document::listToChange(Node* parent, const FieldInfo* field) {

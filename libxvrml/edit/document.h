@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -21,7 +22,7 @@ struct DocumentText {
   std::string text;
   TextLayout layout;
   std::unique_ptr<World> world;
-  std::unordered_map<uint64_t, Node*> byPlace; // by line and column
+  std::vector<std::pair<uint64_t, Node*>> byPlace; // sorted by line and column
 };
 
 class Document {
@@ -70,11 +71,10 @@ class Document {
   // Returns the value that a field had before it was changed first; null: it has not been changed,
   // or it holds nodes that the text has.
   const Value* originalOf(const Node& node, const FieldInfo& field) const;
-  // Calls visit(node, field, value) for each field that has been changed, with the value that it
-  // had before it was changed first.
+  // Calls visit(node, originals) for each node of which fields have been changed; originals has
+  // the values before, by the names of the fields; none: nodes that the text has.
   template <class Visit> void forEachChanged(const Visit& visit) const {
-    for (const auto& [node, fields] : originals_)
-      for (const auto& [name, value] : fields) visit(*node, *node->type().find(name), value);
+    for (const auto& [node, originals] : originals_) visit(*node, originals);
   }
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
@@ -98,6 +98,7 @@ class Document {
 
   void index(DocumentText& text);
   void touch(Node& node, const FieldInfo& field);
+  Value nodesInText(const Node& node, const FieldInfo& field) const;
   MFNode& listToChange(Node* parent, const FieldInfo* field);
 
   const LoadOptions options_;
@@ -106,7 +107,9 @@ class Document {
   std::set<std::string, std::less<>> repeated_;
   NodeMap<Known> known_;                                 // the nodes of all texts
   std::unordered_map<const Node*, std::string> renamed_; // with the names in their texts
-  std::unordered_map<const Node*, std::map<std::string, Value, std::less<>>> originals_;
+  // Values before the first change; empty for nodes that the text gives.
+  std::unordered_map<const Node*, std::map<std::string, std::optional<Value>, std::less<>>>
+      originals_;
   Standing standing_;
 };
 

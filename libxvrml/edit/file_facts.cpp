@@ -19,17 +19,37 @@ std::string countText(size_t nodes) {
   return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s");
 }
 
-// Returns a value as text, or how many nodes it holds.
-std::string textOf(const FieldInfo& field, Value value) {
-  if (field.type == FieldType::SFNode) return std::get<SFNode>(value) ? "1 node" : "NULL";
-  if (field.type == FieldType::MFNode) return countText(std::get<MFNode>(value).size());
+// Returns a value as VRML97 writes it, if it is not too long.
+std::string textOf(FieldType type, Value value) {
   std::string text;
-  writeValue(text, field.type, std::visit([](auto& v) -> void* { return &v; }, value), 0);
+  writeValue(text, type, std::visit([](auto& v) -> void* { return &v; }, value), 0);
   std::replace(text.begin(), text.end(), '\n', ' ');
   if (text.size() <= longestValue) return text;
   size_t end = longestValue;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   return text.substr(0, end) + "...";
+}
+
+// The nodes that a field, or the roots, had in the text of the file, and those that it has now.
+struct NodesOfField {
+  std::vector<const Node*> before, now;
+
+  NodesOfField(const std::vector<NodePlace>& places, const MFNode& list) {
+    for (const NodePlace& place : places)
+      if (place.taken) before.push_back(place.node);
+    for (const NodeRef& node : list) now.push_back(node.get());
+  }
+  bool differ() const { return before != now; }
+  std::string textBefore() const { return countText(before.size()); }
+  std::string textNow() const {
+    return countText(now.size()) + (before.size() == now.size() ? ", not the same" : "");
+  }
+};
+
+MFNode nodesOf(const Node& node, const FieldInfo& field) {
+  if (field.type == FieldType::MFNode) return *static_cast<const MFNode*>(node.storage(field));
+  const NodeRef& child = *static_cast<const NodeRef*>(node.storage(field));
+  return child ? MFNode{child} : MFNode();
 }
 
 } // namespace
@@ -82,10 +102,24 @@ std::vector<ChangedField> EditedFile::changedFields() const {
                         ChangedField{node.source.line, node.type().name, node.defName,
                                      std::move(field), std::move(before), std::move(now)});
   };
-  document_->forEachChanged([&](const Node& node, const FieldInfo& field, const Value& before) {
+  document_->forEachChanged([&](const Node& node, const auto& originals) {
     if (!document_->stands(node) || !document_->hasText(node) || !document_->isOwn(node)) return;
-    if (const Value now = node.get(field); now != before)
-      add(node, field.name, textOf(field, before), textOf(field, now));
+    for (const auto& [name, before] : originals) {
+      const FieldInfo& field = *node.type().find(name);
+      if (!before) continue; // nodes that the text has: they follow
+      const Value now = node.get(field);
+      if (now == *before) continue;
+      if (holdsNodes(field)) // the text does not have the field
+        add(node, name, "", countText(nodesOf(node, field).size()));
+      else
+        add(node, name, textOf(field.type, *before), textOf(field.type, now));
+    }
+    for (const FieldText& text : document_->placeOf(node).fields) {
+      const FieldInfo* const field = node.type().find(text.name);
+      if (!field || !holdsNodes(*field) || document_->textOf(node, *field) != &text) continue;
+      const NodesOfField nodes(text.nodes, nodesOf(node, *field));
+      if (nodes.differ()) add(node, text.name, nodes.textBefore(), nodes.textNow());
+    }
   });
   for (const NodeText& text : document_->file().layout.nodes) {
     const Node& node = *text.node;
@@ -96,12 +130,8 @@ std::vector<ChangedField> EditedFile::changedFields() const {
   std::sort(fields.begin(), fields.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first < b.first : a.second.field < b.second.field;
   });
-  const MFNode& roots = document_->listOf(nullptr, nullptr);
-  const std::vector<NodePlace>& read = document_->file().layout.roots;
-  if (!std::equal(
-          roots.begin(), roots.end(), read.begin(), read.end(),
-          [](const NodeRef& node, const NodePlace& place) { return node.get() == place.node; }))
-    changed.push_back({0, "", "", "", countText(read.size()), countText(roots.size())});
+  const NodesOfField roots(document_->file().layout.roots, document_->listOf(nullptr, nullptr));
+  if (roots.differ()) changed.push_back({0, "", "", "", roots.textBefore(), roots.textNow()});
   for (auto& [place, field] : fields) changed.push_back(std::move(field));
   return changed;
 }

@@ -222,8 +222,8 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
       break;
     }
     case Kind::keep:
+      if (!waiting.empty()) insertBefore(list, item.span, std::exchange(waiting, {}));
       text_.copy(list.text, item.span.begin);
-      text_.out += std::exchange(waiting, {});
       item.copy();
       begun = true;
       break;
@@ -239,6 +239,18 @@ void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {
     }
   }
   if (!waiting.empty()) fill(list, waiting);
+}
+
+// Inserts nodes before one that stays, and before the comments of that one. nodes: each with the
+// beginning of the next line, or with a blank.
+void NodeWriter::insertBefore(const ListText& list, const TextSpan& node, std::string nodes) {
+  const CommentedNode next = commented(list.text.text, node);
+  text_.copy(list.text, next.begin);
+  if (next.begin < node.begin) { // lines of comments, which have their own indentation
+    nodes.resize(nodes.size() - list.inner.size());
+    text_.out += list.inner;
+  }
+  text_.out += nodes;
 }
 
 // Inserts a node behind the one that has been written: in the next line if nothing but a comment

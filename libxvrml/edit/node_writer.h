@@ -120,6 +120,7 @@ class NodeWriter {
 
  private:
   size_t beginOfRoots() const;
+  void insertBefore(const ListText& list, const TextSpan& node, std::string nodes);
   void insertBehind(const ListText& list, const ListItem& item);
   void fill(const ListText& list, std::string nodes);
 

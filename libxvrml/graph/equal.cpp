@@ -14,6 +14,23 @@
 namespace xvrml {
 namespace {
 
+// Returns whether two values that are not equal have the same numbers: files may hold not-a-number,
+// which differs from itself.
+template <class T> bool areSameNumbers(const T& a, const T& b) {
+  if constexpr (Numeric<T>) {
+    for (int i = 0; i < numberCount<T>; ++i) {
+      const auto x = numbersOf(a)[i], y = numbersOf(b)[i];
+      if (x != y && (x == x || y == y)) return false;
+    }
+    return true;
+  } else if constexpr (isNumberList<T>) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& x, const auto& y) { return areSameNumbers(x, y); });
+  } else {
+    return false;
+  }
+}
+
 class Comparison {
  public:
   std::string difference;
@@ -99,7 +116,9 @@ class Comparison {
 
   bool values(const NodeRef& a, const NodeRef& b) { return nodes(a, b); }
   bool values(const MFNode& a, const MFNode& b) { return nodeLists(a, b); }
-  template <class T> bool values(const T& a, const T& b) { return a == b || fail("values differ"); }
+  template <class T> bool values(const T& a, const T& b) {
+    return a == b || areSameNumbers(a, b) || fail("values differ");
+  }
 
   // The order of routes and connections has no meaning, so they are compared sorted by node number.
   size_t number(const NodeRef& a) const {

@@ -157,8 +157,7 @@ FieldTarget JsonRecorder::resumeField(const Name& name) {
     field.value = spanOf(at(element().list));
   } else {
     field.form = FieldForm::program;
-    std::erase_if(innermost().text.fields,
-                  [&](const FieldText& one) { return one.name == info.name; });
+    forgetFields([&](const FieldText& one) { return one.name == info.name; });
   }
   beginField(std::move(field));
   return target;

@@ -1,6 +1,6 @@
 #include "parse/layout_recorder.h"
 
-#include <algorithm>
+#include <iterator>
 
 namespace xvrml {
 
@@ -14,7 +14,7 @@ void LayoutRecorder::add(const NodePlace& place) {
 bool LayoutRecorder::openNode(const Name& type, const Name* def) {
   const bool made = builder_.openNode(type, def);
   if (made && isRecording())
-    nodes_.push_back({&builder_.innermostNode(), begunNode(type, def), false, {}});
+    nodes_.push_back({&builder_.innermostNode(), begunNode(type, def), fields_.size(), false, {}});
   return made;
 }
 
@@ -22,6 +22,10 @@ void LayoutRecorder::closeNode(bool good) {
   if (isRecording()) {
     OpenNode closed = std::move(nodes_.back());
     nodes_.pop_back();
+    const auto first = fields_.begin() + std::ptrdiff_t(closed.firstField);
+    closed.text.fields.assign(std::make_move_iterator(first),
+                              std::make_move_iterator(fields_.end()));
+    fields_.erase(first, fields_.end());
     closed.text.node = NodeRef(const_cast<Node*>(closed.node));
     endNode(closed.text);
     add({closed.text.whole, closed.node, false});
@@ -40,20 +44,20 @@ void LayoutRecorder::finishField(bool good) {
   OpenNode& open = nodes_.back();
   if (!std::exchange(open.inField, false)) return;
   endField(open.field, good);
-  std::vector<FieldText>& fields = open.text.fields;
   const auto goesOn = [&](const FieldText& one) {
     return one.form == open.field.form && one.name == open.field.name &&
            one.whole.begin == open.field.whole.begin;
   };
-  auto same = fields.end();
+  const auto begin = fields_.begin() + std::ptrdiff_t(open.firstField);
+  auto same = fields_.end();
   if (open.field.form == FieldForm::children)
-    same = std::find_if(fields.begin(), fields.end(), goesOn);
-  else if (!fields.empty() && goesOn(fields.back()))
+    same = std::find_if(begin, fields_.end(), goesOn);
+  else if (begin != fields_.end() && goesOn(fields_.back()))
     --same;
-  if (same != fields.end())
+  if (same != fields_.end())
     same->nodes.insert(same->nodes.end(), open.field.nodes.begin(), open.field.nodes.end());
   else
-    fields.push_back(std::move(open.field));
+    fields_.push_back(std::move(open.field));
 }
 
 void LayoutRecorder::closeField(bool good) {

@@ -3,6 +3,7 @@
 // [the thread that loads]
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,12 +70,18 @@ class LayoutRecorder : public ParseSink {
   struct OpenNode {
     const Node* node;
     NodeText text;
+    size_t firstField; // in fields_
     bool inField = false;
     FieldText field;
   };
   bool isRecording() const { return prototypes_ == 0; }
   OpenNode& innermost() { return nodes_.back(); }
   void beginField(FieldText field);
+  // Forgets fields of the innermost node.
+  template <class Predicate> void forgetFields(Predicate isForgotten) {
+    const auto begin = fields_.begin() + std::ptrdiff_t(innermost().firstField);
+    fields_.erase(std::remove_if(begin, fields_.end(), isForgotten), fields_.end());
+  }
   void add(const NodePlace& place);
   void addRoute(const Name& keyword, RouteText route);
 
@@ -99,7 +106,8 @@ class LayoutRecorder : public ParseSink {
   void endPrototype(bool good);
 
   std::vector<OpenNode> nodes_;
-  size_t prototypes_ = 0; // number of prototypes that are open
+  std::vector<FieldText> fields_; // those of all open nodes, the innermost last
+  size_t prototypes_ = 0;         // number of prototypes that are open
 };
 
 } // namespace xvrml

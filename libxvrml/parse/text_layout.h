@@ -3,7 +3,6 @@
 // changed. [the thread that loads]
 #pragma once
 
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -68,7 +67,7 @@ struct PrototypeText {
 };
 
 struct TextLayout {
-  std::deque<NodeText> nodes; // in the order of their ends
+  std::vector<NodeText> nodes; // in the order of their ends
   std::vector<NodePlace> roots;
   std::vector<RouteText> routes;
   std::vector<PrototypeText> prototypes;

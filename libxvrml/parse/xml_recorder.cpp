@@ -49,7 +49,7 @@ FieldTarget XmlRecorder::openField(const Name& name) {
         layout_.xml.attributeAt(element(), layout_.xml.offset(name.at));
     if (!attribute) return target; // the document type gives it
     // The last one of a name counts.
-    std::erase_if(innermost().text.fields, [&](const FieldText& one) {
+    forgetFields([&](const FieldText& one) {
       return one.form == FieldForm::attribute && one.name == known;
     });
     FieldText field;

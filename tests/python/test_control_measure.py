@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 from conftest import HEADER, find_vv
-from control_server import module
+from control_server import module, start  # noqa: F401
 
 # A lamp of 100 cd in all directions, 2 m above a black floor, and a headlight that must not count.
 WORLD = HEADER + """

@@ -352,7 +352,7 @@ def edit_one(path, seed):
         if len(gone) > 60 or len(come) > 120:
             return "%d bytes became %d" % (len(gone), len(come))
         marks = {".x3d": "<>", ".x3dz": "<>", ".x3dj": "{}"}.get(path.suffix.lower(), "")
-        if set(gone + come) & set(marks):
+        if set(gone + come) & set(marks) and '{"@name"' not in come:  # a new fieldValue is an object
             return "%r became %r" % (gone, come)
         world.edit.undo()
         return "" if world.edit.text() == before else "undo gives another text"

@@ -52,6 +52,19 @@ def test_pictures_are_those_of_opengl(name, tmp_path):
     assert numpy.abs(ours[0] - ours[1]).mean() > 0.001, "nothing moves"
 
 
+def test_each_feature_is_drawn_as_opengl_draws_it(tmp_path):
+    source = (ROOT / "tests/gl/features.c").read_text()
+    names = re.search(r"features\[\]\)\(void\) = \{(.*?)\}", source, re.S)[1].split(",")
+    with display("640x480"):
+        theirs = pictures("gl_features_opengl", tmp_path, len(names))
+    ours = pictures("gl_features", tmp_path, len(names))
+    differences = {
+        name.strip(): float(numpy.abs(a - b).mean())
+        for name, a, b in zip(names, ours, theirs)
+    }
+    assert max(differences.values()) < 0.02, differences
+
+
 @pytest.mark.parametrize("light", ("shadows", "linear"))
 def test_light_can_be_traced(light, tmp_path):
     plain = pictures("gl_columns", tmp_path, 1)[0]

@@ -23,7 +23,7 @@ DEF RIGHT Transform {
 """
 
 # In pixels: the buttons below the tools, and the first row of the list.
-PROBLEMS, REPORT, FIRST_ROW = (50, 62), (128, 62), (250, 68)
+PROBLEMS, REPORT, FIRST_ROW = (50, 93), (33, 118), (250, 70)
 
 
 @pytest.fixture(autouse=True)

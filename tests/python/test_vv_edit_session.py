@@ -3,29 +3,36 @@ measured, a lamp is moved, the change is significant, undone, done again and sav
 import csv
 import difflib
 import re
+import time
 
 import pytest
 
 from conftest import HEADER
 from window_driver import screen, window  # noqa: F401
 
-# A lamp of 100 cd in all directions, 5 m before a wall, with a mark beside it.
+# A lamp of 100 cd in all directions, 5 m before a black wall, with a mark beside it, and a floor that
+# adds a little.
 WORLD = HEADER + """
 NavigationInfo { headlight FALSE }
 Viewpoint { position 0 0 10 fieldOfView 0.785398 }
 DEF LAMP Transform { translation 0 0 0 # moved by hand
   children [
     ORTLight { shader ORTShader { name "Luminaire" file "luminaire" options "1f lumen 1256.6371" } }
-    Transform { translation .8 .4 0 children Shape {
+    Shape {
       appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
         options "color reflectance 0 0 0" } }
-      geometry Box { size .5 .5 .5 } } } ] }
+      geometry IndexedFaceSet { solid FALSE coordIndex [ 0 1 2 3 ]
+        coord Coordinate { point [ .6 .2 0, 1 .2 0, 1 .6 0, .6 .6 0 ] } } } ] }
 DEF WALL Transform { translation 0 0 -6 children Shape { # black
   appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
     options "color reflectance 0 0 0" } }
   geometry Box { size 30 30 2 } } }
+Transform { translation 0 -4 0 children Shape {
+  appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+    options "color reflectance .5 .5 .5" } }
+  geometry Box { size 30 1 30 } } }
 """
-REPORT = (128, 62)  # the button, in pixels
+REPORT = (32, 118)  # the button, in pixels
 
 
 @pytest.fixture(autouse=True)
@@ -52,35 +59,38 @@ class Reports:
     def until(self, test):
         def tried():
             row = self.probe()
-            return row if row and test(row) else None
+            if row and test(row):
+                return row
+            time.sleep(.5)  # between two reports the probe is measured
+            return None
 
         return self.window.wait(tried, "the probe")
 
 
 def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv):
-    w = window(WORLD, "--size", "600x400", "--spp", "64")
+    w = window(WORLD, "--size", "600x400", "--spp", "32")
     w.key("e")
     reports = Reports(w, vv.folder)
+    w.move(.1, 0)  # the pointer may have been at the middle
     w.move(0, 0)
     w.key("u")
     row = reports.until(lambda r: r["now"])
     assert row["field"] == "illuminance"
     assert (float(row["x"]), float(row["y"]), float(row["z"])) == pytest.approx((0, 0, -5), abs=.02)
-    assert float(row["now"]) == pytest.approx(4, rel=.01)
+    assert 4 < float(row["now"]) < 4.8 and row["remark"] == "trusted"
     w.key("b")
     # The group of the mark is the lamp.
     w.move(.129, .097)
     w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
     w.key("g", "z", "minus", "1", "Return")
     row = reports.until(lambda r: r["difference"])
-    assert float(row["before"]) == pytest.approx(4, rel=.01)
-    assert float(row["now"]) == pytest.approx(6.25, rel=.01)
-    assert float(row["difference"]) == pytest.approx(2.25, rel=.03)
+    assert 4 < float(row["before"]) < 4.8 and 6.25 < float(row["now"]) < 7.1
+    assert 2.25 < float(row["difference"]) < 2.7
     assert row["remark"] == "significant, trusted"
     w.key("ctrl+z")
     row = reports.until(lambda r: r["now"] and float(r["now"]) < 5)
     assert float(row["now"]) == float(row["before"]), "the same samples give the same light"
-    assert row["remark"] == "unchanged, trusted" or float(row["difference"]) == 0
+    assert row["remark"] == "not yet certain, trusted"
     w.key("ctrl+y")
     w.key("ctrl+s")
     file = vv.folder / "world.wrl"

@@ -31,8 +31,7 @@ class Panels:
 
     def __init__(self, window, vv):
         self.state = vv.folder / "state"
-        self.window = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}",
-                             env={"XDG_STATE_HOME": str(self.state)})
+        self.window = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}")
         self.vv = vv
         self.window.key("e")
 
@@ -79,9 +78,8 @@ def test_a_look_is_chosen_for_a_shape(panels):
 
 def test_hiding_is_seen_and_not_saved(panels):
     w = panels.window
-    w.click(0, 0)
-    panels.click(20, 111, button=3)
-    panels.click(40, 121)
+    panels.click(80, 222, button=3)  # the menu of the box in the outline
+    panels.click(100, 237)
     w.key("ctrl+s")
     w.key("e")
     w.until(lambda s: s.share(red) == 0)

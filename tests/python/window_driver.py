@@ -101,6 +101,7 @@ class Window:
             **os.environ, "DISPLAY": display,
             "SDL_AUDIODRIVER": "dummy",
             "SDL_RENDER_DRIVER": "software",
+            "XDG_STATE_HOME": str(folder / "state"),  # panels have their usual widths
             **(env or {})
         }
         self.env.pop("WAYLAND_DISPLAY", None)

@@ -255,7 +255,8 @@ TEST_F(EditorJournal, AFileBehindALinkHasItsJournalBesideItself) {
   fs::create_symlink(world, folder + "/links/other.wrl");
   Program program(folder + "/links/other.wrl");
   program.dimTo(0.5f);
-  EXPECT_EQ(fs::canonical(program.journal().keep()), fs::canonical(journal));
+  const std::string kept = program.journal().keep();
+  EXPECT_EQ(fs::canonical(kept), fs::canonical(journal));
 }
 
 TEST_F(EditorJournal, WhatIsNoJournalIsRefusedWithOneMessage) {

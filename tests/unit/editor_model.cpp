@@ -251,9 +251,7 @@ TEST_F(Model, AViewpointLooksAsTheViewerDoes) {
 }
 
 TEST(EditorModel, ReadOnlyFilesSayWhy) {
-  EditedWorld world("{ \"X3D\": { \"@profile\": \"Interchange\", \"Scene\": { \"-children\": [ "
-                    "{ \"Group\": {} } ] } } }",
-                    "x3dj");
+  EditedWorld world("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "obj");
   EditModel model;
   model.update(world.editor, front(), false, 0);
   EXPECT_NE(model.readOnly(), "");

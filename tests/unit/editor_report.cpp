@@ -27,7 +27,7 @@ Report example() {
   probe.before.luminanceHalfWidth = 2;
   probe.hasBefore = true;
   report.probes.push_back(probe);
-  report.changes.push_back(Difference{-20, 2.5, true});
+  report.changes.push_back(Difference{-20, 2.5, 0, true});
   report.fields.push_back({3, "PointLight", "LAMP", "intensity", "0.8", "0.5"});
   return report;
 }
@@ -79,7 +79,7 @@ TEST(Reports, ThePageSaysWhatTheCommandDoesNotShow) {
   report.problems = 2;
   const std::string page = reportPage(report);
   EXPECT_TRUE(has(page, "The edits have not been saved."));
-  EXPECT_TRUE(has(page, "To make it again, save the edits first:"));
+  EXPECT_TRUE(has(page, "To make this picture again, save the edits first:"));
   EXPECT_TRUE(has(page, "2 problems are known"));
 }
 
@@ -107,8 +107,8 @@ TEST(Reports, TheTableHasALineForEachThing) {
             (std::vector<std::string>{"picture", "The view", "", "320", "200", "", "", "", "", "",
                                       "", "", "vv table.wrl --camera 1,2,3:0,0,0"}));
   EXPECT_EQ(lines[2],
-            (std::vector<std::string>{"probe", "1", "luminance", "1", "2.5", "-3", "100", "2", "80",
-                                      "1.5", "-20", "2.5", "significant, trusted"}));
+            (std::vector<std::string>{"probe", "1", "luminance in cd/m2", "1", "2.5", "-3", "100",
+                                      "2", "80", "1.5", "-20", "2.5", "significant, trusted"}));
   EXPECT_EQ(lines[3], (std::vector<std::string>{"field", "LAMP  PointLight", "intensity", "", "",
                                                 "", "0.8", "", "0.5", "", "", "", "line 3"}));
 }
@@ -127,6 +127,33 @@ TEST(Reports, NothingOfAWorldIsAFormulaOrABreakOfTheTable) {
   EXPECT_EQ(lines[4][2], "'+f(x)");
   EXPECT_EQ(lines[4][8], "'-x");
   for (const auto& line : lines) EXPECT_EQ(line.size(), 13u);
+}
+
+TEST(Reports, AreasAndSensorsSayWhatTheyRead) {
+  Report report = example();
+  Probe& area = report.probes.front();
+  area.area.emplace();
+  area.area->reading.pixels = {5, 6, 40, 30};
+  report.probes.push_back(report.probes.front());
+  report.probes.back().area.reset();
+  report.probes.back().sensor.emplace();
+  report.changes.emplace_back();
+  const std::string page = reportPage(report);
+  EXPECT_TRUE(has(page, "<td>mean of 40 x 30 pixels at 5, 6<td"));
+  EXPECT_TRUE(has(page, "<td>illuminance, lx<td"));
+  const auto lines = linesOf(reportTable(report));
+  EXPECT_EQ(lines[2][3], "");
+  EXPECT_EQ(lines[2].back(), "significant, trusted, mean of 40 x 30 pixels at 5, 6");
+  EXPECT_EQ(lines[3][2], "illuminance in lx");
+  for (const auto& line : lines) EXPECT_EQ(line.size(), 13u);
+}
+
+TEST(Reports, APictureWithoutACommandHasNone) {
+  Report report = example();
+  report.pictures.insert(report.pictures.begin(), {"Before (A)", "png", 8, 6, ""});
+  const std::string page = reportPage(report);
+  EXPECT_LT(page.find("Before (A), 8 x 6"), page.find("The view, 320 x 200"));
+  EXPECT_EQ(page.find("To make this"), page.rfind("To make this"));
 }
 
 TEST(Reports, ProbesThatWereNotReadAreCalledSo) {

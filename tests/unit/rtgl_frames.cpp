@@ -235,6 +235,20 @@ TEST_F(Gl, CullingLeavesOutOneSide) {
   }
 }
 
+TEST_F(Gl, CullingLooksAtCornersInThePicture) {
+  glEnable(GL_CULL_FACE);
+  glScalef(-1, 1, 1);
+  for (const GLenum front : {GL_CCW, GL_CW}) {
+    glFrontFace(front);
+    clear();
+    glColor3f(1, 1, 1);
+    square(0.5f);
+    ASSERT_TRUE(rtglEndFrame());
+    expectNear(pixel(16, 16),
+               front == GL_CW ? std::vector<int>{255, 255, 255} : std::vector<int>{0, 0, 0});
+  }
+}
+
 TEST_F(Gl, NormalsChooseTheLitSideAlsoUnderMirrors) {
   const float light[4] = {0, 0, 1, 0};
   glEnable(GL_LIGHTING);

@@ -71,6 +71,9 @@ class Comparison {
   // changes: Editor::changes().
   void ask(uint64_t changes, const EditView& view);
   bool hasA() const { return a_.width > 0; }
+  bool isComplete() const { return isComplete_; } // A has all its samples
+  // Returns A; null: there is none.
+  const picture::Picture* a() const { return hasA() ? &a_ : nullptr; }
   // Returns why a picture of this view and size cannot be compared with A; "": it can be.
   std::string whyNot(const EditView& view, int width, int height) const;
   // Shows something, or if it is shown, the present picture again. Throws xvrml::EditError without
@@ -111,9 +114,9 @@ class Comparison {
   };
   std::optional<Asked> asked_;
   picture::Picture a_;
-  EditView view_;           // the view of A
-  uint64_t frame_ = 0;      // the number of A's frame
-  bool isComplete_ = false; // A has all its samples
+  EditView view_;      // the view of A
+  uint64_t frame_ = 0; // the number of A's frame
+  bool isComplete_ = false;
   Shown shown_ = Shown::present;
   double wiper_ = 0;
   Look look_;

@@ -14,11 +14,10 @@ using Imath::V3d;
 
 namespace {
 
-// In halves of the picture's height: how far the pointer may be from a handle, and the length of an
-// arrow below which it is left out.
-constexpr double reach = 0.03, shortest = 0.06;
-// The part of an arrow at the pivot that is left free, for clicks on what is there.
-constexpr double gap = 0.15;
+// In halves of the picture's height: how far the pointer may be from a handle, what is left free
+// around the pivot, for clicks on what is there, and the length of an arrow below which it is left
+// out.
+constexpr double reach = 0.03, gap = 0.045, shortest = 0.09;
 constexpr int ringLines = 48;
 
 // Returns whether a node has a place that can be changed: by itself, or by a Transform around it.
@@ -37,12 +36,14 @@ std::optional<std::array<double, 2>> project(const EditView& view, const V3d& po
 
 std::optional<Gizmo::Handle> arrow(const EditView& view, const V3d& pivot, const V3d& way,
                                    int axis) {
-  const auto start = project(view, pivot), from = project(view, pivot + way * gap),
-             to = project(view, pivot + way);
-  if (!start || !from || !to) return {};
-  if (std::hypot(((*to)[0] - (*start)[0]) * view.aspect, (*to)[1] - (*start)[1]) < shortest)
-    return {};
-  return Gizmo::Handle{axis, {{(*from)[0], (*from)[1], (*to)[0], (*to)[1]}}, *to};
+  const auto start = project(view, pivot), to = project(view, pivot + way);
+  if (!start || !to) return {};
+  const double length = std::hypot(((*to)[0] - (*start)[0]) * view.aspect, (*to)[1] - (*start)[1]);
+  if (length < shortest) return {};
+  const auto between = [&](size_t k) {
+    return (*start)[k] + ((*to)[k] - (*start)[k]) * gap / length;
+  };
+  return Gizmo::Handle{axis, {{between(0), between(1), (*to)[0], (*to)[1]}}, *to};
 }
 
 std::optional<Gizmo::Handle> ring(const EditView& view, const V3d& pivot, double radius, int axis) {

@@ -103,6 +103,11 @@ void Probes::add(const Region& region, const EditView& view) {
   probes_.back().area = {region, view, {}};
 }
 
+bool Probes::readPictures() const {
+  return std::any_of(probes_.begin(), probes_.end(),
+                     [](const Probe& one) { return !one.sensor.has_value(); });
+}
+
 bool Probes::isWaiting() const {
   return std::any_of(probes_.begin(), probes_.end(), [](const Probe& one) {
     return !one.sensor && one.state == Probe::State::waiting;

@@ -45,7 +45,8 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
 class Probes {
  public:
   const std::vector<Probe>& all() const { return probes_; }
-  // Tells whether a probe has not been read from a picture yet.
+  // Tell whether there are probes that are read from pictures, and whether one waits for it.
+  bool readPictures() const;
   bool isWaiting() const;
   void add(const std::array<double, 3>& point);
   // Adds a sensor with one point.

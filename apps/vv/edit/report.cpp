@@ -29,7 +29,7 @@ table { border-collapse: collapse; width: 100% }
 th, td { text-align: left; vertical-align: top; padding: .15em .6em .15em 0; border-bottom: 1px solid #ccc }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums }
 code { font: 8.5pt/1.3 monospace; white-space: pre-wrap; overflow-wrap: anywhere }
-figure { margin: 0 0 .6em } .weak { color: #555 }
+figure { margin: 0 0 .6em } .row figure { display: inline-block; width: 48%; margin-right: 1% } .weak { color: #555 }
 </style>
 )";
 
@@ -85,6 +85,15 @@ const char* stateOf(const Probe& probe) {
   }
 }
 
+// Returns where a probe reads: the mean of a rectangle of the picture, or a point of the world.
+std::string placeOf(const Probe& probe) {
+  if (!probe.area)
+    return fmt::format("{:.4g} {:.4g} {:.4g}", probe.point[0], probe.point[1], probe.point[2]);
+  const PixelRectangle& pixels = probe.area->reading.pixels;
+  return fmt::format("mean of {} x {} pixels at {}, {}", pixels.width, pixels.height, pixels.left,
+                     pixels.top);
+}
+
 // Returns what a field belongs to: "LAMP  PointLight", or "PointLight" without a name.
 std::string ownerOf(const xvrml::ChangedField& field) {
   if (field.type.empty()) return "the file";
@@ -97,14 +106,18 @@ const std::optional<Difference>& changeOf(const Report& report, size_t probe) {
 }
 
 void addPictures(const Report& report, std::string& out) {
+  out += report.pictures.size() > 1 ? "<div class=row>\n" : "<div>\n";
   for (const ReportPicture& one : report.pictures) {
     out += fmt::format("<figure><img alt=\"{}\" src=\"data:image/png;base64,", escaped(one.title));
     appendBase64(one.png, out);
-    out += fmt::format("\">\n<figcaption>{}, {} x {} pixels. To make it again{}:<br><code>{}</code>"
-                       "</figcaption></figure>\n",
-                       escaped(one.title), one.width, one.height,
-                       report.isUnsaved ? ", save the edits first" : "", escaped(one.command));
+    out += fmt::format("\">\n<figcaption>{}, {} x {} pixels</figcaption></figure>\n",
+                       escaped(one.title), one.width, one.height);
   }
+  out += "</div>\n";
+  for (const ReportPicture& one : report.pictures)
+    if (!one.command.empty())
+      out += fmt::format("<p>To make this picture again{}:<br><code>{}</code></p>\n",
+                         report.isUnsaved ? ", save the edits first" : "", escaped(one.command));
 }
 
 void addProbes(const Report& report, std::string& out) {
@@ -121,12 +134,9 @@ void addProbes(const Report& report, std::string& out) {
         isRead ? interval(probe.now.luminance, probe.now.luminanceHalfWidth) : "";
     const std::string verdict =
         change ? fmt::format("{}, {}", verdictOf(*change), stateOf(probe)) : stateOf(probe);
-    const std::string place = probe.area ? "a rectangle"
-                                         : fmt::format("{:.4g} {:.4g} {:.4g}", probe.point[0],
-                                                       probe.point[1], probe.point[2]);
     out += fmt::format("<tr><td>{}<td>{}<td>{}, {}<td class=n>{}<td class=n>{}<td "
                        "class=n>{}<td>{}</tr>\n",
-                       probe.number, place, quantityOf(probe), unitOf(probe), before, now,
+                       probe.number, placeOf(probe), quantityOf(probe), unitOf(probe), before, now,
                        change ? interval(change->value, change->halfWidth, true) : "", verdict);
   }
   out += "</table>\n<p class=weak>± is half of the 95 % interval. A change is significant at 5 % "
@@ -182,7 +192,7 @@ std::string reportTable(const Report& report) {
   for (size_t i = 0; i < report.probes.size(); ++i) {
     const Probe& probe = report.probes[i];
     const std::optional<Difference>& change = changeOf(report, i);
-    out += fmt::format("probe,{},{},", probe.number, quantityOf(probe));
+    out += fmt::format("probe,{},{} in {},", probe.number, quantityOf(probe), unitOf(probe));
     out += probe.area ? std::string(",,,")
                       : fmt::format("{:.9g},{:.9g},{:.9g},", probe.point[0], probe.point[1],
                                     probe.point[2]);
@@ -192,9 +202,11 @@ std::string reportTable(const Report& report) {
     out += probe.state == Probe::State::read
                ? fmt::format("{:.9g},{:.9g},", probe.now.luminance, probe.now.luminanceHalfWidth)
                : ",,";
-    out += change ? fmt::format("{:.9g},{:.9g},{}\n", change->value, change->halfWidth,
-                                quoted(fmt::format("{}, {}", verdictOf(*change), stateOf(probe))))
-                  : fmt::format(",,{}\n", quoted(stateOf(probe)));
+    out += change ? fmt::format("{:.9g},{:.9g},", change->value, change->halfWidth) : ",,";
+    std::string remark = change ? fmt::format("{}, ", verdictOf(*change)) : "";
+    remark += stateOf(probe);
+    if (probe.area) remark += ", " + placeOf(probe);
+    out += quoted(remark) + "\n";
   }
   for (const xvrml::ChangedField& field : report.fields)
     out += fmt::format("field,{},{},,,,{},,{},,,,{}\n", quoted(ownerOf(field)), quoted(field.field),

@@ -17,7 +17,7 @@ struct ReportPicture {
   std::string title;
   std::string png; // the bytes of the file
   int width = 0, height = 0;
-  std::string command; // makes the picture again
+  std::string command; // makes the picture again; empty: there is none
 };
 
 struct Report {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cstdlib>
 #include <iterator>
 #include <string_view>
+
+#include <fmt/format.h>
 
 namespace vv {
 
@@ -31,6 +34,9 @@ std::optional<Value> valueOf(const ShaderParameter& parameter) {
   }
 }
 
+// Returns the number that a plug-in's text has, as a float is printed: 0.1, not 0.10000000149.
+double printed(float number) { return std::strtod(fmt::format("{}", number).c_str(), nullptr); }
+
 } // namespace
 
 const ShaderClass* classOf(WorldEditor& editor, const nodes::ORTShader& shader) {
@@ -52,11 +58,11 @@ std::optional<FieldInfo> fieldFor(const ShaderParameter& parameter) {
   field.defaultValue = std::move(*value);
   field.text = parameter.text;
   if (parameter.minimum > -FLT_MAX) {
-    field.range.minimum = double(parameter.minimum);
+    field.range.minimum = printed(parameter.minimum);
     field.range.minimumOpen = false;
   }
   if (parameter.maximum < FLT_MAX) {
-    field.range.maximum = double(parameter.maximum);
+    field.range.maximum = printed(parameter.maximum);
     field.range.maximumOpen = false;
   }
   field.declared = true;

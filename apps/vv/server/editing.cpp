@@ -269,6 +269,7 @@ void Editing::perform(uint64_t, Face&, const edit::Recover& recover) {
 void Editing::readProbes(Session& session, double now) {
   constexpr double pause = 0.25;
   if (probes_.all().empty()) return;
+  if (session.captures().isPending()) return; // other channels would cancel its frame
   const bool outdated = session.viewers().own().isOutdated();
   if (outdated) probes_.expire();
   if (outdated || now < probesRead_ + pause) return;

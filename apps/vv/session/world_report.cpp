@@ -41,21 +41,38 @@ std::string freeReportName(const std::string& world) {
   return stem;
 }
 
-// Writes both files. Returns what the user is told.
-std::string write(const Report& report, const std::string& name) {
+// A picture of the report that is still to be encoded.
+struct Shot {
+  ReportPicture text;
+  picture::Picture picture;
+};
+
+// Returns a picture as it is shown.
+Shot shotOf(std::string title, const picture::Picture& picture,
+            const std::optional<double>& falseColour, std::string command = "") {
+  Shot shot{{std::move(title), "", 0, 0, std::move(command)},
+            falseColour
+                ? picture::falseColours(picture, *falseColour > 0 ? falseColour : std::nullopt)
+                : picture::withChannels(picture, RT_RGBA)};
+  shot.text.width = shot.picture.width;
+  shot.text.height = shot.picture.height;
+  return shot;
+}
+
+// Encodes the pictures and writes both files. Returns what the user is told. [a thread of its own]
+std::string write(Report report, const std::vector<Shot>& shots, const std::string& world) {
   try {
+    for (const Shot& shot : shots) {
+      report.pictures.push_back(shot.text);
+      report.pictures.back().png = picture::encodePng(shot.picture);
+    }
+    const std::string name = freeReportName(world);
     picture::writeRegularFile(name + ".html", reportPage(report));
     picture::writeRegularFile(name + ".csv", reportTable(report));
     return fmt::format("report saved as {0}.html and {0}.csv", name);
   } catch (const std::bad_alloc&) {
     return "no report: not enough memory";
   } catch (const std::exception& error) { return fmt::format("no report: {}", error.what()); }
-}
-
-// Returns the picture as it is shown.
-picture::Picture shown(const picture::Picture& picture, const std::optional<double>& falseColour) {
-  if (!falseColour) return picture::withChannels(picture, RT_RGBA);
-  return picture::falseColours(picture, *falseColour > 0 ? falseColour : std::nullopt);
 }
 
 } // namespace
@@ -69,7 +86,7 @@ struct WorldReport::Work {
 WorldReport::WorldReport() : work_(std::make_shared<Work>()) {}
 WorldReport::~WorldReport() = default;
 
-void WorldReport::begin(Session& session, const Probes& probes,
+void WorldReport::begin(Session& session, const Probes& probes, const picture::Picture* before,
                         const std::vector<std::string>& arguments) {
   if (work_->waits) return session.captures().giveUp(asker);
   if (work_->files.valid()) return;
@@ -83,31 +100,21 @@ void WorldReport::begin(Session& session, const Probes& probes,
   report.probes = probes.all();
   report.changes = probes.differences();
   report.fields = editor.editor().changedFields();
-  report.pictures.push_back({"The view", "", 0, 0, session.command(arguments)});
+  const std::optional<double> falseColour = session.pilot().falseColour();
+  std::vector<Shot> shots;
+  if (before) shots.push_back(shotOf("Before (A)", *before, falseColour));
   work_->waits = true;
   work_->message = "the report waits for its picture; Report again gives it up";
   session.capture(0, asker,
-                  [work = work_, report, falseColour = session.pilot().falseColour(),
+                  [work = work_, report, shots, falseColour, command = session.command(arguments),
                    path = world.path](const picture::Picture* made) mutable {
                     work->waits = false;
-                    if (!made) {
-                      work->message = "no report: its picture was given up";
-                      return;
-                    }
-                    work->message.clear();
-                    work->files =
-                        std::async(std::launch::async,
-                                   [report = std::move(report), path,
-                                    picture = shown(*made, falseColour)]() mutable -> std::string {
-                                     report.pictures.front().width = picture.width;
-                                     report.pictures.front().height = picture.height;
-                                     try {
-                                       report.pictures.front().png = picture::encodePng(picture);
-                                     } catch (const std::exception& error) {
-                                       return fmt::format("no report: {}", error.what());
-                                     }
-                                     return write(report, freeReportName(path));
-                                   });
+                    work->message = made ? "" : "no report: its picture was given up";
+                    if (!made) return;
+                    shots.push_back(shotOf(shots.empty() ? "The view" : "Now (B)", *made,
+                                           falseColour, command));
+                    work->files = std::async(std::launch::async, write, std::move(report),
+                                             std::move(shots), path);
                   });
 }
 

@@ -16,9 +16,10 @@ class WorldReport {
  public:
   WorldReport();
   ~WorldReport(); // Waits for the files.
-  // Begins a report, or gives up the one that still waits for its picture. arguments: of the
-  // command line. [while the world can be used]
-  void begin(Session& session, const Probes& probes, const std::vector<std::string>& arguments);
+  // Begins a report, or gives up the one that still waits for its picture. before: a picture that
+  // is shown beside it; null: none. arguments: of the command line. [while the world can be used]
+  void begin(Session& session, const Probes& probes, const picture::Picture* before,
+             const std::vector<std::string>& arguments);
   // Forgets the session, because it ends.
   void reset();
   // Returns, once, what has become of the report, which is also printed; "" if there is nothing to

@@ -63,14 +63,17 @@ void drawLegend(const Comparison& comparison, double x, double y) {
       ImGui::TextUnformatted("waits for a still picture");
     } else {
       entry(IM_COL32(255, 150, 20, 255),
-            fmt::format("+ brighter, up to {:+.3g} cd/m2", changes->most));
+            changes->most > 0 ? fmt::format("+ brighter, up to {:+.3g} cd/m2", changes->most)
+                              : "+ brighter: none");
       entry(IM_COL32(70, 140, 255, 255),
-            fmt::format("- darker, down to {:+.3g} cd/m2", changes->least));
+            changes->least < 0 ? fmt::format("- darker, down to {:+.3g} cd/m2", changes->least)
+                               : "- darker: none");
       entry(IM_COL32(110, 110, 110, 255), "no significant change (5 %, all pixels together)");
-      ImGui::TextUnformatted(fmt::format("{} of {} pixels with trusted error bars, of {}",
-                                         changes->significant, changes->judged,
-                                         changes->changes.size())
+      const size_t pixels = changes->changes.size();
+      ImGui::TextUnformatted(fmt::format("{} of {} pixels have changed; {} are not trusted",
+                                         changes->significant, pixels, pixels - changes->judged)
                                  .c_str());
+      if (!comparison.isComplete()) ImGui::TextUnformatted("A was kept without all its samples");
       ImGui::TextUnformatted(("here: " + changeAt(*changes, x, y)).c_str());
     }
   }

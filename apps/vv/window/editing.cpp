@@ -94,10 +94,11 @@ std::string Editing::takeMessage() {
 
 bool Editing::take(InputEvent& event) {
   using Kind = InputEvent::Kind;
-  if (!isOpen_) return false;
+  // Where the pointer is counts when the editor is opened.
   if (event.kind == Kind::move) pointer_ = event;
   if (event.kind == Kind::move || event.kind == Kind::leave)
     isOverPicture_ = event.kind == Kind::move;
+  if (!isOpen_) return false;
   if (hasTool_ && takeForTool(event)) return true;
   switch (event.kind) {
   case Kind::press:
@@ -356,7 +357,7 @@ void Editing::update(Session& session, double seconds) {
   readSensors(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
-  if (panels_->takeReportWish()) report_.begin(session, probes_, arguments_);
+  if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
 }
 
 void Editing::showCover() {
@@ -386,11 +387,13 @@ void Editing::compare(Session& session) {
 // Reads the probes and what is compared from the still picture of the world as it is, a few times a
 // second.
 void Editing::readStill(Session& session, double seconds) {
-  constexpr double interval = 0.25;
+  // Comparing all pixels takes up to a quarter of a second for a window of 600,000.
+  const double interval = comparison_.shown() == Comparison::Shown::difference ? 1 : 0.25;
   const bool isCompared =
       comparison_.wantsPicture() || comparison_.shown() == Comparison::Shown::difference;
-  if (probes_.all().empty() && !isCompared && !comparison_.isRefined(session.pictures().number()))
+  if (!probes_.readPictures() && !isCompared && !comparison_.isRefined(session.pictures().number()))
     return;
+  if (session.captures().isPending()) return; // other channels would cancel its frame
   const bool outdated = session.viewers().own().isOutdated();
   if (outdated) probes_.expire();
   if (outdated || seconds < stillRead_ + interval) return;
