@@ -686,7 +686,7 @@ const OptionInfo table[] = {
      },
      with(needs("vv serve", pageNeeds))},
     {"--edit", "", "Page",
-     "Let those edit the world who open the second address that vv serve prints (docs/editor.md).",
+     "Let those edit the world who open the second address that vv serve prints (docs/serve.md).",
      [](Options& o, const std::string&) { o.serve.edit = true; },
      with(needs("vv serve", pageNeeds))},
     {"--control", "ADDRESS", "Control",
