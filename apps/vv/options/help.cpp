@@ -103,7 +103,7 @@ std::string usage() {
          "address\n"
          "\n"
          "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), or a mesh\n(" +
-         meshNames() + "), packed with gzip or not; - is standard input.\n";
+         meshNames() + "),\npacked with gzip or not; - is standard input.\n";
 }
 
 std::string describeExitCodes() {
