@@ -9,17 +9,23 @@ namespace xvrml {
 size_t ClassicRecorder::keywordBefore(const Name& name, std::string_view keyword) const {
   const std::string_view text = locator_.text();
   const size_t own = offset(name.at);
+  const auto endsLine = [](char c) { return c == '\n' || c == '\r'; };
   size_t at = own;
   for (;;) {
-    const size_t line = at == 0 ? 0 : text.find_last_of("\r\n", at - 1) + 1; // npos + 1 is 0
-    while (at > line && isVrmlSpace(text[at - 1])) --at;
-    if (const size_t comment = text.substr(line, at - line).rfind('#'); comment != text.npos) {
-      size_t before = line + comment;
-      while (before > line && isVrmlSpace(text[before - 1])) --before;
-      if (before == line || text.substr(line, before - line).ends_with(keyword)) at = before;
+    while (at > 0 && isVrmlSpace(text[at - 1]) && !endsLine(text[at - 1])) --at;
+    if (at > 0 && !endsLine(text[at - 1])) {
+      // The name's own line has no comment before it, and may be as long as the file.
+      if (text.substr(at, own - at).find_first_of("\r\n") == text.npos) break;
+      const size_t line = text.find_last_of("\r\n", at - 1) + 1; // npos + 1 is 0
+      if (const size_t comment = text.substr(line, at - line).rfind('#'); comment != text.npos) {
+        size_t before = line + comment;
+        while (before > line && isVrmlSpace(text[before - 1])) --before;
+        if (before == line || text.substr(line, before - line).ends_with(keyword)) at = before;
+      }
+      if (at > line) break;
     }
-    if (at > line || line == 0) break;
-    at = line - 1; // nothing but a comment stands in this line
+    if (at == 0) break;
+    --at; // nothing but a comment stands in this line
   }
   return at >= keyword.size() && text.substr(at - keyword.size(), keyword.size()) == keyword
              ? at - keyword.size()

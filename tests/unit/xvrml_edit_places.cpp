@@ -196,7 +196,8 @@ TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
 TEST(EditorPlaces, LongLines) {
   const Folder folder;
   std::string text = "#VRML V2.0 utf8\nDEF G Group { children [ ";
-  for (int i = 0; i < 20'000; ++i) text += "Group { children [ Shape { } ] } ";
+  for (int i = 0; i < 20'000; ++i)
+    text += "Group { children [ DEF S" + std::to_string(i) + " Shape { } ] } ";
   text += "] }\n";
   const auto world = loadWorld(folder.write("w.wrl", text));
   Editor editor(*world);
@@ -209,8 +210,9 @@ TEST(EditorPlaces, LongLines) {
   }
   editor.remove({&group, "children", 0});
   editor.end();
-  EXPECT_EQ(editor.text().size(), text.size() + 999 * std::string("bboxSize 1 1 1 ").size() -
-                                      std::string("Group { children [ Shape { } ] } ").size());
+  EXPECT_EQ(editor.text().size(),
+            text.size() + 999 * std::string("bboxSize 1 1 1 ").size() -
+                std::string("Group { children [ DEF S0 Shape { } ] } ").size());
 }
 
 } // namespace
