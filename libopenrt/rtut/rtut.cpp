@@ -195,6 +195,7 @@ void rtutInit(int* argc, char** argv) {
   rtErrorCallback(printError, nullptr);
   rtLogCallback(printMessage, nullptr);
   rtglErrorCallback(printError, nullptr);
+  rtglSamples(1);
   if (const char* frames = std::getenv("OPENRT_UT_FRAMES"))
     rtutFrames(std::atoi(frames), std::getenv("OPENRT_UT_FILE"));
   p.start = std::chrono::steady_clock::now();
@@ -281,6 +282,7 @@ void rtutLeaveMainLoop(void) { program().leave = true; }
 void rtutFrames(int count, const char* pattern) {
   Program& p = program();
   p.frames = std::max(count, 0);
+  rtglSamples(4); // nothing refines these pictures
   p.frame = 0;
   if (pattern) p.pattern = pattern;
 }

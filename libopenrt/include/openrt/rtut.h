@@ -2,8 +2,9 @@
  * librtut, C99). It needs SDL 2.
  *
  * A program that includes GL/glut.h includes this header instead. Names with glut and GLUT_ mean
- * those with rtut and RTUT_. There is one window. A picture that nobody redraws becomes better
- * while the window waits. rtut prints errors on stderr, as GLUT does; exit codes are returned.
+ * those with rtut and RTUT_. There is one window. Its pictures begin with one sample per pixel
+ * (rtglSamples); one that nobody redraws becomes better while the window waits. rtut prints errors
+ * on stderr, as GLUT does; exit codes are returned.
  *
  * Without a window: OPENRT_UT_FRAMES=N in the environment, or rtutFrames, renders N frames into
  * files. The clock of the program then runs 40 ms from one frame to the next, so that the pictures
@@ -51,9 +52,9 @@ RT_API void rtutSwapBuffers(void);
  * 0, 1 if there is no window, 2 if a picture cannot be written. */
 RT_API int rtutMainLoop(void);
 RT_API void rtutLeaveMainLoop(void);
-/* Renders so many frames without a window. pattern: file names, with one %d for the number of the
- * frame from 0, for example "frame%04d.ppm" (default, also $OPENRT_UT_FILE). Call it before
- * rtutCreateWindow. */
+/* Renders so many frames without a window, with four samples per pixel. pattern: file names, with
+ * one %d for the number of the frame from 0, for example "frame%04d.ppm" (default, also
+ * $OPENRT_UT_FILE). Call it before rtutCreateWindow. */
 RT_API void rtutFrames(int count, const char* pattern);
 /* RTUT_ELAPSED_TIME: milliseconds; RTUT_WINDOW_WIDTH, RTUT_WINDOW_HEIGHT. */
 RT_API int rtutGet(GLenum what);
