@@ -74,7 +74,7 @@ TEST(EditorPageTexts, FieldsHaveTheirTypesAndRanges) {
 }
 
 TEST(EditorPageTexts, HostileFilesStayBounded) {
-  const std::string longName(10'000, 'n'), longText(100'000, 't');
+  const std::string longName(10'000, 'n'), longText(40'000, 't');
   Shown shown(
       fmt::format("DEF {} Group {{ }} DEF T Shape {{ geometry DEF X Text {{ string \"{}\" }} }}"
                   "DEF A<b>x</b>&amp; Group {{ }}",
@@ -104,8 +104,8 @@ TEST(EditorPageTexts, ManyFieldsAreCutOff) {
 
 TEST(EditorPageTexts, AStepOfAPageIsAllOrNothing) {
   Shown shown("DEF L PointLight { intensity .5 }");
-  const xvrml::NodeRef lamp = shown.world.node("L");
-  const vv::json::edits::FindNamed find = [&](const vv::json::NodeName&) { return lamp; };
+  const vv::json::edits::FindNamed find =
+      [lamp = shown.world.node("L")](const vv::json::NodeName&) { return lamp; };
   const auto perform = [&](const char* edits) {
     vv::json::Members members("edit", Json::parse(edits));
     const vv::json::edits::Step step = vv::json::edits::readStep(members, 10);
