@@ -59,6 +59,9 @@ struct Window::Parts {
 
 Window::Window(const std::string& title, int x, int y, int width, int height)
     : parts_(std::make_unique<Parts>()) {
+  // SDL would try all its drivers, of which some show nothing.
+  if (!SDL_getenv("DISPLAY") && !SDL_getenv("WAYLAND_DISPLAY") && !SDL_getenv("SDL_VIDEODRIVER"))
+    throw std::runtime_error("there is no display");
   if (SDL_Init(SDL_INIT_VIDEO) != 0) throw std::runtime_error(SDL_GetError());
   const auto place = [](int at) { return at < 0 ? int(SDL_WINDOWPOS_UNDEFINED) : at; };
   parts_->window =

@@ -1,11 +1,13 @@
 """Runs the code blocks of docs/python.md, ray-queries.md, photometry.md and editor.md in order.
 Blocks marked needs=PACKAGE run if it is installed; worlds marked file=NAME are written before."""
 import importlib.util
+import os
 import pathlib
 import re
 import shutil
 
 import pytest
+from conftest import find_vv
 
 pytest.importorskip("numpy")
 pytest.importorskip("xvrml")
@@ -16,6 +18,7 @@ DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 @pytest.mark.parametrize("page", ["python.md", "ray-queries.md", "photometry.md", "editor.md"])
 def test_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", f"{find_vv().parent}{os.pathsep}{os.environ['PATH']}")
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     text = (DOCS / page).read_text()
     for name, world in re.findall(r"```vrml file=([\w.]+)\n(.*?)```", text, re.S):

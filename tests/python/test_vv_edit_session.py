@@ -75,7 +75,7 @@ def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv
     w.move(0, 0)
     w.key("u")
     row = reports.until(lambda r: r["now"])
-    assert row["field"] == "illuminance"
+    assert row["field"] == "illuminance in lx"
     assert (float(row["x"]), float(row["y"]), float(row["z"])) == pytest.approx((0, 0, -5), abs=.02)
     assert 4 < float(row["now"]) < 4.8 and row["remark"] == "trusted"
     w.key("b")

@@ -102,8 +102,9 @@ std::string usage() {
          "  vv serve world.wrl              shows the world on a page for browsers; prints its "
          "address\n"
          "\n"
-         "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), or a mesh\n(" +
-         meshNames() + "),\npacked with gzip or not; - is standard input.\n";
+         "FILE (- is standard input) is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), "
+         "or a mesh\n(" +
+         meshNames() + "), packed with gzip or not.\n";
 }
 
 std::string describeExitCodes() {

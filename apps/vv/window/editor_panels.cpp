@@ -94,6 +94,7 @@ void EditorPanels::drawTools() {
   ImGui::NewLine();
   drawReports();
   if (ImGui::BeginPopup("##new")) {
+    closeOnEscape();
     for (const NewNode& one : newNodes())
       if (ImGui::Selectable(one.name))
         model_.edit([&one](WorldEditor& editor) { add(editor, one); });
@@ -102,6 +103,7 @@ void EditorPanels::drawTools() {
     ImGui::EndPopup();
   }
   if (ImGui::BeginPopup("##view")) {
+    closeOnEscape();
     drawViewItems();
     ImGui::EndPopup();
   }
@@ -192,6 +194,7 @@ void EditorPanels::watchWidth(float& drawn, float& chosen) {
 void EditorPanels::drawRowMenu() {
   if (std::exchange(opensMenu_, false)) ImGui::OpenPopup("##row");
   if (!ImGui::BeginPopup("##row")) return;
+  closeOnEscape();
   drawViewItems();
   ImGui::Separator();
   ImGui::BeginDisabled(!model_.readOnly().empty());

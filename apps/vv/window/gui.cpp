@@ -195,7 +195,8 @@ struct Gui::Impl {
     case SDL_MOUSEWHEEL: return io.WantCaptureMouse;
     case SDL_KEYDOWN:
     case SDL_KEYUP:
-    case SDL_TEXTINPUT: return io.WantCaptureKeyboard; // a text, a drag or a question
+    case SDL_TEXTINPUT: // for a text, a drag, a question or a menu
+      return io.WantCaptureKeyboard || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     default: return false;
     }
   }

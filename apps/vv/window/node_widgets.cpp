@@ -39,6 +39,7 @@ struct FilteredList {
   // The popup has been opened by ImGui::OpenPopup. Returns whether it is there.
   static bool begin(const char* name) { return ImGui::BeginPopup(name); }
   void beginRows() {
+    closeOnEscape();
     static std::string text; // one popup is open at a time
     if (ImGui::IsWindowAppearing()) {
       text.clear();
@@ -114,6 +115,7 @@ void drawNode(EditModel& model, const PlacedNode& place, size_t places, size_t c
                                 label, places)
                   : label);
   if (ImGui::BeginPopupContextItem("##menu")) {
+    closeOnEscape();
     if (ImGui::MenuItem("Make this one separate", nullptr, false, places > 1))
       model.edit([place](WorldEditor& editor) { separateAt(editor, place); });
     if (ImGui::MenuItem("Remove"))

@@ -136,6 +136,7 @@ bool editText(std::string& value, const PropertyRow& row) {
   bool changes = edit(value, row.range);
   ImGui::SameLine(0, 2);
   if (ImGui::BeginCombo("##choices", nullptr, ImGuiComboFlags_NoPreview)) {
+    closeOnEscape();
     for (const std::string& one : row.choices)
       if (ImGui::Selectable(one.c_str(), one == value)) {
         value = one;
@@ -212,12 +213,17 @@ void drawName(const PropertyRow& row) {
 
 } // namespace
 
+void closeOnEscape() {
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) ImGui::CloseCurrentPopup();
+}
+
 void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   const FieldInfo& field = *row.field;
   const bool holdsNodes = field.type == FieldType::SFNode || field.type == FieldType::MFNode;
   ImGui::PushID(field.name.data(), field.name.data() + field.name.size());
   drawName(row);
   if (!holdsNodes && row.isDeclared && ImGui::BeginPopupContextItem("##menu")) {
+    closeOnEscape();
     if (ImGui::Selectable("Reset to the default") && !row.isDefault)
       model.drag(node, field, row.defaultValue);
     ImGui::EndPopup();

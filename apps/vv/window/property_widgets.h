@@ -6,6 +6,8 @@
 
 namespace vv {
 
+// Closes the menu that is being drawn if Escape was pressed.
+void closeOnEscape();
 // Draws the name of a field, and the widgets for its value.
 void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);
 // Draws the nodes of an SFNode or MFNode, and what may be added.
