@@ -68,6 +68,17 @@ Twin EditedFile::twinOf(Node& node) {
                               type, node.source.line));
 }
 
+Twin EditedFile::standingTwinOf(Node& node) {
+  Twin twin = twinOf(node);
+  if (!document().stands(*twin.document))
+    throw EditError(fmt::format("this {} has been removed from the file", node.type().name));
+  return twin;
+}
+
+void EditedFile::checkStands(Node* node) {
+  if (node) standingTwinOf(*node);
+}
+
 Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   Slot slot;
   if (given.parent) {

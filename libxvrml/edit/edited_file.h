@@ -44,6 +44,10 @@ class EditedFile {
   Document& document();
   // Returns the node with its counterpart in the document. Throws EditError if it has none.
   Twin twinOf(Node& node);
+  // Does the same for a node that stands in the file now. Throws EditError if it was removed.
+  Twin standingTwinOf(Node& node);
+  // Throws EditError if a node does not stand in the file now; null: the roots.
+  void checkStands(Node* node);
   // holds: there must be a node at the place.
   Slot slotOf(const NodeSlot& given, bool holds);
   Node* nodeAt(const Slot& slot);

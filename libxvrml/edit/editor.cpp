@@ -118,7 +118,7 @@ uint64_t Editor::editsOf(const Node& node, std::string_view field) const {
 }
 
 void Editor::set(Node& node, std::string_view field, Value value) {
-  const Twin twin = impl_->file.twinOf(node);
+  const Twin twin = impl_->file.standingTwinOf(node);
   const std::string what = fmt::format("{}.{}", node.type().name, field);
   const FieldInfo* const info = node.type().find(field);
   if (!info || !holdsValue(*info)) throw EditError(fmt::format("there is no field {}", what));
@@ -147,6 +147,7 @@ void Editor::set(Node& node, std::string_view field, Value value) {
 }
 
 NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
+  impl_->file.checkStands(given.parent);
   const Slot slot = impl_->file.slotOf(given, false);
   Document& file = impl_->file.document();
   const std::string name = fmt::format("{} (edit {})", impl_->file.world().path, ++impl_->texts);
@@ -173,6 +174,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
 }
 
 void Editor::use(const NodeSlot& given, Node& node) {
+  impl_->file.checkStands(given.parent);
   const Twin twin = impl_->file.twinOf(node);
   const Slot slot = impl_->file.slotOf(given, false);
   impl_->nodes.checkPlace(slot, twin);
@@ -186,6 +188,7 @@ void Editor::use(const NodeSlot& given, Node& node) {
 }
 
 void Editor::remove(const NodeSlot& given) {
+  impl_->file.checkStands(given.parent);
   const Slot slot = impl_->file.slotOf(given, true);
   OpenStep step(impl_->history, fmt::format("Remove {}", impl_->file.nodeAt(slot)->type().name));
   impl_->nodes.take(slot);
@@ -194,6 +197,8 @@ void Editor::remove(const NodeSlot& given) {
 }
 
 void Editor::move(const NodeSlot& from, const NodeSlot& to) {
+  impl_->file.checkStands(from.parent);
+  impl_->file.checkStands(to.parent);
   const Slot source = impl_->file.slotOf(from, true);
   const NodeRef node(impl_->file.nodeAt(source));
   OpenStep step(impl_->history, fmt::format("Move {}", node->type().name));
@@ -205,6 +210,7 @@ void Editor::move(const NodeSlot& from, const NodeSlot& to) {
 }
 
 NodeRef Editor::duplicate(const NodeSlot& given) {
+  impl_->file.checkStands(given.parent);
   const Slot slot = impl_->file.slotOf(given, true);
   if (slot.isSingle())
     throw EditError(fmt::format("{} holds one node: there is no place for a copy", given.field));
@@ -218,6 +224,7 @@ NodeRef Editor::duplicate(const NodeSlot& given) {
 }
 
 NodeRef Editor::separate(const NodeSlot& given) {
+  impl_->file.checkStands(given.parent);
   const Slot slot = impl_->file.slotOf(given, true);
   const Twin twin = impl_->file.twinOf(*impl_->file.nodeAt(slot));
   const std::string& type = twin.live->type().name;
@@ -233,6 +240,7 @@ NodeRef Editor::separate(const NodeSlot& given) {
 }
 
 NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
+  impl_->file.checkStands(given.parent);
   const Slot slot = impl_->file.slotOf(given, true);
   const NodeType* const known = findNodeType(type);
   const FieldInfo* const children = known ? known->find("children") : nullptr;
@@ -253,8 +261,7 @@ void Editor::rename(Node& node, const std::string& name) {
   Scope& scope = impl_->file.document().scope();
   if (!isNodeName(name)) throw EditError(fmt::format("'{}' is no name for a node", name));
   if (name == node.defName) return;
-  if (!impl_->file.document().stands(*twin.document))
-    throw EditError(fmt::format("this {} has been removed from the file", node.type().name));
+  impl_->file.checkStands(&node);
   if (scope.names.contains(name)) throw EditError(fmt::format("another node is named {}", name));
   if (impl_->file.document().isRepeated(node.defName))
     throw EditError(fmt::format("several nodes are named {}: which one a USE means depends on its "
@@ -325,7 +332,7 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
 }
 
 void Editor::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
-  const Twin source = impl_->file.twinOf(from), target = impl_->file.twinOf(to);
+  const Twin source = impl_->file.standingTwinOf(from), target = impl_->file.standingTwinOf(to);
   const FieldInfo *sent = from.type().findEventOut(out), *received = to.type().findEventIn(in);
   if (!sent) throw EditError(fmt::format("{} has no eventOut '{}'", from.type().name, out));
   if (!received) throw EditError(fmt::format("{} has no eventIn '{}'", to.type().name, in));

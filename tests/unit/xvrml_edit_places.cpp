@@ -49,6 +49,28 @@ TEST_P(EditedPlaces, NoNodeHoldsItselfThroughAnInstance) {
   undoAll();
 }
 
+TEST_P(EditedPlaces, NothingIsPutIntoANodeThatHasGone) {
+  load("DEF A Group { }\nDEF B Transform { }\nDEF L PointLight { }\n");
+  const xvrml::NodeRef gone(&node("A"));
+  editor->remove({nullptr, "", 0});
+  const NodeSlot inside{gone.get(), "children", 0};
+  const auto isRefused = [&](const std::function<void()>& edit) {
+    EXPECT_EQ(refusal(edit), "this Group has been removed from the file");
+  };
+  isRefused([&] { editor->move({nullptr, "", 0}, inside); });
+  isRefused([&] { editor->use(inside, node("B")); });
+  isRefused([&] { editor->insert(inside, "Group { }"); });
+  isRefused([&] { editor->set(*gone, "bboxCenter", xvrml::Vec3f{1, 2, 3}); });
+  isRefused([&] { editor->addRoute(*gone, "children", node("B"), "children"); });
+  isRefused([&] { editor->addRoute(node("B"), "children", *gone, "children"); });
+  EXPECT_NE(editor->text().find("DEF B Transform { }"), std::string::npos);
+  EXPECT_TRUE(editor->undo());
+  editor->move({nullptr, "", 1}, inside); // it is back
+  EXPECT_NE(editor->text().find("DEF A Group { children DEF B"), std::string::npos)
+      << editor->text();
+  undoAll();
+}
+
 TEST_P(EditedPlaces, NodesOfInlinesHoldNoneOfTheFile) {
   folder.write("in.wrl", "#VRML V2.0 utf8\nDEF X Group { }\n");
   load("DEF G Group { children DEF I Inline { url \"in.wrl\" } }\n");
