@@ -66,7 +66,7 @@ TEST_P(EditedPlaces, NothingIsPutIntoANodeThatHasGone) {
   EXPECT_NE(editor->text().find("DEF B Transform { }"), std::string::npos);
   EXPECT_TRUE(editor->undo());
   editor->move({nullptr, "", 1}, inside); // it is back
-  EXPECT_NE(editor->text().find("DEF A Group { children DEF B"), std::string::npos)
+  EXPECT_NE(editor->text().find("DEF A Group { children [\n  DEF B Transform"), std::string::npos)
       << editor->text();
   undoAll();
 }
