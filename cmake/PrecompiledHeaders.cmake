@@ -1,6 +1,7 @@
 # openrt_precompile(TARGET HEADER...): with OPENRT_PRECOMPILED_HEADERS=ON, lets the compiler read the
 # headers of the standard library that most files include, and those given, once for the target instead
 # of once for each file. A compiler cache gives more and cannot reuse such headers: set -DCCACHE= with it.
+# GCC 12 warns of headers of the system that it has read so: set -DOPENRT_WERROR=OFF, too.
 option(OPENRT_PRECOMPILED_HEADERS "Read common headers once for each target" OFF)
 
 set(standard_headers
