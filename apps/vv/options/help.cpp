@@ -102,9 +102,9 @@ std::string usage() {
          "  vv serve world.wrl              shows the world on a page for browsers; prints its "
          "address\n"
          "\n"
-         "FILE (- is standard input) is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), "
-         "or a mesh\n(" +
-         meshNames() + "), packed with gzip or not.\n";
+         "FILE is VRML97 or VRML 1.0 (.wrl, .wrz), X3D (.x3d, .x3dv, .x3dj), or a mesh, gzipped or "
+         "not\n(" +
+         meshNames() + "); - is standard input.\n";
 }
 
 std::string describeExitCodes() {
