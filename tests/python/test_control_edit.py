@@ -162,10 +162,9 @@ def test_nodes_that_are_gone(table):
     refused("node", "no node \"LAMP\"", one, table, "set", node="LAMP", field="on", value=False)
     refused("edit", "does not stand in the world's own file", one, table, "remove", node=number)
     before = text(table)
-    # a node that is nowhere has values, which the file shows once it is back
-    one(table, "set", node=number, field="on", value=False)
+    refused("edit", "has been removed from the file", one, table, "set", node=number, field="on",
+            value=False)
     assert text(table) == before
-    table.undo()
     table.undo()
     assert text(table) == TABLE
     table.release(number)
