@@ -163,13 +163,6 @@ FieldTarget JsonRecorder::resumeField(const Name& name) {
   return target;
 }
 
-// Programs in a Script, and values that could not be read, are left as they are.
-void JsonRecorder::endField(FieldText& field, bool good) {
-  const bool hasValue = field.value.begin > 0 || field.declared;
-  field.readable =
-      good && field.form != FieldForm::program && (field.form != FieldForm::element || hasValue);
-}
-
 FieldTarget JsonRecorder::openDeclaration(Access access, FieldType type, const Name& name,
                                           bool hasValue) {
   const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);

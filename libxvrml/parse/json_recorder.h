@@ -40,7 +40,6 @@ class JsonRecorder : public LayoutRecorder {
 
   NodeText begunNode(const Name& type, const Name* def) override;
   void endNode(NodeText& node) override;
-  void endField(FieldText& field, bool good) override;
   size_t prototypeBegin(const Name&, std::string_view) const override {
     return spanOfHolder().begin;
   }

@@ -112,4 +112,10 @@ void LayoutRecorder::addRoute(const Name& keyword, RouteText route) {
   layout_.routes.push_back(route);
 }
 
+void LayoutRecorder::endField(FieldText& field, bool good) {
+  const bool hasValue = field.value.begin > 0 || field.declared;
+  field.readable =
+      good && field.form != FieldForm::program && (field.form != FieldForm::element || hasValue);
+}
+
 } // namespace xvrml

@@ -89,8 +89,10 @@ class LayoutRecorder : public ParseSink {
   virtual NodeText begunNode(const Name& type, const Name* def) = 0;
   // Notes where a node ends that is being closed.
   virtual void endNode(NodeText& node) = 0;
-  // Notes where the open field ends. good: its value could be read.
-  virtual void endField(FieldText& field, bool good) = 0;
+  // Notes where the open field ends. good: its value could be read. In syntaxes with elements the
+  // end follows from the beginning; programs of Scripts, and values that could not be read, are
+  // left as they are.
+  virtual void endField(FieldText& field, bool good);
   // Returns where a prototype begins whose keyword is given.
   virtual size_t prototypeBegin(const Name& name, std::string_view keyword) const = 0;
   // Returns where the prototype ends that is being closed.

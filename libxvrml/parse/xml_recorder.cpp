@@ -75,13 +75,6 @@ FieldTarget XmlRecorder::resumeField(const Name& name) {
   return target;
 }
 
-// Programs between tags, and values that stand there, are left as they are.
-void XmlRecorder::endField(FieldText& field, bool good) {
-  const bool hasValue = field.value.begin > 0 || field.declared;
-  field.readable =
-      good && field.form != FieldForm::program && (field.form != FieldForm::element || hasValue);
-}
-
 FieldTarget XmlRecorder::openDeclaration(Access access, FieldType type, const Name& name,
                                          bool hasValue) {
   const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);

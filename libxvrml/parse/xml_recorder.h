@@ -22,7 +22,6 @@ class XmlRecorder : public LayoutRecorder {
  private:
   NodeText begunNode(const Name& type, const Name* def) override;
   void endNode(NodeText&) override {}
-  void endField(FieldText& field, bool good) override;
   size_t prototypeBegin(const Name&, std::string_view) const override { return element().begin; }
   size_t prototypeEnd() const override { return 0; }
 
