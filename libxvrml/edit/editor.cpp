@@ -113,6 +113,7 @@ bool Editor::redo() {
 std::string Editor::undoName() const { return impl_->history.undoName(); }
 std::string Editor::redoName() const { return impl_->history.redoName(); }
 uint64_t Editor::changes() const { return impl_->history.changes(); }
+uint64_t Editor::nodeChanges() const { return impl_->history.nodeChanges(); }
 uint64_t Editor::editsOf(const Node& node, std::string_view field) const {
   return impl_->history.editsOf(node, field);
 }

@@ -34,6 +34,7 @@ class History {
   std::string undoName() const;
   std::string redoName() const;
   uint64_t changes() const { return changes_; }
+  uint64_t nodeChanges() const { return nodeChanges_; }
   // Returns how many edits that are not undone have set a field.
   uint64_t editsOf(const Node& node, std::string_view field) const;
   // Returns whether the edits are others than when the file was saved.
@@ -52,11 +53,13 @@ class History {
     std::vector<Edit> edits;
   };
   void rollBack(size_t edits);
+  void count(const std::vector<Edit>& edits, size_t first = 0);
   void joinLast(size_t first);
 
   std::vector<Step> steps_; // those that have been done first, then those that have been undone
   size_t done_ = 0;
-  uint64_t changes_ = 0; // edits that were done or undone so far
+  // Edits, undos and redos so far, and those of them that were not about values alone.
+  uint64_t changes_ = 0, nodeChanges_ = 0;
   // Value of done_ at which the file was saved; ~0: it cannot be reached again.
   size_t savedAt_ = 0;
   Step open_;

@@ -128,6 +128,12 @@ ChangePicture compare(const picture::Picture& before, const picture::Picture& no
   return out;
 }
 
+float ChangePicture::at(double x, double y) const {
+  const int column = std::clamp(int((1 + x) / 2 * width), 0, width - 1),
+            row = std::clamp(int((1 - y) / 2 * height), 0, height - 1);
+  return changes[size_t(row) * size_t(width) + size_t(column)];
+}
+
 std::vector<uint8_t> drawChanges(const ChangePicture& changes, const std::vector<uint8_t>& rgb) {
   constexpr double gain[] = {255, 150, 20}, loss[] = {70, 140, 255};
   constexpr double dimming = 0.45, weakest = 0.4; // the strength of the colour of a small change

@@ -74,14 +74,14 @@ void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
     undeclared_ = std::move(value);
     return;
   }
-  request([this, node, name = field.name, value = std::move(value)](WorldEditor& editor) {
+  requestValue([this, node, name = field.name, value = std::move(value)](WorldEditor& editor) {
     if (!isRefused_) editor.editor().set(*node, name, value);
   });
 }
 
 void EditModel::begin(const Dragged& dragged) {
   const PropertyRow* const row = sheet_.node == dragged.node ? sheet_.find(dragged.field) : nullptr;
-  request(
+  requestValue(
       [this, dragged, shown = row ? row->edits : 0, isShown = row != nullptr](WorldEditor& editor) {
         isRefused_ = true;
         refuseWithinStep(editor);
@@ -103,7 +103,7 @@ void EditModel::finishDrag() {
       refuseWithinStep(editor);
       declareParameter(editor, dragged.node, dragged.field, value);
     });
-  request([this, dragged](WorldEditor& editor) {
+  requestValue([this, dragged](WorldEditor& editor) {
     if (std::exchange(isRefused_, false)) return;
     editor.editor().end();
     own_ = {dragged, editor.editor().editsOf(*dragged.node, dragged.field)};
@@ -143,16 +143,17 @@ void EditModel::select(const NodeRef& node, bool add) {
 }
 
 bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, double seconds) {
-  while (!commands_.empty()) {
-    const Command command = std::move(commands_.front());
-    commands_.pop_front();
-    isStale_ = true;
+  while (!requests_.empty()) {
+    const Request request = std::move(requests_.front());
+    requests_.pop_front();
+    (request.setsValue ? areValuesStale_ : isStale_) = true;
     try {
-      command(editor);
+      request.command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
   }
-  const uint64_t changes = editor.editor().changes();
-  if (std::exchange(changes_, changes) != changes) isStale_ = true;
+  const uint64_t changes = editor.editor().changes(), nodes = editor.editor().nodeChanges();
+  areValuesStale_ |= std::exchange(changes_, changes) != changes;
+  isStale_ |= std::exchange(nodeChanges_, nodes) != nodes;
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
     isStale_ = true;
@@ -160,7 +161,7 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
       shown_ = NodeRef(node);
   }
   if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
-  bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  bool reads = isStale_ || areValuesStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
@@ -178,16 +179,21 @@ void EditModel::readSheet(WorldEditor& editor) {
         std::string(sheet_.note.empty() ? "" : "; ") + "hidden for now, which is not saved";
 }
 
+// A value that is dragged in a world of a million nodes must not cost a walk over all of them: rows
+// and places of nodes are read again only if more than values has changed.
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
-  if (std::exchange(isStale_, false)) {
+  const bool all = std::exchange(isStale_, false), values = std::exchange(areValuesStale_, false);
+  if (all) {
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
+  } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {
+    readSheet(editor);
+  }
+  if (all || values) {
     undoName_ = editor.editor().undoName();
     redoName_ = editor.editor().redoName();
     unsaved_ = editor.isChanged();
-  } else if (sheet_.node && !isActive_) {
-    refresh(editor, sheet_);
   }
   if (!shown_) return;
   const NodeRef wanted = std::exchange(shown_, NodeRef());

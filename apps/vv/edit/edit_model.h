@@ -62,11 +62,11 @@ class EditModel {
   std::string takeMessage() { return std::exchange(message_, {}); }
 
   // --- What is asked for ---
-  void request(Command command) { commands_.push_back(std::move(command)); }
+  void request(Command command) { requests_.push_back({std::move(command)}); }
   // Requests an edit of a panel, which is a step of its own: it is refused while another step is
   // open, because that may still be taken back with all that is in it.
   void edit(Command command);
-  bool hasRequests() const { return !commands_.empty(); }
+  bool hasRequests() const { return !requests_.empty(); }
   // Sets a field. All values until no widget is active any more are one step. It is refused if
   // another program has edited the field since it was shown. A parameter of a shader that is not
   // declared yet gets its last value then.
@@ -95,13 +95,19 @@ class EditModel {
     bool operator==(const Dragged&) const = default;
   };
 
+  struct Request {
+    Command command;
+    bool setsValue = false; // it changes nothing but the value of a field
+  };
+
+  void requestValue(Command command) { requests_.push_back({std::move(command), true}); }
   void begin(const Dragged& dragged);
   void finishDrag();
   void read(WorldEditor& editor);
   void readSheet(WorldEditor& editor);
   std::vector<Line> framesOf(WorldEditor& editor, const EditView& view) const;
 
-  std::deque<Command> commands_;
+  std::deque<Request> requests_;
   Outline outline_;
   std::vector<OutlineRow> rows_;
   PropertySheet sheet_;
@@ -111,7 +117,9 @@ class EditModel {
   std::vector<Line> frames_;
   std::vector<Look> looks_;
   Hiding hiding_;
-  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isActive_ = false;
+  bool unsaved_ = false, hasAsked_ = false, isActive_ = false;
+  // What is shown may be another one now: everything; the values of fields.
+  bool isStale_ = true, areValuesStale_ = false;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
   bool isRefused_ = false;                 // the open step must not be
@@ -119,7 +127,7 @@ class EditModel {
   int scroll_ = -1;
   xvrml::NodeRef shown_; // the node whose row is to be scrolled to
   double readAt_ = 0;
-  uint64_t changes_ = 0; // Editor::changes() when it was read
+  uint64_t changes_ = 0, nodeChanges_ = 0; // those of the Editor when it was read
 };
 
 } // namespace vv

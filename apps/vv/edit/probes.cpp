@@ -142,6 +142,10 @@ void Probes::take(const std::vector<picture::Measurement>& readings) {
   for (const picture::Measurement& reading : readings)
     for (Probe& probe : probes_) {
       if (!probe.sensor || std::to_string(probe.number) != reading.sensor.name) continue;
+      // All probes may have been removed meanwhile, and numbers begin anew.
+      if (!std::equal(std::begin(reading.sensor.first), std::end(reading.sensor.first),
+                      std::begin(probe.sensor->first)))
+        continue;
       probe.now = {};
       probe.now.luminance = reading.value[0];
       probe.now.luminanceHalfWidth = reading.halfWidth[0];

@@ -155,7 +155,7 @@ int Server::run() {
   saves_ = std::make_unique<Saves>(
       options_, pages_, world_, reports_, *host_,
       [this](uint32_t view, const std::string& text) { notify(view, text, 6); });
-  editing_ = std::make_unique<Editing>(pages_, world_, *host_);
+  editing_ = std::make_unique<Editing>(pages_, world_, *host_, arguments_);
   deferInterrupt(true, interruptSeconds);
   writeOut(urlOf(options_.serve, hostOptions_, host_->port()) + "\n");
   if (const std::string url = editUrlOf(hostOptions_, host_->port()); !url.empty())

@@ -1,11 +1,13 @@
 #include "server/texts.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "lower_case.h"
+#include "options/names.h"
 #include "report/describe.h"
 #include "session/input/keys.h"
 
@@ -86,6 +88,11 @@ std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, i
   message += header;
   message += jpeg;
   return message;
+}
+
+std::string downloadName(const std::string& world, const std::string& end) {
+  const std::string name = fileNamePart(std::filesystem::path(world).stem().string());
+  return (name.empty() || name == "-" ? "vv" : name) + end;
 }
 
 std::string webUrlOf(std::span<const std::string> urls) {

@@ -1,6 +1,5 @@
 #include "window/comparison_view.h"
 
-#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -45,9 +44,7 @@ void entry(ImU32 colour, const std::string& text) {
 }
 
 std::string changeAt(const ChangePicture& changes, double x, double y) {
-  const int column = std::clamp(int((1 + x) / 2 * changes.width), 0, changes.width - 1),
-            row = std::clamp(int((1 - y) / 2 * changes.height), 0, changes.height - 1);
-  const float change = changes.changes[size_t(row) * size_t(changes.width) + size_t(column)];
+  const float change = changes.at(x, y);
   return change == 0 ? "no significant change" : fmt::format("{:+.3g} cd/m2", change);
 }
 

@@ -19,18 +19,8 @@ namespace {
 constexpr double clickDistance = 0.012;
 // How far the pointer may be from the line of the wiper, in halves of the picture's width.
 constexpr double wiperReach = 0.02;
-struct SurfaceSeen {
-  CameraRay ray;
-  PickHit hit;
-};
-// Returns what the pointer is at. inside: it is over the picture. Throws EditError.
-SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, const InputEvent& at,
-                      bool inside) {
-  if (!inside) throw EditError("put the pointer where the light is to be measured");
-  SurfaceSeen seen{rayThrough(view.camera, view.aspect, at.x, at.y), {}};
-  if (!editor.browser().pick(seen.ray.origin, seen.ray.direction, {.bothSides = true}, seen.hit))
-    throw EditError("there is nothing here to be measured");
-  return seen;
+void needPicture(bool isOverPicture) {
+  if (!isOverPicture) throw EditError("put the pointer where the light is to be measured");
 }
 constexpr const char* kindNames[] = {"move", "turn", "scale"};
 
@@ -66,8 +56,7 @@ void Editing::reset() {
   tool_.reset();
   panels_.reset();
   model_.reset();
-  probes_.clear();
-  comparison_.clear();
+  light_.clear();
   showCover();
   gizmo_.clear();
   report_.reset();
@@ -205,13 +194,14 @@ bool Editing::press(const InputEvent& event) {
   if (measures && key == "V")
     return request(
         [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          probes_.add(surfaceAt(editor, view, at, inside).hit.point);
+          needPicture(inside);
+          light_.addProbe(editor, view, at.x, at.y);
         });
   if (measures && !event.shift)
     return request(
         [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          const auto [ray, hit] = surfaceAt(editor, view, at, inside);
-          probes_.addSensor(picture::sensorAt(hit.point.data(), hit.normal.data(), ray.direction));
+          needPicture(inside);
+          light_.addSensor(editor, view, at.x, at.y);
         });
   if (pressForComparison(event)) return true;
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
@@ -250,7 +240,7 @@ bool Editing::pressForComparison(const InputEvent& event) {
   using Shown = Comparison::Shown;
   if (event.control || event.alt || event.shift) return false;
   if (event.text == "B") {
-    model_->request([this](WorldEditor& editor) { keepLight(editor); });
+    model_->request([this](WorldEditor& editor) { light_.keep(editor, view_); });
     return true;
   }
   const Shown wanted = event.text == "\\"  ? Shown::a
@@ -340,7 +330,7 @@ bool Editing::takeForTool(const InputEvent& event) {
 void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
   if (isOpen_) offerLeft(session.editor());
-  view_ = {session.pilot().camera(), session.pilot().aspect()};
+  view_ = viewOf(session);
   hasLight_ = session.pilot().hasLight();
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
@@ -351,11 +341,9 @@ void Editing::update(Session& session, double seconds) {
     gizmo_.clear();
   else if (gizmo_.place(session.editor(), view_))
     screen_.redraw();
-  if (probes_.takeKeep()) keepLight(session.editor());
-  compare(session);
-  readStill(session, seconds);
-  readSensors(session, seconds);
-  if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
+  if (probes_.takeKeep()) light_.keep(session.editor(), view_);
+  if (light_.update(session, seconds)) screen_.redraw();
+  if (std::string text = light_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
   if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
 }
@@ -365,75 +353,6 @@ void Editing::showCover() {
   if (std::exchange(cover_, cover.number) != cover.number)
     screen_.setCover(cover.width, cover.height, cover.rgb);
   screen_.setCoverPart(comparison_.coverPart());
-}
-
-// Keeps the light of the probes, and the next still picture.
-void Editing::keepLight(WorldEditor& editor) {
-  if (editor.browser().hasChanges()) {
-    probes_.expire();
-    probes_.expireSensors();
-  }
-  probes_.keep();
-  comparison_.ask(editor.editor().changes(), view_);
-}
-
-void Editing::compare(Session& session) {
-  const PictureLoop& pictures = session.pictures();
-  comparison_.follow(view_, pictures.width(), pictures.height(),
-                     {pictures.transformOf(session.pilot()), pictures.facts().scaleEnd},
-                     session.viewers().own().isOutdated());
-}
-
-// Reads the probes and what is compared from the still picture of the world as it is, a few times a
-// second.
-void Editing::readStill(Session& session, double seconds) {
-  // Comparing all pixels takes up to a quarter of a second for a window of 600,000.
-  const double interval = comparison_.shown() == Comparison::Shown::difference ? 1 : 0.25;
-  const bool isCompared =
-      comparison_.wantsPicture() || comparison_.shown() == Comparison::Shown::difference;
-  if (!probes_.readPictures() && !isCompared && !comparison_.isRefined(session.pictures().number()))
-    return;
-  if (session.captures().isPending()) return; // other channels would cancel its frame
-  const bool outdated = session.viewers().own().isOutdated();
-  if (outdated) probes_.expire();
-  if (outdated || seconds < stillRead_ + interval) return;
-  session.pictures().wantReadings();
-  const uint64_t number = session.pictures().number();
-  const uint64_t finished = session.pictures().isFinished(session.pilot()) ? number : 0;
-  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting() &&
-      !comparison_.wantsPicture())
-    return;
-  picture::Picture picture;
-  if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
-  stillRead_ = seconds;
-  finishedRead_ = finished;
-  probes_.read(session.browser(), picture, view_);
-  if (comparison_.take(picture, number, session.editor().editor().changes(), view_, finished != 0))
-    probes_.keep();
-  screen_.redraw();
-}
-
-// Reads the probes of illuminance when the previews have ended. The still picture begins anew then.
-void Editing::readSensors(Session& session, double seconds) {
-  constexpr double patience = 2; // seconds after a failure
-  Measuring& measuring = session.measuring();
-  if (measuring.isOutdated()) probes_.expireSensors();
-  if (!session.pictures().isRefining() || session.viewers().own().isOutdated() ||
-      measuring.isPending() || seconds < nextSensors_)
-    return;
-  const std::vector<picture::PlacedSensor> sensors = probes_.waitingSensors();
-  if (sensors.empty()) return;
-  measuring.want({.view = session.pictures().stillOf(session.pilot()).view,
-                  .sensors = sensors,
-                  .samples = measuring.samples()},
-                 [this, seconds](const picture::LiveReadings& read) {
-                   if (!read.failure.empty()) {
-                     message_ = "not measured: " + read.failure;
-                     nextSensors_ = seconds + patience;
-                   }
-                   probes_.take(read.sensors);
-                   screen_.redraw();
-                 });
 }
 
 } // namespace vv

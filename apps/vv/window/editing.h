@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "edit/comparison.h"
 #include "edit/edit_model.h"
 #include "edit/gizmo.h"
 #include "edit/transform_tool.h"
+#include "session/light_reader.h"
 #include "session/session.h"
 #include "session/world_loader.h"
 #include "session/world_report.h"
@@ -76,11 +76,7 @@ class Editing {
   void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
   void endTool(bool accept);
   bool takeForTool(const InputEvent& event);
-  void keepLight(WorldEditor& editor);
-  void compare(Session& session);
   void showCover();
-  void readStill(Session& session, double seconds);
-  void readSensors(Session& session, double seconds);
 
   Screen& screen_;
   Questions& questions_;
@@ -90,13 +86,11 @@ class Editing {
   bool isOpen_ = false;
   bool hasOffered_ = false;        // what an earlier session has left, if there is anything
   std::optional<EditModel> model_; // one for each world
-  Probes probes_;
-  Comparison comparison_;
+  LightReader light_;
+  Probes& probes_ = light_.probes();
+  Comparison& comparison_ = light_.comparison();
   Gizmo gizmo_;
-  double stillRead_ = 0;      // when
-  double nextSensors_ = 0;    // when sensors are read again, after a failure
-  uint64_t finishedRead_ = 0; // the number of the finished frame that was read
-  uint64_t cover_ = 0;        // the number of the comparison's cover that the screen shows
+  uint64_t cover_ = 0; // the number of the comparison's cover that the screen shows
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then

@@ -77,6 +77,8 @@ class Editor {
 
   // Grows with each edit, undo and redo, so that who shows the world knows when to look again.
   uint64_t changes() const;
+  // Grows as changes() does, but not with those that only set fields without nodes.
+  uint64_t nodeChanges() const;
 
   // Returns how many edits of those that are not undone have set a field. Edits of one step that
   // follow each other are one.
