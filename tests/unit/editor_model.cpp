@@ -145,6 +145,32 @@ TEST_F(Model, ADragIsOneStep) {
   EXPECT_EQ(model.redoName(), "Set PointLight.intensity");
 }
 
+// A drag in a large world must not read the outline and the places of all nodes again.
+TEST_F(Model, AValueChangesNoRows) {
+  model.select(world.node("LAMP"), false);
+  update();
+  const OutlineRow* const first = model.rows().data();
+  const uint64_t nodes = world.editor.editor().nodeChanges();
+  world.editor.editor().set(*world.node("LAMP"), "intensity", 0.25f);
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().data(), first);
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.25f);
+  EXPECT_TRUE(model.hasUnsaved());
+  world.editor.undo();
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().data(), first);
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.8f);
+  EXPECT_EQ(world.editor.editor().nodeChanges(), nodes);
+  world.editor.editor().rename(*world.node("LAMP"), "SUN");
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().at(1).label, "SUN  PointLight");
+  EXPECT_EQ(model.sheet().title, "SUN  PointLight");
+  EXPECT_GT(world.editor.editor().nodeChanges(), nodes);
+  world.editor.undo();
+  update();
+  EXPECT_EQ(model.rows().at(1).label, "LAMP  PointLight");
+}
+
 TEST_F(Model, WrongValuesAreSaidAndChangeNothing) {
   model.select(world.node("LAMP"), false);
   update();
