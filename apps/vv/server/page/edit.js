@@ -226,10 +226,11 @@ class Editor {
       const isClick = this.isOpen() && event.button === 0 && !event.altKey;
       this.pressed = isClick ? page.picture.placeOf(event) : null;
     });
-    canvas.addEventListener("pointermove", (event) => {
-      this.pointer = page.picture.placeOf(event);
-    });
-    canvas.addEventListener("pointerleave", () => (this.pointer = null));
+    const follow = (event) => {
+      const isOver = $("stage").contains(event.target);
+      this.pointer = isOver ? page.picture.placeOf(event) : null;
+    };
+    window.addEventListener("pointermove", follow, { capture: true });
     canvas.addEventListener("pointerup", (event) => this.release(event));
     const onState = page.connection.handlers.onState;
     page.connection.handlers.onState = (state, ...more) => {

@@ -39,6 +39,7 @@ export class EditorKeys {
       ["\\", "A in the place of the picture", edit("compare", { what: "a" })],
       ["W", "A beside the picture", edit("compare", { what: "wiper" })],
       ["D", "what has changed since A", edit("compare", { what: "difference" })],
+      ["F1", "this help", () => this.showHelp()],
       ["Escape", "end a comparison, then select nothing", () => this.escape()],
     ].map(([keys, text, action]) => ({ keys: keys.split(" "), text, action }));
   }

@@ -105,7 +105,8 @@ export class Light {
       this.wipe(this.part + steps[event.key]);
     });
     this.legend = make("div", { id: "legend", hidden: true });
-    this.stage.append(this.cover, this.wiper, this.legend);
+    this.picture.canvas.after(this.cover); // below the handles
+    this.stage.append(this.wiper, this.legend);
   }
 
   wipe(part) {

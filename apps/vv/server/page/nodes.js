@@ -61,7 +61,7 @@ export class Nodes {
       row.append(up, down);
     }
     if (one.places > 1)
-      row.append(small("\u2442", `Make this one separate: ${what}`, () =>
+      row.append(small("Own", `Make this one separate: ${what}`, () =>
         this.edit("separate_at", at),
       ));
     row.append(small("\u00d7", `Remove ${what}`, () => this.edit("remove_at", at)));
