@@ -5,9 +5,9 @@ import pytest
 
 from conftest import HEADER
 from page_client import serve  # noqa: F401
+from serve_edit_tools import WORLD
 from test_vv_serve_browser import (  # noqa: F401
     CANVAS, browser, errors, finished, first_picture, keep, until_pixel)
-from test_vv_serve_edit import WORLD
 from window_driver import SENSORS, blue, green, red
 
 ARROW_DOWN, ARROW_RIGHT, ARROW_LEFT = "\ue015", "\ue014", "\ue012"

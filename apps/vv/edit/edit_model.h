@@ -118,7 +118,7 @@ class EditModel {
   std::vector<Look> looks_;
   Hiding hiding_;
   bool unsaved_ = false, hasAsked_ = false, isActive_ = false;
-  // What is shown may be another one now: everything; the values of fields.
+  // Everything that is shown may have changed; only the values of fields may have.
   bool isStale_ = true, areValuesStale_ = false;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet

@@ -26,16 +26,16 @@ bool accepts(const FieldInfo& field, const NodeType& type) {
   return false;
 }
 
-// Returns the field of a place; null: the node is a root of the file. Throws EditError if the parent
-// has no such field of nodes.
+// Returns the field of a place; null: the node is a root of the file. Throws EditError if the
+// parent has no such field of nodes.
 const FieldInfo* fieldOf(const PlacedNode& place) {
   if (!place.parent) return nullptr;
   const FieldInfo* const field = place.parent->type().find(place.field);
   const bool holdsNodes = field && holdsValue(*field) &&
                           (field->type == FieldType::SFNode || field->type == FieldType::MFNode);
   if (!holdsNodes)
-    throw EditError(fmt::format("{} has no field {} that holds nodes",
-                                place.parent->type().name, place.field));
+    throw EditError(
+        fmt::format("{} has no field {} that holds nodes", place.parent->type().name, place.field));
   return field;
 }
 

@@ -14,7 +14,7 @@ using namespace xvrml;
 
 namespace {
 
-constexpr int coverQuality = 95; // of JPEG
+constexpr int coverQuality = 95; // the quality of JPEG
 
 void needLeader(bool isLeaders) {
   if (!isLeaders)

@@ -194,7 +194,7 @@ void Editing::perform(uint64_t, Face& face, const edit::ShowProblems& show) {
   face.model.problems().setOpen(show.open);
 }
 
-// What is hidden is so for all pages, and for those who do not edit.
+// Nodes are hidden for all pages, also for those that do not edit.
 void Editing::perform(uint64_t, Face&, const edit::Hide& hide) {
   using What = edit::Hide::What;
   if (hide.what == What::selected)

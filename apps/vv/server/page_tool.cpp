@@ -4,6 +4,8 @@
 
 namespace vv::server {
 
+using xvrml::EditError;
+
 void PageTool::take(const edit::ToolCommand& command, WorldEditor& editor, const EditView& view) {
   std::visit([&](const auto& one) { perform(one, editor, view); }, command);
 }
@@ -22,6 +24,7 @@ void PageTool::place(WorldEditor& editor, const EditView& view, bool isEditable)
 void PageTool::perform(const edit::BeginTool& begin, WorldEditor& editor, const EditView& view) {
   using Kind = TransformTool::Kind;
   constexpr Kind kinds[] = {Kind::move, Kind::turn, Kind::scale};
+  if (const std::string why = editor.editor().whyReadOnly(); !why.empty()) throw EditError(why);
   pointer_ = begin.place;
   tool_ = std::make_unique<TransformTool>(editor, kinds[size_t(begin.kind)], view, pointer_.x,
                                           pointer_.y);

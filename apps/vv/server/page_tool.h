@@ -18,7 +18,7 @@ class PageTool {
   // ended by somebody else gets the rest of its commands, too, which do nothing then. Throws
   // xvrml::EditError.
   void take(const edit::ToolCommand& command, WorldEditor& editor, const EditView& view);
-  // Ends the tool, if one is in use. What it has changed stays, and is one step.
+  // Ends the tool, if one is in use. Its changes stay, and are one step.
   void accept(WorldEditor& editor);
   // Places the handles in the picture. There are none in a file that cannot be edited.
   void place(WorldEditor& editor, const EditView& view, bool isEditable);

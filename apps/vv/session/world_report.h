@@ -27,8 +27,8 @@ class WorldReport {
              const std::vector<std::string>& arguments, Deliver deliver = {});
   // Forgets the session, because it ends.
   void reset();
-  // Returns, once, what has become of the report, which is also printed if it is in files; "" if there is nothing to
-  // say.
+  // Returns, once, what has become of the report, which is also printed if it is in files; "" if
+  // there is nothing to say.
   std::string takeMessage();
 
  private:

@@ -45,6 +45,7 @@ struct NodeSlot {
   size_t index = 0;  // in an MFNode or among the roots; one past the last appends
 };
 
+// Wide because all edits of a file share one history.
 class Editor {
  public:
   // Edit a world that runs, or one that does not. The world must outlive the editor, and must not
