@@ -54,11 +54,15 @@ std::string EditLight::comparisonText(uint64_t page, bool isLeaders) {
 uint64_t EditLight::cover() {
   const Comparison::Cover& cover = light_.comparison().cover();
   if (cover.width <= 0) return 0;
-  if (cover_ != cover.number)
-    coverText_ =
-        edit::coverText(cover.width, cover.height,
-                        picture::jpegOf(cover.rgb, cover.width, cover.height, coverQuality));
-  return cover_ = cover.number;
+  if (std::exchange(cover_, cover.number) != cover.number) {
+    coverText_.clear();
+    try {
+      coverText_ =
+          edit::coverText(cover.width, cover.height,
+                          picture::jpegOf(cover.rgb, cover.width, cover.height, coverQuality));
+    } catch (const std::exception&) {} // there is no memory: pages go on without it
+  }
+  return coverText_.empty() ? 0 : cover_;
 }
 
 // --- Probes ---

@@ -47,6 +47,9 @@ export class Tools {
     this.measures = false; // the next drag measures
     this.svg = draw("svg", { id: "overlay", "aria-hidden": "true" }); // keys do the same
     stage.append(this.svg);
+    this.svg.addEventListener("wheel", (event) =>
+      picture.canvas.dispatchEvent(new WheelEvent("wheel", event)),
+    );
     new ResizeObserver(() => this.draw()).observe(stage);
     for (const kind of ["pointerdown", "pointermove", "pointerup", "pointercancel"])
       window.addEventListener(kind, (event) => this[kind](event), { capture: true });
