@@ -17,15 +17,12 @@ namespace vv::server::edit {
 
 using namespace xvrml;
 using json::Json;
+using json::jsonLine;
 using json::jsonText;
 
 namespace {
 
 constexpr size_t mostNameBytes = 1024, mostNoteBytes = 400, mostHelpBytes = 1000, mostFrames = 1200;
-
-std::string written(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 std::string shortened(const std::string& text, size_t most) {
   return text.size() <= most ? text : text.substr(0, most) + "...";
@@ -128,7 +125,7 @@ std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers&
                   row.size, jsonText(shortened(row.help, mostHelpBytes)));
   appendRange(out, field.range);
   if (isLinear(node, row)) out += ",\"linear\":true";
-  if (!row.choices.empty()) out += ",\"choices\":" + written(row.choices);
+  if (!row.choices.empty()) out += ",\"choices\":" + jsonLine(row.choices);
   if (row.isLong || row.isInOptions || roughSize(row.value) > size_t(maxValueBytes)) {
     out += ",\"long\":true";
   } else if (field.type == FieldType::SFNode || field.type == FieldType::MFNode) {
@@ -146,11 +143,11 @@ std::string editorText() {
   Json kinds = Json::array();
   for (const NewNode& one : newNodes()) kinds.push_back(one.name);
   kinds.push_back(viewpointKind);
-  return written({{"type", "editor"},
-                  {"kinds", kinds},
-                  {"mostBytes", maxEditBytes},
-                  {"mostRows", maxRowsShown},
-                  {"mostElements", PropertySheet::mostElements}});
+  return jsonLine({{"type", "editor"},
+                   {"kinds", kinds},
+                   {"mostBytes", maxEditBytes},
+                   {"mostRows", maxRowsShown},
+                   {"mostElements", PropertySheet::mostElements}});
 }
 
 std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int first, int count) {
@@ -171,10 +168,10 @@ std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int fir
     one["index"] = row.place.index;
     rows.push_back(std::move(one));
   }
-  return written({{"type", "rows"}, {"first", begin}, {"total", all.size()}, {"rows", rows}});
+  return jsonLine({{"type", "rows"}, {"first", begin}, {"total", all.size()}, {"rows", rows}});
 }
 
-std::string revealText(int row) { return written({{"type", "reveal"}, {"row", row}}); }
+std::string revealText(int row) { return jsonLine({{"type", "reveal"}, {"row", row}}); }
 
 std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
   if (!sheet.node) return R"({"type":"sheet","node":null,"title":"","note":"","fields":[]})";
@@ -205,7 +202,7 @@ std::string looksText(const std::vector<Look>& looks) {
     list.push_back({{"name", shortened(one.name, mostNameBytes)},
                     {"text", shortened(one.text, mostNoteBytes)},
                     {"shader", one.isShader()}});
-  return written({{"type", "looks"}, {"list", list}});
+  return jsonLine({{"type", "looks"}, {"list", list}});
 }
 
 std::string choicesText(uint64_t node, const PropertyRow& row, json::NodeNumbers& numbers) {
@@ -214,11 +211,11 @@ std::string choicesText(uint64_t node, const PropertyRow& row, json::NodeNumbers
     types.push_back({{"name", type->name}, {"text", shortened(type->text, mostNoteBytes)}});
   for (const NodeRef& used : row.usable)
     uses.push_back({{"node", numbers.of(used)}, {"label", labelOf(*used)}});
-  return written({{"type", "choices"},
-                  {"node", node},
-                  {"field", row.field->name},
-                  {"types", types},
-                  {"uses", uses}});
+  return jsonLine({{"type", "choices"},
+                   {"node", node},
+                   {"field", row.field->name},
+                   {"types", types},
+                   {"uses", uses}});
 }
 
 std::string problemsText(const ProblemList& problems, json::NodeNumbers& numbers) {
@@ -239,11 +236,11 @@ std::string problemsText(const ProblemList& problems, json::NodeNumbers& numbers
       rows.push_back(std::move(one));
     }
   }
-  return written({{"type", "problems"},
-                  {"count", problems.count()},
-                  {"open", problems.isOpen()},
-                  {"rows", rows},
-                  {"dropped", dropped}});
+  return jsonLine({{"type", "problems"},
+                   {"count", problems.count()},
+                   {"open", problems.isOpen()},
+                   {"rows", rows},
+                   {"dropped", dropped}});
 }
 
 std::string framesText(const EditModel& model) {
@@ -265,28 +262,28 @@ std::string handlesText(const Gizmo& gizmo) {
 }
 
 std::string toolText(const std::string& text) {
-  return written({{"type", "tool"}, {"text", shortened(text, mostNoteBytes)}});
+  return jsonLine({{"type", "tool"}, {"text", shortened(text, mostNoteBytes)}});
 }
 
 std::string historyText(WorldEditor& editor, const std::string& readOnly, size_t hidden) {
   const std::optional<FoundJournal>& left = editor.journal().left();
-  return written({{"type", "history"},
-                  {"undo", shortened(editor.editor().undoName(), mostNoteBytes)},
-                  {"redo", shortened(editor.editor().redoName(), mostNoteBytes)},
-                  {"unsaved", editor.isChanged()},
-                  {"readOnly", readOnly},
-                  {"selected", editor.selection().size()},
-                  {"hidden", hidden},
-                  {"left", left ? Json(left->written) : Json()}});
+  return jsonLine({{"type", "history"},
+                   {"undo", shortened(editor.editor().undoName(), mostNoteBytes)},
+                   {"redo", shortened(editor.editor().redoName(), mostNoteBytes)},
+                   {"unsaved", editor.isChanged()},
+                   {"readOnly", readOnly},
+                   {"selected", editor.selection().size()},
+                   {"hidden", hidden},
+                   {"left", left ? Json(left->written) : Json()}});
 }
 
 std::string saidText(const std::string& text, bool isError) {
-  return written({{"type", "said"}, {"text", shortened(text, mostNoteBytes)}, {"error", isError}});
+  return jsonLine({{"type", "said"}, {"text", shortened(text, mostNoteBytes)}, {"error", isError}});
 }
 
 std::string questionText() {
-  return written({{"type", "question"},
-                  {"text", "Another program has changed or removed the file since it was read."}});
+  return jsonLine({{"type", "question"},
+                   {"text", "Another program has changed or removed the file since it was read."}});
 }
 
 } // namespace vv::server::edit

@@ -11,12 +11,9 @@
 namespace vv::server::edit {
 
 using json::Json;
+using json::jsonLine;
 
 namespace {
-
-std::string written(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 const char* nameOf(Probe::State state) {
   switch (state) {
@@ -64,7 +61,7 @@ std::string probesText(const Probes& probes) {
     }
     list.push_back(std::move(one));
   }
-  return written({{"type", "probes"}, {"list", list}});
+  return jsonLine({{"type", "probes"}, {"list", list}});
 }
 
 std::string marksText(const Probes& probes, const EditView& view) {
@@ -87,7 +84,7 @@ std::string marksText(const Probes& probes, const EditView& view) {
       continue;
     marks.push_back({{"number", probe.number}, {"x", rounded(x)}, {"y", rounded(y)}});
   }
-  return written({{"type", "marks"}, {"list", marks}});
+  return jsonLine({{"type", "marks"}, {"list", marks}});
 }
 
 std::string comparisonText(const Comparison& comparison, bool isLeaders,
@@ -105,7 +102,7 @@ std::string comparisonText(const Comparison& comparison, bool isLeaders,
     text["significant"] = changes->significant;
     if (pointer) text["here"] = changes->at(pointer->x, pointer->y);
   }
-  return written(text);
+  return jsonLine(text);
 }
 
 std::string coverText(int width, int height, std::string_view jpeg) {
@@ -119,7 +116,7 @@ std::string reportText(std::span<const std::string> paths, std::span<const std::
   Json files = Json::array();
   for (size_t i = 0; i < std::min(paths.size(), names.size()); ++i)
     files.push_back({{"path", paths[i]}, {"name", names[i]}});
-  return written({{"type", "report"}, {"files", files}});
+  return jsonLine({{"type", "report"}, {"files", files}});
 }
 
 } // namespace vv::server::edit
