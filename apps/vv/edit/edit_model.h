@@ -19,10 +19,20 @@
 
 namespace vv {
 
-// Where the viewer stands, and the shape of the picture.
+// Where the viewer stands, and the shape of the picture. Equal views show the same places in the
+// same pixels, where their sizes are equal.
 struct EditView {
   xvrml::CameraSettings camera{};
   double aspect = 1;
+  bool operator==(const EditView&) const = default;
+};
+// The part of the picture that no panel of a face covers, from its left to its right, as places of
+// the pointer.
+struct FreePart {
+  double left = -1, right = 1;
+  bool contains(double x) const { return x >= left && x <= right; }
+  double middle() const { return (left + right) / 2; }
+  bool operator==(const FreePart&) const = default;
 };
 
 class EditModel {

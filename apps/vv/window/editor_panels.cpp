@@ -237,7 +237,7 @@ void EditorPanels::drawProbes() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   for (const Probe& probe : probes_.all()) {
-    if (probe.area && areEqual(probe.area->view, view_))
+    if (probe.area && probe.area->view == view_)
       drawRectangle(probe.area->region, std::to_string(probe.number).c_str());
     if (probe.area) continue;
     double x = 0, y = 0;
