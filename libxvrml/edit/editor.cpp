@@ -395,6 +395,8 @@ void Editor::removeRoute(Node& from, std::string_view out, Node& to, std::string
   step.close();
 }
 
+std::function<void()> Editor::preparation() { return impl_->file.preparation(); }
+bool Editor::isPreparing() const { return impl_->file.isPreparing(); }
 std::string Editor::whyReadOnly() { return impl_->file.whyNot(); }
 std::string Editor::text() { return impl_->file.text(); }
 bool Editor::isInStep() const { return impl_->history.isOpen(); }

@@ -176,7 +176,10 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
     if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
       shown_ = NodeRef(node);
   }
-  if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
+  if (!hasAsked_ && editor.prepare()) {
+    hasAsked_ = isStale_ = true;
+    readOnly_ = editor.editor().whyReadOnly();
+  }
   bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;

@@ -13,6 +13,7 @@
 // changed nothing.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -133,6 +134,11 @@ class Editor {
   void removeRoute(Node& from, std::string_view out, Node& to, std::string_view in);
 
   // --- The file ---
+  // Returns what reads the file for editing, so that the first edit need not wait for it: it is to
+  // be called once, on any thread, also after the end of the editor. null: nothing is to be read any
+  // more. isPreparing() tells whether it has not ended yet; edits wait for that.
+  std::function<void()> preparation();
+  bool isPreparing() const;
   // Returns why the world's file cannot be edited; empty if it can.
   std::string whyReadOnly();
   // Returns the text of the file with all edits. It has been read back, and gives the edited world.
