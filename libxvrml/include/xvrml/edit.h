@@ -46,6 +46,7 @@ struct NodeSlot {
   size_t index = 0;  // in an MFNode or among the roots; one past the last appends
 };
 
+// Wide because each kind of edit is a function, and so is each question about the file.
 class Editor {
  public:
   // Edit a world that runs, or one that does not. The world must outlive the editor, and must not
@@ -135,8 +136,8 @@ class Editor {
 
   // --- The file ---
   // Returns what reads the file for editing, so that the first edit need not wait for it: it is to
-  // be called once, on any thread, also after the end of the editor. null: nothing is to be read any
-  // more. isPreparing() tells whether it has not ended yet; edits wait for that.
+  // be called once, on any thread, also after the end of the editor. null: nothing is to be read.
+  // isPreparing() tells whether it has not ended yet; edits wait for that.
   std::function<void()> preparation();
   bool isPreparing() const;
   // Returns why the world's file cannot be edited; empty if it can.
