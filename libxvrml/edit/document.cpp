@@ -162,6 +162,7 @@ const MFNode& Document::listOf(const Node* parent, const FieldInfo* field) const
 void Document::insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node) {
   MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
+  putIn_.insert(node.get());
   if (!parent || stands(*parent)) standing_.add(node.get());
 }
 
@@ -171,6 +172,7 @@ void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
   const NodeRef gone = list[index];
   const bool stood = !parent || stands(*parent);
   list.erase(list.begin() + std::ptrdiff_t(index));
+  takenOut_.insert(gone.get());
   if (stood) standing_.remove(gone.get());
 }
 
@@ -179,6 +181,8 @@ void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   NodeRef& place = *static_cast<NodeRef*>(parent.storage(field));
   const bool stands = this->stands(parent);
   const NodeRef before = std::exchange(place, std::move(child));
+  putIn_.insert(place.get());
+  takenOut_.insert(before.get());
   if (!stands) return;
   standing_.add(place.get());
   standing_.remove(before.get());

@@ -2,6 +2,8 @@
 // belong together. Internal; the thread that owns the world.
 #pragma once
 
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,6 +42,9 @@ class EditedFile {
 
   // Returns why the file cannot be edited. Reads it if it can.
   std::string whyNot();
+  // See Editor.
+  std::function<void()> preparation();
+  bool isPreparing() const;
   // Throws EditError if the file cannot be edited, or another world has taken its place.
   Document& document();
   // Returns the node with its counterpart in the document. Throws EditError if it has none.
@@ -68,12 +73,24 @@ class EditedFile {
   void adopt(std::string text);
 
  private:
+  // A file that has been read for editing.
+  struct Opened {
+    std::unique_ptr<Document> document;
+    std::string whyNot; // empty: it can be edited
+    bool isPacked = false, isMarked = false;
+    FileStamp onDisk;
+  };
+  std::string whyNotKind();
+  static Opened open(const std::string& path, const LoadOptions& options,
+                     const std::optional<std::string>& adopted);
+  Opened takePrepared();
   const MFNode& liveList(const Slot& slot);
   // Finds the nodes of the live world that begin at places of its file, given by placeKey().
   std::unordered_map<uint64_t, NodeRef> liveNodesAt(const std::unordered_set<uint64_t>& places);
 
   std::unique_ptr<LiveWorld> live_;
   std::unique_ptr<Document> document_; // read at the first edit
+  std::future<Opened> prepared_;       // what preparation() reads
   std::optional<std::string> adopted_; // is read instead of the text of the file
   bool packed_ = false, marked_ = false;
   FileStamp read_, onDisk_; // the file when it was read, and when it was read or saved

@@ -41,6 +41,14 @@ bool isFinite(const FieldInfo& field, Value& value) {
                       });
 }
 
+// Returns whether a value is, or has, a text with a zero byte.
+bool hasZeroByte(const Value& value) {
+  const auto has = [](const std::string& text) { return text.find('\0') != text.npos; };
+  if (const auto* const one = std::get_if<SFString>(&value)) return has(*one);
+  const auto* const list = std::get_if<MFString>(&value);
+  return list && std::any_of(list->begin(), list->end(), has);
+}
+
 // Returns whether a file may have a name behind DEF (Annex A.3).
 bool isNodeName(const std::string& name) {
   constexpr std::string_view keywords[] = {"DEF",     "EXTERNPROTO", "FALSE", "IS",          "NULL",
@@ -129,6 +137,8 @@ void Editor::set(Node& node, std::string_view field, Value value) {
     throw EditError(fmt::format("{} is {}", what, fieldTypeName(info->type)));
   if (!isFinite(*info, value))
     throw EditError(fmt::format("{}: a number is not finite, which no file can say", what));
+  if (hasZeroByte(value))
+    throw EditError(fmt::format("{}: a text has a zero byte, which no file can say", what));
   if (info->range.bounded() && info->type != FieldType::SFRotation && !inRange(*info, value))
     throw EditError(fmt::format("{}: a number is outside of {}", what, describe(info->range)));
   if (hasNormalizedAxes(*info))
@@ -386,6 +396,8 @@ void Editor::removeRoute(Node& from, std::string_view out, Node& to, std::string
   step.close();
 }
 
+std::function<void()> Editor::preparation() { return impl_->file.preparation(); }
+bool Editor::isPreparing() const { return impl_->file.isPreparing(); }
 std::string Editor::whyReadOnly() { return impl_->file.whyNot(); }
 std::string Editor::text() { return impl_->file.text(); }
 bool Editor::isInStep() const { return impl_->history.isOpen(); }

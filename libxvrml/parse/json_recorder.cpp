@@ -163,16 +163,6 @@ FieldTarget JsonRecorder::resumeField(const Name& name) {
   return target;
 }
 
-FieldTarget JsonRecorder::openDeclaration(Access access, FieldType type, const Name& name,
-                                          bool hasValue) {
-  const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
-  if (isRecording() && hasValue && target.known) {
-    beginField(begunElement(std::string(name.text)));
-    innermost().field.declared = true;
-  }
-  return target;
-}
-
 void JsonRecorder::route(const Name& keyword, const RouteNames& names) {
   if (isRecording())
     addRoute(keyword, {spanOfHolder(), nameAt(names.from.at), nameAt(names.to.at)});

@@ -276,4 +276,17 @@ TEST(Rectangles, TheShapesThatAreSeenInThemAreSelected) {
   EXPECT_TRUE(world.editor.selection().empty());
 }
 
+TEST(Views, AreEqualWhereTheyShowTheSame) {
+  EditView a, b;
+  EXPECT_EQ(a, b);
+  b.camera.matrix[12] = -0.0;
+  EXPECT_EQ(a, b);
+  b.camera.matrix[12] = 1;
+  EXPECT_NE(a, b);
+  a.camera.matrix[12] = b.camera.matrix[12] = std::nan("");
+  EXPECT_EQ(a, b) << "a camera always equals itself";
+  b.aspect = 2;
+  EXPECT_NE(a, b);
+}
+
 } // namespace

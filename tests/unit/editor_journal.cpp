@@ -362,4 +362,32 @@ TEST_F(EditorJournal, MarksOfTheFileStay) {
   EXPECT_EQ(contentOf(world), std::string("\xef\xbb\xbf") + dim);
 }
 
+TEST_F(EditorJournal, AnEmptyOneIsSpokenOfAndRemoved) {
+  putContent(journal, "");
+  Program program(world);
+  EXPECT_EQ(program.journal().takeMessage(),
+            journal + " was empty, and has been removed: the vv that made it had ended before it "
+                      "kept any edits");
+  EXPECT_EQ(names(), Names{"hall.wrl"});
+  program.dimTo(0.5f);
+  EXPECT_EQ(program.journal().keep(), journal);
+}
+
+TEST_F(EditorJournal, AnEmptyOneOfAProgramThatRunsStays) {
+  const JournalFile other = JournalFile::make(world);
+  Program program(world);
+  EXPECT_EQ(program.journal().takeMessage(), "");
+  EXPECT_TRUE(fs::exists(journal));
+}
+
+TEST_F(EditorJournal, ItsNamesAreKnown) {
+  EXPECT_TRUE(isJournalOf(world, journal));
+  EXPECT_TRUE(isJournalOf(world, folder + "/./.hall.wrl.vv-edits-2"));
+  EXPECT_TRUE(isJournalOf(world, journal + ".new"));
+  EXPECT_FALSE(isJournalOf(world, world));
+  EXPECT_FALSE(isJournalOf(world, folder + "/.other.wrl.vv-edits"));
+  fs::create_symlink(journal, folder + "/link.wrl");
+  EXPECT_TRUE(isJournalOf(world, folder + "/link.wrl"));
+}
+
 } // namespace

@@ -237,4 +237,61 @@ TEST(EditorPlaces, LongLines) {
                 std::string("Group { children [ DEF S0 Shape { } ] } ").size());
 }
 
+// What is not edited is copied as one piece. These edits reach into pieces that have not been
+// edited themselves: a node is defined at another place now.
+TEST_P(EditedPlaces, AReferenceInAnotherGroupBecomesTheNode) {
+  const std::string head = "DEF G Group { children [ Group { children DEF A Shape { } } ] }\n",
+                    tail = "Group { children [ Group { children [ USE A Transform { } ] } ] }\n"
+                           "Group { children USE A }\n";
+  load(head + tail);
+  editor->move({nullptr, "", 0}, {nullptr, "", 1});
+  EXPECT_EQ(text(), "Group { children [ Group { children [ DEF A Shape { } Transform { } ] } ] }\n"
+                    "DEF G Group { children [ Group { children USE A } ] }\n"
+                    "Group { children USE A }\n");
+  undoAll();
+  while (editor->undo()) {}
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text(), "Group { children [ Group { children [ DEF A Shape { } Transform { } ] } ] }\n"
+                    "Group { children USE A }\n");
+  undoAll();
+}
+
+TEST_P(EditedPlaces, ANodeWithinAPieceIsUsedBeforeIt) {
+  load("DEF F Group { children [ ] }\n"
+       "Group { children [ Group { children [ DEF A Shape { geometry DEF B Box { } } ] } ] }\n"
+       "Group { children [ USE A Shape { geometry USE B } ] }\n");
+  editor->use({&node("F"), "children", 0}, node("A"));
+  EXPECT_EQ(text(), "DEF F Group { children [\n  DEF A Shape { geometry DEF B Box { } }\n] }\n"
+                    "Group { children [ Group { children [ USE A ] } ] }\n"
+                    "Group { children [ USE A Shape { geometry USE B } ] }\n");
+  undoAll();
+}
+
+TEST_P(EditedPlaces, NamesAndRoutesWithinPieces) {
+  const std::string before = "DEF T TimeSensor { }\nDEF G Group { children [ DEF A Group { } ",
+                    behind = "Group { children [ USE A DEF B Group { } ] } ] }\n"
+                             "Group { children [ DEF C TimeSensor { }\n"
+                             "ROUTE T.time TO C.startTime\nROUTE C.time TO C.stopTime ] }\n";
+  load(before + behind);
+  editor->rename(node("A"), "Z");
+  EXPECT_NE(text().find("children [ DEF Z Group { } Group { children [ USE Z DEF B"),
+            std::string::npos);
+  editor->rename(node("T"), "U");
+  EXPECT_NE(text().find("ROUTE U.time TO C.startTime\nROUTE C.time TO C.stopTime ]"),
+            std::string::npos);
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text().find("ROUTE U"), std::string::npos);
+  EXPECT_NE(text().find("ROUTE C.time TO C.stopTime"), std::string::npos);
+  undoAll();
+}
+
+TEST_P(EditedPlaces, APieceWithAnInstanceStaysBehindItsPrototype) {
+  load("DEF F Group { children [ ] }\nGroup { children [\n"
+       "PROTO P [ ] { Group { } }\n  Group { children [ DEF I P { } ] } ] }\n");
+  editor->use({&node("F"), "children", 0}, node("I"));
+  const std::string now = text();
+  EXPECT_LT(now.find("PROTO P"), now.find("DEF I P"));
+  undoAll();
+}
+
 } // namespace

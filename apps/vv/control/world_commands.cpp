@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -369,9 +370,13 @@ std::string WorldCommands::pick(const Pick& pick) {
   for (const PickHit::Step& step : hit.path) path.push_back(step.node);
   Node* const shape = path.empty() ? nullptr : path.back().get();
   const NodeRef appearance = childOf(shape, "appearance");
+  const CameraRay ray =
+      rayThrough(session_.pilot().camera(), session_.pilot().aspect(), pick.x, pick.y);
+  const bool isFacing =
+      std::inner_product(hit.normal.begin(), hit.normal.end(), ray.direction, 0.0) < 0;
   return fmt::format(
-      R"({{"point":{},"normal":{},"distance":{},"path":{},"geometry":{},"appearance":{},"shader":{}}})",
-      triple(hit.point), triple(hit.normal), hit.distance, factsOf(path),
+      R"({{"point":{},"normal":{},"facing":{},"distance":{},"path":{},"geometry":{},"appearance":{},"shader":{}}})",
+      triple(hit.point), triple(hit.normal), isFacing, hit.distance, factsOf(path),
       factsOf(childOf(shape, "geometry")), factsOf(appearance),
       factsOf(childOf(appearance.get(), "shader")));
 }

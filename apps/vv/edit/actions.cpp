@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "edit/node_fields.h"
+#include "edit/transform_tool.h"
 
 namespace vv {
 
@@ -119,8 +120,6 @@ void addViewpoint(WorldEditor& editor, const EditView& view) {
   const double* const m = view.camera.matrix;
   Imath::M44d matrix;
   std::copy(m, m + 16, &matrix.x[0][0]);
-  const Imath::Quatd turn = Imath::extractQuat(matrix);
-  const Imath::V3d axis = turn.angle() > 1e-9 ? turn.axis() : Imath::V3d(0, 0, 1);
   if (view.camera.fovy == 0) throw EditError("a parallel view cannot be added as a Viewpoint");
   const double angle = view.aspect >= 1
                            ? view.camera.fovy
@@ -133,7 +132,7 @@ void addViewpoint(WorldEditor& editor, const EditView& view) {
     };
     set("description", std::string("view"));
     set("position", Vec3f{float(m[12]), float(m[13]), float(m[14])});
-    set("orientation", Rotation{float(axis.x), float(axis.y), float(axis.z), float(turn.angle())});
+    set("orientation", rotationOf(Imath::extractQuat(matrix)));
     set("fieldOfView", float(angle));
   });
   editor.select({made});

@@ -60,13 +60,6 @@ uint8_t mixed(double from, double to, double part) {
 
 } // namespace
 
-bool areEqual(const EditView& a, const EditView& b) {
-  return std::equal(std::begin(a.camera.matrix), std::end(a.camera.matrix),
-                    std::begin(b.camera.matrix)) &&
-         a.camera.fovy == b.camera.fovy && a.camera.height == b.camera.height &&
-         a.camera.shader == b.camera.shader && a.aspect == b.aspect;
-}
-
 Difference differenceBetween(const picture::PixelReading& before,
                              const picture::PixelReading& now) {
   const double a = double(before.luminanceHalfWidth), b = double(now.luminanceHalfWidth);
@@ -158,7 +151,7 @@ void Comparison::ask(uint64_t changes, const EditView& view) {
 
 std::string Comparison::whyNot(const EditView& view, int width, int height) const {
   if (!hasA()) return "nothing is kept as A yet: B keeps the picture";
-  if (!areEqual(view, view_))
+  if (view != view_)
     return "the view has changed since A: the pictures cannot be compared (B keeps a new A)";
   if (width != a_.width || height != a_.height)
     return fmt::format("A has {}x{} pixels, the window {}x{}: the pictures cannot be compared",
@@ -186,7 +179,7 @@ bool Comparison::take(const picture::Picture& picture, uint64_t frame, uint64_t 
                       const EditView& view, bool isFinished) {
   if (asked_) {
     const Asked asked = *std::exchange(asked_, std::nullopt);
-    if (asked.changes == changes && areEqual(asked.view, view)) {
+    if (asked.changes == changes && asked.view == view) {
       frame_ = frame;
       isComplete_ = false;
       message_ = "A is kept";

@@ -13,9 +13,6 @@
 
 namespace vv {
 
-// Tells whether two views show the same places in the same pixels, where their sizes are equal.
-bool areEqual(const EditView& a, const EditView& b);
-
 // --- Changes of light ---
 
 // The change of the luminance from one reading to another.

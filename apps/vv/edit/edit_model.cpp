@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "edit/merged_list.h"
 #include "edit/shader_parameters.h"
 
 namespace vv {
@@ -68,15 +69,31 @@ void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
   if (dragged_ != dragged) {
     finishDrag();
     dragged_ = dragged;
+    touched_.clear();
     if (node->type().find(field.name)) begin(dragged);
   }
   if (!node->type().find(field.name)) {
     undeclared_ = std::move(value);
     return;
   }
-  requestValue([this, node, name = field.name, value = std::move(value)](WorldEditor& editor) {
-    if (!isRefused_) editor.editor().set(*node, name, value);
+  const PropertyRow* const row = sheet_.node == node ? sheet_.find(field.name) : nullptr;
+  ChangedList change{row ? row->shown : Value(), std::move(value), {}};
+  noteTouched(change.shown, change.wanted, touched_);
+  change.touched = touched_;
+  requestValue([this, dragged, change = std::move(change)](WorldEditor& editor) {
+    if (isRefused_) return;
+    const Node& node = *dragged.node;
+    const FieldInfo& info = *node.type().find(dragged.field);
+    const Value now = node.get(info);
+    const bool isOwn = set_ == std::pair(dragged, now);
+    editor.editor().set(*dragged.node, dragged.field,
+                        mergedList(change, now, isOwn, nameOf(dragged)));
+    set_ = {dragged, node.get(info)};
   });
+}
+
+std::string EditModel::nameOf(const Dragged& dragged) {
+  return fmt::format("{}.{}", dragged.node->type().name, dragged.field);
 }
 
 void EditModel::begin(const Dragged& dragged) {
@@ -85,7 +102,7 @@ void EditModel::begin(const Dragged& dragged) {
       [this, dragged, shown = row ? row->edits : 0, isShown = row != nullptr](WorldEditor& editor) {
         isRefused_ = true;
         refuseWithinStep(editor);
-        const std::string what = fmt::format("{}.{}", dragged.node->type().name, dragged.field);
+        const std::string what = nameOf(dragged);
         const uint64_t edits = editor.editor().editsOf(*dragged.node, dragged.field);
         if (isShown && edits != shown && own_ != std::pair(dragged, edits))
           throw EditError(
@@ -160,7 +177,10 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
     if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
       shown_ = NodeRef(node);
   }
-  if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
+  if (!hasAsked_ && editor.prepare()) {
+    hasAsked_ = isStale_ = true;
+    readOnly_ = editor.editor().whyReadOnly();
+  }
   bool reads = isStale_ || areValuesStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
@@ -201,7 +221,8 @@ void EditModel::read(WorldEditor& editor) {
     if (rows_[i].node == wanted) scroll_ = int(i);
 }
 
-CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view) const {
+CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view,
+                                       const FreePart& free) const {
   double low[3], high[3];
   std::fill(low, low + 3, std::numeric_limits<double>::infinity());
   std::fill(high, high + 3, -std::numeric_limits<double>::infinity());
@@ -217,12 +238,17 @@ CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view
   CameraSettings camera = view.camera;
   const double radius = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2;
   if (!std::isfinite(radius)) return camera;
-  // A sphere around the box fills nine tenths of the smaller side.
-  const double tangent = std::tan(camera.fovy / 2) * std::min(1.0, view.aspect);
-  const double distance = camera.fovy > 0 ? radius / std::sin(std::atan(tangent * .9)) : radius * 2;
+  // A sphere around the box fills nine tenths of the smaller side, in the middle of the free part.
+  constexpr double leastFree = 0.2; // part of the picture
+  const double part = std::max((free.right - free.left) / 2, leastFree);
+  const double half = std::tan(camera.fovy / 2), tangent = half * std::min(1.0, view.aspect * part);
+  const double distance =
+      std::max(camera.fovy > 0 ? radius / std::sin(std::atan(tangent * .9)) : radius * 2, 1e-6);
+  const double across =
+      free.middle() * view.aspect * (camera.fovy > 0 ? half * distance : camera.height / 2);
   for (size_t k = 0; k < 3; ++k)
     camera.matrix[12 + k] =
-        (low[k] + high[k]) / 2 + camera.matrix[8 + k] * std::max(distance, 1e-6);
+        (low[k] + high[k]) / 2 + camera.matrix[8 + k] * distance - camera.matrix[k] * across;
   return camera;
 }
 

@@ -19,10 +19,20 @@
 
 namespace vv {
 
-// Where the viewer stands, and the shape of the picture.
+// Where the viewer stands, and the shape of the picture. Equal views show the same places in the
+// same pixels, where their sizes are equal.
 struct EditView {
   xvrml::CameraSettings camera{};
   double aspect = 1;
+  bool operator==(const EditView&) const = default;
+};
+// The part of the picture that no panel of a face covers, from its left to its right, as places of
+// the pointer.
+struct FreePart {
+  double left = -1, right = 1;
+  bool contains(double x) const { return x >= left && x <= right; }
+  double middle() const { return (left + right) / 2; }
+  bool operator==(const FreePart&) const = default;
 };
 
 class EditModel {
@@ -54,8 +64,10 @@ class EditModel {
   // The edges of a box around each node that is selected.
   const std::vector<Line>& frames() const { return frames_; }
   // Returns the camera that looks as the viewer does and shows what is selected; the viewer's own
-  // if nothing is to be seen of it. [while the world can be used]
-  xvrml::CameraSettings cameraAround(WorldEditor& editor, const EditView& view) const;
+  // if nothing is to be seen of it. free: the part of the picture that it shall fill. [while the
+  // world can be used]
+  xvrml::CameraSettings cameraAround(WorldEditor& editor, const EditView& view,
+                                     const FreePart& free = {}) const;
   // The number of the row to scroll to; -1: none is new. It is given out once.
   int takeScroll() { return std::exchange(scroll_, -1); }
   // Returns, once, what is to be said to the user.
@@ -68,7 +80,8 @@ class EditModel {
   void edit(Command command);
   bool hasRequests() const { return !requests_.empty(); }
   // Sets a field. All values until no widget is active any more are one step. It is refused if
-  // another program has edited the field since it was shown. A parameter of a shader that is not
+  // another program has edited the field since it was shown. In a list those elements count that
+  // differ from what was shown: others may have changed since. A parameter of a shader that is not
   // declared yet gets its last value then.
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
@@ -101,6 +114,7 @@ class EditModel {
   };
 
   void requestValue(Command command) { requests_.push_back({std::move(command), true}); }
+  static std::string nameOf(const Dragged& dragged); // "Text.string"
   void begin(const Dragged& dragged);
   void finishDrag();
   void read(WorldEditor& editor);
@@ -122,6 +136,8 @@ class EditModel {
   bool isStale_ = true, areValuesStale_ = false;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
+  std::vector<bool> touched_;              // elements of a list that it has changed
+  std::pair<Dragged, xvrml::Value> set_;   // the last value that it has set
   bool isRefused_ = false;                 // the open step must not be
   std::pair<Dragged, uint64_t> own_;       // the last field that was dragged, and its edits then
   int scroll_ = -1;

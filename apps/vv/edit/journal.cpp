@@ -120,13 +120,11 @@ void Journal::look() {
   FoundJournal found = findJournal(
       world_, [this] { return editor_.textOnDisk(); }, refused);
   if (!found.path.empty()) left_ = std::move(found);
+  message_ = refused;
   if (left_)
-    message_ =
-        fmt::format("{} has unsaved edits that an earlier session has left in {}: the editor "
-                    "offers them",
-                    world_, left_->path);
-  else
-    message_ = refused;
+    message_ += fmt::format("{}{} has unsaved edits that an earlier session has left in {}: the "
+                            "editor offers them",
+                            refused.empty() ? "" : "; ", world_, left_->path);
 }
 
 std::shared_ptr<LeftEdits> Journal::take() {

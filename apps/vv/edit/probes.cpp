@@ -42,7 +42,7 @@ void read(Probe& probe, xvrml::Browser& browser, const picture::Picture& picture
 }
 
 void readArea(Probe& probe, const picture::Picture& picture, const EditView& view) {
-  if (!areEqual(probe.area->view, view)) {
+  if (probe.area->view != view) {
     probe.state = Probe::State::otherView;
     return;
   }
@@ -180,7 +180,7 @@ std::vector<std::optional<Difference>> Probes::differences() const {
   for (size_t i = 0; i < probes_.size(); ++i) {
     const Probe& probe = probes_[i];
     if (!probe.hasBefore || probe.state != Probe::State::read) continue;
-    if (!probe.sensor && !areEqual(view_, kept_)) continue;
+    if (!probe.sensor && view_ != kept_) continue;
     all[i] = differenceBetween(probe.before, probe.now);
     // An interval that cannot be trusted proves nothing.
     if (!probe.now.trusted || !probe.before.trusted) continue;

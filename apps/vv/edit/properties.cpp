@@ -50,6 +50,7 @@ void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
   row.isLong = row.size > PropertySheet::mostElements;
   row.edits = editor.editor().editsOf(node, row.field->name);
   if (row.isLong) row.value = Value();
+  row.shown = isMultiple(row.field->type) ? row.value : Value();
 }
 
 PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field) {

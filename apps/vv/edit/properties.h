@@ -16,6 +16,7 @@ struct PropertyRow {
   const xvrml::FieldInfo* field = nullptr;
   std::shared_ptr<const xvrml::FieldInfo> parameter; // keeps the latter
   xvrml::Value value; // empty for lists that are too long to be shown
+  xvrml::Value shown; // a list as it was read, which a face does not change
   xvrml::Value defaultValue;
   size_t size = 0; // elements of a list
   bool isDefault = false;

@@ -1,7 +1,11 @@
 #include "edit/world_editor.h"
 
 #include <algorithm>
+#include <atomic>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -13,6 +17,8 @@ namespace vv {
 using namespace xvrml;
 
 namespace {
+
+std::atomic<int> readers{0}; // threads that read files
 
 // Returns the nodes that stand in the world's file.
 SeenNodes standing(const World& world) {
@@ -28,6 +34,28 @@ bool allIn(const MFNode& nodes, const SeenNodes& known) {
 }
 
 } // namespace
+
+bool WorldEditor::prepare() {
+  constexpr uintmax_t small = 256 << 10; // bytes, which are read in some hundredths of a second
+  if (std::function<void()> read = editor_.preparation()) {
+    std::error_code none;
+    if (std::filesystem::file_size(browser_.world().path, none) < small) {
+      read();
+      return true;
+    }
+    ++readers;
+    try {
+      std::thread([read = std::move(read)]() mutable {
+        read();
+        read = nullptr; // forgets a file that nobody edits any more, before the process may end
+        --readers;
+      }).detach();
+    } catch (const std::system_error&) { --readers; } // the first edit reads it
+  }
+  return !editor_.isPreparing();
+}
+
+bool WorldEditor::isReading() { return readers > 0; }
 
 const std::vector<picture::ShaderClass>& WorldEditor::shaderClasses() {
   if (!shaderClasses_) {

@@ -130,6 +130,10 @@ void EditLight::perform(uint64_t page, const EditView&, bool, const edit::PointA
 
 // --- Reports ---
 
+std::string EditLight::progress(uint64_t page) {
+  return page == reporter_ ? report_.progress(world_.session()) : "";
+}
+
 void EditLight::perform(uint64_t page, const EditView&, bool, const edit::Report&) {
   Session& session = world_.session();
   const std::string name = downloadName(session.browser().world().path, "-report");

@@ -37,6 +37,8 @@ class EditLight {
   const Probes& probes() { return light_.probes(); }
   // Returns what of A is shown, with the change of light where a page points.
   std::string comparisonText(uint64_t page, bool isLeaders);
+  // Returns how far the report is that a page has asked for; "": there is none.
+  std::string progress(uint64_t page);
   // Returns the number of the picture that covers the present one, and a message with it; 0: there
   // is none.
   uint64_t cover();

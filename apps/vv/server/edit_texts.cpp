@@ -253,8 +253,9 @@ std::string framesText(const EditModel& model) {
 std::string handlesText(const Gizmo& gizmo) {
   std::string out = fmt::format(R"({{"type":"handles","kind":"{}","list":[)", nameOf(gizmo.kind()));
   for (const Gizmo::Handle& handle : gizmo.handles()) {
-    out += fmt::format(R"({}{{"axis":{},"end":[{:.4f},{:.4f}],"lines":)",
-                       out.ends_with('[') ? "" : ",", handle.axis, handle.end[0], handle.end[1]);
+    out += fmt::format(R"({}{{"axis":{},"opposite":{},"end":[{:.4f},{:.4f}],"lines":)",
+                       out.ends_with('[') ? "" : ",", handle.axis, handle.isOpposite, handle.end[0],
+                       handle.end[1]);
     appendLines(out, handle.lines);
     out += '}';
   }

@@ -69,7 +69,7 @@ std::string marksText(const Probes& probes, const EditView& view) {
   const auto rounded = [](double place) { return std::round(place * 1e4) / 1e4; };
   for (const Probe& probe : probes.all()) {
     if (probe.area) {
-      if (!areEqual(probe.area->view, view)) continue;
+      if (probe.area->view != view) continue;
       const Region& region = probe.area->region;
       marks.push_back({{"number", probe.number},
                        {"left", region.left},
@@ -110,6 +110,10 @@ std::string coverText(int width, int height, std::string_view jpeg) {
       fmt::format(R"({{"type":"cover","width":{},"height":{},"image":")", width, height);
   appendBase64(jpeg, text);
   return text + "\"}";
+}
+
+std::string progressText(const std::string& text) {
+  return jsonLine({{"type", "progress"}, {"text", text}});
 }
 
 std::string reportText(std::span<const std::string> paths, std::span<const std::string> names) {

@@ -22,6 +22,8 @@ std::string comparisonText(const Comparison& comparison, bool isLeaders,
                            const std::optional<Place>& pointer);
 // Returns a picture that covers the present one. jpeg: the bytes of its file.
 std::string coverText(int width, int height, std::string_view jpeg);
+// text: how far a report is.
+std::string progressText(const std::string& text);
 // Tells a page where the files of its report can be fetched.
 std::string reportText(std::span<const std::string> paths, std::span<const std::string> names);
 

@@ -70,8 +70,14 @@ std::string write(Report report, const std::vector<Shot>& shots, const std::stri
     }
     if (deliver) return deliver(reportPage(report), reportTable(report));
     const std::string name = freeReportName(world);
-    picture::writeRegularFile(name + ".html", reportPage(report));
     picture::writeRegularFile(name + ".csv", reportTable(report));
+    try {
+      picture::writeRegularFile(name + ".html", reportPage(report));
+    } catch (...) { // there is a whole report or none
+      std::error_code error;
+      fs::remove(name + ".csv", error);
+      throw;
+    }
     return fmt::format("report saved as {0}.html and {0}.csv", name);
   } catch (const std::bad_alloc&) {
     return "no report: not enough memory";
@@ -84,6 +90,7 @@ struct WorldReport::Work {
   std::string message;
   bool waits = false;             // for the picture
   bool isDelivered = false;       // there are no files
+  int samples = 0;                // that the picture gets
   std::future<std::string> files; // valid: they are being written
 };
 
@@ -92,7 +99,7 @@ WorldReport::~WorldReport() = default;
 
 void WorldReport::begin(Session& session, const Probes& probes, const picture::Picture* before,
                         const std::vector<std::string>& arguments, Deliver deliver) {
-  if (work_->waits) return session.captures().giveUp(asker);
+  if (work_->waits) return giveUp(session);
   if (work_->files.valid()) return;
   WorldEditor& editor = session.editor();
   const xvrml::World& world = session.browser().world();
@@ -109,18 +116,34 @@ void WorldReport::begin(Session& session, const Probes& probes, const picture::P
   if (before) shots.push_back(shotOf("Before (A)", *before, falseColour));
   work_->waits = true;
   work_->isDelivered = deliver != nullptr;
-  work_->message = "the report waits for its picture; Report again gives it up";
+  work_->samples = session.pictures().stillOf(session.pilot()).samples;
   session.capture(0, asker,
                   [work = work_, report, shots, falseColour, command = session.command(arguments),
                    path = world.path, deliver](const picture::Picture* made) mutable {
                     work->waits = false;
-                    work->message = made ? "" : "no report: its picture was given up";
-                    if (!made) return;
+                    if (!made) {
+                      work->message = "no report: its picture was given up";
+                      if (!work->isDelivered) say("vv: " + work->message);
+                      return;
+                    }
                     shots.push_back(shotOf(shots.empty() ? "The view" : "Now (B)", *made,
                                            falseColour, command));
                     work->files = std::async(std::launch::async, write, std::move(report),
                                              std::move(shots), path, deliver);
                   });
+}
+
+bool WorldReport::isWaiting() const { return work_->waits; }
+
+void WorldReport::giveUp(Session& session) {
+  if (work_->waits) session.captures().giveUp(asker);
+}
+
+std::string WorldReport::progress(Session& session) const {
+  if (work_->waits)
+    return fmt::format("Report: its picture has {:.0f} of {} samples; Escape gives it up",
+                       session.captures().samples(), work_->samples);
+  return work_->files.valid() ? "Report: the files are being written" : "";
 }
 
 void WorldReport::reset() { work_ = std::make_shared<Work>(); }

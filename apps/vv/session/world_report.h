@@ -25,6 +25,12 @@ class WorldReport {
   // is shown beside it; null: none. arguments: of the command line. [while the world can be used]
   void begin(Session& session, const Probes& probes, const picture::Picture* before,
              const std::vector<std::string>& arguments, Deliver deliver = {});
+  // Tells whether a report waits for its picture.
+  bool isWaiting() const;
+  // Gives up such a report: no file is written.
+  void giveUp(Session& session);
+  // Returns what it is doing, as a line for the user; "" if there is nothing to do.
+  std::string progress(Session& session) const;
   // Forgets the session, because it ends.
   void reset();
   // Returns, once, what has become of the report, which is also printed if it is in files; "" if

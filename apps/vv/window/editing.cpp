@@ -1,5 +1,6 @@
 #include "window/editing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -28,7 +29,7 @@ constexpr const char* kindNames[] = {"move", "turn", "scale"};
 
 void Editing::open(bool open) {
   if (open && editorLibrary().empty()) {
-    message_ = "vv was built without the editor: build with Dear ImGui (Debian: libimgui-dev)";
+    say("vv was built without the editor: build with Dear ImGui (Debian: libimgui-dev)");
     return;
   }
   if (open && !model_) {
@@ -36,6 +37,7 @@ void Editing::open(bool open) {
     panels_.emplace(*model_, probes_, [this] { save(); });
   }
   if (hasTool_) endTool(false);
+  if (measures_ || drag_ == Drag::measure) show("");
   isOpen_ = open;
   pressed_.reset();
   drag_ = Drag::none;
@@ -44,6 +46,7 @@ void Editing::open(bool open) {
     screen_.setGui([this] { draw(); });
   } else {
     screen_.setGui(nullptr);
+    screen_.setFree({});
     if (comparison_.shown() != Comparison::Shown::present) comparison_.toggle(comparison_.shown());
     showCover();
     if (model_) model_->setActive(false);
@@ -60,6 +63,8 @@ void Editing::reset() {
   showCover();
   gizmo_.clear();
   report_.reset();
+  progress_.clear();
+  givesUpReport_ = false;
   if (isOpen_) open(true);
 }
 
@@ -68,17 +73,19 @@ void Editing::draw() {
   const InputEvent& at = drag_ == Drag::handle && pressed_ ? *pressed_ : pointer_;
   const int pointed = isOverPicture_ && !hasTool_ ? gizmo_.axisAt(at.x, at.y) : -1;
   drawGizmo(gizmo_, isUsed ? tool_->axis() : pointed);
-  drawComparison(comparison_, pointer_.x, pointer_.y);
+  drawComparison(comparison_, pointer_.x, pointer_.y, panels_->freePart());
   if (pressed_ && (drag_ == Drag::measure || drag_ == Drag::select))
     drawRectangle(regionBetween(pressed_->x, pressed_->y, pointer_.x, pointer_.y), "");
   panels_->draw();
+  screen_.setFree(panels_->freePart());
   questions_.draw();
 }
 
-std::string Editing::takeMessage() {
-  if (std::string text = report_.takeMessage(); !text.empty()) return text;
-  if (!message_.empty() || !model_) return std::exchange(message_, {});
-  return model_->takeMessage();
+std::optional<EditingMessage> Editing::takeMessage() {
+  if (std::string text = report_.takeMessage(); !text.empty()) say(std::move(text));
+  if (!message_ && model_)
+    if (std::string text = model_->takeMessage(); !text.empty()) say(std::move(text));
+  return std::exchange(message_, std::nullopt);
 }
 
 bool Editing::take(InputEvent& event) {
@@ -102,6 +109,7 @@ bool Editing::take(InputEvent& event) {
     if (drag_ != Drag::none) follow(event);
     return drag_ != Drag::none;
   case Kind::leave:
+    if (drag_ == Drag::measure) show("");
     if (drag_ != Drag::tool) drag_ = Drag::none;
     return false;
   case Kind::release: return event.button == Button::left && endDrag(event);
@@ -150,8 +158,9 @@ bool Editing::endDrag(const InputEvent& release) {
         selectIn(editor, view, region, add);
     });
     pressed_.reset();
+    if (drag == Drag::measure) show("");
   } else if (drag == Drag::measure) {
-    message_ = "drag from one corner of the rectangle to the other";
+    say("drag from one corner of the rectangle to the other");
   } else if (drag != Drag::wiper && drag != Drag::tool) {
     click(release);
   }
@@ -183,12 +192,12 @@ bool Editing::press(const InputEvent& event) {
   }
   const bool measures = !event.control && !event.alt && (key == "V" || key == "U");
   if (measures && !hasLight_) {
-    message_ = "--colour vrml97 makes colours for screens, not light";
+    say("--colour vrml97 makes colours for screens, not light");
     return true;
   }
   if (measures && event.shift && key == "V") {
     measures_ = true;
-    message_ = "drag a rectangle over what is to be measured (Escape: none)";
+    show("drag a rectangle over what is to be measured (Escape: none)");
     return true;
   }
   if (measures && key == "V")
@@ -215,14 +224,16 @@ bool Editing::press(const InputEvent& event) {
   if (key == "S") return beginTool(TransformTool::Kind::scale, -1, pointer_);
   if (key == "T") {
     gizmo_.cycle();
-    message_ = fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none");
+    say(fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none"));
     return true;
   }
   if (key == "Escape" && (measures_ || drag_ == Drag::measure || drag_ == Drag::select)) {
     measures_ = false;
     pressed_.reset();
+    show("");
     return true;
   }
+  if (key == "Escape" && report_.isWaiting()) return givesUpReport_ = true;
   if (key == "Escape")
     return request([this](WorldEditor& editor) {
       if (comparison_.shown() != Comparison::Shown::present)
@@ -269,7 +280,7 @@ void Editing::useTool(std::function<void(TransformTool& tool, WorldEditor& edito
   model_->request([this, use = std::move(use)](WorldEditor& editor) {
     if (!tool_) return;
     use(*tool_, editor);
-    message_ = tool_->text();
+    show(tool_->text());
   });
 }
 
@@ -279,6 +290,7 @@ void Editing::endTool(bool accept) {
     if (!tool_) return;
     accept ? tool_->accept(editor) : tool_->cancel(editor);
     tool_.reset();
+    show("");
   });
 }
 
@@ -307,7 +319,7 @@ bool Editing::takeForTool(const InputEvent& event) {
     if (hasToolFailed_ && (event.control || !(isAxis || TransformTool::isNumberKey(key))))
       return hasTool_ = false;
     if ((event.control || event.alt) && !key.ends_with("Ctrl") && !key.ends_with("Alt")) {
-      message_ = "end this first: Enter keeps it, Escape takes it back";
+      say("end this first: Enter keeps it, Escape takes it back");
       return true;
     }
     if (key == "Return" || key == "Keypad Enter" || key == "Escape") {
@@ -336,16 +348,29 @@ void Editing::update(Session& session, double seconds) {
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
   if (std::exchange(wantsFrame_, false))
-    session.pilot().putAt(model_->cameraAround(session.editor(), view_));
+    session.pilot().putAt(model_->cameraAround(session.editor(), view_, panels_->freePart()));
   if (!model_->readOnly().empty())
     gizmo_.clear();
-  else if (gizmo_.place(session.editor(), view_))
+  else if (gizmo_.place(session.editor(), view_, panels_->freePart()))
     screen_.redraw();
   if (probes_.takeKeep()) light_.keep(session.editor(), view_);
   if (light_.update(session, seconds)) screen_.redraw();
-  if (std::string text = light_.takeMessage(); !text.empty()) message_ = std::move(text);
+  // Below a panel the line could not be dragged.
+  const FreePart& free = panels_->freePart();
+  comparison_.setWiper(std::clamp(comparison_.wiper(), free.left, free.right));
+  if (std::string text = light_.takeMessage(); !text.empty()) say(std::move(text));
   showCover();
+  followReport(session);
+}
+
+// Begins a report or gives it up, and shows how far it is.
+void Editing::followReport(Session& session) {
   if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
+  if (std::exchange(givesUpReport_, false)) report_.giveUp(session);
+  std::string progress = report_.progress(session);
+  if (progress == progress_) return;
+  progress_ = progress;
+  if (!progress.empty()) show(std::move(progress)); // the outcome follows
 }
 
 void Editing::showCover() {

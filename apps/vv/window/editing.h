@@ -21,6 +21,13 @@
 
 namespace vv {
 
+// The bottom of the window shows such a message. lasts: until it says something else, instead of
+// some seconds; an empty text ends what has been said.
+struct EditingMessage {
+  std::string text;
+  bool lasts = false;
+};
+
 class Editing {
  public:
   // arguments: those of the command line, for the command in reports. recover: loads the world with
@@ -49,7 +56,7 @@ class Editing {
   // Forgets the world, because another takes its place.
   void reset();
   // Returns, once, what is to be said to the user.
-  std::string takeMessage();
+  std::optional<EditingMessage> takeMessage();
 
  private:
   // A drag of the left button that is not the session's: of the line of the wiper, of a rectangle
@@ -57,6 +64,9 @@ class Editing {
   enum class Drag : uint8_t { none, wiper, measure, select, handle, tool };
 
   void draw();
+  void say(std::string text) { message_ = {std::move(text), false}; }
+  // Shows a text until it is ended by an empty one.
+  void show(std::string text) { message_ = {std::move(text), true}; }
   void ask(Question question);
   // Saves the file, or asks first if somebody else has changed it.
   void save();
@@ -77,6 +87,7 @@ class Editing {
   void endTool(bool accept);
   bool takeForTool(const InputEvent& event);
   void showCover();
+  void followReport(Session& session);
 
   Screen& screen_;
   Questions& questions_;
@@ -104,7 +115,9 @@ class Editing {
   std::optional<TransformTool> tool_;
   bool hasLight_ = true;    // pictures have light that can be measured
   bool wantsFrame_ = false; // the viewer is to see what is selected
-  std::string message_;
+  bool givesUpReport_ = false;
+  std::string progress_; // what is shown of the report
+  std::optional<EditingMessage> message_;
 };
 
 } // namespace vv

@@ -8,6 +8,7 @@
 
 #include "printable.h"
 #include "window/comparison_view.h"
+#include "window/parts.h"
 #include "window/property_widgets.h"
 
 namespace vv {
@@ -61,8 +62,10 @@ void EditorPanels::draw() {
   drawFrames();
   drawOutline();
   drawSheet();
+  const auto width = double(ImGui::GetIO().DisplaySize.x);
+  free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
   drawProbes();
-  drawProblems(model_);
+  drawProblems(model_, free_);
   model_.setActive(ImGui::IsAnyItemActive());
 }
 
@@ -237,7 +240,7 @@ void EditorPanels::drawProbes() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   for (const Probe& probe : probes_.all()) {
-    if (probe.area && areEqual(probe.area->view, view_))
+    if (probe.area && probe.area->view == view_)
       drawRectangle(probe.area->region, std::to_string(probe.number).c_str());
     if (probe.area) continue;
     double x = 0, y = 0;
@@ -247,11 +250,13 @@ void EditorPanels::drawProbes() {
     list.AddText(ImVec2(at.x + 6, at.y - 8), frameColour, std::to_string(probe.number).c_str());
   }
   // Between the panels.
-  const float width = 0.42f * size.x;
-  ImGui::SetNextWindowPos(ImVec2(0.27f * size.x, size.y - 30), ImGuiCond_Always, ImVec2(0, 1));
+  constexpr float margin = 6;
+  const float left = float(1 + free_.left) / 2 * size.x + margin,
+              width = float(free_.right - free_.left) / 2 * size.x - 2 * margin;
+  ImGui::SetNextWindowPos(ImVec2(left, size.y - 30), ImGuiCond_Always, ImVec2(0, 1));
   if (ImGui::Begin("Probes", nullptr,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
-    ImGui::PushTextWrapPos(width);
+    const float inside = width - 2 * ImGui::GetStyle().WindowPadding.x;
     const std::vector<std::optional<Difference>> changes = probes_.differences();
     for (size_t i = 0; i < changes.size(); ++i) {
       const std::string text = probeText(probes_.all()[i], changes[i]);
@@ -259,10 +264,9 @@ void EditorPanels::drawProbes() {
       ImGui::PushStyleColor(
           ImGuiCol_Text,
           ImGui::GetStyleColorVec4(!changes[i] || certain ? ImGuiCol_Text : ImGuiCol_TextDisabled));
-      ImGui::TextUnformatted(text.c_str());
+      drawParts(text, inside);
       ImGui::PopStyleColor();
     }
-    ImGui::PopTextWrapPos();
     if (button("Keep as A", true, "Compare what follows with the light of now (B)"))
       probes_.askToKeep();
     if (button("Copy", true, "Copy all as a table (CSV)"))

@@ -23,6 +23,8 @@ class EditorPanels {
   void draw();
   // Where the viewer stands, for a new Viewpoint.
   void setView(const EditView& view) { view_ = view; }
+  // The part of the picture between the panels, as they were drawn last.
+  const FreePart& freePart() const { return free_; }
   // Tells, once, whether the user has asked for a report.
   bool takeReportWish() { return std::exchange(wantsReport_, false); }
 
@@ -41,7 +43,8 @@ class EditorPanels {
   PanelWidths widths_ = readPanelWidths(panelStateFile()); // what the user has chosen
   float outlineWidth_ = 0, sheetWidth_ = 0;                // as the panels were drawn last
   bool isResized_ = false;                                 // the user drags the edge of a panel
-  OutlineRow menuRow_;                                     // the row that the menu is about
+  FreePart free_;
+  OutlineRow menuRow_; // the row that the menu is about
   bool opensMenu_ = false;
 
   EditModel& model_;
@@ -53,6 +56,6 @@ class EditorPanels {
 };
 
 // Draws the list of the messages about the world, if it is open.
-void drawProblems(EditModel& model);
+void drawProblems(EditModel& model, const FreePart& free);
 
 } // namespace vv

@@ -147,7 +147,8 @@ class Window {
   OverlayLevel level_ = OverlayLevel::brief;
   std::string loading_, message_, bottom_;
   double messageEnds_ = 0, shownAt_ = -1;
-  std::vector<std::string> lines_;
+  std::vector<std::string> lines_; // those that the overlay shows
+  int linesWidth_ = 0;             // the width that they were painted for
 };
 
 int Window::run() {
@@ -423,7 +424,7 @@ void Window::tell() {
   reportClusterMessages();
   if (session_ && session_->resting())
     if (const std::string text = session_->takeMessage(); !text.empty()) message(text, 3);
-  if (const std::string text = editing_.takeMessage(); !text.empty()) message(text, 6);
+  if (const auto told = editing_.takeMessage()) message(told->text, told->lasts ? 1e9 : 6);
   const std::string bottom = bottomLine();
   if (bottom != bottom_ || shownAt_ < 0) {
     bottom_ = bottom;
@@ -435,9 +436,10 @@ void Window::tell() {
   shownAt_ = seconds();
   std::vector<std::string> lines;
   if (session_) lines = overlayLines(session_->facts(), session_->pilot().paused(), level_);
-  if (lines == lines_) return;
+  const int width = screen_.freeWidth();
+  if (std::exchange(linesWidth_, width) == width && lines == lines_) return;
   lines_ = lines;
-  screen_.setPanel(Screen::top, painter_->paint(lines, screen_.width()));
+  screen_.setPanel(Screen::top, painter_->paint(lines, width));
 }
 
 void Window::sound() {

@@ -13,6 +13,7 @@
 // changed nothing.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -45,7 +46,7 @@ struct NodeSlot {
   size_t index = 0;  // in an MFNode or among the roots; one past the last appends
 };
 
-// Wide because all edits of a file share one history.
+// Wide because each kind of edit is a function, and so is each question about the file.
 class Editor {
  public:
   // Edit a world that runs, or one that does not. The world must outlive the editor, and must not
@@ -136,6 +137,11 @@ class Editor {
   void removeRoute(Node& from, std::string_view out, Node& to, std::string_view in);
 
   // --- The file ---
+  // Returns what reads the file for editing, so that the first edit need not wait for it: it is to
+  // be called once, on any thread, also after the end of the editor. null: nothing is to be read.
+  // isPreparing() tells whether it has not ended yet; edits wait for that.
+  std::function<void()> preparation();
+  bool isPreparing() const;
   // Returns why the world's file cannot be edited; empty if it can.
   std::string whyReadOnly();
   // Returns the text of the file with all edits. It has been read back, and gives the edited world.

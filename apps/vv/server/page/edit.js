@@ -66,6 +66,7 @@ class Editor {
     page.on_comparison = (message) => this.light.onComparison(message);
     page.on_cover = (message) => this.light.onCover(message);
     page.on_problems = (message) => this.problems.onProblems(message);
+    page.on_progress = (message) => this.onProgress(message);
     page.on_report = (message) => page.showPanel(reportPanel(message));
     page.showHelp = () => this.keys.showHelp();
   }
@@ -165,7 +166,7 @@ class Editor {
       make("div", { id: "fields" }),
     );
     work.append(outline, stage, sheet);
-    stage.append(make("p", { id: "tool" }), make("p", { id: "said" }));
+    for (const id of ["progress", "tool", "said"]) stage.append(make("p", { id }));
     $("said").setAttribute("role", "status");
     const toggle = (id, text, panel) => {
       const one = button(id, text, `Show or hide: ${text}`, () => this.toggle(panel));
@@ -330,6 +331,11 @@ class Editor {
   onTool(message) {
     $("tool").textContent = message.text;
     this.tools.onTool(message);
+  }
+
+  onProgress(message) {
+    this.isReporting = message.text !== "";
+    $("progress").textContent = message.text;
   }
 
   on_history(message) {

@@ -40,7 +40,7 @@ export class EditorKeys {
       ["W", "A beside the picture", edit("compare", { what: "wiper" })],
       ["D", "what has changed since A", edit("compare", { what: "difference" })],
       ["F1", "this help", () => this.showHelp()],
-      ["Escape", "end a comparison, then select nothing", () => this.escape()],
+      ["Escape", "give up a report, end a comparison, select nothing", () => this.escape()],
     ].map(([keys, text, action]) => ({ keys: keys.split(" "), text, action }));
   }
 
@@ -75,12 +75,14 @@ export class EditorKeys {
   }
 
   endsNothing() {
+    if (this.editor.isReporting) return false;
     return this.editor.selected === 0 && this.editor.light.state.shown === "present";
   }
 
   escape() {
     const { shown } = this.editor.light.state;
-    if (shown === "present") this.editor.edit("select", { node: null });
+    if (this.editor.isReporting) this.editor.edit("report"); // once more gives it up
+    else if (shown === "present") this.editor.edit("select", { node: null });
     else this.editor.edit("compare", { what: shown });
   }
 

@@ -110,7 +110,8 @@ export class Tools {
         );
     const handles = this.handles.list.map((one) => {
       const lines = (name) => one.lines.map((ends) => line(ends, { class: name }));
-      const place = label(axes[one.axis], one.end[0], one.end[1], 7, -6);
+      const letter = (one.opposite ? "-" : "") + axes[one.axis];
+      const place = label(letter, one.end[0], one.end[1], 7, -6);
       const head = this.head(one, x, y);
       return draw(
         "g",
