@@ -1,5 +1,5 @@
-// url.h: parses URLs. The functions of xvrml/world.h about URLs are implemented beside this one. [any
-// thread]
+// url.h: parses URLs. Functions of xvrml/world.h about URLs are implemented beside this one.
+// [any thread]
 #pragma once
 
 #include <string>
