@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "edit/shader_parameters.h"
+#include "libpicture/files/atomic_file.h"
 
 namespace vv {
 
@@ -159,7 +160,10 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
     if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
       shown_ = NodeRef(node);
   }
-  if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
+  if (!std::exchange(hasAsked_, true)) {
+    readOnly_ = editor.editor().whyReadOnly();
+    if (readOnly_.empty()) unwritable_ = picture::whyNotEditable(editor.browser().world().path);
+  }
   bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;

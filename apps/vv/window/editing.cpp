@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "edit/import.h"
 #include "window/comparison_view.h"
 #include "window/gizmo_view.h"
 #include "window/window.h"
@@ -43,7 +44,8 @@ void Editing::open(bool open) {
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_, probes_, [this] { save(); });
+    panels_.emplace(*model_, probes_, library_, [this] { save(); });
+    library_.refresh();
   }
   if (hasTool_) endTool(false);
   isOpen_ = open;
@@ -99,6 +101,10 @@ bool Editing::take(InputEvent& event) {
   if (event.kind == Kind::move || event.kind == Kind::leave)
     isOverPicture_ = event.kind == Kind::move;
   if (!isOpen_) return false;
+  if (event.kind == Kind::open) {
+    model_->edit([file = event.text](WorldEditor& editor) { importFile(editor, file); });
+    return true;
+  }
   if (hasTool_ && takeForTool(event)) return true;
   switch (event.kind) {
   case Kind::press:
@@ -217,6 +223,11 @@ bool Editing::press(const InputEvent& event) {
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
   if (event.control && key == "G") return request(wrapSelected);
   if (event.control || event.alt) return false;
+  if (event.shift && key == "A") {
+    panels_->openAddMenu();
+    screen_.redraw();
+    return true;
+  }
   if (event.shift) return key == "D" && request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
   if (key == ".") return wantsFrame_ = true;
@@ -357,7 +368,18 @@ void Editing::update(Session& session, double seconds) {
   readSensors(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
+  drawBalls(session);
   if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
+}
+
+// Lets the looks of the library be drawn while the picture needs nobody, or the user waits for
+// them.
+void Editing::drawBalls(Session& session) {
+  const bool isStill = session.pictures().isRefining() && !session.viewers().own().isOutdated();
+  const bool mayRender =
+      isOpen_ && isStill && !model_->looks().empty() &&
+      (panels_->isChoosingLook() || session.pictures().isFinished(session.pilot()));
+  if (library_.advance(model_->looks(), session.editor().shaderPath(), mayRender)) screen_.redraw();
 }
 
 void Editing::showCover() {

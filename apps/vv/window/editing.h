@@ -81,6 +81,7 @@ class Editing {
   void showCover();
   void readStill(Session& session, double seconds);
   void readSensors(Session& session, double seconds);
+  void drawBalls(Session& session);
 
   Screen& screen_;
   Questions& questions_;
@@ -97,6 +98,7 @@ class Editing {
   double nextSensors_ = 0;    // when sensors are read again, after a failure
   uint64_t finishedRead_ = 0; // the number of the finished frame that was read
   uint64_t cover_ = 0;        // the number of the comparison's cover that the screen shows
+  LookLibrary library_;
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then

@@ -101,6 +101,7 @@ struct Gui::Impl {
     io.LogFilename = nullptr;
     io.ConfigInputTextCursorBlink = false; // nothing is drawn anew while nothing happens
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    io.BackendRendererUserData = renderer; // for those who make textures
     // Without it, the edges of panels cannot be dragged. The pointer's shape stays; edges light up.
     io.BackendFlags |= ImGuiBackendFlags_HasMouseCursors;
     std::fill(std::begin(io.KeyMap), std::end(io.KeyMap), -1);
