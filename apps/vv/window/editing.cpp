@@ -20,6 +20,8 @@ namespace {
 constexpr double clickDistance = 0.012;
 // How far the pointer may be from the line of the wiper, in halves of the picture's width.
 constexpr double wiperReach = 0.02;
+// Frames until a menu is open and gets the keys.
+constexpr int framesToOpen = 3;
 struct SurfaceSeen {
   CameraRay ray;
   PickHit hit;
@@ -225,7 +227,10 @@ bool Editing::press(const InputEvent& event) {
   if (event.control || event.alt) return false;
   if (event.shift && key == "A") {
     panels_->openAddMenu();
-    screen_.redraw();
+    for (int frame = 0; frame < framesToOpen; ++frame) {
+      screen_.redraw();
+      screen_.present();
+    }
     return true;
   }
   if (event.shift) return key == "D" && request(duplicateSelected);
