@@ -369,11 +369,11 @@ void Editing::update(Session& session, double seconds) {
     screen_.redraw();
   if (probes_.takeKeep()) keepLight(session.editor());
   compare(session);
+  drawBalls(session);
   readStill(session, seconds);
   readSensors(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
   showCover();
-  drawBalls(session);
   if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
 }
 
