@@ -49,7 +49,7 @@ class EditModel {
   bool hasUnsaved() const { return unsaved_; }
   // Why the file cannot be edited; "": it can, or this is not known yet.
   const std::string& readOnly() const { return readOnly_; }
-  // Why the file can be edited, but not be saved in place; "": it can be.
+  // Why the file could not be saved in place; "": it can be.
   const std::string& unwritable() const { return unwritable_; }
   // The messages about the world.
   ProblemList& problems() { return problems_; }

@@ -20,8 +20,6 @@ namespace {
 constexpr double clickDistance = 0.012;
 // How far the pointer may be from the line of the wiper, in halves of the picture's width.
 constexpr double wiperReach = 0.02;
-// Frames until a menu is open and gets the keys.
-constexpr int framesToOpen = 3;
 struct SurfaceSeen {
   CameraRay ray;
   PickHit hit;
@@ -36,6 +34,7 @@ SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, const InputEven
   return seen;
 }
 constexpr const char* kindNames[] = {"move", "turn", "scale"};
+constexpr int framesToOpen = 3; // until a menu gets the keys
 
 } // namespace
 
@@ -361,6 +360,7 @@ void Editing::update(Session& session, double seconds) {
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
+  drawBalls(session);
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_));
   if (!model_->readOnly().empty())
@@ -369,7 +369,6 @@ void Editing::update(Session& session, double seconds) {
     screen_.redraw();
   if (probes_.takeKeep()) keepLight(session.editor());
   compare(session);
-  drawBalls(session);
   readStill(session, seconds);
   readSensors(session, seconds);
   if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);

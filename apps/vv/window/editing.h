@@ -75,19 +75,20 @@ class Editing {
   bool beginTool(TransformTool::Kind kind, int axis, const InputEvent& at);
   void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
   void endTool(bool accept);
+  void drawBalls(Session& session);
   bool takeForTool(const InputEvent& event);
   void keepLight(WorldEditor& editor);
   void compare(Session& session);
   void showCover();
   void readStill(Session& session, double seconds);
   void readSensors(Session& session, double seconds);
-  void drawBalls(Session& session);
 
   Screen& screen_;
   Questions& questions_;
   const std::vector<std::string>& arguments_;
   const std::function<void(LoadRequest)> recover_;
   WorldReport report_;
+  LookLibrary library_;
   bool isOpen_ = false;
   bool hasOffered_ = false;        // what an earlier session has left, if there is anything
   std::optional<EditModel> model_; // one for each world
@@ -98,7 +99,6 @@ class Editing {
   double nextSensors_ = 0;    // when sensors are read again, after a failure
   uint64_t finishedRead_ = 0; // the number of the finished frame that was read
   uint64_t cover_ = 0;        // the number of the comparison's cover that the screen shows
-  LookLibrary library_;
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then

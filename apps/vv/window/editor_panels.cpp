@@ -173,8 +173,10 @@ void EditorPanels::drawOutline() {
   if (ImGui::Begin("##outline", nullptr, panelFlags)) {
     watchWidth(outlineWidth_, widths_.outline);
     drawTools();
-    if (!model_.readOnly().empty()) ImGui::TextWrapped("%s", model_.readOnly().c_str());
-    if (!model_.unwritable().empty()) ImGui::TextWrapped("%s", model_.unwritable().c_str());
+    if (!model_.readOnly().empty())
+      ImGui::TextWrapped("%s", model_.readOnly().c_str());
+    else if (!model_.unwritable().empty())
+      ImGui::TextWrapped("%s", model_.unwritable().c_str());
     if (model_.hiddenCount() > 0)
       ImGui::TextWrapped("%zu nodes are hidden: View, Show all", model_.hiddenCount());
     ImGui::SetNextItemWidth(-1);
@@ -301,7 +303,18 @@ void EditorPanels::drawProbes() {
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
     ImGui::PushTextWrapPos(width);
     const std::vector<std::optional<Difference>> changes = probes_.differences();
-    for (size_t i = 0; i < changes.size(); ++i) drawProbe(probes_.all()[i], changes[i]);
+    for (size_t i = 0; i < changes.size(); ++i) {
+      const std::string text = probeText(probes_.all()[i], changes[i]);
+      const bool certain = changes[i] && changes[i]->isSignificant;
+      ImGui::BeginGroup();
+      ImGui::PushStyleColor(
+          ImGuiCol_Text,
+          ImGui::GetStyleColorVec4(!changes[i] || certain ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+      ImGui::TextUnformatted(text.c_str());
+      ImGui::PopStyleColor();
+      ImGui::EndGroup();
+      drawProbeMenu(probes_.all()[i]);
+    }
     ImGui::PopTextWrapPos();
     if (button("Keep as A", true, "Compare what follows with the light of now (B)"))
       probes_.askToKeep();
@@ -313,13 +326,8 @@ void EditorPanels::drawProbes() {
   ImGui::End();
 }
 
-// Draws the line of a probe. A click with the right button keeps it in the world.
-void EditorPanels::drawProbe(const Probe& probe, const std::optional<Difference>& change) {
-  const bool certain = !change || change->isSignificant;
-  ImGui::PushStyleColor(ImGuiCol_Text,
-                        ImGui::GetStyleColorVec4(certain ? ImGuiCol_Text : ImGuiCol_TextDisabled));
-  ImGui::TextUnformatted(probeText(probe, change).c_str());
-  ImGui::PopStyleColor();
+// Draws the menu of a probe, whose line is the last item.
+void EditorPanels::drawProbeMenu(const Probe& probe) {
   hint(canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "");
   ImGui::PushID(probe.number);
   if (Menu menu; menu.beginContext("##probe")) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -47,7 +46,7 @@ class EditorPanels {
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
-  void drawProbe(const Probe& probe, const std::optional<Difference>& change);
+  void drawProbeMenu(const Probe& probe);
 
   PanelWidths widths_ = readPanelWidths(panelStateFile()); // what the user has chosen
   float outlineWidth_ = 0, sheetWidth_ = 0;                // as the panels were drawn last
