@@ -152,7 +152,6 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
       command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
   }
-  if (!hasAsked_) unwritable_ = picture::whyNotEditable(editor.browser().world().path);
   const uint64_t changes = editor.editor().changes();
   if (std::exchange(changes_, changes) != changes) isStale_ = true;
   if (selection_ != editor.selection()) {
@@ -161,6 +160,7 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
     if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
       shown_ = NodeRef(node);
   }
+  if (!hasAsked_) unwritable_ = picture::whyNotEditable(editor.browser().world().path);
   if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
   bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
