@@ -298,6 +298,25 @@ TEST_F(Library, AProbeIsKeptAsASensor) {
   EXPECT_EQ(text(), hall);
 }
 
+TEST_F(Library, SensorsAreShownAsProbes) {
+  open(write("home/sensors.wrl", "#VRML V2.0 utf8\n"
+                                 "Transform { translation 1 0 0 children [\n"
+                                 "  ORTSensor { position 0 2 0 direction 0 1 0 }\n"
+                                 "  ORTSensor { size 1 1 columns 2 }\n"
+                                 "  ORTSensor { quantity \"LUMINANCE\" direction 0 0 -1 } ] }\n"));
+  Probes probes;
+  showSensors(*editor, probes);
+  ASSERT_EQ(probes.all().size(), 2u);
+  EXPECT_EQ(probes.all()[0].point, (std::array<double, 3>{1, 2, 0}));
+  EXPECT_STREQ(unitOf(probes.all()[0]), "lx");
+  EXPECT_EQ(probes.all()[1].point, (std::array<double, 3>{1, 0, 0}));
+  EXPECT_STREQ(unitOf(probes.all()[1]), "cd/m2");
+  EXPECT_THROW(showSensors(*editor, probes), EditError) << "all are shown";
+  EXPECT_EQ(probes.all().size(), 2u);
+  open(write("home/bad.wrl", "#VRML V2.0 utf8\nORTSensor { direction 0 0 0 }\n"));
+  EXPECT_THROW(showSensors(*editor, probes), picture::SensorError);
+}
+
 TEST_F(Library, AProbeOfLuminanceLooksAsTheViewerDoes) {
   Probes probes;
   probes.add({0, 0, 1});

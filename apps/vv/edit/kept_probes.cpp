@@ -6,6 +6,7 @@
 
 #include "edit/node_fields.h"
 #include "xvrml/nodes.h"
+#include "xvrml/walk.h"
 
 namespace vv {
 
@@ -24,7 +25,8 @@ Vec3f vectorOf(const double v[3]) { return {float(v[0]), float(v[1]), float(v[2]
 Reading readingOf(const Probe& probe, const EditView& view) {
   if (!canBeKept(probe)) throw EditError("a rectangle belongs to the pictures of its view");
   if (probe.sensor)
-    return {vectorOf(probe.sensor->first), vectorOf(probe.sensor->direction), "ILLUMINANCE"};
+    return {vectorOf(probe.sensor->first), vectorOf(probe.sensor->direction),
+            probe.sensor->luminance ? "LUMINANCE" : "ILLUMINANCE"};
   double x = 0, y = 0;
   if (!projectPoint(view.camera, view.aspect, probe.point.data(), x, y))
     throw EditError(fmt::format("probe {} is behind the viewer", probe.number));
@@ -36,6 +38,14 @@ bool reads(const NodeRef& node, const Reading& reading) {
   const auto* const sensor = nodeCast<nodes::ORTSensor>(node);
   return sensor && sensor->position == reading.position && sensor->direction == reading.direction &&
          sensor->quantity == reading.quantity && sensor->columns == 1 && sensor->rows == 1;
+}
+
+bool hasProbe(const Probes& probes, const picture::PlacedSensor& sensor) {
+  return std::any_of(probes.all().begin(), probes.all().end(), [&](const Probe& probe) {
+    return probe.sensor && std::equal(sensor.first, sensor.first + 3, probe.sensor->first) &&
+           std::equal(sensor.direction, sensor.direction + 3, probe.sensor->direction) &&
+           sensor.luminance == probe.sensor->luminance;
+  });
 }
 
 } // namespace
@@ -56,6 +66,27 @@ void keepInWorld(WorldEditor& editor, const Probe& probe, const EditView& view) 
     file.set(*made, "description", fmt::format("probe {}", probe.number));
   });
   editor.select({made});
+}
+
+void showSensors(WorldEditor& editor, Probes& probes) {
+  MFNode sensors;
+  walk(rootsOf(editor.browser().world().scope), [&](Node& node, std::vector<Node*>& open) {
+    appendChildren(node, open);
+    if (nodeCast<nodes::ORTSensor>(&node)) sensors.push_back(NodeRef(&node));
+  });
+  std::reverse(sensors.begin(), sensors.end()); // walks begin at the last root
+  const size_t before = probes.all().size();
+  for (const NodeRef& node : sensors) {
+    NodePlacement placement;
+    if (!editor.browser().locate(*node, placement)) continue; // it is not in the scene
+    SensorInfo info{node->defName, node, {}};
+    const std::array<double, 16>& place = placement.path.back().toWorld;
+    std::copy(place.begin(), place.end(), info.matrix);
+    const picture::PlacedSensor sensor = picture::placeSensor(info);
+    if (sensor.columns * sensor.rows == 1 && !hasProbe(probes, sensor)) probes.addSensor(sensor);
+  }
+  if (probes.all().size() == before)
+    throw EditError("the file has no more sensors of a single point");
 }
 
 } // namespace vv

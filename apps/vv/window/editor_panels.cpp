@@ -119,6 +119,8 @@ void EditorPanels::drawTools() {
   drawFileQuestion();
   if (Menu menu; menu.begin("##view")) {
     drawViewItems(menu);
+    if (menu.item("Show sensors as probes"))
+      model_.request([&probes = probes_](WorldEditor& editor) { showSensors(editor, probes); });
     menu.end();
   }
 }
