@@ -32,8 +32,8 @@ def needs_the_editor(vv):
 
 
 @pytest.fixture
-def editor(window, vv):
-    w = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}", env={"XDG_DATA_HOME": str(vv.folder / "data")})
+def editor(window):
+    w = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}")
     w.key("e")
     return w
 
