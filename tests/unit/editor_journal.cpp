@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "unit/editor_support.h"
 
@@ -311,6 +312,22 @@ TEST_F(EditorJournal, WhereNothingCanBeWrittenItSaysSoOnce) {
   fs::remove(journal + "-3");
   program.journal().advance(200); // tries again
   EXPECT_EQ(program.journal().keep(), journal + "-3");
+}
+
+TEST_F(EditorJournal, WorldsOfOthersHaveNoneUntilTheyAreSaved) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a file away";
+  ASSERT_EQ(::chown(world.c_str(), 12345, gid_t(-1)), 0);
+  Program program(world);
+  program.dimTo(0.5f);
+  EXPECT_EQ(program.journal().keep(), "");
+  EXPECT_NE(program.journal().takeMessage().find("belongs to another user"), std::string::npos);
+  program.dimTo(0.6f);
+  EXPECT_EQ(program.journal().keep(), "");
+  EXPECT_EQ(program.journal().takeMessage(), "") << "it is said once";
+  EXPECT_EQ(names(), std::vector<std::string>{"hall.wrl"});
+  program.editor.save();
+  program.dimTo(0.7f);
+  EXPECT_EQ(program.journal().keep(), journal);
 }
 
 TEST_F(EditorJournal, AnEmptyFileIsNoJournal) {

@@ -37,20 +37,6 @@ const FieldInfo* childrenOf(const Node& node) {
   return field && field->type == FieldType::MFNode && holdsValue(*field) ? field : nullptr;
 }
 
-// Returns the place for a new node: at the end of the group that is selected, behind the selected
-// node, or at the end of the world.
-NodeSlot placeForNew(WorldEditor& editor) {
-  Node* const selected = editor.selected();
-  if (selected && childrenOf(*selected)) return editor.endOf(selected, "children");
-  if (selected)
-    for (NodeSlot place : editor.editor().placesOf(*selected))
-      if (!place.parent || place.field == "children") {
-        ++place.index;
-        return place;
-      }
-  return editor.endOf(nullptr, "");
-}
-
 } // namespace
 
 NodeRef nodeOf(WorldEditor& editor, PickHit hit, bool group) {
@@ -103,6 +89,18 @@ void wrapSelected(WorldEditor& editor) {
 }
 
 std::span<const NewNode> newNodes() { return table; }
+
+NodeSlot placeForNew(WorldEditor& editor) {
+  Node* const selected = editor.selected();
+  if (selected && childrenOf(*selected)) return editor.endOf(selected, "children");
+  if (selected)
+    for (NodeSlot place : editor.editor().placesOf(*selected))
+      if (!place.parent || place.field == "children") {
+        ++place.index;
+        return place;
+      }
+  return editor.endOf(nullptr, "");
+}
 
 void add(WorldEditor& editor, const NewNode& node) {
   NodeRef made;

@@ -10,6 +10,7 @@
 
 #include "edit/merged_list.h"
 #include "edit/shader_parameters.h"
+#include "libpicture/files/atomic_file.h"
 
 namespace vv {
 
@@ -179,6 +180,7 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   }
   if (!hasAsked_ && editor.prepare()) {
     hasAsked_ = isStale_ = true;
+    unwritable_ = picture::whyNotEditable(editor.browser().world().path);
     readOnly_ = editor.editor().whyReadOnly();
   }
   bool reads = isStale_ || areValuesStale_ || (moves && seconds >= readAt_ + refreshInterval);

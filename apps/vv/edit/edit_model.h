@@ -59,6 +59,8 @@ class EditModel {
   bool hasUnsaved() const { return unsaved_; }
   // Why the file cannot be edited; "": it can, or this is not known yet.
   const std::string& readOnly() const { return readOnly_; }
+  // Why the file could not be saved in place; "": it can be.
+  const std::string& unwritable() const { return unwritable_; }
   // The messages about the world.
   ProblemList& problems() { return problems_; }
   // The edges of a box around each node that is selected.
@@ -127,7 +129,7 @@ class EditModel {
   PropertySheet sheet_;
   ProblemList problems_;
   xvrml::MFNode selection_;
-  std::string undoName_, redoName_, readOnly_, message_, search_;
+  std::string undoName_, redoName_, readOnly_, unwritable_, message_, search_;
   std::vector<Line> frames_;
   std::vector<Look> looks_;
   Hiding hiding_;

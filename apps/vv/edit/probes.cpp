@@ -12,6 +12,8 @@ namespace {
 // How far a probe may lie off the surface that is seen there, as a part of its distance.
 constexpr double tolerance = 2e-3;
 
+bool readsIlluminance(const Probe& probe) { return probe.sensor && !probe.sensor->luminance; }
+
 // Tells whether the viewer sees a point, and not something before or behind it.
 bool isSeen(xvrml::Browser& browser, const EditView& view, double x, double y,
             const std::array<double, 3>& point) {
@@ -53,8 +55,10 @@ void readArea(Probe& probe, const picture::Picture& picture, const EditView& vie
 
 } // namespace
 
-const char* quantityOf(const Probe& probe) { return probe.sensor ? "illuminance" : "luminance"; }
-const char* unitOf(const Probe& probe) { return probe.sensor ? "lx" : "cd/m2"; }
+const char* quantityOf(const Probe& probe) {
+  return readsIlluminance(probe) ? "illuminance" : "luminance";
+}
+const char* unitOf(const Probe& probe) { return readsIlluminance(probe) ? "lx" : "cd/m2"; }
 
 std::string probeText(const Probe& probe, const std::optional<Difference>& change) {
   std::string text = fmt::format("{}  {}", probe.number, probe.area ? "mean " : "");

@@ -30,6 +30,7 @@ class WorldEditor {
   bool prepare();
   static bool isReading();
   xvrml::Browser& browser() { return browser_; }
+  const std::string& shaderPath() const { return shaderPath_; }
   // The classes of the shader plug-ins that are installed. They are read at the first call.
   const std::vector<picture::ShaderClass>& shaderClasses();
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "edit/import.h"
 #include "window/comparison_view.h"
 #include "window/gizmo_view.h"
 #include "window/window.h"
@@ -24,6 +25,7 @@ void needPicture(bool isOverPicture) {
   if (!isOverPicture) throw EditError("put the pointer where the light is to be measured");
 }
 constexpr const char* kindNames[] = {"move", "turn", "scale"};
+constexpr int framesToOpen = 3; // until a menu gets the keys
 
 } // namespace
 
@@ -34,7 +36,8 @@ void Editing::open(bool open) {
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_, probes_, [this] { save(); });
+    panels_.emplace(*model_, probes_, library_, [this] { save(); });
+    library_.refresh();
   }
   if (hasTool_) endTool(false);
   if (measures_ || drag_ == Drag::measure) show("");
@@ -95,6 +98,10 @@ bool Editing::take(InputEvent& event) {
   if (event.kind == Kind::move || event.kind == Kind::leave)
     isOverPicture_ = event.kind == Kind::move;
   if (!isOpen_) return false;
+  if (event.kind == Kind::open) {
+    model_->edit([file = event.text](WorldEditor& editor) { importFile(editor, file); });
+    return true;
+  }
   if (hasTool_ && takeForTool(event)) return true;
   switch (event.kind) {
   case Kind::press:
@@ -216,6 +223,14 @@ bool Editing::press(const InputEvent& event) {
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
   if (event.control && key == "G") return request(wrapSelected);
   if (event.control || event.alt) return false;
+  if (event.shift && key == "A") {
+    panels_->openAddMenu();
+    for (int frame = 0; frame < framesToOpen; ++frame) {
+      screen_.redraw();
+      screen_.present();
+    }
+    return true;
+  }
   if (event.shift) return key == "D" && request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
   if (key == ".") return wantsFrame_ = true;
@@ -347,6 +362,7 @@ void Editing::update(Session& session, double seconds) {
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
+  drawBalls(session);
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_, panels_->freePart()));
   if (!model_->readOnly().empty())
@@ -371,6 +387,16 @@ void Editing::followReport(Session& session) {
   if (progress == progress_) return;
   progress_ = progress;
   if (!progress.empty()) show(std::move(progress)); // the outcome follows
+}
+
+// Lets the looks of the library be drawn while the picture needs nobody, or the user waits for
+// them.
+void Editing::drawBalls(Session& session) {
+  const bool isStill = session.pictures().isRefining() && !session.viewers().own().isOutdated();
+  const bool mayRender =
+      isOpen_ && isStill && !model_->looks().empty() &&
+      (panels_->isChoosingLook() || session.pictures().isFinished(session.pilot()));
+  if (library_.advance(model_->looks(), session.editor().shaderPath(), mayRender)) screen_.redraw();
 }
 
 void Editing::showCover() {

@@ -85,6 +85,7 @@ class Editing {
   bool beginTool(TransformTool::Kind kind, int axis, const InputEvent& at);
   void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
   void endTool(bool accept);
+  void drawBalls(Session& session);
   bool takeForTool(const InputEvent& event);
   void showCover();
   void followReport(Session& session);
@@ -94,6 +95,7 @@ class Editing {
   const std::vector<std::string>& arguments_;
   const std::function<void(LoadRequest)> recover_;
   WorldReport report_;
+  LookLibrary library_;
   bool isOpen_ = false;
   bool hasOffered_ = false;        // what an earlier session has left, if there is anything
   std::optional<EditModel> model_; // one for each world

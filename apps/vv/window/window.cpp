@@ -197,11 +197,15 @@ bool Window::isTime(double time, double next, double period) const {
 
 void Window::passOn() {
   for (InputEvent& event : std::exchange(events_, {})) {
+    if (help_ && event.kind == InputEvent::Kind::down && event.text == "Escape") {
+      showHelp(false);
+      continue;
+    }
+    if (editing_.take(event)) continue;
     if (event.kind == InputEvent::Kind::quit) leaveWorld([this] { ended_ = true; });
     if (event.kind == InputEvent::Kind::open)
       leaveWorld([this, file = event.text] { open({{file}, "", {}}, false); });
     if (event.kind == InputEvent::Kind::quit || event.kind == InputEvent::Kind::open) continue;
-    if (editing_.take(event)) continue;
     if (session_)
       input_.push_back(std::move(event));
     else if (event.kind == InputEvent::Kind::down)
@@ -346,9 +350,7 @@ void Window::onAction(const InputEvent& event, Action action) {
   case Action::help: showHelp(!help_); break;
   case Action::fullScreen: screen_.toggleFullScreen(); break;
   case Action::quit:
-    if (help_ && event.text == "Escape")
-      showHelp(false);
-    else if (event.text != "Escape" || !session_ || !session_->saver().giveUp())
+    if (event.text != "Escape" || !session_ || !session_->saver().giveUp())
       leaveWorld([this] { ended_ = true; });
     break;
   default: break;
@@ -382,7 +384,8 @@ void Window::command() {
 void Window::showHelp(bool shown) {
   help_ = shown;
   screen_.setPanel(Screen::middle,
-                   shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
+                   shown ? painter_->paint(helpLines(editing_.isOpen()), screen_.width(), true)
+                         : Panel());
 }
 
 // A recording would not have the edits, and its replay would show another world.
