@@ -194,6 +194,14 @@ def test_the_light_that_falls_on_a_surface_is_measured(serve):
     read = until(page, "probes", lambda t: t["list"] and t["list"][0]["state"] == "read")
     before = read["list"][0]["illuminance"]
     assert before > 0 and "luminance" not in read["list"][0]
+    page.edit("keep_in_world", probe=1)
+    history(page, undo="Keep probe 1", unsaved=True)
+    until(page, "sheet", lambda t: t["title"] == "ORTSensor")
+    page.edit("show_sensors")
+    assert "no more sensors" in page.told("said")["text"]
+    page.edit("keep_in_world", probe=7)
+    assert "has been removed" in page.told("said", 2)["text"]
+    until(page, "probes", lambda t: t["list"][0]["state"] == "read")
     page.edit("keep_probes")
     lamp = select_lamp(page)
     drag(page, lamp, "intensity", 0.4)

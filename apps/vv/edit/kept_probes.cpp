@@ -68,7 +68,7 @@ void keepInWorld(WorldEditor& editor, const Probe& probe, const EditView& view) 
   editor.select({made});
 }
 
-void showSensors(WorldEditor& editor, Probes& probes) {
+void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
   MFNode sensors;
   walk(rootsOf(editor.browser().world().scope), [&](Node& node, std::vector<Node*>& open) {
     appendChildren(node, open);
@@ -83,7 +83,10 @@ void showSensors(WorldEditor& editor, Probes& probes) {
     const std::array<double, 16>& place = placement.path.back().toWorld;
     std::copy(place.begin(), place.end(), info.matrix);
     const picture::PlacedSensor sensor = picture::placeSensor(info);
-    if (sensor.columns * sensor.rows == 1 && !hasProbe(probes, sensor)) probes.addSensor(sensor);
+    if (sensor.columns * sensor.rows != 1 || hasProbe(probes, sensor)) continue;
+    if (probes.all().size() >= most)
+      throw EditError(fmt::format("there are {} probes already", most));
+    probes.addSensor(sensor);
   }
   if (probes.all().size() == before)
     throw EditError("the file has no more sensors of a single point");

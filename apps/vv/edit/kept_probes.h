@@ -14,9 +14,9 @@ inline bool canBeKept(const Probe& probe) { return !probe.area; }
 // Throws xvrml::EditError if the file has that sensor, or the probe is not in the picture.
 void keepInWorld(WorldEditor& editor, const Probe& probe, const EditView& view);
 
-// Adds a probe for each ORTSensor of the file that has one point, and no probe yet. Throws
-// xvrml::EditError if there is none to be added, and picture::SensorError for a sensor whose fields
-// make no sense.
-void showSensors(WorldEditor& editor, Probes& probes);
+// Adds a probe for each ORTSensor of the file that has one point, and no probe yet, until there are
+// `most` probes. Throws xvrml::EditError if there is none to be added, or no room, and
+// picture::SensorError for a sensor whose fields make no sense.
+void showSensors(WorldEditor& editor, Probes& probes, size_t most = ~size_t(0));
 
 } // namespace vv

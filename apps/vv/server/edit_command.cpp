@@ -237,6 +237,12 @@ constexpr Row table[] = {
     {"clear_probes", [](Members&) -> Command { return LightCommand(ClearProbes{}); }},
     {"compare", readCompare},
     {"point", [](Members& m) -> Command { return LightCommand(PointAt{place(m)}); }},
+    {"keep_in_world",
+     [](Members& m) -> Command {
+       return LightCommand(
+           KeepInWorld{json::wholeNumberOf(m.at("probe"), m.need("probe"), 1, largestIndex)});
+     }},
+    {"show_sensors", [](Members&) -> Command { return LightCommand(ShowSensors{}); }},
     {"probe_table", [](Members&) -> Command { return LightCommand(ProbeTable{}); }},
     {"report", [](Members&) -> Command { return LightCommand(Report{}); }},
 };

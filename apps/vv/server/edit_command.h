@@ -160,10 +160,14 @@ struct Compare {
 struct PointAt {
   Place place; // where the change of light is wanted
 };
+struct KeepInWorld {
+  int probe = 0; // its number
+};
+struct ShowSensors {};
 struct ProbeTable {};
 struct Report {};
-using LightCommand =
-    std::variant<PutProbe, Measure, KeepProbes, ClearProbes, Compare, PointAt, ProbeTable, Report>;
+using LightCommand = std::variant<PutProbe, Measure, KeepProbes, ClearProbes, Compare, PointAt,
+                                  KeepInWorld, ShowSensors, ProbeTable, Report>;
 
 using Command = std::variant<ShowRows, Search, Open, Select, SelectAt, SelectIn, SelectSameLook,
                              AskChoices, ShowProblems, Hide, Frame, Close, Drag, EndDrag, Undo,

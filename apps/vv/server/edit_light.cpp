@@ -1,7 +1,10 @@
 #include "server/edit_light.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "edit/kept_probes.h"
 #include "edit/region.h"
 #include "libpicture/files/formats.h"
 #include "server/light_texts.h"
@@ -94,6 +97,19 @@ void EditLight::perform(uint64_t, const EditView& view, bool isLeaders,
 
 void EditLight::perform(uint64_t, const EditView&, bool, const edit::ClearProbes&) {
   light_.probes().clear();
+}
+
+void EditLight::perform(uint64_t, const EditView& view, bool, const edit::KeepInWorld& keep) {
+  const std::vector<Probe>& probes = light_.probes().all();
+  const auto probe = std::find_if(probes.begin(), probes.end(),
+                                  [&](const Probe& one) { return one.number == keep.probe; });
+  if (probe == probes.end()) throw EditError("this probe has been removed");
+  keepInWorld(world_.session().editor(), *probe, view);
+}
+
+void EditLight::perform(uint64_t, const EditView&, bool, const edit::ShowSensors&) {
+  needRoom();
+  showSensors(world_.session().editor(), light_.probes(), size_t(maxProbes));
 }
 
 void EditLight::perform(uint64_t page, const EditView&, bool, const edit::ProbeTable&) {

@@ -22,6 +22,8 @@ constexpr double interval = 0.05; // seconds between two looks at what has chang
 
 // Tells whether a command edits the world, or begins to.
 bool isEdit(const edit::Command& command) {
+  if (const auto* const light = std::get_if<edit::LightCommand>(&command))
+    return std::holds_alternative<edit::KeepInWorld>(*light);
   return std::holds_alternative<edit::Drag>(command) ||
          std::holds_alternative<edit::Undo>(command) ||
          std::holds_alternative<edit::Save>(command) ||
@@ -269,6 +271,7 @@ void Editing::perform(uint64_t page, Face& face, const edit::ToolCommand& comman
 }
 
 void Editing::perform(uint64_t page, Face&, const edit::LightCommand& command) {
+  if (std::holds_alternative<edit::KeepInWorld>(command)) endDrags(); // it is an edit
   light_.take(page, viewOf(page), showsLeadersView(page), command);
 }
 

@@ -81,6 +81,9 @@ export class Light {
       this.readings,
       button("keep", "Keep as A", "Compare what follows with the light of now (B)", keep),
       ...Object.values(this.shows),
+      button("sensors", "Sensors", "Show the sensors of the file as probes", () =>
+        this.edit("show_sensors"),
+      ),
       button("table", "Table", "Download the probes as a table (CSV)", () =>
         this.edit("probe_table"),
       ),
@@ -132,12 +135,20 @@ export class Light {
   onProbes(message) {
     const items = message.list.map((probe) => {
       const item = make("li", { value: probe.number }, ...readingOf(probe));
+      if (!("least" in probe)) item.append(" ", this.keepButton(probe.number));
       item.classList.toggle("uncertain", "change" in probe && !probe.significant);
       return item;
     });
     this.readings.replaceChildren(...items);
     for (const id of ["table", "clear"])
       document.getElementById(id).disabled = message.list.length === 0;
+  }
+
+  keepButton(probe) {
+    const label = `Keep probe ${probe} in the world, as an ORTSensor`;
+    const one = make("button", { type: "button", textContent: "\u2913", title: label, label });
+    one.addEventListener("click", () => this.edit("keep_in_world", { probe }));
+    return one;
   }
 
   onComparison(message) {
