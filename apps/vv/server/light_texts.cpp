@@ -44,6 +44,7 @@ std::string probesText(const Probes& probes) {
   for (size_t i = 0; i < changes.size(); ++i) {
     const Probe& probe = probes.all()[i];
     Json one = {{"number", probe.number}, {"state", nameOf(probe.state)}};
+    if (probe.area) one["area"] = true;
     if (probe.state == Probe::State::read) {
       one[quantityOf(probe)] = probe.now.luminance;
       one["half_width"] = probe.now.luminanceHalfWidth;

@@ -132,16 +132,25 @@ export class Light {
     this.wiper.setAttribute("aria-valuenow", Math.round(this.part * 100));
   }
 
+  // Items stay while their readings change, so that their buttons can be pressed.
   onProbes(message) {
+    const known = new Map([...this.readings.children].map((item) => [item.value, item]));
     const items = message.list.map((probe) => {
-      const item = make("li", { value: probe.number }, ...readingOf(probe));
-      if (!("least" in probe)) item.append(" ", this.keepButton(probe.number));
+      const item = known.get(probe.number) ?? this.item(probe);
+      item.firstChild.replaceChildren(...readingOf(probe));
       item.classList.toggle("uncertain", "change" in probe && !probe.significant);
       return item;
     });
-    this.readings.replaceChildren(...items);
+    const isSame = items.length === known.size && items.every((one) => one.isConnected);
+    if (!isSame) this.readings.replaceChildren(...items);
     for (const id of ["table", "clear"])
       document.getElementById(id).disabled = message.list.length === 0;
+  }
+
+  item(probe) {
+    const item = make("li", { value: probe.number }, make("span"));
+    if (!probe.area) item.append(" ", this.keepButton(probe.number));
+    return item;
   }
 
   keepButton(probe) {
