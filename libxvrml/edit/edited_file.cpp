@@ -119,6 +119,11 @@ Twin EditedFile::standingTwinOf(Node& node) {
   return twin;
 }
 
+bool EditedFile::stands(const Node& node) const {
+  const Node* const found = document_ ? document_->find(node.source) : nullptr;
+  return found && found->type().name == node.type().name && document_->stands(*found);
+}
+
 void EditedFile::checkStands(Node* node) {
   if (node) standingTwinOf(*node);
 }

@@ -51,6 +51,8 @@ class EditedFile {
   Twin twinOf(Node& node);
   // Does the same for a node that stands in the file now. Throws EditError if it was removed.
   Twin standingTwinOf(Node& node);
+  // See Editor.
+  bool stands(const Node& node) const;
   // Throws EditError if a node does not stand in the file now; null: the roots.
   void checkStands(Node* node);
   // holds: there must be a node at the place.

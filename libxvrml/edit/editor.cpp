@@ -97,6 +97,8 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
   return places;
 }
 
+bool Editor::stands(const Node& node) const { return impl_->file.stands(node); }
+
 std::vector<NodeRef> Editor::nodesAt(std::span<const SourcePosition> places) {
   return impl_->file.nodesAt(places);
 }

@@ -447,4 +447,18 @@ TEST(Editor, AFileIsReadOnAnotherThread) {
   late();
 }
 
+TEST_P(Edited, WhetherANodeStandsInTheFile) {
+  load("DEF A Group { children DEF B Shape { } }\nGroup { children USE B }\n");
+  Node &a = node("A"), &b = node("B");
+  EXPECT_FALSE(editor->stands(a)) << "the file has not been read";
+  ASSERT_EQ(editor->whyReadOnly(), "");
+  EXPECT_TRUE(editor->stands(a) && editor->stands(b));
+  const NodeRef kept(&a);
+  editor->remove({nullptr, "", 0});
+  EXPECT_FALSE(editor->stands(a));
+  EXPECT_TRUE(editor->stands(b));
+  editor->undo();
+  EXPECT_TRUE(editor->stands(a));
+}
+
 } // namespace

@@ -237,7 +237,7 @@ TEST(EditorPlaces, LongLines) {
                 std::string("Group { children [ DEF S0 Shape { } ] } ").size());
 }
 
-// What is not edited is copied as one piece. These edits reach into pieces that have not been
+// All that is not edited is copied as one piece. These edits reach into pieces that have not been
 // edited themselves: a node is defined at another place now.
 TEST_P(EditedPlaces, AReferenceInAnotherGroupBecomesTheNode) {
   const std::string head = "DEF G Group { children [ Group { children DEF A Shape { } } ] }\n",

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/save_edits.h"
-#include "xvrml/walk.h"
 
 namespace vv {
 
@@ -20,17 +19,9 @@ namespace {
 
 std::atomic<int> readers{0}; // threads that read files
 
-// Returns the nodes that stand in the world's file.
-SeenNodes standing(const World& world) {
-  SeenNodes nodes;
-  walk(rootsOf(world.scope), nodes,
-       [](Node& node, std::vector<Node*>& open) { appendChildren(node, open); });
-  return nodes;
-}
-
-bool allIn(const MFNode& nodes, const SeenNodes& known) {
+bool allStand(const Editor& editor, const MFNode& nodes) {
   return std::all_of(nodes.begin(), nodes.end(),
-                     [&](const NodeRef& node) { return known.contains(node.get()); });
+                     [&editor](const NodeRef& node) { return editor.stands(*node); });
 }
 
 } // namespace
@@ -116,11 +107,10 @@ NodeSlot WorldEditor::endOf(Node* parent, const std::string& field) const {
 
 std::string WorldEditor::undo() {
   const std::string name = editor_.undoName();
-  const bool stood = allIn(selection_, standing(browser_.world()));
+  const bool stood = allStand(editor_, selection_);
   if (!editor_.undo()) return {};
   if (!stood) return name; // it has been removed before, or is in no file
-  const SeenNodes now = standing(browser_.world());
-  while (!allIn(selection_, now) && !earlier_.empty()) {
+  while (!allStand(editor_, selection_) && !earlier_.empty()) {
     selection_ = std::move(earlier_.back());
     earlier_.pop_back();
   }

@@ -318,7 +318,8 @@ void Screen::setFree(const FreePart& part) {
 }
 
 int Screen::freeWidth() const {
-  return std::max(1, int((impl_->free.right - impl_->free.left) / 2 * width()));
+  const int least = width() / 8; // panels that meet leave nothing
+  return std::max(least, int((impl_->free.right - impl_->free.left) / 2 * width()));
 }
 
 void Screen::redraw() { impl_->changed = true; }

@@ -90,6 +90,10 @@ class Editor {
   // each USE. Places in Inlines and in the bodies of prototypes are left out.
   std::vector<NodeSlot> placesOf(const Node& node);
 
+  // Returns whether a node stands anywhere in the file as it is edited; false before the first
+  // edit. Unlike placesOf() it does not look through the world.
+  bool stands(const Node& node) const;
+
   // Returns for each place in the world's file, as it was read, the innermost node whose text holds
   // it, as the messages about the file have places; null if there is none, or it is not in the
   // world any more. In a file that cannot be edited only a node that begins there is found.
