@@ -1,5 +1,6 @@
 // xvrml_edit_places.cpp: Tests where nodes of a file may stand: not in themselves, and also in
 // fields that could not be read as a whole; and lists of many nodes in one line.
+#include "edit/history.h"
 #include "unit/xvrml_edit_support.h"
 #include "xvrml/set_field.h"
 
@@ -107,6 +108,40 @@ TEST_P(EditedPlaces, AStepThatCannotBeUndoneStaysDone) {
   EXPECT_EQ(editor->undoName(), "Step");
   ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
   undoAll();
+}
+
+// It stays as a step, which can be undone when the world allows it again.
+TEST_P(EditedPlaces, WhatCannotBeCancelledStaysDone) {
+  load("DEF A Group { children DEF B Group { } }\nDEF C Group { children USE B }\n");
+  editor->begin("Step");
+  editor->remove({&node("A"), "children", 0});
+  if (!browser) return;
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{NodeRef(&node("A"))}));
+  EXPECT_THROW(editor->cancel(), EditError);
+  EXPECT_FALSE(editor->isInStep());
+  EXPECT_EQ(editor->undoName(), "Step");
+  EXPECT_NE(editor->text(), original);
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
+  undoAll();
+}
+
+// An exception must not leave the end of a scope while another one is on its way.
+TEST(EditHistory, AStepWhoseUndoFailsDoesNotEndTheProgram) {
+  History history;
+  int value = 0;
+  const auto failing = [&] {
+    OpenStep outer(history, "Outer");
+    OpenStep inner(history, "Inner");
+    history.perform({[&] { ++value; }, [] { throw EditError("not now"); }});
+    throw EditError("the reason");
+  };
+  try {
+    failing();
+    ADD_FAILURE() << "it throws";
+  } catch (const EditError& error) { EXPECT_STREQ(error.what(), "the reason"); }
+  EXPECT_FALSE(history.isOpen());
+  EXPECT_EQ(history.undoName(), "Outer");
+  EXPECT_EQ(value, 1);
 }
 
 // Nodes in fields that could not be read as a whole are edited in their places.
