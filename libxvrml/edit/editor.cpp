@@ -163,7 +163,10 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
   if (scope.roots.size() != 1 || !scope.routes.empty() || !scope.prototypes.empty())
     throw EditError("the text must be that of one node, without routes and prototypes");
   impl_->nodes.checkPlace(slot, {scope.roots[0], scope.roots[0]});
-  const MFNode made = impl_->file.live().read(std::string(text), name);
+  MFNode made;
+  try {
+    made = impl_->file.live().read(std::string(text), name);
+  } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
   if (made.size() != 1) throw EditError("the text could not be read a second time");
   const Twin node{made[0], scope.roots[0]};
   impl_->nodes.nameFreshly(node);
@@ -175,7 +178,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
 
 void Editor::use(const NodeSlot& given, Node& node) {
   impl_->file.checkStands(given.parent);
-  const Twin twin = impl_->file.twinOf(node);
+  const Twin twin = impl_->file.standingTwinOf(node);
   const Slot slot = impl_->file.slotOf(given, false);
   impl_->nodes.checkPlace(slot, twin);
   if (impl_->file.document().isRepeated(node.defName))

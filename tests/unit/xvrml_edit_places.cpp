@@ -60,6 +60,7 @@ TEST_P(EditedPlaces, NothingIsPutIntoANodeThatHasGone) {
   };
   isRefused([&] { editor->move({nullptr, "", 0}, inside); });
   isRefused([&] { editor->use(inside, node("B")); });
+  isRefused([&] { editor->use({&node("B"), "children", 0}, *gone); });
   isRefused([&] { editor->insert(inside, "Group { }"); });
   isRefused([&] { editor->set(*gone, "bboxCenter", xvrml::Vec3f{1, 2, 3}); });
   isRefused([&] { editor->addRoute(*gone, "children", node("B"), "children"); });
