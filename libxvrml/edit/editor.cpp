@@ -203,7 +203,7 @@ void Editor::move(const NodeSlot& from, const NodeSlot& to) {
   impl_->file.checkStands(from.parent);
   impl_->file.checkStands(to.parent);
   const Slot source = impl_->file.slotOf(from, true);
-  const NodeRef node(impl_->file.nodeAt(source));
+  const NodeRef node(impl_->file.nodeAt(source)), parent(to.parent); // Scripts may let them go
   OpenStep step(impl_->history, fmt::format("Move {}", node->type().name));
   const Twin twin = impl_->nodes.take(source);
   const Slot target = impl_->file.slotOf(to, false);
@@ -295,6 +295,8 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
         fmt::format("{} cannot be declared in JSON: write the field into the file", what));
   const std::vector<NodeSlot> places = placesOf(node);
   if (places.empty()) throw EditError(fmt::format("this {} is not in the file", node.type().name));
+  MFNode parents; // Scripts that an edit runs may let them go
+  for (const NodeSlot& place : places) parents.emplace_back(place.parent);
   const std::string text =
       withDeclaration(onStackOf(deepestStack, [&] { return writeNode(document, *twin.document); }),
                       document.world().head.version, field, value);
