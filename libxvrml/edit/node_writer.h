@@ -57,7 +57,8 @@ class NodeWriter {
   NodeWriter(const Document& document, WritingPlan plan);
   virtual ~NodeWriter() = default;
 
-  // Return the text of the file, or of a node. Only one of them is called, once.
+  // Return the text of the file, or of a node. Only one of them is called, once. Throw EditError if
+  // nodes nest deeper than Parser::maximumNesting.
   std::string file();
   std::string node(const Node& node) { return finished(this->node(&node, "", {})); }
   // Returns what is to be written otherwise. The prototypes that must be lifted, because instances
@@ -125,8 +126,10 @@ class NodeWriter {
   void fill(const ListText& list, std::string nodes);
 
   bool isGone(const NodePlace& place) const;
+  void writeNested(const Node& node, const Holder* holder);
 
   const WritingPlan plan_;
+  uint64_t depth_ = 0;                             // nodes that are being written
   std::unordered_set<const Node*> leavesComments_; // nodes that have been moved without them
   const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
   // The last place whose line was asked for, and where that line begins.

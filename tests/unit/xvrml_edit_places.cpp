@@ -1,6 +1,7 @@
 // xvrml_edit_places.cpp: Tests where nodes of a file may stand: not in themselves, and also in
 // fields that could not be read as a whole; and lists of many nodes in one line.
 #include "edit/history.h"
+#include "parse/parser.h"
 #include "unit/xvrml_edit_support.h"
 #include "xvrml/set_field.h"
 
@@ -249,6 +250,21 @@ TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
   editor->remove({nullptr, "", 0});
   EXPECT_EQ(text(), "DEF L PointLight { }\n");
   undoAll();
+}
+
+// Groups around groups may nest deeper than any file, but the text of the file takes no more stack.
+TEST(EditorPlaces, NodesThatNestTooDeepHaveNoText) {
+  const Folder folder;
+  const std::string text = "#VRML V2.0 utf8\nDEF G Group { children Shape { } }\n";
+  const auto world = loadWorld(folder.write("w.wrl", text));
+  Editor editor(*world);
+  Node& group = *world->scope.names.at("G");
+  for (uint64_t i = 0; i < Parser::maximumNesting; ++i) editor.wrap({&group, "children", 0});
+  EXPECT_THROW(editor.draft(), EditError);
+  EXPECT_THROW(editor.text(), EditError);
+  EXPECT_THROW(editor.duplicate({nullptr, "", 0}), EditError);
+  while (editor.undo()) {}
+  EXPECT_EQ(editor.text(), text);
 }
 
 TEST(EditorPlaces, LongLines) {
