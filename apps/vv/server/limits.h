@@ -37,7 +37,7 @@ inline constexpr int maxEditsOfStep = 100;
 inline constexpr int maxRowsShown = 500;
 inline constexpr int maxValueBytes = 32'768;
 inline constexpr int maxSheetBytes = 262'144;
-inline constexpr int maxNodeNumbers = 20'000;
+inline constexpr int maxNodeNumbers = 30'000;
 inline constexpr int maxProbes = 50;
 
 inline constexpr Limit limits[] = {
