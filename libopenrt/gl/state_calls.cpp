@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "gl/numbers.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
 
@@ -135,8 +136,8 @@ std::vector<double> valuesOf(State& s, GLenum name) {
   case GL_MAX_LIST_NESTING: return {64};
   case GL_MAX_ATTRIB_STACK_DEPTH:
   case GL_MAX_CLIENT_ATTRIB_STACK_DEPTH: return {16};
-  case GL_MAX_TEXTURE_SIZE: return {16384};
-  case GL_MAX_VIEWPORT_DIMS: return {65536, 65536};
+  case GL_MAX_TEXTURE_SIZE: return {double(maxTextureSide)};
+  case GL_MAX_VIEWPORT_DIMS: return {double(maxViewportSide), double(maxViewportSide)};
   case GL_MAX_CLIP_PLANES: return {0};
   case GL_RED_BITS:
   case GL_GREEN_BITS:
@@ -202,7 +203,7 @@ void rtglGetFloatv(GLenum name, GLfloat* out) {
 }
 void rtglGetIntegerv(GLenum name, GLint* out) {
   const double scale = isFraction(name) ? 2147483647.0 : 1.0;
-  get("glGetIntegerv", name, out, [=](double v) { return static_cast<GLint>(v * scale); });
+  get("glGetIntegerv", name, out, [=](double v) { return toInteger(v * scale); });
 }
 GLenum rtglGetError(void) {
   GLenum error = GL_NO_ERROR;

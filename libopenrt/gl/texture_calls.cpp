@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gl/numbers.h"
 #include "gl/pixels.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
@@ -22,6 +23,8 @@ void setImage(State& s, GLenum target, GLint level, GLsizei width, GLsizei heigh
               GLenum format, GLenum type, const void* pixels) {
   requireTarget(s, target);
   if (width < 0 || height < 0 || border < 0) fail(GL_INVALID_VALUE, "a size is below 0");
+  if (width > maxTextureSide || height > maxTextureSide)
+    fail(GL_INVALID_VALUE, "a size is above GL_MAX_TEXTURE_SIZE");
   if (level != 0 || width == 0 || height == 0) return;
   if (border != 0) s.refuse("the border of glTexImage", "use glTexParameterfv");
   Texture& texture = s.textures.at(s.now.texturing.bound);
@@ -51,7 +54,7 @@ void setPart(State& s, GLenum target, GLint level, GLint x, GLint y, GLsizei wid
 void setParameter(State& s, GLenum target, GLenum name, float value) {
   requireTarget(s, target);
   Texture& texture = s.textures.at(s.now.texturing.bound);
-  const auto mode = static_cast<GLenum>(value);
+  const GLenum mode = toName(static_cast<double>(value));
   switch (name) {
   case GL_TEXTURE_WRAP_S: texture.wrapS = mode; break;
   case GL_TEXTURE_WRAP_T: texture.wrapT = mode; break;
@@ -84,7 +87,7 @@ void environmentCall(GLenum name, const Color& v) {
       return;
     }
     if (name != GL_TEXTURE_ENV_MODE) fail(GL_INVALID_ENUM, "no such property");
-    const auto mode = static_cast<GLenum>(v[0]);
+    const GLenum mode = toName(static_cast<double>(v[0]));
     if (mode == GL_BLEND)
       s.refuse("glTexEnv(GL_BLEND)", "make the picture with the colours that it is to have");
     s.now.texturing.mode = mode;
@@ -200,6 +203,9 @@ void rtglGetTexEnviv(GLenum, GLenum name, GLint* out) {
 void rtglPixelStorei(GLenum name, GLint value) {
   guarded("glPixelStore", [&](State& s) {
     if (value < 0) fail(GL_INVALID_VALUE, "the value is below 0");
+    const bool isAlignment = name == GL_UNPACK_ALIGNMENT || name == GL_PACK_ALIGNMENT;
+    if (isAlignment && value != 1 && value != 2 && value != 4 && value != 8)
+      fail(GL_INVALID_VALUE, "the alignment is not 1, 2, 4 or 8");
     switch (name) {
     case GL_UNPACK_ALIGNMENT: s.unpack.alignment = value; break;
     case GL_UNPACK_ROW_LENGTH: s.unpack.rowLength = value; break;
@@ -214,5 +220,5 @@ void rtglPixelStorei(GLenum name, GLint value) {
   });
 }
 void rtglPixelStoref(GLenum name, GLfloat value) {
-  rtglPixelStorei(name, static_cast<GLint>(value));
+  rtglPixelStorei(name, toInteger(static_cast<double>(value)));
 }
