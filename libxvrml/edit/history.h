@@ -65,8 +65,8 @@ class History {
   std::vector<size_t> begun_; // for each begin() without end(): the number of edits before
 };
 
-// A step, or a part of one, that is undone unless it is closed. What cannot be undone, because a
-// Script has changed the world meanwhile, stays as a step.
+// A step, or a part of one, that is undone unless it is closed. Edits that cannot be undone,
+// because a Script has changed the world meanwhile, stay as a step.
 class OpenStep {
  public:
   OpenStep(History& history, std::string name) : history_(history) {

@@ -119,7 +119,7 @@ void Editing::tell(uint64_t page, Face& face, const std::string& type, std::stri
 }
 
 void Editing::show(uint64_t page, Face& face) {
-  // What is shown at once takes less than half of the numbers.
+  // Everything that is shown at once takes less than half of the numbers.
   if (face.numbers.size() > size_t(maxNodeNumbers) / 2) {
     face.numbers.releaseAll(); // everything that is shown gets new ones
     face.told.clear();
