@@ -205,17 +205,21 @@ void rtglDrawElements(GLenum mode, GLsizei count, GLenum type, const GLvoid* ind
     s.end();
   });
 }
-void rtglPushClientAttrib(GLbitfield) {
-  guarded("glPushClientAttrib", [](State& s) {
+void rtglPushClientAttrib(GLbitfield mask) {
+  guarded("glPushClientAttrib", [mask](State& s) {
     if (s.clientStack.size() >= 16) fail(GL_STACK_OVERFLOW, "too many glPushClientAttrib");
-    s.clientStack.emplace_back(s.arrays, s.unpack);
+    s.clientStack.push_back({mask, s.arrays, s.unpack, s.pack});
   });
 }
 void rtglPopClientAttrib(void) {
   guarded("glPopClientAttrib", [](State& s) {
     if (s.clientStack.empty()) fail(GL_STACK_UNDERFLOW, "glPushClientAttrib is missing");
-    s.arrays = s.clientStack.back().first;
-    s.unpack = s.clientStack.back().second;
+    const State::SavedClient& saved = s.clientStack.back();
+    if (saved.mask & GL_CLIENT_VERTEX_ARRAY_BIT) s.arrays = saved.arrays;
+    if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
+      s.unpack = saved.unpack;
+      s.pack = saved.pack;
+    }
     s.clientStack.pop_back();
   });
 }

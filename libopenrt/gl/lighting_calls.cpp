@@ -241,6 +241,11 @@ void rtglGetMaterialfv(GLenum face, GLenum name, GLfloat* out) { getMaterial(fac
 void rtglGetMaterialiv(GLenum face, GLenum name, GLint* out) { getMaterial(face, name, out); }
 void rtglColorMaterial(GLenum face, GLenum mode) {
   listed("glColorMaterial", [=](State& s) {
+    if (face != GL_FRONT && face != GL_BACK && face != GL_FRONT_AND_BACK)
+      fail(GL_INVALID_ENUM, "no such face");
+    if (mode != GL_EMISSION && mode != GL_AMBIENT && mode != GL_DIFFUSE && mode != GL_SPECULAR &&
+        mode != GL_AMBIENT_AND_DIFFUSE)
+      fail(GL_INVALID_ENUM, "no such property");
     s.now.lighting.colorFace = face;
     s.now.lighting.colorMode = mode;
     s.trackColor();

@@ -95,7 +95,12 @@ class State {
 
   void pushAttributes(GLbitfield mask);
   void popAttributes();
-  std::vector<std::pair<ClientArrays, PixelStore>> clientStack;
+  struct SavedClient { // by glPushClientAttrib
+    GLbitfield mask;
+    ClientArrays arrays;
+    PixelStore unpack, pack;
+  };
+  std::vector<SavedClient> clientStack;
 
   // Frames.
   void clear(GLbitfield mask);

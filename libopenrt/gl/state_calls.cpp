@@ -277,6 +277,8 @@ void rtglPolygonMode(GLenum face, GLenum mode) {
   listed("glPolygonMode", [=](State& s) {
     if (mode != GL_POINT && mode != GL_LINE && mode != GL_FILL)
       fail(GL_INVALID_ENUM, "no such mode");
+    if (face != GL_FRONT && face != GL_BACK && face != GL_FRONT_AND_BACK)
+      fail(GL_INVALID_ENUM, "no such face");
     if (face != GL_BACK) s.now.polygon.mode[0] = mode;
     if (face != GL_FRONT) s.now.polygon.mode[1] = mode;
   });

@@ -134,6 +134,30 @@ TEST_F(HostileGl, ArraysMayStandAtAnyAddress) {
   expectError(GL_NO_ERROR);
 }
 
+TEST_F(HostileGl, ClientStateIsRestoredAsItsMaskSays) {
+  const GLfloat a[4] = {}, b[4] = {};
+  glVertexPointer(3, GL_FLOAT, 0, a);
+  glPushClientAttrib(GL_CLIENT_PIXEL_STORE_BIT);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glVertexPointer(3, GL_FLOAT, 0, b);
+  glPopClientAttrib();
+  GLint alignment = 0;
+  glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
+  EXPECT_EQ(alignment, 4);
+  GLvoid* pointer = nullptr;
+  glGetPointerv(GL_VERTEX_ARRAY_POINTER, &pointer);
+  EXPECT_EQ(pointer, b);
+}
+
+TEST_F(HostileGl, ValuesThatNoEnumerationHas) {
+  glPolygonMode(GL_LINE, GL_LINE);
+  expectError(GL_INVALID_ENUM);
+  glColorMaterial(GL_LINE, GL_DIFFUSE);
+  expectError(GL_INVALID_ENUM);
+  glColorMaterial(GL_FRONT, GL_LINE);
+  expectError(GL_INVALID_ENUM);
+}
+
 TEST_F(HostileGl, ListsThatCallThemselvesEnd) {
   glNewList(1, GL_COMPILE);
   glTranslatef(1, 0, 0);
