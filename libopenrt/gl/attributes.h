@@ -35,7 +35,6 @@ struct Face {
 };
 
 inline constexpr size_t lightCount = 8;
-inline constexpr int maxTextureSide = 16384, maxViewportSide = 65536; // pixels
 
 struct Lighting {
   Lighting() { lights[0].diffuse = lights[0].specular = {1, 1, 1, 1}; }

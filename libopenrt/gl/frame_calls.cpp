@@ -1,6 +1,5 @@
 // frame_calls.cpp: Implements the calls that begin and end frames and read their pictures.
 #include <algorithm>
-#include <utility>
 
 #include "gl/pixels.h"
 #include "gl/state.h"
@@ -82,17 +81,10 @@ void rtglReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum form
     const size_t pixel = static_cast<size_t>(components) * (type == GL_FLOAT ? sizeof(float) : 1);
     auto* first = static_cast<unsigned char*>(pixels) + static_cast<size_t>(s.pack.skipRows) * row +
                   static_cast<size_t>(s.pack.skipPixels) * pixel;
-    // Only pixels of the picture are written.
-    const auto part = [](GLint from, GLsizei size, int most) {
-      const int64_t begin = -int64_t(from), end = begin + most;
-      return std::pair(std::max<int64_t>(begin, 0), std::min<int64_t>(end, size));
-    };
-    const auto [left, right] = part(x, width, film.width);
-    const auto [bottom, top] = part(y, height, film.height);
-    for (int64_t j = bottom; j < top; j++)
-      for (int64_t i = left; i < right; i++) {
-        const int column = static_cast<int>(x + i);
-        const int line = static_cast<int>(film.height - 1 - (y + j)); // rows run upwards in OpenGL
+    for (int j = 0; j < height; j++)
+      for (int i = 0; i < width; i++) {
+        const int column = x + i, line = film.height - 1 - (y + j); // rows run upwards in OpenGL
+        if (column < 0 || column >= film.width || line < 0 || line >= film.height) continue;
         unsigned char* at = first + static_cast<size_t>(j) * row + static_cast<size_t>(i) * pixel;
         for (int c = 0; c < components; c++)
           write(at, static_cast<size_t>(c), type, componentOf(film, column, line, format, c));

@@ -1,7 +1,6 @@
 // matrix_calls.cpp: Implements the calls for matrices, the view and display lists.
 #include <algorithm>
 
-#include "gl/numbers.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
 
@@ -9,9 +8,7 @@ using namespace rtgl;
 
 namespace {
 
-constexpr size_t maxDepth = 4096;        // matrices of a stack
-constexpr GLuint maxNewLists = 1u << 20; // names of one call
-constexpr GLuint largestName = ~GLuint(0);
+constexpr size_t maxDepth = 4096; // matrices of a stack
 
 template <class T> Matrix matrixOf(const T* m) {
   if (!m) fail(GL_INVALID_VALUE, "the matrix is NULL");
@@ -47,22 +44,10 @@ GLuint nameAt(GLenum type, const void* lists, size_t i) {
   case GL_UNSIGNED_SHORT: return static_cast<const GLushort*>(lists)[i];
   case GL_INT:
   case GL_UNSIGNED_INT: return static_cast<const GLuint*>(lists)[i];
-  case GL_FLOAT: return toName(static_cast<double>(static_cast<const GLfloat*>(lists)[i]));
+  case GL_FLOAT: return static_cast<GLuint>(static_cast<const GLfloat*>(lists)[i]);
   case GL_2_BYTES: return bytes[2 * i] * 256u + bytes[2 * i + 1];
   default: fail(GL_INVALID_ENUM, "no such type of names");
   }
-}
-
-// Returns the first of so many names behind each other that name no list; 0 if there are none.
-GLuint freeNames(const State& s, GLuint count) {
-  const GLuint last = s.lists.empty() ? 0 : s.lists.rbegin()->first;
-  if (largestName - last >= count) return last + 1;
-  GLuint first = 1;
-  for (const auto& [name, list] : s.lists) {
-    if (name - first >= count) return first;
-    first = name + 1;
-  }
-  return 0;
 }
 
 } // namespace
@@ -120,7 +105,7 @@ void rtglOrtho(GLdouble l, GLdouble r, GLdouble b, GLdouble t, GLdouble n, GLdou
 void rtglViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
   listed("glViewport", [=](State& s) {
     if (width < 0 || height < 0) fail(GL_INVALID_VALUE, "a size is below 0");
-    s.now.viewport = {x, y, std::min(width, maxViewportSide), std::min(height, maxViewportSide)};
+    s.now.viewport = {x, y, width, height};
   });
 }
 // Depths are distances here.
@@ -131,11 +116,9 @@ GLuint rtglGenLists(GLsizei range) {
   guarded("glGenLists", [&](State& s) {
     if (range < 0) fail(GL_INVALID_VALUE, "the number is below 0");
     if (range == 0) return;
-    const auto count = static_cast<GLuint>(range);
-    if (count > maxNewLists) fail(GL_OUT_OF_MEMORY, "more than 2^20 names at once");
-    const GLuint free = freeNames(s, count);
-    if (free == 0) return;
-    for (GLuint i = 0; i < count; i++) s.lists[free + i] = std::make_shared<List>();
+    const GLuint free = s.lists.empty() ? 1 : s.lists.rbegin()->first + 1;
+    for (GLuint i = 0; i < static_cast<GLuint>(range); i++)
+      s.lists[free + i] = std::make_shared<List>();
     first = free;
   });
   return first;
@@ -143,9 +126,8 @@ GLuint rtglGenLists(GLsizei range) {
 void rtglDeleteLists(GLuint first, GLsizei range) {
   guarded("glDeleteLists", [&](State& s) {
     if (range < 0) fail(GL_INVALID_VALUE, "the number is below 0");
-    const auto count = static_cast<GLuint>(range);
     s.lists.erase(s.lists.lower_bound(first),
-                  count > largestName - first ? s.lists.end() : s.lists.lower_bound(first + count));
+                  s.lists.lower_bound(first + static_cast<GLuint>(range)));
   });
 }
 GLboolean rtglIsList(GLuint list) {

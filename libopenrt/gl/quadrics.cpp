@@ -84,12 +84,10 @@ double turn(int i, int count, double degrees = 360) {
 }
 
 bool isShape(const RTUquadric* q, int slices, int stacks) {
-  constexpr double mostFacets = 1e8;
   bool is = false;
   guarded("a quadric", [&](State&) {
     if (!q || slices < 2 || stacks < 1)
       fail(GL_INVALID_VALUE, "a number is too small, or the quadric is NULL");
-    if (double(slices) * stacks > mostFacets) fail(GL_INVALID_VALUE, "more than 10^8 facets");
     is = true;
   });
   return is;

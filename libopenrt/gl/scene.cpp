@@ -16,7 +16,6 @@
 namespace rtgl {
 namespace {
 
-constexpr int64_t mostPixels = int64_t(1) << 28; // those that rtFrameBuffer takes
 constexpr uint64_t framesKept = 8; // frames without a geometry before its object is deleted
 
 enum Kind { openGlKind, physicalKind };
@@ -251,10 +250,6 @@ void Scene::forget() {
 
 bool Scene::show(const Frame& frame) {
   if (frame.width <= 0 || frame.height <= 0) return false;
-  if (int64_t(frame.width) * frame.height > mostPixels) {
-    rtFrameBuffer(frame.width, frame.height, RT_RGBA); // says what is wrong
-    return false;
-  }
   const int wanted = lightMode < 0 ? lightOfEnvironment() : lightMode;
   if (std::exchange(shownLight_, wanted) != wanted) forget();
   frame_++;

@@ -136,8 +136,8 @@ std::vector<double> valuesOf(State& s, GLenum name) {
   case GL_MAX_LIST_NESTING: return {64};
   case GL_MAX_ATTRIB_STACK_DEPTH:
   case GL_MAX_CLIENT_ATTRIB_STACK_DEPTH: return {16};
-  case GL_MAX_TEXTURE_SIZE: return {double(maxTextureSide)};
-  case GL_MAX_VIEWPORT_DIMS: return {double(maxViewportSide), double(maxViewportSide)};
+  case GL_MAX_TEXTURE_SIZE: return {16384};
+  case GL_MAX_VIEWPORT_DIMS: return {65536, 65536};
   case GL_MAX_CLIP_PLANES: return {0};
   case GL_RED_BITS:
   case GL_GREEN_BITS:

@@ -23,8 +23,6 @@ void setImage(State& s, GLenum target, GLint level, GLsizei width, GLsizei heigh
               GLenum format, GLenum type, const void* pixels) {
   requireTarget(s, target);
   if (width < 0 || height < 0 || border < 0) fail(GL_INVALID_VALUE, "a size is below 0");
-  if (width > maxTextureSide || height > maxTextureSide)
-    fail(GL_INVALID_VALUE, "a size is above GL_MAX_TEXTURE_SIZE");
   if (level != 0 || width == 0 || height == 0) return;
   if (border != 0) s.refuse("the border of glTexImage", "use glTexParameterfv");
   Texture& texture = s.textures.at(s.now.texturing.bound);
@@ -203,9 +201,6 @@ void rtglGetTexEnviv(GLenum, GLenum name, GLint* out) {
 void rtglPixelStorei(GLenum name, GLint value) {
   guarded("glPixelStore", [&](State& s) {
     if (value < 0) fail(GL_INVALID_VALUE, "the value is below 0");
-    const bool isAlignment = name == GL_UNPACK_ALIGNMENT || name == GL_PACK_ALIGNMENT;
-    if (isAlignment && value != 1 && value != 2 && value != 4 && value != 8)
-      fail(GL_INVALID_VALUE, "the alignment is not 1, 2, 4 or 8");
     switch (name) {
     case GL_UNPACK_ALIGNMENT: s.unpack.alignment = value; break;
     case GL_UNPACK_ROW_LENGTH: s.unpack.rowLength = value; break;

@@ -9,8 +9,7 @@ int wrapOf(GLenum mode) { return mode == GL_REPEAT ? RT_REPEAT : RT_CLAMP_TO_EDG
 } // namespace
 
 GLuint Textures::newName() {
-  GLuint name = textures_.empty() ? 1 : textures_.rbegin()->first + 1;
-  while (name == 0 || textures_.count(name) != 0) name++; // the largest number is in use
+  const GLuint name = textures_.empty() ? 1 : textures_.rbegin()->first + 1;
   textures_[name];
   return name;
 }
