@@ -59,20 +59,20 @@ std::string NodeWriter::node(const Node* node, std::string_view indentation, con
   const std::string_view from = indentationAt(text, begin);
   std::string outer = std::exchange(text_.out, {});
   const size_t at = std::exchange(text_.at, begin);
-  writeNested(*node, &holder);
+  writeNode(*node, &holder);
   const std::string own = std::exchange(text_.out, std::move(outer));
   text_.at = at;
   return indented(own, from, indentation);
 }
 
 // Edits may nest nodes deeper than any file does.
-void NodeWriter::writeNested(const Node& node, const Holder* holder) {
+void NodeWriter::writeNode(const Node& node, const Holder* holder) {
   if (depth_ == Parser::maximumNesting)
     throw EditError(
         fmt::format("nodes stand in each other more than {} times, which no file can say",
                     Parser::maximumNesting));
   ++depth_;
-  writeNode(node, holder);
+  writeNodeText(node, holder);
   --depth_;
 }
 
@@ -201,7 +201,7 @@ void NodeWriter::keep(const DocumentText& text, const NodePlace& place, const Ho
   if (!place.node || (place.isUse && !place.taken && !isWritten))
     text_.copy(text, place.span.end);
   else if (place.isUse == isWritten)
-    place.isUse ? keepUse(text, place) : writeNested(*place.node, nullptr);
+    place.isUse ? keepUse(text, place) : writeNode(*place.node, nullptr);
   else
     text_.out += node(place.node, indentationAt(text, place.span.begin), holder);
   text_.at = place.span.end;

@@ -70,7 +70,8 @@ class NodeWriter {
   // Writes the roots and, behind them, the routes that routesToAdd() returns then.
   virtual void writeRoots(const DocumentText& file) = 0;
   // Writes a node at its place in its text. holder: where it stands now; null: where it stood.
-  virtual void writeNode(const Node& node, const Holder* holder) = 0;
+  void writeNode(const Node& node, const Holder* holder);
+  virtual void writeNodeText(const Node& node, const Holder* holder) = 0;
   // Returns the text of a reference to a node.
   virtual std::string useOf(const Node& node, const Holder& holder) const = 0;
   // Writes a reference that stays at its place.
@@ -126,15 +127,14 @@ class NodeWriter {
   void fill(const ListText& list, std::string nodes);
 
   bool isGone(const NodePlace& place) const;
-  void writeNested(const Node& node, const Holder* holder);
 
   const WritingPlan plan_;
-  uint64_t depth_ = 0;                             // nodes that are being written
   std::unordered_set<const Node*> leavesComments_; // nodes that have been moved without them
   const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
   // The last place whose line was asked for, and where that line begins.
   mutable const DocumentText* lineText_ = nullptr;
   mutable size_t lineAt_ = 0, line_ = 0;
+  uint64_t depth_ = 0; // nodes that are being written
 };
 
 // Return the writer of a syntax.

@@ -22,8 +22,6 @@ namespace {
 constexpr int mostJournals = 9; // beside one file
 constexpr std::string_view firstLine = "vv edits 1\n";
 constexpr size_t longestHead = 200;
-// A file of a world has at most as many bytes (fileBytes in docs/limits.md).
-constexpr uint64_t mostBytes = uint64_t(4) << 30;
 
 // A descriptor that is closed with this object.
 class Descriptor {
@@ -185,6 +183,7 @@ JournalFile JournalFile::open(const std::string& path, JournalContent& content, 
   if (!readHead(readBytes(file.get(), longestHead, path), head))
     refuse("it is damaged, or not a file of vv");
   if (uint64_t(info.st_size) - head.bytes != head.text.bytes) refuse("it is not complete");
+  constexpr uint64_t mostBytes = uint64_t(4) << 30; // as of a world's file: fileBytes
   if (head.text.bytes > mostBytes) refuse("it is larger than the file of a world may be");
   if (::lseek(file.get(), off_t(head.bytes), SEEK_SET) < 0) fail("read", path, errno);
   content.base = head.base;

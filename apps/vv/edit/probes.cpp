@@ -51,14 +51,6 @@ void readArea(Probe& probe, const picture::Picture& picture, const EditView& vie
   probe.state = Probe::State::read;
 }
 
-// Tells whether a reading is that of a probe. After clear() others get the same numbers.
-bool isOf(const picture::Measurement& reading, const Probe& probe) {
-  const picture::PlacedSensor& read = reading.sensor;
-  return probe.sensor && std::to_string(probe.number) == read.name &&
-         std::equal(std::begin(read.first), std::end(read.first), probe.sensor->first) &&
-         std::equal(std::begin(read.direction), std::end(read.direction), probe.sensor->direction);
-}
-
 } // namespace
 
 const char* quantityOf(const Probe& probe) { return probe.sensor ? "illuminance" : "luminance"; }
@@ -149,7 +141,7 @@ std::vector<picture::PlacedSensor> Probes::waitingSensors() const {
 void Probes::take(const std::vector<picture::Measurement>& readings) {
   for (const picture::Measurement& reading : readings)
     for (Probe& probe : probes_) {
-      if (!isOf(reading, probe)) continue;
+      if (!probe.sensor || std::to_string(probe.number) != reading.sensor.name) continue;
       probe.now = {};
       probe.now.luminance = reading.value[0];
       probe.now.luminanceHalfWidth = reading.halfWidth[0];
