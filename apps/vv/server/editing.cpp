@@ -59,7 +59,10 @@ void Editing::take(uint64_t page, const edit::Command& command) {
   face.isStale = true;
   try {
     std::visit([&](const auto& one) { perform(page, face, one); }, command);
-  } catch (const std::exception& error) { say(page, error.what(), true); }
+  } catch (const std::exception& error) {
+    say(page, error.what(), true);
+    face.told.erase("sheet"); // the page shows what was refused
+  }
 }
 
 void Editing::beginAnew() {
@@ -181,7 +184,10 @@ void Editing::endDrag(uint64_t page, Face& face) {
   if (!parameter) return;
   try {
     declareParameter(editor(), parameter->shader, parameter->name, parameter->value);
-  } catch (const std::exception& error) { say(page, error.what(), true); }
+  } catch (const std::exception& error) {
+    say(page, error.what(), true);
+    face.told.erase("sheet");
+  }
 }
 
 void Editing::endDrags() {
