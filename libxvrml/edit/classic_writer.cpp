@@ -56,7 +56,7 @@ class ClassicWriter : public NodeWriter {
     return xvrml::indented(text, from, to);
   }
 
-  void writeNode(const Node& node, const Holder*) override {
+  void writeNodeText(const Node& node, const Holder*) override {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
     begin(node);

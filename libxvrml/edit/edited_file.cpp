@@ -98,9 +98,7 @@ Twin EditedFile::twinOf(Node& node) {
   Document& document = this->document();
   Node* const found = document.find(node.source);
   const std::string& type = node.type().name;
-  if (found && document.isOwn(*found) && fileStamp(node.source.file) != read_)
-    throw EditError(fmt::format("{} has been written to since the world was loaded: load it again",
-                                world().path));
+  if (found && document.isOwn(*found)) checkUnchanged(node);
   if (found && found->type().name == type) return {NodeRef(&node), NodeRef(found)};
   if (!node.source.file)
     throw EditError(fmt::format("this {} stands in no file: a program has made it", type));
@@ -110,6 +108,12 @@ Twin EditedFile::twinOf(Node& node) {
   throw EditError(fmt::format("this {} of line {} belongs to the body of a prototype: edit the "
                               "fields of the instance",
                               type, node.source.line));
+}
+
+void EditedFile::checkUnchanged(const Node& node) const {
+  if (fileStamp(node.source.file) != read_)
+    throw EditError(fmt::format("{} has been written to since the world was loaded: load it again",
+                                *node.source.file));
 }
 
 Twin EditedFile::standingTwinOf(Node& node) {
@@ -129,6 +133,7 @@ void EditedFile::checkStands(Node* node) {
 }
 
 Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
+  document(); // reads the file
   Slot slot;
   if (given.parent) {
     slot.parent = twinOf(*given.parent);
@@ -136,6 +141,12 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
     if (!slot.field || !holdsNodes(*slot.field))
       throw EditError(fmt::format("{} has no field '{}' that holds nodes",
                                   given.parent->type().name, given.field));
+  } else {
+    const MFNode& roots = world().scope.roots;
+    const auto own = std::find_if(roots.begin(), roots.end(), [this](const NodeRef& root) {
+      return root && root->source.file && *root->source.file == world().path;
+    });
+    if (own != roots.end()) checkUnchanged(**own);
   }
   if (const auto exchange = exchangeOf(document().world()); exchange && !exchange->imports.empty())
     throw EditError(fmt::format("{} imports nodes: only values can be edited there", world().path));

@@ -87,6 +87,8 @@ class EditedFile {
                      const std::optional<std::string>& adopted);
   Opened takePrepared();
   const MFNode& liveList(const Slot& slot);
+  // Throws EditError if a node of the file was loaded from another text than the document's.
+  void checkUnchanged(const Node& node) const;
   // Finds the nodes of the live world that begin at places of its file, given by placeKey().
   std::unordered_map<uint64_t, NodeRef> liveNodesAt(const std::unordered_set<uint64_t>& places);
 

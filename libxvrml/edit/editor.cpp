@@ -176,7 +176,10 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
   if (scope.roots.size() != 1 || !scope.routes.empty() || !scope.prototypes.empty())
     throw EditError("the text must be that of one node, without routes and prototypes");
   impl_->nodes.checkPlace(slot, {scope.roots[0], scope.roots[0]});
-  const MFNode made = impl_->file.live().read(std::string(text), name);
+  MFNode made;
+  try {
+    made = impl_->file.live().read(std::string(text), name);
+  } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
   if (made.size() != 1) throw EditError("the text could not be read a second time");
   const Twin node{made[0], scope.roots[0]};
   impl_->nodes.nameFreshly(node);
@@ -188,7 +191,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
 
 void Editor::use(const NodeSlot& given, Node& node) {
   impl_->file.checkStands(given.parent);
-  const Twin twin = impl_->file.twinOf(node);
+  const Twin twin = impl_->file.standingTwinOf(node);
   const Slot slot = impl_->file.slotOf(given, false);
   impl_->nodes.checkPlace(slot, twin);
   if (impl_->file.document().isRepeated(node.defName))
@@ -213,7 +216,7 @@ void Editor::move(const NodeSlot& from, const NodeSlot& to) {
   impl_->file.checkStands(from.parent);
   impl_->file.checkStands(to.parent);
   const Slot source = impl_->file.slotOf(from, true);
-  const NodeRef node(impl_->file.nodeAt(source));
+  const NodeRef node(impl_->file.nodeAt(source)), parent(to.parent); // Scripts may let them go
   OpenStep step(impl_->history, fmt::format("Move {}", node->type().name));
   const Twin twin = impl_->nodes.take(source);
   const Slot target = impl_->file.slotOf(to, false);
@@ -305,6 +308,8 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
         fmt::format("{} cannot be declared in JSON: write the field into the file", what));
   const std::vector<NodeSlot> places = placesOf(node);
   if (places.empty()) throw EditError(fmt::format("this {} is not in the file", node.type().name));
+  MFNode parents; // Scripts that an edit runs may let them go
+  for (const NodeSlot& place : places) parents.emplace_back(place.parent);
   const std::string text =
       withDeclaration(onStackOf(deepestStack, [&] { return writeNode(document, *twin.document); }),
                       document.world().head.version, field, value);

@@ -35,7 +35,12 @@ void History::joinLast(size_t first) {
 
 void History::cancel() {
   if (begun_.empty()) return;
-  rollBack(begun_.back());
+  try {
+    rollBack(begun_.back());
+  } catch (...) { // an outer step goes on, and can be cancelled later
+    end();
+    throw;
+  }
   begun_.pop_back();
 }
 

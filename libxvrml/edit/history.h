@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -22,7 +23,8 @@ struct Edit {
 class History {
  public:
   // Edits from begin() to end() are one step; both may nest. A step without a name is an "Edit".
-  // cancel() undoes what the innermost begin() has begun, and ends it.
+  // cancel() undoes what the innermost begin() has begun, and ends it. If that throws, what could
+  // not be undone stays, as if end() had been called.
   void begin(std::string name);
   void end();
   void cancel();
@@ -66,14 +68,18 @@ class History {
   std::vector<size_t> begun_; // for each begin() without end(): the number of edits before
 };
 
-// A step, or a part of one, that is undone unless it is closed.
+// A step, or a part of one, that is undone unless it is closed. Edits that cannot be undone,
+// because a Script has changed the world meanwhile, stay as a step.
 class OpenStep {
  public:
   OpenStep(History& history, std::string name) : history_(history) {
     history.begin(std::move(name));
   }
   ~OpenStep() {
-    if (!closed_) history_.cancel();
+    if (closed_) return;
+    try {
+      history_.cancel();
+    } catch (const std::exception&) {} // the exception that has left the step open says more
   }
   OpenStep(const OpenStep&) = delete;
   OpenStep& operator=(const OpenStep&) = delete;

@@ -200,7 +200,7 @@ class JsonWriter : public NodeWriter {
     std::function<void()> write;
   };
 
-  void writeNode(const Node& node, const Holder* holder) override {
+  void writeNodeText(const Node& node, const Holder* holder) override {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
     begin(node);

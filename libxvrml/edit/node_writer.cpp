@@ -4,9 +4,13 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/lexer.h"
 #include "base/x3d.h"
 #include "edit/lines.h"
+#include "parse/parser.h"
+#include "xvrml/edit.h"
 
 namespace xvrml {
 
@@ -61,6 +65,17 @@ std::string NodeWriter::node(const Node* node, std::string_view indentation, con
   const std::string own = std::exchange(text_.out, std::move(outer));
   text_.at = at;
   return indented(own, from, indentation);
+}
+
+// Edits may nest nodes deeper than any file does.
+void NodeWriter::writeNode(const Node& node, const Holder* holder) {
+  if (depth_ == Parser::maximumNesting)
+    throw EditError(
+        fmt::format("nodes stand in each other more than {} times, which no file can say",
+                    Parser::maximumNesting));
+  ++depth_;
+  writeNodeText(node, holder);
+  --depth_;
 }
 
 std::string NodeWriter::nodeInLines(const Node* node, std::string_view indentation,

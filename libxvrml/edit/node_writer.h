@@ -59,7 +59,8 @@ class NodeWriter {
   NodeWriter(const Document& document, WritingPlan plan);
   virtual ~NodeWriter() = default;
 
-  // Return the text of the file, or of a node. Only one of them is called, once.
+  // Return the text of the file, or of a node. Only one of them is called, once. Throw EditError if
+  // nodes nest deeper than Parser::maximumNesting.
   std::string file();
   std::string node(const Node& node) { return finished(this->node(&node, "", {})); }
   // Returns what is to be written otherwise. The prototypes that must be lifted, because instances
@@ -71,7 +72,8 @@ class NodeWriter {
   // Writes the roots and, behind them, the routes that routesToAdd() returns then.
   virtual void writeRoots(const DocumentText& file) = 0;
   // Writes a node at its place in its text. holder: where it stands now; null: where it stood.
-  virtual void writeNode(const Node& node, const Holder* holder) = 0;
+  void writeNode(const Node& node, const Holder* holder);
+  virtual void writeNodeText(const Node& node, const Holder* holder) = 0;
   // Returns the text of a reference to a node.
   virtual std::string useOf(const Node& node, const Holder& holder) const = 0;
   // Writes a reference that stays at its place.
@@ -143,6 +145,7 @@ class NodeWriter {
   // The last place whose line was asked for, and where that line begins.
   mutable const DocumentText* lineText_ = nullptr;
   mutable size_t lineAt_ = 0, line_ = 0;
+  uint64_t depth_ = 0; // nodes that are being written
 };
 
 // Return the writer of a syntax.

@@ -171,8 +171,10 @@ void JsonRecorder::route(const Name& keyword, const RouteNames& names) {
 
 void JsonRecorder::finish(bool isFragment) {
   if (!index_.isWhole()) refuse("is not well-formed JSON: mend it first");
-  std::sort(layout_.routes.begin(), layout_.routes.end(),
-            [](const RouteText& a, const RouteText& b) { return a.whole.begin < b.whole.begin; });
+  // Some members of an object are read before others that stand above them.
+  const auto inOrder = [](const auto& a, const auto& b) { return a.whole.begin < b.whole.begin; };
+  std::sort(layout_.routes.begin(), layout_.routes.end(), inOrder);
+  std::sort(layout_.prototypes.begin(), layout_.prototypes.end(), inOrder);
   if (isFragment) return;
   if (layout_.scene.begin == 0) refuse("has no Scene");
   for (const NodePlace& root : layout_.roots)

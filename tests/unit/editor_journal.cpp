@@ -260,6 +260,18 @@ TEST_F(EditorJournal, AFileBehindALinkHasItsJournalBesideItself) {
   EXPECT_EQ(fs::canonical(kept), fs::canonical(journal));
 }
 
+// It is read as a whole: a file with holes may have any size.
+TEST_F(EditorJournal, AnEndlessJournalIsRefused) {
+  leave();
+  constexpr uint64_t bytes = uint64_t(5) << 30;
+  const std::string head = "vv edits 1\nbase 1 0\ntext " + std::to_string(bytes) + " 0\n\n";
+  putContent(journal, head);
+  fs::resize_file(journal, head.size() + bytes);
+  Program program(world);
+  EXPECT_FALSE(program.journal().left());
+  EXPECT_NE(program.journal().takeMessage().find("larger than the file"), std::string::npos);
+}
+
 TEST_F(EditorJournal, WhatIsNoJournalIsRefusedWithOneMessage) {
   leave();
   const std::string good = contentOf(journal);

@@ -301,6 +301,39 @@ TEST(EditorPageTexts, ManyFieldsAreCutOff) {
   EXPECT_GT(sheet["fields"].size(), 100u);
 }
 
+// A page forgets its numbers when it has half of them: what it shows then takes less than the rest.
+TEST(EditorPageTexts, TheNodesOfASheetHaveNumbersLeft) {
+  std::string nodes, fields;
+  for (int i = 0; i < 200; ++i) nodes += "Fog { } ";
+  for (int i = 0; i < 100; ++i) fields += fmt::format("field MFNode f{} [ {} ] ", i, nodes);
+  Shown shown("DEF S Script { " + fields + " }");
+  EXPECT_GT(shown.sheetOf("S")["hidden"], 10);
+  EXPECT_LT(shown.numbers.size() + size_t(maxRowsShown), size_t(maxNodeNumbers) / 2);
+}
+
+// Scales may be so large that no place of the picture can be computed.
+TEST(EditorPageTexts, FramesHaveFiniteNumbers) {
+  std::string text = "DEF S Shape { geometry Box { } }";
+  for (int i = 0; i < 9; ++i)
+    text = "Transform { scale 1e38 1e38 1e38 translation 1e38 0 0 children " + text + " }";
+  Shown shown(text);
+  shown.world.editor.choose(shown.world.node("S"), false);
+  shown.update();
+  EXPECT_EQ(Json::parse(edit::framesText(shown.model))["lines"].size(), 0u);
+}
+
+TEST(EditorPageTexts, RangesOfParametersAreThoseOfTheirClass) {
+  vv::PropertySheet sheet;
+  Shown shown("DEF L PointLight { }");
+  Json light = shown.sheetOf("L");
+  EXPECT_FALSE(Shown::field(light, "location").contains("most"));
+  sheet = shown.model.sheet();
+  for (vv::PropertyRow& row : sheet.rows)
+    if (row.field->name == "location") row.range.maximum = 7;
+  light = Json::parse(edit::sheetText(sheet, shown.numbers));
+  EXPECT_EQ(Shown::field(light, "location")["most"], 7);
+}
+
 TEST(EditorPageTexts, AStepOfAPageIsAllOrNothing) {
   Shown shown("DEF L PointLight { intensity .5 }");
   const vv::json::edits::FindNamed find =

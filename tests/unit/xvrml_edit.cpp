@@ -350,6 +350,8 @@ TEST(Editor, AFileThatHasBeenWrittenToSinceIsNotEdited) {
     EXPECT_EQ(error.what(),
               path + " has been written to since the world was loaded: load it again");
   }
+  EXPECT_THROW(editor.insert({nullptr, "", 0}, "Group { }"), EditError);
+  EXPECT_THROW(editor.insert({nullptr, "", 1}, "Group { }"), EditError);
 }
 
 TEST(Editor, AnotherWorldIsNotEdited) {

@@ -1,5 +1,7 @@
 // xvrml_edit_places.cpp: Tests where nodes of a file may stand: not in themselves, and also in
 // fields that could not be read as a whole; and lists of many nodes in one line.
+#include "edit/history.h"
+#include "parse/parser.h"
 #include "unit/xvrml_edit_support.h"
 #include "xvrml/set_field.h"
 
@@ -59,6 +61,7 @@ TEST_P(EditedPlaces, NothingIsPutIntoANodeThatHasGone) {
   };
   isRefused([&] { editor->move({nullptr, "", 0}, inside); });
   isRefused([&] { editor->use(inside, node("B")); });
+  isRefused([&] { editor->use({&node("B"), "children", 0}, *gone); });
   isRefused([&] { editor->insert(inside, "Group { }"); });
   isRefused([&] { editor->set(*gone, "bboxCenter", xvrml::Vec3f{1, 2, 3}); });
   isRefused([&] { editor->addRoute(*gone, "children", node("B"), "children"); });
@@ -107,6 +110,40 @@ TEST_P(EditedPlaces, AStepThatCannotBeUndoneStaysDone) {
   EXPECT_EQ(editor->undoName(), "Step");
   ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
   undoAll();
+}
+
+// It stays as a step, which can be undone when the world allows it again.
+TEST_P(EditedPlaces, WhatCannotBeCancelledStaysDone) {
+  load("DEF A Group { children DEF B Group { } }\nDEF C Group { children USE B }\n");
+  editor->begin("Step");
+  editor->remove({&node("A"), "children", 0});
+  if (!browser) return;
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{NodeRef(&node("A"))}));
+  EXPECT_THROW(editor->cancel(), EditError);
+  EXPECT_FALSE(editor->isInStep());
+  EXPECT_EQ(editor->undoName(), "Step");
+  EXPECT_NE(editor->text(), original);
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
+  undoAll();
+}
+
+// An exception must not leave the end of a scope while another one is on its way.
+TEST(EditHistory, AStepWhoseUndoFailsDoesNotEndTheProgram) {
+  History history;
+  int value = 0;
+  const auto failing = [&] {
+    OpenStep outer(history, "Outer");
+    OpenStep inner(history, "Inner");
+    history.perform({[&] { ++value; }, [] { throw EditError("not now"); }});
+    throw EditError("the reason");
+  };
+  try {
+    failing();
+    ADD_FAILURE() << "it throws";
+  } catch (const EditError& error) { EXPECT_STREQ(error.what(), "the reason"); }
+  EXPECT_FALSE(history.isOpen());
+  EXPECT_EQ(history.undoName(), "Outer");
+  EXPECT_EQ(value, 1);
 }
 
 // Nodes in fields that could not be read as a whole are edited in their places.
@@ -213,6 +250,21 @@ TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
   editor->remove({nullptr, "", 0});
   EXPECT_EQ(text(), "DEF L PointLight { }\n");
   undoAll();
+}
+
+// Groups around groups may nest deeper than any file, but the text of the file takes no more stack.
+TEST(EditorPlaces, NodesThatNestTooDeepHaveNoText) {
+  const Folder folder;
+  const std::string text = "#VRML V2.0 utf8\nDEF G Group { children Shape { } }\n";
+  const auto world = loadWorld(folder.write("w.wrl", text));
+  Editor editor(*world);
+  Node& group = *world->scope.names.at("G");
+  for (uint64_t i = 0; i < Parser::maximumNesting; ++i) editor.wrap({&group, "children", 0});
+  EXPECT_THROW(editor.draft(), EditError);
+  EXPECT_THROW(editor.text(), EditError);
+  EXPECT_THROW(editor.duplicate({nullptr, "", 0}), EditError);
+  while (editor.undo()) {}
+  EXPECT_EQ(editor.text(), text);
 }
 
 TEST(EditorPlaces, LongLines) {

@@ -191,7 +191,8 @@ class Reader {
   int32_t imageNumber(const Json& json, const char* name, int32_t most) {
     const auto found = json.find(name);
     if (found == json.end()) fail(fmt::format("the member \"{}\" of the image is missing", name));
-    if (!found->is_number_unsigned() || *found > most)
+    // Compared as values of JSON, numbers from 2^63 on would be negative.
+    if (!found->is_number_unsigned() || found->get<uint64_t>() > uint64_t(most))
       fail(fmt::format("{}: a whole number from 0 to {} was expected, not {}", name, most,
                        shownJson(*found)));
     return found->get<int32_t>();

@@ -1,6 +1,7 @@
 #include "control/world_commands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -103,8 +104,12 @@ NodeRef childOf(Node* node, const char* field) {
   return *static_cast<const NodeRef*>(real->storage(*info));
 }
 
+// Numbers may be none where nodes are scaled beyond all measure.
 std::string triple(const std::array<double, 3>& v) {
-  return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
+  const auto text = [](double number) {
+    return std::isfinite(number) ? fmt::format("{}", number) : "null";
+  };
+  return fmt::format("[{},{},{}]", text(v[0]), text(v[1]), text(v[2]));
 }
 
 struct Performer {

@@ -17,8 +17,10 @@ namespace {
 
 constexpr double level = 0.05;
 // Degrees of freedom of an interval that is trusted: it has at least 8 replicates. Most have more,
-// so that fewer changes are called significant than could be.
+// but a picture does not say how many.
 constexpr double fewestFreedom = 7;
+// Half-width in standard errors where there are very many.
+constexpr double normalQuantile = 1.959963985;
 
 // Returns the probability that the absolute value of Student's t exceeds a value (M. Abramowitz, I.
 // Stegun, "Handbook of Mathematical Functions", 26.7.3 and 26.7.4). freedom: above 1.
@@ -73,9 +75,12 @@ Difference differenceBetween(const picture::PixelReading& before,
   // Degrees of freedom of the difference: F. E. Satterthwaite, Biometrics Bulletin 2, 1946.
   const double p = a / difference.halfWidth, q = b / difference.halfWidth;
   const double freedom = fewestFreedom / (p * p * p * p + q * q * q * q);
-  const double t =
-      std::abs(difference.value) / difference.halfWidth * student::quantile95(fewestFreedom);
-  difference.chance = chanceBeyond(t, std::max(int(freedom + 1e-9), int(fewestFreedom)));
+  // The chance is the largest one that any degrees of freedom from there on give: that of the
+  // fewest, or of very many, whose half-widths are fewer standard errors.
+  const double ratio = std::abs(difference.value) / difference.halfWidth;
+  difference.chance = std::max(chanceBeyond(ratio * student::quantile95(fewestFreedom),
+                                            std::max(int(freedom + 1e-9), int(fewestFreedom))),
+                               std::erfc(ratio * normalQuantile / std::numbers::sqrt2));
   return difference;
 }
 

@@ -263,7 +263,8 @@ std::vector<EditModel::Line> EditModel::framesOf(WorldEditor& editor, const Edit
     bool inFront = true;
     for (size_t i = 0; i < corners.size() && inFront; ++i)
       inFront =
-          projectPoint(view.camera, view.aspect, corners[i].data(), places[i][0], places[i][1]);
+          projectPoint(view.camera, view.aspect, corners[i].data(), places[i][0], places[i][1]) &&
+          std::isfinite(places[i][0]) && std::isfinite(places[i][1]);
     if (!inFront) continue;
     for (size_t i = 0; i < corners.size(); ++i)
       for (size_t k = 0; k < 3; ++k)

@@ -198,6 +198,8 @@ JournalFile JournalFile::open(const std::string& path, JournalContent& content, 
   if (!readHead(readBytes(file.get(), longestHead, path), head))
     refuse("it is damaged, or not a file of vv");
   if (uint64_t(info.st_size) - head.bytes != head.text.bytes) refuse("it is not complete");
+  constexpr uint64_t mostBytes = uint64_t(4) << 30; // as of a world's file: fileBytes
+  if (head.text.bytes > mostBytes) refuse("it is larger than the file of a world may be");
   if (::lseek(file.get(), off_t(head.bytes), SEEK_SET) < 0) fail("read", path, errno);
   content.base = head.base;
   content.text = readBytes(file.get(), head.text.bytes, path);

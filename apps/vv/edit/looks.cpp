@@ -100,6 +100,8 @@ void setMaterial(WorldEditor& editor, Node& appearance, const Look& look) {
 void replaceAppearance(WorldEditor& editor, const NodeRef& before, const Wanted& wanted) {
   Editor& file = editor.editor();
   const std::vector<NodeSlot> places = file.placesOf(*before);
+  MFNode parents; // Scripts that an edit runs may let them go
+  for (const NodeSlot& place : places) parents.emplace_back(place.parent);
   // Nodes are moved while both stand in the file, so that they keep their names and routes.
   const NodeRef holder = insertNew(editor, editor.endOf(nullptr, ""), "Shape");
   const NodeRef made = insertAppearance(editor, {holder.get(), "appearance", 0}, wanted);

@@ -123,7 +123,7 @@ std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers&
       fmt::format(R"({{"field":{},"type":"{}","default":{},"declared":{},"size":{},"help":{})",
                   jsonText(field.name), fieldTypeName(field.type), row.isDefault, row.isDeclared,
                   row.size, jsonText(shortened(row.help, mostHelpBytes)));
-  appendRange(out, field.range);
+  appendRange(out, row.range);
   if (isLinear(node, row)) out += ",\"linear\":true";
   if (!row.choices.empty()) out += ",\"choices\":" + jsonLine(row.choices);
   if (row.isLong || row.isInOptions || roughSize(row.value) > size_t(maxValueBytes)) {

@@ -53,7 +53,10 @@ void Editing::take(uint64_t page, const edit::Command& command) {
     if (world_.isReverting() && isEdit(command))
       throw EditError("the file is being read again: what is edited now would be lost");
     std::visit([&](const auto& one) { perform(page, face, one); }, command);
-  } catch (const std::exception& error) { say(page, error.what(), true); }
+  } catch (const std::exception& error) {
+    say(page, error.what(), true);
+    face.told.erase("sheet"); // the page shows what was refused
+  }
 }
 
 void Editing::beginAnew() {
@@ -130,6 +133,7 @@ void Editing::tell(uint64_t page, Face& face, const std::string& type, std::stri
 }
 
 void Editing::show(uint64_t page, Face& face) {
+  // Everything that is shown at once takes less than half of the numbers.
   if (face.numbers.size() > size_t(maxNodeNumbers) / 2) {
     face.numbers.releaseAll(); // everything that is shown gets new ones
     face.told.clear();
@@ -247,7 +251,10 @@ void Editing::endDrag(uint64_t page, Face& face) {
   if (!parameter) return;
   try {
     declareParameter(editor(), parameter->shader, parameter->name, parameter->value);
-  } catch (const std::exception& error) { say(page, error.what(), true); }
+  } catch (const std::exception& error) {
+    say(page, error.what(), true);
+    face.told.erase("sheet");
+  }
 }
 
 void Editing::endDrags() {

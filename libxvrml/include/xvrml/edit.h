@@ -62,8 +62,9 @@ class Editor {
   // --- Steps ---
   // Edits from begin() to end() are one step, which is undone as a whole; other edits are a step
   // each. Values of a field that follow each other within a step are one edit. begin() and end()
-  // may nest; the outermost name counts. cancel() undoes and ends what the innermost
-  // begin() has begun.
+  // may nest; the outermost name counts. cancel() undoes and ends what the innermost begin() has
+  // begun. It throws EditError if a Script has changed the world so that this cannot be; what is
+  // left stays as a step.
   void begin(std::string name);
   void end();
   void cancel();
