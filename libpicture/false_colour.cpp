@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/luminance.h"
+#include "libpicture/neighbours.h"
 #include "openrt/openrt.h"
 #include "parallel_for.h"
 
@@ -114,28 +115,20 @@ std::vector<float> luminancesOf(const Picture& picture) {
 std::vector<float> scaled(const std::vector<float>& values, int width, int height, int newWidth,
                           int newHeight) {
   if (width == newWidth && height == newHeight) return values;
-  struct Place {
-    size_t first, second;
-    float weight; // that of the second
-  };
-  const auto placeOf = [](int i, int from, int to) {
-    const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, double(from - 1));
-    const size_t first = size_t(at);
-    return Place{first, std::min(first + 1, size_t(from) - 1), float(at - double(first))};
-  };
-  std::vector<Place> columns;
-  for (int x = 0; x < newWidth; x++) columns.push_back(placeOf(x, width, newWidth));
+  const std::vector<Neighbours> columns = neighbours(width, newWidth),
+                                rows = neighbours(height, newHeight);
   std::vector<float> out(size_t(newWidth) * size_t(newHeight));
   eachRow(newHeight, [&](int y) {
-    const Place row = placeOf(y, height, newHeight);
+    const Neighbours& row = rows[size_t(y)];
     const float *const above = &values[row.first * size_t(width)],
                        *const below = &values[row.second * size_t(width)];
     float* const to = &out[size_t(y) * size_t(newWidth)];
     for (size_t x = 0; x < columns.size(); x++) {
-      const Place& c = columns[x];
-      const float upper = above[c.first] + c.weight * (above[c.second] - above[c.first]),
-                  lower = below[c.first] + c.weight * (below[c.second] - below[c.first]);
-      to[x] = upper + row.weight * (lower - upper);
+      const Neighbours& c = columns[x];
+      const auto weight = float(c.weight);
+      const float upper = above[c.first] + weight * (above[c.second] - above[c.first]),
+                  lower = below[c.first] + weight * (below[c.second] - below[c.first]);
+      to[x] = upper + float(row.weight) * (lower - upper);
     }
   });
   return out;

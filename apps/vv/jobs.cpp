@@ -19,7 +19,7 @@
 #include "run/inputs.h"
 #include "run/inspect.h"
 #include "server/server.h"
-#include "session/input/keys.h"
+#include "session/input/editor_keys.h"
 #include "session/read_script.h"
 #include "window/window.h"
 
@@ -50,7 +50,9 @@ void prepare(Options& options) {
 
 int help(const Run& run) { return print(helpText(run.options.helpTopic)); }
 int printVersion(const Run&) { return print("vv " + version() + "\n"); }
-int printKeys(const Run&) { return print(listKeys()); }
+int printKeys(const Run&) {
+  return print(listKeys() + "\nWhile the editor is open:\n" + listEditorKeys());
+}
 int merge(const Run& run) { return runMerge(run.options, run.commandLine()); }
 
 int serve(const Run& run) {

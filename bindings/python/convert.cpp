@@ -13,6 +13,7 @@
 #include "numbers.h"
 #include "objects.h"
 #include "xvrml/numbers.h"
+#include "xvrml/value_words.h"
 #include "xvrml/viewed.h"
 #include "xvrml/walk.h"
 

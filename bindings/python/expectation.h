@@ -6,5 +6,3 @@
 #include "xvrml/types.h"
 
 std::string expectation(xvrml::FieldType type); // "3 numbers", "numbers of shape (n, 3)"
-// Whether the numbers of a type are more exact than floats.
-bool hasWideNumbers(xvrml::FieldType type);

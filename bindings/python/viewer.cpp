@@ -3,7 +3,6 @@
 #include "viewer.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -18,12 +17,6 @@ using namespace xvrml;
 namespace {
 
 using State = picture::LiveRenderer::State;
-
-bool same(const std::optional<CameraSettings>& a, const std::optional<CameraSettings>& b) {
-  if (!a || !b) return !a && !b;
-  return std::memcmp(a->matrix, b->matrix, sizeof a->matrix) == 0 && a->fovy == b->fovy &&
-         a->height == b->height && a->shader == b->shader;
-}
 
 } // namespace
 
@@ -130,7 +123,7 @@ bool Viewer::isOutdated() {
   return wasOutdated_ =
              !begun_ || !live() || // the renderer of World.render() has taken the changes
              browser().hasChanges() || frameChanges_ != viewers_->changes ||
-             viewers_->generation != browser().generation() || !same(knownCamera(), frameCamera_) ||
+             viewers_->generation != browser().generation() || knownCamera() != frameCamera_ ||
              (!moving_ && (frame_.width != width_ || frame_.height != height_));
 }
 

@@ -1,5 +1,6 @@
 // array_calls.cpp: Implements vertex arrays. They are read when they are drawn, as if each vertex
 // were given between glBegin and glEnd.
+#include <cstring>
 
 #include "gl/state.h"
 #include "openrt/gl.h"
@@ -22,6 +23,13 @@ size_t sizeOf(GLenum type) {
   }
 }
 
+// Reads number c of those at an address, which may be any.
+template <class T> T load(const unsigned char* at, size_t c) {
+  T value;
+  std::memcpy(&value, at + c * sizeof(T), sizeof(T));
+  return value;
+}
+
 // Reads component c of an element. The range of integers stands for -1 .. 1 or 0 .. 1 if
 // `normalised`.
 float read(const ClientArray& array, size_t element, size_t c, bool normalised) {
@@ -32,14 +40,14 @@ float read(const ClientArray& array, size_t element, size_t c, bool normalised) 
     return static_cast<float>(normalised ? value / largest : value);
   };
   switch (array.type) {
-  case GL_BYTE: return whole(reinterpret_cast<const GLbyte*>(at)[c], 127);
+  case GL_BYTE: return whole(load<GLbyte>(at, c), 127);
   case GL_UNSIGNED_BYTE: return whole(at[c], 255);
-  case GL_SHORT: return whole(reinterpret_cast<const GLshort*>(at)[c], 32767);
-  case GL_UNSIGNED_SHORT: return whole(reinterpret_cast<const GLushort*>(at)[c], 65535);
-  case GL_INT: return whole(reinterpret_cast<const GLint*>(at)[c], 2147483647.0);
-  case GL_UNSIGNED_INT: return whole(reinterpret_cast<const GLuint*>(at)[c], 4294967295.0);
-  case GL_DOUBLE: return static_cast<float>(reinterpret_cast<const GLdouble*>(at)[c]);
-  default: return reinterpret_cast<const GLfloat*>(at)[c];
+  case GL_SHORT: return whole(load<GLshort>(at, c), 32767);
+  case GL_UNSIGNED_SHORT: return whole(load<GLushort>(at, c), 65535);
+  case GL_INT: return whole(load<GLint>(at, c), 2147483647.0);
+  case GL_UNSIGNED_INT: return whole(load<GLuint>(at, c), 4294967295.0);
+  case GL_DOUBLE: return static_cast<float>(load<GLdouble>(at, c));
+  default: return load<GLfloat>(at, c);
   }
 }
 
@@ -197,17 +205,21 @@ void rtglDrawElements(GLenum mode, GLsizei count, GLenum type, const GLvoid* ind
     s.end();
   });
 }
-void rtglPushClientAttrib(GLbitfield) {
-  guarded("glPushClientAttrib", [](State& s) {
+void rtglPushClientAttrib(GLbitfield mask) {
+  guarded("glPushClientAttrib", [mask](State& s) {
     if (s.clientStack.size() >= 16) fail(GL_STACK_OVERFLOW, "too many glPushClientAttrib");
-    s.clientStack.emplace_back(s.arrays, s.unpack);
+    s.clientStack.push_back({mask, s.arrays, s.unpack, s.pack});
   });
 }
 void rtglPopClientAttrib(void) {
   guarded("glPopClientAttrib", [](State& s) {
     if (s.clientStack.empty()) fail(GL_STACK_UNDERFLOW, "glPushClientAttrib is missing");
-    s.arrays = s.clientStack.back().first;
-    s.unpack = s.clientStack.back().second;
+    const State::SavedClient& saved = s.clientStack.back();
+    if (saved.mask & GL_CLIENT_VERTEX_ARRAY_BIT) s.arrays = saved.arrays;
+    if (saved.mask & GL_CLIENT_PIXEL_STORE_BIT) {
+      s.unpack = saved.unpack;
+      s.pack = saved.pack;
+    }
     s.clientStack.pop_back();
   });
 }

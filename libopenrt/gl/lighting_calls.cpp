@@ -1,6 +1,7 @@
 // lighting_calls.cpp: Implements the calls for lights, materials and fog.
 #include <algorithm>
 
+#include "gl/numbers.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
 
@@ -127,7 +128,7 @@ template <class T> void fogCall(GLenum name, const T* values) {
     Fog& fog = s.now.fog;
     switch (name) {
     case GL_FOG_MODE: {
-      const auto mode = static_cast<GLenum>(v[0]);
+      const GLenum mode = toName(static_cast<double>(v[0]));
       if (mode != GL_LINEAR && mode != GL_EXP && mode != GL_EXP2)
         fail(GL_INVALID_ENUM, "no such mode of fog");
       fog.mode = mode;
@@ -177,9 +178,7 @@ Values materialValues(const Face& face, GLenum name) {
 void write(GLenum name, const Values& v, float* out) { std::copy_n(v.begin(), countOf(name), out); }
 void write(GLenum name, const Values& v, GLint* out) {
   for (size_t i = 0; i < countOf(name); i++)
-    out[i] = static_cast<GLint>(isColor(name) ? std::clamp(static_cast<double>(v[i]), -1.0, 1.0) *
-                                                    2147483647.0
-                                              : static_cast<double>(v[i]));
+    out[i] = toInteger(static_cast<double>(v[i]) * (isColor(name) ? 2147483647.0 : 1.0));
 }
 
 template <class T> void getLight(GLenum light, GLenum name, T* out) {
@@ -242,6 +241,11 @@ void rtglGetMaterialfv(GLenum face, GLenum name, GLfloat* out) { getMaterial(fac
 void rtglGetMaterialiv(GLenum face, GLenum name, GLint* out) { getMaterial(face, name, out); }
 void rtglColorMaterial(GLenum face, GLenum mode) {
   listed("glColorMaterial", [=](State& s) {
+    if (face != GL_FRONT && face != GL_BACK && face != GL_FRONT_AND_BACK)
+      fail(GL_INVALID_ENUM, "no such face");
+    if (mode != GL_EMISSION && mode != GL_AMBIENT && mode != GL_DIFFUSE && mode != GL_SPECULAR &&
+        mode != GL_AMBIENT_AND_DIFFUSE)
+      fail(GL_INVALID_ENUM, "no such property");
     s.now.lighting.colorFace = face;
     s.now.lighting.colorMode = mode;
     s.trackColor();

@@ -20,7 +20,7 @@ size_t sizeOf(GLenum type) {
 }
 
 unsigned char toByte(double unit) {
-  return static_cast<unsigned char>(255 * std::clamp(unit, 0.0, 1.0) + 0.5);
+  return unit > 0 ? static_cast<unsigned char>(255 * std::min(unit, 1.0) + 0.5) : 0; // also for NaN
 }
 
 // Returns component i of the pixels at an address.

@@ -97,10 +97,19 @@ bool isShape(const RTUquadric* q, int slices, int stacks) {
 
 RTUquadric* rtuNewQuadric(void) { return new (std::nothrow) RTUquadric; }
 void rtuDeleteQuadric(RTUquadric* q) { delete q; }
-void rtuQuadricDrawStyle(RTUquadric* q, GLenum style) { q->style = style; }
-void rtuQuadricNormals(RTUquadric* q, GLenum normals) { q->normals = normals; }
-void rtuQuadricOrientation(RTUquadric* q, GLenum orientation) { q->orientation = orientation; }
-void rtuQuadricTexture(RTUquadric* q, GLboolean texture) { q->texture = texture != 0; }
+// rtuNewQuadric() returns NULL if memory has run out.
+void rtuQuadricDrawStyle(RTUquadric* q, GLenum style) {
+  if (q) q->style = style;
+}
+void rtuQuadricNormals(RTUquadric* q, GLenum normals) {
+  if (q) q->normals = normals;
+}
+void rtuQuadricOrientation(RTUquadric* q, GLenum orientation) {
+  if (q) q->orientation = orientation;
+}
+void rtuQuadricTexture(RTUquadric* q, GLboolean texture) {
+  if (q) q->texture = texture != 0;
+}
 
 void rtuSphere(RTUquadric* q, GLdouble radius, GLint slices, GLint stacks) {
   if (!isShape(q, slices, stacks)) return;

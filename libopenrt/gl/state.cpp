@@ -257,13 +257,16 @@ void State::callList(GLuint name) {
   const auto found = lists.find(name);
   if (found == lists.end() || listDepth_ >= maxListDepth) return; // nothing happens in OpenGL, too
   const std::shared_ptr<const List> list = found->second;         // it may be deleted by itself
-  listDepth_++;
+  struct Level {
+    int& depth;
+    explicit Level(int& d) : depth(d) { depth++; }
+    ~Level() { depth--; } // also if memory has run out
+  } level(listDepth_);
   for (const Command& command : list->commands) {
     try {
       command(*this);
     } catch (const Failure& failure) { record(failure.code, "glCallList: " + failure.text); }
   }
-  listDepth_--;
 }
 
 std::vector<Matrix>& State::stack() {

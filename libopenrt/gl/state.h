@@ -2,6 +2,7 @@
 // each thread; it belongs to the context that is current there.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -94,7 +95,12 @@ class State {
 
   void pushAttributes(GLbitfield mask);
   void popAttributes();
-  std::vector<std::pair<ClientArrays, PixelStore>> clientStack;
+  struct SavedClient { // by glPushClientAttrib
+    GLbitfield mask;
+    ClientArrays arrays;
+    PixelStore unpack, pack;
+  };
+  std::vector<SavedClient> clientStack;
 
   // Frames.
   void clear(GLbitfield mask);
@@ -145,7 +151,7 @@ template <class Body> void guarded(const char* name, Body&& body) noexcept {
       body(s);
     } catch (const Failure& failure) {
       s.record(failure.code, std::string(name) + ": " + failure.text);
-    } catch (const std::bad_alloc&) {
+    } catch (const std::exception&) { // no memory, or a size that none can have
       s.record(GL_OUT_OF_MEMORY, std::string(name) + ": out of memory");
     }
   } catch (...) {} // no context can be made: rtGetError tells why

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "gl/numbers.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
 
@@ -202,7 +203,7 @@ void rtglGetFloatv(GLenum name, GLfloat* out) {
 }
 void rtglGetIntegerv(GLenum name, GLint* out) {
   const double scale = isFraction(name) ? 2147483647.0 : 1.0;
-  get("glGetIntegerv", name, out, [=](double v) { return static_cast<GLint>(v * scale); });
+  get("glGetIntegerv", name, out, [=](double v) { return toInteger(v * scale); });
 }
 GLenum rtglGetError(void) {
   GLenum error = GL_NO_ERROR;
@@ -276,6 +277,8 @@ void rtglPolygonMode(GLenum face, GLenum mode) {
   listed("glPolygonMode", [=](State& s) {
     if (mode != GL_POINT && mode != GL_LINE && mode != GL_FILL)
       fail(GL_INVALID_ENUM, "no such mode");
+    if (face != GL_FRONT && face != GL_BACK && face != GL_FRONT_AND_BACK)
+      fail(GL_INVALID_ENUM, "no such face");
     if (face != GL_BACK) s.now.polygon.mode[0] = mode;
     if (face != GL_FRONT) s.now.polygon.mode[1] = mode;
   });

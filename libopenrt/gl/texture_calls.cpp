@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gl/numbers.h"
 #include "gl/pixels.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
@@ -51,7 +52,7 @@ void setPart(State& s, GLenum target, GLint level, GLint x, GLint y, GLsizei wid
 void setParameter(State& s, GLenum target, GLenum name, float value) {
   requireTarget(s, target);
   Texture& texture = s.textures.at(s.now.texturing.bound);
-  const auto mode = static_cast<GLenum>(value);
+  const GLenum mode = toName(static_cast<double>(value));
   switch (name) {
   case GL_TEXTURE_WRAP_S: texture.wrapS = mode; break;
   case GL_TEXTURE_WRAP_T: texture.wrapT = mode; break;
@@ -84,7 +85,7 @@ void environmentCall(GLenum name, const Color& v) {
       return;
     }
     if (name != GL_TEXTURE_ENV_MODE) fail(GL_INVALID_ENUM, "no such property");
-    const auto mode = static_cast<GLenum>(v[0]);
+    const GLenum mode = toName(static_cast<double>(v[0]));
     if (mode == GL_BLEND)
       s.refuse("glTexEnv(GL_BLEND)", "make the picture with the colours that it is to have");
     s.now.texturing.mode = mode;
@@ -214,5 +215,5 @@ void rtglPixelStorei(GLenum name, GLint value) {
   });
 }
 void rtglPixelStoref(GLenum name, GLfloat value) {
-  rtglPixelStorei(name, static_cast<GLint>(value));
+  rtglPixelStorei(name, toInteger(static_cast<double>(value)));
 }

@@ -213,6 +213,10 @@ void rtutInitWindowPosition(int x, int y) {
 
 int rtutCreateWindow(const char* title) {
   Program& p = program();
+  if (p.window) {
+    complain("there is one window: rtutCreateWindow makes no second one");
+    return 0;
+  }
   if (!p.frames) {
     try {
       p.window = std::make_unique<rtut::Window>(title ? title : "", p.x, p.y, p.width, p.height);
@@ -229,7 +233,7 @@ int rtutCreateWindow(const char* title) {
 }
 void rtutDestroyWindow(int) { program().leave = true; }
 void rtutSetWindowTitle(const char* title) {
-  if (program().window) program().window->setTitle(title);
+  if (program().window) program().window->setTitle(title ? title : "");
 }
 void rtutReshapeWindow(int width, int height) {
   Program& p = program();
@@ -253,7 +257,7 @@ void rtutPassiveMotionFunc(void (*call)(int, int)) { program().passiveMotion = c
 void rtutVisibilityFunc(void (*call)(int)) { program().visibility = call; }
 void rtutTimerFunc(unsigned int milliseconds, void (*timer)(int), int value) {
   Program& p = program();
-  p.timers.push_back({now(p) + long(milliseconds), timer, value});
+  if (timer) p.timers.push_back({now(p) + long(milliseconds), timer, value});
 }
 
 void rtutPostRedisplay(void) { program().redisplay = true; }

@@ -220,7 +220,9 @@ void protectFile(const std::string& path, const std::string& what) {
   kept.try_emplace({info.st_dev, info.st_ino}, what);
 }
 
-std::string whyNotWritable(const std::string& path) {
+namespace {
+
+std::string whyNot(const std::string& path, Targets targets) {
   const std::string target = followLinks(path);
   struct stat info;
   int reason = 0;
@@ -230,7 +232,8 @@ std::string whyNotWritable(const std::string& path) {
     else if (::access(target.c_str(), W_OK) != 0)
       reason = errno;
     if (!reason && !S_ISREG(info.st_mode)) return "";
-    if (const std::string why = whyProtected(path, info); !reason && !why.empty()) return why;
+    if (!reason && targets != Targets::edited)
+      if (const std::string why = whyProtected(path, info); !why.empty()) return why;
   }
   if (!reason && isLink(target)) reason = ELOOP;
   const std::string folder = folderOf(target);
@@ -238,6 +241,11 @@ std::string whyNotWritable(const std::string& path) {
   if (!reason && ::access(folder.c_str(), W_OK | X_OK) != 0) reason = errno;
   return reason ? "cannot write " + path + ": " + std::strerror(reason) : "";
 }
+
+} // namespace
+
+std::string whyNotWritable(const std::string& path) { return whyNot(path, Targets::any); }
+std::string whyNotEditable(const std::string& path) { return whyNot(path, Targets::edited); }
 
 void removeTemporaries() noexcept {
   for (Place& place : places)

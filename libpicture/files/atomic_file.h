@@ -43,6 +43,8 @@ void protectFile(const std::string& path, const std::string& what);
 // Returns why writeFile(path) would fail, as far as this is known without writing; empty if no
 // reason is known.
 std::string whyNotWritable(const std::string& path);
+// Returns the same of writeEditedFile(path).
+std::string whyNotEditable(const std::string& path);
 
 // Removes the temporary files of all writes in progress. A signal handler that ends the process may
 // call it.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libpicture/false_colour.h"
+#include "libpicture/neighbours.h"
 
 namespace picture::live {
 
@@ -15,24 +16,6 @@ constexpr double enoughSamples = 64;
 // is shown is unbiased soon. A picture of fewer samples than `leastSamples` is not shown alone
 // before it is finished: it would be worse than the preview.
 constexpr double fadeBegins = 0.5, fadeEnds = 4, leastSamples = 4;
-
-// Positions of a scaled row or column: the two neighbours, and the weight of the second one in
-// 1/256.
-struct Neighbours {
-  size_t first, second;
-  int weight;
-};
-
-std::vector<Neighbours> neighbours(int from, int to) {
-  std::vector<Neighbours> out(static_cast<size_t>(to));
-  for (int i = 0; i < to; ++i) {
-    const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, double(from - 1));
-    const size_t first = size_t(at);
-    out[size_t(i)] = {first, std::min(first + 1, size_t(from) - 1),
-                      int((at - double(first)) * 256)};
-  }
-  return out;
-}
 
 // Returns a mixture of two bytes; weight: that of the second one, 0 to 256.
 int mix(int a, int b, int weight) { return (a * (256 - weight) + b * weight + 128) >> 8; }
@@ -75,16 +58,20 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
   const std::vector<Neighbours> columns = neighbours(width, newWidth),
                                 rows = neighbours(height, newHeight);
   std::vector<uint8_t> out(3 * size_t(newWidth) * size_t(newHeight));
+  // Weights of bytes are in 1/256.
+  const auto weightOf = [](const Neighbours& one) { return int(one.weight * 256); };
   auto to = out.begin();
   for (const Neighbours& row : rows) {
     const uint8_t* const above = rgb.data() + 3 * row.first * size_t(width);
     const uint8_t* const under = rgb.data() + 3 * row.second * size_t(width);
-    for (const Neighbours& column : columns)
+    const int down = weightOf(row);
+    for (const Neighbours& column : columns) {
+      const int right = weightOf(column);
       for (size_t c = 0; c < 3; ++c) {
         const size_t a = 3 * column.first + c, b = 3 * column.second + c;
-        *to++ = uint8_t(mix(mix(above[a], above[b], column.weight),
-                            mix(under[a], under[b], column.weight), row.weight));
+        *to++ = uint8_t(mix(mix(above[a], above[b], right), mix(under[a], under[b], right), down));
       }
+    }
   }
   return out;
 }

@@ -28,9 +28,7 @@ Projection::Projection(const FrameCamera& given) : camera(given) {
 }
 
 bool areEqual(const FrameCamera& a, const FrameCamera& b) {
-  const xvrml::CameraSettings &p = a.settings, &q = b.settings;
-  return std::equal(std::begin(p.matrix), std::end(p.matrix), std::begin(q.matrix)) &&
-         p.fovy == q.fovy && p.height == q.height && p.shader == q.shader && a.aspect == b.aspect;
+  return a.settings == b.settings && a.aspect == b.aspect;
 }
 
 } // namespace picture::live

@@ -19,8 +19,7 @@ class ClassicWriter : public NodeWriter {
 
  private:
   void writeRoots(const DocumentText& file) override {
-    writeList({file, file.text.size(), "", ""},
-              itemsOf(file, file.layout.roots, document_.scope().roots, {}));
+    writeNodeList({file, file.text.size(), "", ""}, file.layout.roots, document_.scope().roots, {});
     text_.copy(file, file.text.size());
     for (const Route* route : routesToAdd()) {
       if (!text_.out.empty() && text_.out.back() != '\n' && text_.out.back() != '\r')
@@ -57,7 +56,7 @@ class ClassicWriter : public NodeWriter {
     return xvrml::indented(text, from, to);
   }
 
-  void writeNode(const Node& node, const Holder*) override {
+  void writeNodeText(const Node& node, const Holder*) override {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
     begin(node);
@@ -174,8 +173,8 @@ class ClassicWriter : public NodeWriter {
     text_.copy(text, place.value.begin);
     if (text.text[place.value.begin] == '[') {
       text_.copy(text, place.value.begin + 1);
-      writeList({text, place.value.end - 1, indentation, deeper(indentation)},
-                itemsOf(text, place.nodes, children, {}));
+      writeNodeList({text, place.value.end - 1, indentation, deeper(indentation)}, place.nodes,
+                    children, {});
     } else if (children.size() == 1 && place.nodes.size() == 1 &&
                children[0].get() == place.nodes[0].node) {
       keep(text, place.nodes[0], {});

@@ -1,6 +1,7 @@
 #include "edit/document.h"
 
 #include <algorithm>
+#include <span>
 #include <unordered_set>
 #include <utility>
 
@@ -42,7 +43,7 @@ const DocumentText& Document::read(const std::string& text, const std::string& n
 }
 
 // Notes which places of a list the world has taken. Returns whether these give all of the list.
-static bool noteTaken(const MFNode& list, std::vector<NodePlace>& places) {
+static bool noteTaken(std::span<const NodeRef> list, std::vector<NodePlace>& places) {
   size_t next = 0;
   for (NodePlace& place : places) {
     place.taken = next < list.size() && list[next].get() == place.node;
@@ -56,12 +57,13 @@ static bool noteTaken(const MFNode& list, std::vector<NodePlace>& places) {
 static bool isFaithful(const DocumentText& text, const Node& node, const FieldInfo& field,
                        FieldText& place) {
   if (!holdsNodes(field)) return place.readable;
-  MFNode nodes;
   const bool isList = field.type == FieldType::MFNode;
-  if (const void* const storage = node.storage(field); !isList)
-    if (const NodeRef& child = *static_cast<const NodeRef*>(storage)) nodes.push_back(child);
-  const bool whole =
-      noteTaken(isList ? *static_cast<const MFNode*>(node.storage(field)) : nodes, place.nodes);
+  std::span<const NodeRef> nodes;
+  if (isList)
+    nodes = *static_cast<const MFNode*>(node.storage(field));
+  else if (const auto* const child = static_cast<const NodeRef*>(node.storage(field)); *child)
+    nodes = {child, 1};
+  const bool whole = noteTaken(nodes, place.nodes);
   const auto taken = std::count_if(place.nodes.begin(), place.nodes.end(),
                                    [](const NodePlace& one) { return one.taken; });
   const bool hasOthers = size_t(taken) < place.nodes.size();
@@ -83,6 +85,7 @@ void Document::index(DocumentText& text) {
   if (!text.world->cyclic.empty()) standing_.expectLoops();
   std::unordered_set<std::string_view> names;
   text.byPlace.reserve(text.layout.nodes.size());
+  known_.reserve(known_.size() + text.layout.nodes.size());
   for (NodeText& place : text.layout.nodes) {
     Node& node = *place.node;
     for (FieldText& field : place.fields) {
@@ -162,6 +165,7 @@ const MFNode& Document::listOf(const Node* parent, const FieldInfo* field) const
 void Document::insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node) {
   MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
+  putIn_.insert(node.get());
   if (!parent || stands(*parent)) standing_.add(node.get());
 }
 
@@ -171,6 +175,7 @@ void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
   const NodeRef gone = list[index];
   const bool stood = !parent || stands(*parent);
   list.erase(list.begin() + std::ptrdiff_t(index));
+  takenOut_.insert(gone.get());
   if (stood) standing_.remove(gone.get());
 }
 
@@ -179,6 +184,8 @@ void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   NodeRef& place = *static_cast<NodeRef*>(parent.storage(field));
   const bool stands = this->stands(parent);
   const NodeRef before = std::exchange(place, std::move(child));
+  putIn_.insert(place.get());
+  takenOut_.insert(before.get());
   if (!stands) return;
   standing_.add(place.get());
   standing_.remove(before.get());

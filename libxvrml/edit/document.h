@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "edit/standing.h"
@@ -89,6 +90,13 @@ class Document {
                         const std::set<std::string, std::less<>>& taken = {});
   // Returns whether a node stands anywhere in the file.
   bool stands(const Node& node) const { return standing_.contains(node, scope()); }
+  // Tell whether the name, or a field or the name of a node has been changed since its text was
+  // read, also if it is as before now.
+  bool isRenamed(const Node& node) const { return renamed_.contains(&node); }
+  bool hasChanged(const Node& node) const { return originals_.contains(&node) || isRenamed(node); }
+  // Return the nodes that have been put into a place, and those that have been taken out of one.
+  const std::unordered_set<const Node*>& putIn() const { return putIn_; }
+  const std::unordered_set<const Node*>& takenOut() const { return takenOut_; }
 
  private:
   struct Known {
@@ -111,6 +119,7 @@ class Document {
   std::unordered_map<const Node*, std::map<std::string, std::optional<Value>, std::less<>>>
       originals_;
   Standing standing_;
+  std::unordered_set<const Node*> putIn_, takenOut_;
 };
 
 } // namespace xvrml

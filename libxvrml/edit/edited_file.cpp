@@ -1,6 +1,7 @@
 #include "edit/edited_file.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <fmt/format.h>
 
@@ -13,8 +14,8 @@
 
 namespace xvrml {
 
-std::string EditedFile::whyNot() {
-  if (document_) return "";
+// Returns why a file of this kind cannot be edited, whatever is in it.
+std::string EditedFile::whyNotKind() {
   const std::string& path = world().path;
   if (stampOf(path) == FileStamp()) return "the world does not come from a file";
   const Encoding encoding = world().head.version.encoding;
@@ -23,24 +24,67 @@ std::string EditedFile::whyNot() {
     return fmt::format("{} is {}: VRML97 and X3D can be edited in place; write it as one of these "
                        "first",
                        path, encodingName(encoding));
-  try {
-    const Source source = Source::open(path, world().options.limits, nullptr);
-    if (source.isUtf16())
-      return fmt::format("{} is in UTF-16, which is only read: write it anew first", path);
-    for (const FileHead::Unit& unit : world().head.units)
-      if (unit.category == "angle")
-        return fmt::format("{} has a unit of its own for angles, which is only read", path);
-    packed_ = source.isPacked();
-    marked_ = source.hasByteOrderMark();
-    auto document = std::make_unique<Document>(adopted_ ? *adopted_ : std::string(source.text()),
-                                               path, world().options);
-    if (const std::string& reason = document->file().layout.whyNot; !reason.empty())
-      return fmt::format("{} {}", path, reason);
-    document_ = std::move(document);
-    onDisk_ = source.stamp();
-    read_ = adopted_ ? FileStamp() : onDisk_; // a text in memory has no stamp
-  } catch (const LoadError& error) { return error.diagnostic.text(); }
+  for (const FileHead::Unit& unit : world().head.units)
+    if (unit.category == "angle")
+      return fmt::format("{} has a unit of its own for angles, which is only read", path);
   return "";
+}
+
+// Reads a file. adopted: is read instead of its text. [any thread]
+EditedFile::Opened EditedFile::open(const std::string& path, const LoadOptions& options,
+                                    const std::optional<std::string>& adopted) {
+  Opened opened;
+  try {
+    const Source source = Source::open(path, options.limits, nullptr);
+    if (source.isUtf16()) {
+      opened.whyNot = fmt::format("{} is in UTF-16, which is only read: write it anew first", path);
+      return opened;
+    }
+    opened.isPacked = source.isPacked();
+    opened.isMarked = source.hasByteOrderMark();
+    opened.onDisk = source.stamp();
+    opened.document =
+        std::make_unique<Document>(adopted ? *adopted : std::string(source.text()), path, options);
+    if (const std::string& reason = opened.document->file().layout.whyNot; !reason.empty())
+      opened.whyNot = fmt::format("{} {}", path, reason);
+  } catch (const LoadError& error) { opened.whyNot = error.diagnostic.text(); }
+  return opened;
+}
+
+std::string EditedFile::whyNot() {
+  if (document_) return "";
+  if (std::string reason = whyNotKind(); !reason.empty()) return reason;
+  Opened opened = takePrepared();
+  if (!opened.whyNot.empty()) return opened.whyNot;
+  document_ = std::move(opened.document);
+  packed_ = opened.isPacked;
+  marked_ = opened.isMarked;
+  onDisk_ = opened.onDisk;
+  read_ = adopted_ ? FileStamp() : onDisk_; // a text in memory has no stamp
+  return "";
+}
+
+// Returns what the thread has read that prepares the edits, or reads it.
+EditedFile::Opened EditedFile::takePrepared() {
+  if (prepared_.valid()) {
+    try {
+      return prepared_.get();
+    } catch (const std::future_error&) {} // there was no thread for it
+  }
+  return open(world().path, world().options, adopted_);
+}
+
+std::function<void()> EditedFile::preparation() {
+  if (document_ || prepared_.valid() || !whyNotKind().empty()) return {};
+  const auto task = std::make_shared<std::packaged_task<Opened()>>(
+      [path = world().path, options = world().options] { return open(path, options, {}); });
+  prepared_ = task->get_future();
+  return [task] { (*task)(); };
+}
+
+bool EditedFile::isPreparing() const {
+  return prepared_.valid() &&
+         prepared_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
 Document& EditedFile::document() {
@@ -54,9 +98,7 @@ Twin EditedFile::twinOf(Node& node) {
   Document& document = this->document();
   Node* const found = document.find(node.source);
   const std::string& type = node.type().name;
-  if (found && document.isOwn(*found) && fileStamp(node.source.file) != read_)
-    throw EditError(fmt::format("{} has been written to since the world was loaded: load it again",
-                                world().path));
+  if (found && document.isOwn(*found)) checkUnchanged(node);
   if (found && found->type().name == type) return {NodeRef(&node), NodeRef(found)};
   if (!node.source.file)
     throw EditError(fmt::format("this {} stands in no file: a program has made it", type));
@@ -68,6 +110,12 @@ Twin EditedFile::twinOf(Node& node) {
                               type, node.source.line));
 }
 
+void EditedFile::checkUnchanged(const Node& node) const {
+  if (fileStamp(node.source.file) != read_)
+    throw EditError(fmt::format("{} has been written to since the world was loaded: load it again",
+                                *node.source.file));
+}
+
 Twin EditedFile::standingTwinOf(Node& node) {
   Twin twin = twinOf(node);
   if (!document().stands(*twin.document))
@@ -75,11 +123,17 @@ Twin EditedFile::standingTwinOf(Node& node) {
   return twin;
 }
 
+bool EditedFile::stands(const Node& node) const {
+  const Node* const found = document_ ? document_->find(node.source) : nullptr;
+  return found && found->type().name == node.type().name && document_->stands(*found);
+}
+
 void EditedFile::checkStands(Node* node) {
   if (node) standingTwinOf(*node);
 }
 
 Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
+  document(); // reads the file
   Slot slot;
   if (given.parent) {
     slot.parent = twinOf(*given.parent);
@@ -87,6 +141,12 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
     if (!slot.field || !holdsNodes(*slot.field))
       throw EditError(fmt::format("{} has no field '{}' that holds nodes",
                                   given.parent->type().name, given.field));
+  } else {
+    const MFNode& roots = world().scope.roots;
+    const auto own = std::find_if(roots.begin(), roots.end(), [this](const NodeRef& root) {
+      return root && root->source.file && *root->source.file == world().path;
+    });
+    if (own != roots.end()) checkUnchanged(**own);
   }
   if (const auto exchange = exchangeOf(document().world()); exchange && !exchange->imports.empty())
     throw EditError(fmt::format("{} imports nodes: only values can be edited there", world().path));
@@ -200,6 +260,7 @@ std::string EditedFile::textOnDisk() {
 
 void EditedFile::adopt(std::string text) {
   if (document_) throw EditError("the file has been read for editing already");
+  prepared_ = {};
   adopted_ = std::move(text);
   const std::string reason = whyNot();
   adopted_.reset();

@@ -2,6 +2,8 @@
 // belong together. Internal; the thread that owns the world.
 #pragma once
 
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,12 +42,17 @@ class EditedFile {
 
   // Returns why the file cannot be edited. Reads it if it can.
   std::string whyNot();
+  // See Editor.
+  std::function<void()> preparation();
+  bool isPreparing() const;
   // Throws EditError if the file cannot be edited, or another world has taken its place.
   Document& document();
   // Returns the node with its counterpart in the document. Throws EditError if it has none.
   Twin twinOf(Node& node);
   // Does the same for a node that stands in the file now. Throws EditError if it was removed.
   Twin standingTwinOf(Node& node);
+  // See Editor.
+  bool stands(const Node& node) const;
   // Throws EditError if a node does not stand in the file now; null: the roots.
   void checkStands(Node* node);
   // holds: there must be a node at the place.
@@ -68,12 +75,26 @@ class EditedFile {
   void adopt(std::string text);
 
  private:
+  // A file that has been read for editing.
+  struct Opened {
+    std::unique_ptr<Document> document;
+    std::string whyNot; // empty: it can be edited
+    bool isPacked = false, isMarked = false;
+    FileStamp onDisk;
+  };
+  std::string whyNotKind();
+  static Opened open(const std::string& path, const LoadOptions& options,
+                     const std::optional<std::string>& adopted);
+  Opened takePrepared();
   const MFNode& liveList(const Slot& slot);
+  // Throws EditError if a node of the file was loaded from another text than the document's.
+  void checkUnchanged(const Node& node) const;
   // Finds the nodes of the live world that begin at places of its file, given by placeKey().
   std::unordered_map<uint64_t, NodeRef> liveNodesAt(const std::unordered_set<uint64_t>& places);
 
   std::unique_ptr<LiveWorld> live_;
   std::unique_ptr<Document> document_; // read at the first edit
+  std::future<Opened> prepared_;       // what preparation() reads
   std::optional<std::string> adopted_; // is read instead of the text of the file
   bool packed_ = false, marked_ = false;
   FileStamp read_, onDisk_; // the file when it was read, and when it was read or saved

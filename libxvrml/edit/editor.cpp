@@ -41,6 +41,14 @@ bool isFinite(const FieldInfo& field, Value& value) {
                       });
 }
 
+// Returns whether a value is, or has, a text with a zero byte.
+bool hasZeroByte(const Value& value) {
+  const auto has = [](const std::string& text) { return text.find('\0') != text.npos; };
+  if (const auto* const one = std::get_if<SFString>(&value)) return has(*one);
+  const auto* const list = std::get_if<MFString>(&value);
+  return list && std::any_of(list->begin(), list->end(), has);
+}
+
 // Returns whether a file may have a name behind DEF (Annex A.3).
 bool isNodeName(const std::string& name) {
   constexpr std::string_view keywords[] = {"DEF",     "EXTERNPROTO", "FALSE", "IS",          "NULL",
@@ -89,6 +97,8 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
   return places;
 }
 
+bool Editor::stands(const Node& node) const { return impl_->file.stands(node); }
+
 std::vector<NodeRef> Editor::nodesAt(std::span<const SourcePosition> places) {
   return impl_->file.nodesAt(places);
 }
@@ -113,6 +123,7 @@ bool Editor::redo() {
 std::string Editor::undoName() const { return impl_->history.undoName(); }
 std::string Editor::redoName() const { return impl_->history.redoName(); }
 uint64_t Editor::changes() const { return impl_->history.changes(); }
+uint64_t Editor::nodeChanges() const { return impl_->history.nodeChanges(); }
 uint64_t Editor::editsOf(const Node& node, std::string_view field) const {
   return impl_->history.editsOf(node, field);
 }
@@ -128,6 +139,8 @@ void Editor::set(Node& node, std::string_view field, Value value) {
     throw EditError(fmt::format("{} is {}", what, fieldTypeName(info->type)));
   if (!isFinite(*info, value))
     throw EditError(fmt::format("{}: a number is not finite, which no file can say", what));
+  if (hasZeroByte(value))
+    throw EditError(fmt::format("{}: a text has a zero byte, which no file can say", what));
   if (info->range.bounded() && info->type != FieldType::SFRotation && !inRange(*info, value))
     throw EditError(fmt::format("{}: a number is outside of {}", what, describe(info->range)));
   if (hasNormalizedAxes(*info))
@@ -163,7 +176,10 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
   if (scope.roots.size() != 1 || !scope.routes.empty() || !scope.prototypes.empty())
     throw EditError("the text must be that of one node, without routes and prototypes");
   impl_->nodes.checkPlace(slot, {scope.roots[0], scope.roots[0]});
-  const MFNode made = impl_->file.live().read(std::string(text), name);
+  MFNode made;
+  try {
+    made = impl_->file.live().read(std::string(text), name);
+  } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
   if (made.size() != 1) throw EditError("the text could not be read a second time");
   const Twin node{made[0], scope.roots[0]};
   impl_->nodes.nameFreshly(node);
@@ -175,7 +191,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
 
 void Editor::use(const NodeSlot& given, Node& node) {
   impl_->file.checkStands(given.parent);
-  const Twin twin = impl_->file.twinOf(node);
+  const Twin twin = impl_->file.standingTwinOf(node);
   const Slot slot = impl_->file.slotOf(given, false);
   impl_->nodes.checkPlace(slot, twin);
   if (impl_->file.document().isRepeated(node.defName))
@@ -200,7 +216,7 @@ void Editor::move(const NodeSlot& from, const NodeSlot& to) {
   impl_->file.checkStands(from.parent);
   impl_->file.checkStands(to.parent);
   const Slot source = impl_->file.slotOf(from, true);
-  const NodeRef node(impl_->file.nodeAt(source));
+  const NodeRef node(impl_->file.nodeAt(source)), parent(to.parent); // Scripts may let them go
   OpenStep step(impl_->history, fmt::format("Move {}", node->type().name));
   const Twin twin = impl_->nodes.take(source);
   const Slot target = impl_->file.slotOf(to, false);
@@ -292,6 +308,8 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
         fmt::format("{} cannot be declared in JSON: write the field into the file", what));
   const std::vector<NodeSlot> places = placesOf(node);
   if (places.empty()) throw EditError(fmt::format("this {} is not in the file", node.type().name));
+  MFNode parents; // Scripts that an edit runs may let them go
+  for (const NodeSlot& place : places) parents.emplace_back(place.parent);
   const std::string text =
       withDeclaration(onStackOf(deepestStack, [&] { return writeNode(document, *twin.document); }),
                       document.world().head.version, field, value);
@@ -385,6 +403,8 @@ void Editor::removeRoute(Node& from, std::string_view out, Node& to, std::string
   step.close();
 }
 
+std::function<void()> Editor::preparation() { return impl_->file.preparation(); }
+bool Editor::isPreparing() const { return impl_->file.isPreparing(); }
 std::string Editor::whyReadOnly() { return impl_->file.whyNot(); }
 std::string Editor::text() { return impl_->file.text(); }
 bool Editor::isInStep() const { return impl_->history.isOpen(); }

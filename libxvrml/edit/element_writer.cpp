@@ -146,7 +146,7 @@ class ElementWriter : public NodeWriter {
             own(*holder.parent, "children") != holder.field->name);
   }
 
-  void writeNode(const Node& node, const Holder* holder) override {
+  void writeNodeText(const Node& node, const Holder* holder) override {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
     const XmlElement& element = text.layout.xml.at(place.whole.begin);

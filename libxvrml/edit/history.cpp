@@ -35,12 +35,24 @@ void History::joinLast(size_t first) {
 
 void History::cancel() {
   if (begun_.empty()) return;
-  rollBack(begun_.back());
+  try {
+    rollBack(begun_.back());
+  } catch (...) { // an outer step goes on, and can be cancelled later
+    end();
+    throw;
+  }
   begun_.pop_back();
 }
 
-void History::rollBack(size_t edits) {
+// Counts edits, from one on, that are about to be done or undone.
+void History::count(const std::vector<Edit>& edits, size_t first) {
   ++changes_;
+  nodeChanges_ += std::any_of(edits.begin() + std::ptrdiff_t(first), edits.end(),
+                              [](const Edit& edit) { return !edit.node; });
+}
+
+void History::rollBack(size_t edits) {
+  count(open_.edits, edits);
   while (open_.edits.size() > edits) {
     open_.edits.back().undo();
     open_.edits.pop_back();
@@ -49,14 +61,14 @@ void History::rollBack(size_t edits) {
 
 void History::perform(Edit edit) {
   edit.redo();
-  ++changes_;
   open_.edits.push_back(std::move(edit));
+  count(open_.edits, open_.edits.size() - 1);
 }
 
 bool History::undo() {
   if (isOpen() || done_ == 0) return false;
-  ++changes_;
   std::vector<Edit>& edits = steps_[done_ - 1].edits;
+  count(edits);
   size_t left = edits.size();
   try {
     for (; left > 0; --left) edits[left - 1].undo();
@@ -70,8 +82,8 @@ bool History::undo() {
 
 bool History::redo() {
   if (isOpen() || done_ == steps_.size()) return false;
-  ++changes_;
   std::vector<Edit>& edits = steps_[done_].edits;
+  count(edits);
   size_t done = 0;
   try {
     for (; done < edits.size(); ++done) edits[done].redo();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -22,7 +23,8 @@ struct Edit {
 class History {
  public:
   // Edits from begin() to end() are one step; both may nest. A step without a name is an "Edit".
-  // cancel() undoes what the innermost begin() has begun, and ends it.
+  // cancel() undoes what the innermost begin() has begun, and ends it. If that throws, what could
+  // not be undone stays, as if end() had been called.
   void begin(std::string name);
   void end();
   void cancel();
@@ -34,6 +36,7 @@ class History {
   std::string undoName() const;
   std::string redoName() const;
   uint64_t changes() const { return changes_; }
+  uint64_t nodeChanges() const { return nodeChanges_; }
   // Returns how many edits that are not undone have set a field.
   uint64_t editsOf(const Node& node, std::string_view field) const;
   // Returns whether the edits are others than when the file was saved.
@@ -52,25 +55,31 @@ class History {
     std::vector<Edit> edits;
   };
   void rollBack(size_t edits);
+  void count(const std::vector<Edit>& edits, size_t first = 0);
   void joinLast(size_t first);
 
   std::vector<Step> steps_; // those that have been done first, then those that have been undone
   size_t done_ = 0;
-  uint64_t changes_ = 0; // edits that were done or undone so far
+  // Edits, undos and redos so far, and those of them that were not about values alone.
+  uint64_t changes_ = 0, nodeChanges_ = 0;
   // Value of done_ at which the file was saved; ~0: it cannot be reached again.
   size_t savedAt_ = 0;
   Step open_;
   std::vector<size_t> begun_; // for each begin() without end(): the number of edits before
 };
 
-// A step, or a part of one, that is undone unless it is closed.
+// A step, or a part of one, that is undone unless it is closed. Edits that cannot be undone,
+// because a Script has changed the world meanwhile, stay as a step.
 class OpenStep {
  public:
   OpenStep(History& history, std::string name) : history_(history) {
     history.begin(std::move(name));
   }
   ~OpenStep() {
-    if (!closed_) history_.cancel();
+    if (closed_) return;
+    try {
+      history_.cancel();
+    } catch (const std::exception&) {} // the exception that has left the step open says more
   }
   OpenStep(const OpenStep&) = delete;
   OpenStep& operator=(const OpenStep&) = delete;

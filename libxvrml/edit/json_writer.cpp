@@ -135,8 +135,8 @@ class JsonWriter : public NodeWriter {
     if (isEmptyList(file.text, list)) return fillScene(file);
     text_.copy(file, list.begin + 1);
     const std::string outer(indentationAt(file, list.begin));
-    writeList({file, list.end - 1, outer, deeper(outer)},
-              itemsOf(file, file.layout.roots, document_.scope().roots, {}));
+    writeNodeList({file, list.end - 1, outer, deeper(outer)}, file.layout.roots,
+                  document_.scope().roots, {});
     text_.copy(file, list.end - 1 - blanksBefore(file, list.end - 1));
     std::vector<Make> routes;
     for (const Route* route : routesToAdd())
@@ -200,7 +200,7 @@ class JsonWriter : public NodeWriter {
     std::function<void()> write;
   };
 
-  void writeNode(const Node& node, const Holder* holder) override {
+  void writeNodeText(const Node& node, const Holder* holder) override {
     const DocumentText& text = document_.textOf(node);
     const NodeText& place = document_.placeOf(node);
     begin(node);
@@ -365,8 +365,8 @@ class JsonWriter : public NodeWriter {
     text_.copy(text, place.value.begin);
     if (text.text[place.value.begin] == '[') {
       text_.copy(text, place.value.begin + 1);
-      writeList({text, place.value.end - 1, indentation, deeper(indentation)},
-                itemsOf(text, place.nodes, nodes, holder));
+      writeNodeList({text, place.value.end - 1, indentation, deeper(indentation)}, place.nodes,
+                    nodes, holder);
     } else if (nodes.size() == 1 && place.nodes.size() == 1 &&
                nodes[0].get() == place.nodes[0].node) {
       keep(text, place.nodes[0], {});

@@ -4,9 +4,13 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/lexer.h"
 #include "base/x3d.h"
 #include "edit/lines.h"
+#include "parse/parser.h"
+#include "xvrml/edit.h"
 
 namespace xvrml {
 
@@ -18,6 +22,8 @@ NodeWriter::NodeWriter(const Document& document, WritingPlan plan)
 
 std::string NodeWriter::file() {
   const DocumentText& file = document_.file();
+  unchanged_.emplace(document_);
+  text_.out.reserve(file.text.size());
   if (!plan_.lifted.empty()) {
     text_.copy(file, beginOfRoots());
     const bool inLines = startsLine(file.text, text_.at) && text_.at < file.text.size();
@@ -61,6 +67,17 @@ std::string NodeWriter::node(const Node* node, std::string_view indentation, con
   return indented(own, from, indentation);
 }
 
+// Edits may nest nodes deeper than any file does.
+void NodeWriter::writeNode(const Node& node, const Holder* holder) {
+  if (depth_ == Parser::maximumNesting)
+    throw EditError(
+        fmt::format("nodes stand in each other more than {} times, which no file can say",
+                    Parser::maximumNesting));
+  ++depth_;
+  writeNodeText(node, holder);
+  --depth_;
+}
+
 std::string NodeWriter::nodeInLines(const Node* node, std::string_view indentation,
                                     const Holder& holder) {
   if (!node || text_.written.contains(node) || !document_.isOwn(*node))
@@ -80,8 +97,9 @@ bool NodeWriter::isGone(const NodePlace& place) const {
          (plan_.commented.contains(place.node) || !document_.stands(*place.node));
 }
 
-void NodeWriter::begin(const Node& node) {
-  text_.written.insert(&node);
+// Notes whether the prototype of an instance has not been written yet.
+void NodeWriter::noteInstance(const Node& node) {
+  if (document_.file().layout.prototypes.empty()) return;
   if (const auto* instance = nodeCast<ProtoInstance>(&node))
     last_ = std::max(last_, text_.missingFor(*instance));
 }
@@ -186,10 +204,21 @@ void NodeWriter::keep(const DocumentText& text, const NodePlace& place, const Ho
   if (!place.node || (place.isUse && !place.taken && !isWritten))
     text_.copy(text, place.span.end);
   else if (place.isUse == isWritten)
-    place.isUse ? keepUse(text, place) : writeNode(*place.node, nullptr);
+    place.isUse ? keepUse(text, place) : writeStanding(text, *place.node);
   else
     text_.out += node(place.node, indentationAt(text, place.span.begin), holder);
   text_.at = place.span.end;
+}
+
+// Writes a node where it stands in the text: as one piece if nothing in it has been edited. The
+// routes in it need to know that its nodes are written.
+void NodeWriter::writeStanding(const DocumentText& text, const Node& node) {
+  const std::span<const NodeText> all =
+      unchanged_ ? unchanged_->within(node) : std::span<const NodeText>();
+  if (all.empty()) return writeNode(node, nullptr);
+  for (const NodeText& one : all) text_.written.insert(one.node.get());
+  text_.copy(text, all.back().whole.end);
+  for (const NodeText& one : all) noteInstance(*one.node);
 }
 
 const ListItem* NodeWriter::inLine(std::string_view text, const std::vector<ListItem>& items) {
@@ -197,6 +226,22 @@ const ListItem* NodeWriter::inLine(std::string_view text, const std::vector<List
     return item.hasPlace() && startsLine(text, item.span.begin);
   });
   return found == items.end() ? nullptr : &*found;
+}
+
+void NodeWriter::writeNodeList(const ListText& list, const std::vector<NodePlace>& places,
+                               const MFNode& nodes, const Holder& holder) {
+  auto next = nodes.begin();
+  const bool isSame =
+      std::all_of(places.begin(), places.end(),
+                  [&](const NodePlace& place) {
+                    return !place.taken || (next != nodes.end() && (next++)->get() == place.node);
+                  }) &&
+      next == nodes.end();
+  if (!isSame) return writeList(list, itemsOf(list.text, places, nodes, holder));
+  for (const NodePlace& place : places) {
+    text_.copy(list.text, place.span.begin);
+    keep(list.text, place, holder);
+  }
 }
 
 void NodeWriter::writeList(ListText list, const std::vector<ListItem>& items) {

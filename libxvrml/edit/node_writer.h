@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,6 +15,7 @@
 #include "edit/list_steps.h"
 #include "edit/node_comments.h"
 #include "edit/text_copier.h"
+#include "edit/unchanged.h"
 
 namespace xvrml {
 
@@ -57,7 +59,8 @@ class NodeWriter {
   NodeWriter(const Document& document, WritingPlan plan);
   virtual ~NodeWriter() = default;
 
-  // Return the text of the file, or of a node. Only one of them is called, once.
+  // Return the text of the file, or of a node. Only one of them is called, once. Throw EditError if
+  // nodes nest deeper than Parser::maximumNesting.
   std::string file();
   std::string node(const Node& node) { return finished(this->node(&node, "", {})); }
   // Returns what is to be written otherwise. The prototypes that must be lifted, because instances
@@ -69,7 +72,8 @@ class NodeWriter {
   // Writes the roots and, behind them, the routes that routesToAdd() returns then.
   virtual void writeRoots(const DocumentText& file) = 0;
   // Writes a node at its place in its text. holder: where it stands now; null: where it stood.
-  virtual void writeNode(const Node& node, const Holder* holder) = 0;
+  void writeNode(const Node& node, const Holder* holder);
+  virtual void writeNodeText(const Node& node, const Holder* holder) = 0;
   // Returns the text of a reference to a node.
   virtual std::string useOf(const Node& node, const Holder& holder) const = 0;
   // Writes a reference that stays at its place.
@@ -92,13 +96,19 @@ class NodeWriter {
   std::vector<ListItem> itemsOf(const DocumentText& text, const std::vector<NodePlace>& places,
                                 const MFNode& nodes, const Holder& holder);
   void writeList(ListText list, const std::vector<ListItem>& items);
+  // Writes the nodes of a list that has these places in the text.
+  void writeNodeList(const ListText& list, const std::vector<NodePlace>& places,
+                     const MFNode& nodes, const Holder& holder);
   // Writes what stays at its place in a field or list.
   void keep(const DocumentText& text, const NodePlace& place, const Holder& holder);
   // Writes the nodes of a field that is not edited itself, because the world has not taken it as it
   // stands. All between them stays.
   void keepNodes(const DocumentText& text, const FieldText& field);
   // Notes that a node is being written.
-  void begin(const Node& node);
+  void begin(const Node& node) {
+    text_.written.insert(&node);
+    noteInstance(node);
+  }
   // Returns the routes of the document that have not been written with the text.
   std::vector<const Route*> routesToAdd() const;
   // Returns the last text of each field that a node's text gives.
@@ -125,13 +135,17 @@ class NodeWriter {
   void fill(const ListText& list, std::string nodes);
 
   bool isGone(const NodePlace& place) const;
+  void noteInstance(const Node& node);
+  void writeStanding(const DocumentText& text, const Node& node);
 
   const WritingPlan plan_;
+  std::optional<Unchanged> unchanged_;             // while the file is written
   std::unordered_set<const Node*> leavesComments_; // nodes that have been moved without them
   const PrototypeText* last_ = nullptr; // the last prototype of the file that was missing
   // The last place whose line was asked for, and where that line begins.
   mutable const DocumentText* lineText_ = nullptr;
   mutable size_t lineAt_ = 0, line_ = 0;
+  uint64_t depth_ = 0; // nodes that are being written
 };
 
 // Return the writer of a syntax.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edit/document.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 
@@ -29,7 +30,7 @@ class TextCopier {
   const PrototypeText* missingFor(const ProtoInstance& instance) const;
 
   std::string out; // what has been written
-  std::unordered_set<const Node*> written;
+  SeenNodes written;
   // Routes that have been copied. Those whose nodes were written behind them cannot stay in their
   // places.
   std::unordered_set<const Route*> copied;

@@ -6,7 +6,6 @@
 #include "graph/field_access.h"
 #include "graph/node_kinds.h"
 #include "graph/range.h"
-#include "graph/url.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {

@@ -127,6 +127,12 @@ std::string urlScheme(std::string_view url) {
   return name;
 }
 
+std::string relativeUrl(const std::string& file, const std::string& from) {
+  MFString urls{percentEncode(std::filesystem::path(file).filename().string())};
+  rebaseUrls(urls, file, from);
+  return urls.front();
+}
+
 void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
   if (from.substr(0, from.rfind('/') + 1) == to.substr(0, to.rfind('/') + 1)) return;
   std::string step; // from one folder to the other; made when the first URL needs it

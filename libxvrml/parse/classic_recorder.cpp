@@ -62,11 +62,10 @@ void ClassicRecorder::nullNode(const Name& token) {
   builder_.nullNode(token);
 }
 
-FieldText ClassicRecorder::begunField(std::string name, const char* at, bool declared) const {
+FieldText ClassicRecorder::begunField(std::string name, const char* at) const {
   FieldText field;
   field.name = std::move(name);
   field.whole.begin = offset(at);
-  field.declared = declared;
   return field;
 }
 
@@ -79,15 +78,7 @@ void ClassicRecorder::endField(FieldText& field, bool good) {
 FieldTarget ClassicRecorder::openField(const Name& name) {
   const FieldTarget target = builder_.openField(name);
   if (target.known && isRecording())
-    beginField(begunField(builder_.innermostField().name, name.at, false));
-  return target;
-}
-
-FieldTarget ClassicRecorder::openDeclaration(Access access, FieldType type, const Name& name,
-                                             bool hasValue) {
-  const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
-  if (isRecording() && hasValue && target.known)
-    beginField(begunField(std::string(name.text), name.at, true));
+    beginField(begunField(builder_.innermostField().name, name.at));
   return target;
 }
 

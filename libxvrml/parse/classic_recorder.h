@@ -14,8 +14,6 @@ class ClassicRecorder : public LayoutRecorder {
   void useNode(const Name& name) override;
   void nullNode(const Name& token) override;
   FieldTarget openField(const Name& name) override;
-  FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
-                              bool hasValue) override;
   void route(const Name& keyword, const RouteNames& names) override;
 
  private:
@@ -32,7 +30,10 @@ class ClassicRecorder : public LayoutRecorder {
     return {offset(name.at), offset(name.at) + name.text.size()};
   }
   size_t keywordBefore(const Name& name, std::string_view keyword) const;
-  FieldText begunField(std::string name, const char* at, bool declared) const;
+  FieldText begunField(std::string name, const char* at) const;
+  FieldText begunDeclaration(const Name& name) const override {
+    return begunField(std::string(name.text), name.at);
+  }
 
   TextSpan placed_;
 };

@@ -163,16 +163,6 @@ FieldTarget JsonRecorder::resumeField(const Name& name) {
   return target;
 }
 
-FieldTarget JsonRecorder::openDeclaration(Access access, FieldType type, const Name& name,
-                                          bool hasValue) {
-  const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
-  if (isRecording() && hasValue && target.known) {
-    beginField(begunElement(std::string(name.text)));
-    innermost().field.declared = true;
-  }
-  return target;
-}
-
 void JsonRecorder::route(const Name& keyword, const RouteNames& names) {
   if (isRecording())
     addRoute(keyword, {spanOfHolder(), nameAt(names.from.at), nameAt(names.to.at)});
@@ -181,8 +171,10 @@ void JsonRecorder::route(const Name& keyword, const RouteNames& names) {
 
 void JsonRecorder::finish(bool isFragment) {
   if (!index_.isWhole()) refuse("is not well-formed JSON: mend it first");
-  std::sort(layout_.routes.begin(), layout_.routes.end(),
-            [](const RouteText& a, const RouteText& b) { return a.whole.begin < b.whole.begin; });
+  // Some members of an object are read before others that stand above them.
+  const auto inOrder = [](const auto& a, const auto& b) { return a.whole.begin < b.whole.begin; };
+  std::sort(layout_.routes.begin(), layout_.routes.end(), inOrder);
+  std::sort(layout_.prototypes.begin(), layout_.prototypes.end(), inOrder);
   if (isFragment) return;
   if (layout_.scene.begin == 0) refuse("has no Scene");
   for (const NodePlace& root : layout_.roots)

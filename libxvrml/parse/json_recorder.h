@@ -29,8 +29,6 @@ class JsonRecorder : public LayoutRecorder {
   void useNode(const Name& name) override;
   FieldTarget openField(const Name& name) override;
   FieldTarget resumeField(const Name& name) override;
-  FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
-                              bool hasValue) override;
   void route(const Name& keyword, const RouteNames& names) override;
   // Says what of the text cannot be edited, once all has been read. isFragment: it has no Scene.
   void finish(bool isFragment);
@@ -61,6 +59,9 @@ class JsonRecorder : public LayoutRecorder {
   TextSpan spanOfHolder() const;
   bool isOwnMember();
   FieldText begunElement(std::string name) const;
+  FieldText begunDeclaration(const Name& name) const override {
+    return begunElement(std::string(name.text));
+  }
   void addEmptyLists(NodeText& node);
   void refuse(std::string_view reason) const;
 

@@ -65,6 +65,17 @@ void LayoutRecorder::closeField(bool good) {
   builder_.closeField(good);
 }
 
+FieldTarget LayoutRecorder::openDeclaration(Access access, FieldType type, const Name& name,
+                                            bool hasValue) {
+  const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
+  if (isRecording() && hasValue && target.known) {
+    FieldText field = begunDeclaration(name);
+    field.declared = true;
+    beginField(std::move(field));
+  }
+  return target;
+}
+
 void LayoutRecorder::closeDeclaration(bool good) {
   if (isRecording()) finishField(good);
   builder_.closeDeclaration(good);

@@ -23,6 +23,8 @@ class LayoutRecorder : public ParseSink {
   bool openNode(const Name& type, const Name* def) override;
   void closeNode(bool good) override;
   void closeField(bool good) override;
+  FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
+                              bool hasValue) override;
   void closeDeclaration(bool good) override;
   void openProto(const Name& name) override;
   void closeProto(bool good) override;
@@ -89,6 +91,8 @@ class LayoutRecorder : public ParseSink {
   virtual NodeText begunNode(const Name& type, const Name* def) = 0;
   // Notes where a node ends that is being closed.
   virtual void endNode(NodeText& node) = 0;
+  // Returns where a field begins that a node declares, with a value.
+  virtual FieldText begunDeclaration(const Name& name) const = 0;
   // Notes where the open field ends. good: its value could be read. In syntaxes with elements the
   // end follows from the beginning; programs of Scripts, and values that could not be read, are
   // left as they are.

@@ -75,16 +75,6 @@ FieldTarget XmlRecorder::resumeField(const Name& name) {
   return target;
 }
 
-FieldTarget XmlRecorder::openDeclaration(Access access, FieldType type, const Name& name,
-                                         bool hasValue) {
-  const FieldTarget target = builder_.openDeclaration(access, type, name, hasValue);
-  if (isRecording() && hasValue && target.known) {
-    beginField(begunElement(std::string(name.text)));
-    innermost().field.declared = true;
-  }
-  return target;
-}
-
 void XmlRecorder::route(const Name& keyword, const RouteNames& names) {
   if (isRecording())
     addRoute(keyword, {{element().begin, 0}, valueOf("fromNode"), valueOf("toNode")});

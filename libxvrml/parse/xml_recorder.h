@@ -13,8 +13,6 @@ class XmlRecorder : public LayoutRecorder {
   void useNode(const Name& name) override;
   FieldTarget openField(const Name& name) override;
   FieldTarget resumeField(const Name& name) override;
-  FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
-                              bool hasValue) override;
   void route(const Name& keyword, const RouteNames& names) override;
   // Notes the ends of elements, once all have been read.
   void finish();
@@ -27,6 +25,9 @@ class XmlRecorder : public LayoutRecorder {
 
   const XmlElement& element() const { return layout_.xml.innermost(); }
   FieldText begunElement(std::string name) const;
+  FieldText begunDeclaration(const Name& name) const override {
+    return begunElement(std::string(name.text));
+  }
   TextSpan valueOf(std::string_view attribute) const;
   void complete(TextSpan& span) const { span.end = layout_.xml.at(span.begin).end; }
 };

@@ -11,7 +11,6 @@
 #include "graph/exchange.h"
 #include "graph/expander.h"
 #include "graph/field_access.h"
-#include "graph/url.h"
 #include "xvrml/comments.h"
 #include "xvrml/walk.h"
 

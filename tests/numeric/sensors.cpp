@@ -35,6 +35,21 @@ TEST_F(Sensors, ALampAloneIsReadExactly) {
   }
 }
 
+// Nothing behind a sensor can send light to it, whether it is black or white.
+TEST_F(Sensors, ALampAboveAFloorIsReadExactly) {
+  floor();
+  use(bulb({0, 1.5, 2}, 4 * pi));
+  for (const double above : {1e-5, .5}) {
+    const double height = 2 - above, distance = std::hypot(1.5, height);
+    const Reading got = read({0, 0, above}, up);
+    EXPECT_NEAR(got.value, height / (distance * distance * distance), 1e-6);
+    EXPECT_EQ(got.halfWidth, 0);
+    EXPECT_TRUE(got.trusted);
+  }
+  const Reading beneath = read({0, 0, -.5}, up);
+  EXPECT_FALSE(beneath.trusted && beneath.halfWidth == 0) << "the floor might send light";
+}
+
 // The light of lamps goes straight through glass, and the glass absorbs on the way (Beer-Lambert):
 // with the lamp behind the glass, inside of it, and with the sensor inside.
 TEST_F(Sensors, AbsorbingGlassDimsTheLightOfLamps) {

@@ -1,5 +1,6 @@
 """Tests the commands of vv --control that edit the world's file: steps, undo, saving, and what hostile
 clients send."""
+import json
 import os
 import random
 import subprocess
@@ -323,6 +324,21 @@ def test_pick(start, tmp_path):
     refused("command", "from -1 to 1", vv.pick, 2, 0)
 
 
+def test_pick_says_which_side_is_seen(start, tmp_path):
+    (tmp_path / "sides.wrl").write_text(HEADER + """
+DEF V Viewpoint { position 0 0 5 }
+Shape { geometry IndexedFaceSet { solid FALSE coordIndex [ 0 1 2 3 ]
+  coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } } }
+""")
+    vv = start("sides.wrl", *SMALL).connect()
+    hit = vv.pick(0, 0)
+    assert hit["normal"] == pytest.approx([0, 0, 1]) and hit["facing"] is True
+    vv.set("V", "position", (0, 0, -5))
+    vv.set("V", "orientation", (0, 1, 0, 3.1415927))
+    hit = vv.pick(0, 0)
+    assert hit["normal"] == pytest.approx([0, 0, 1]) and hit["facing"] is False
+
+
 def test_pick_waits_for_the_viewer(start, tmp_path):
     (tmp_path / "plain.wrl").write_text(HEADER + "Transform { translation 30 0 0 children Shape { "
                                         "geometry Sphere { } } }")
@@ -426,3 +442,47 @@ def test_worlds_without_light_units(start, tmp_path):
     vv = start("lit.wrl", *SMALL, "--colour", "vrml97").connect()
     refused("failed", "not light", vv.probe, 0, 0)
     vv.call("hello")
+
+
+# --- The end ---
+
+
+def test_nothing_is_done_behind_quit(start, file):
+    server = start("table.wrl", *SMALL)
+    raw = server.raw()
+
+    def dim(intensity):
+        return {"command": "edit", "name": "Dim", "edits": [
+            {"edit": "set", "node": "LAMP", "field": "intensity", "value": intensity}]}
+
+    lines = [dim(0.5), {"command": "quit", "discard": True}, dim(0.25), {"command": "save"}]
+    raw.send(b"".join(json.dumps({"id": i, **line}).encode() + b"\n"
+                      for i, line in enumerate(lines)))
+    answers = [raw.receive() for _ in lines]
+    assert [a["id"] for a in answers[:2]] == [0, 1] and all("result" in a for a in answers[:2])
+    for answer in answers[2:]:  # the connection may have ended before the line was read
+        assert answer is None or answer["error"]["code"] == "refused", answer
+    assert server.program.wait(20) == 0
+    assert file.read_text() == TABLE
+    assert sorted(path.name for path in file.parent.iterdir()) == ["table.wrl", "world.wrl"]
+
+
+def test_what_is_kept_of_edits_is_not_overwritten(start, file):
+    server = start("table.wrl", *SMALL)
+    vv = server.connect()
+    one(vv, "set", node="LAMP", field="intensity", value=0.5)
+    journal = file.with_name(".table.wrl.vv-edits")
+    for name in (journal, journal.with_name(journal.name + "-3")):
+        refused("file", "another name is needed", vv.save, str(name))
+    refused("file", "another name is needed", vv.render, file=str(journal), format="png")
+    server.wait(lambda: journal.exists() and "intensity 0.5" in journal.read_text(), "the journal")
+    vv.save()
+    assert "intensity 0.5" in file.read_text()
+
+
+def test_texts_with_zero_bytes_are_refused(table):
+    refused("command", "without zero bytes", one, table, "rename", node="LEG", name="A\0B")
+    refused("command", "without zero bytes", one, table, "remove", called="a\0b", node="LEG")
+    refused("command", "without zero bytes", table.create, "Group { }\0")
+    refused("node", "\\u0000", table.get, "LEG\0", "children")
+    assert text(table) == TABLE

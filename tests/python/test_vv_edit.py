@@ -1,9 +1,8 @@
 """Tests the editor in vv's window with real clicks and keys, and what becomes of the file."""
-import re
-
 import pytest
 
 from conftest import HEADER
+from editor_window import changed, needs_the_editor, text  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
 WORLD = HEADER + """
@@ -20,16 +19,6 @@ DEF RIGHT Transform {
 """
 
 
-def text(vv):
-    return (vv.folder / "world.wrl").read_text()
-
-
-@pytest.fixture(autouse=True)
-def needs_the_editor(vv):
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
-
-
 @pytest.fixture
 def editor(window):
     # Beside the panels a part of the picture must be free.
@@ -38,16 +27,10 @@ def editor(window):
     return w
 
 
-def saved(w, vv, change):
-    """Returns the text once the file has changed in this way."""
-    w.wait(lambda: change(text(vv)), "the file")
-    return text(vv)
-
-
 def stay_and_save(w, vv, before):
     """Answers the question with Escape and saves. The keys wait for the question."""
     w.key("Escape", "ctrl+s")
-    return saved(w, vv, lambda t: t != before)
+    return changed(w, vv, lambda t: t != before)
 
 
 def test_a_box_is_selected_moved_undone_and_saved(editor, vv):
@@ -56,16 +39,16 @@ def test_a_box_is_selected_moved_undone_and_saved(editor, vv):
     w.click(-0.25, 0)
     w.key("g", "x", "1", "Return")
     w.key("ctrl+s")
-    now = saved(w, vv, lambda t: t != WORLD)
+    now = changed(w, vv, lambda t: t != WORLD)
     assert now.count("\n") > WORLD.count("\n")  # a Transform around the Shape
     assert "DEF LEFT Transform { translation -2 0 0 # moved by hand\n" in now
     assert "translation 1 0 0" in now
     w.key("ctrl+z")
     w.key("ctrl+s")
-    assert saved(w, vv, lambda t: t == WORLD)
+    assert changed(w, vv, lambda t: t == WORLD)
     w.key("ctrl+y")
     w.key("ctrl+s")
-    assert saved(w, vv, lambda t: t == now)
+    assert changed(w, vv, lambda t: t == now)
 
 
 def test_groups_are_selected_with_ctrl_and_the_file_differs_in_one_value(editor, vv):
@@ -74,7 +57,7 @@ def test_groups_are_selected_with_ctrl_and_the_file_differs_in_one_value(editor,
     w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
     w.key("g", "y", "minus", "period", "5", "Return")
     w.key("ctrl+s")
-    now = saved(w, vv, lambda t: t != WORLD)
+    now = changed(w, vv, lambda t: t != WORLD)
     assert now == WORLD.replace("translation -2 0 0 #", "translation -2 -0.5 0 #")
     assert w.end() == 0
 
@@ -88,7 +71,7 @@ def test_escape_takes_a_move_back(editor, vv):
     w.key("Escape")
     w.key("r", "z", "3", "0", "Return")
     w.key("ctrl+s")
-    now = saved(w, vv, lambda t: t != WORLD)
+    now = changed(w, vv, lambda t: t != WORLD)
     assert "translation -2 0 0" in now and "rotation 0 0 1 0.5235988" in now
 
 

@@ -1,9 +1,11 @@
 """Tests comparisons, rectangles and handles of the editor in vv's window with real clicks and keys."""
 import re
+import time
 
 import pytest
 
 from conftest import HEADER
+from editor_window import needs_the_editor, press, saved  # noqa: F401
 from window_driver import framebuffer, screen, window  # noqa: F401
 
 # At 600x400 the panels leave the picture from -0.48 to 0.4. The boxes are at -0.32 and 0.32.
@@ -19,12 +21,6 @@ DEF RIGHT Transform { translation 2 0 0 children Shape {
 HALF = 4.1421  # half the height of what is seen at the boxes
 RIGHT = 2 / (1.5 * HALF)  # where the right one is seen
 ARROW = 0.3 / 1.5  # the length of an arrow in the picture
-
-
-@pytest.fixture(autouse=True)
-def needs_the_editor(vv):
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
 
 
 class Editor:
@@ -68,21 +64,6 @@ class Editor:
 @pytest.fixture
 def editor(window, screen):
     return Editor(window(WORLD, "--size", "600x400", "--spp", 64), screen)
-
-
-def text(vv):
-    return (vv.folder / "world.wrl").read_text()
-
-
-def saved(w, vv, test):
-    """Saves until the file is as expected, and returns its text."""
-
-    def tried():
-        w.key("ctrl+s")
-        return test(text(vv))
-
-    w.wait(tried, "the file")
-    return text(vv)
 
 
 def is_grey(colour):
@@ -191,3 +172,40 @@ def test_a_rectangle_is_measured(editor):
     editor.until(lambda rows: sum(max(p) > 150 for row in rows[300:370] for p in row[170:400]) > 50,
                  "the list")
     assert w.program.poll() is None
+
+
+def test_a_report_shows_how_far_it_is_until_escape_gives_it_up(window, screen, vv):
+    editor = Editor(window(WORLD, "--size", "600x400", "--spp", 60000), screen)
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, RIGHT, .05)), "the box")
+    before = editor.says()
+    press(w, 32, 118)
+    w.wait(lambda: editor.says() != before, "how far it is")
+    w.key("Escape")
+    w.said("no report: its picture was given up")
+    assert not list(vv.folder.glob("world-report*"))
+    assert w.program.poll() is None
+
+
+@pytest.mark.timed
+def test_the_message_of_a_tool_ends_with_it(editor):
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, -RIGHT, .05)), "the box")
+    w.click(-RIGHT, .05)
+    before = editor.says()
+    w.key("g", "x", "1")
+    w.wait(lambda: editor.says() != before, "what the tool does")
+    w.key("Return")
+    ended = time.monotonic()
+    w.wait(lambda: editor.says() == before, "no message")
+    assert time.monotonic() < ended + 4, "other messages stay for six seconds"
+
+
+def test_the_legend_of_false_colours_stands_beside_the_panels(window, screen):
+    editor = Editor(window(WORLD, "--size", "600x400", "--false-colour", 100), screen)
+
+    def is_red(colour):
+        return colour[0] > 150 and colour[0] > colour[1] + 50 and colour[2] < 60
+
+    editor.until(lambda rows: any(is_red(p) for row in rows[20:140] for p in row[360:419]),
+                 "the upper end of the scale")

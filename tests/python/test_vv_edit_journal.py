@@ -11,6 +11,7 @@ import pytest
 
 from conftest import HEADER, find_vv
 from control_server import SMALL, module, refused, start  # noqa: F401
+from editor_window import skip_without_editor
 from window_driver import screen, window  # noqa: F401
 
 WORLD = HEADER + """# The hall
@@ -308,6 +309,17 @@ def test_what_is_no_journal_is_refused_with_one_message(hall, file, kind):
     assert len([line for line in server.err if str(journal) in line]) == 1
 
 
+def test_an_empty_journal_is_spoken_of_and_removed(hall, file):
+    journal_of(file).write_bytes(b"")
+    server = hall()
+    vv = server.connect()
+    assert vv.edits()["recoverable"] is None
+    assert len(said(server, f"{journal_of(file)} was empty")) == 1
+    assert names(file.parent) == ["hall.wrl"]
+    dim(vv, 0.5)
+    kept(server, file)
+
+
 def test_a_text_that_is_no_world_any_more_is_refused(hall, file):
     """Its hashes are right: somebody has made it so."""
     server = hall()
@@ -360,8 +372,7 @@ def test_a_picture_says_that_there_are_edits(hall, file):
 @pytest.fixture
 def editor(window, vv):
     """Returns a function that opens a window for a file."""
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
+    skip_without_editor(vv)
     (vv.folder / "hall.wrl").write_text(STAGE)
     return lambda: window("hall.wrl", "--size", "600x400")
 

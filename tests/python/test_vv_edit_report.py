@@ -7,6 +7,7 @@ import shlex
 import pytest
 
 from conftest import HEADER
+from editor_window import changed, needs_the_editor, press, text  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
 WORLD = HEADER + """
@@ -26,12 +27,6 @@ DEF RIGHT Transform {
 PROBLEMS, REPORT, FIRST_ROW = (50, 93), (33, 118), (250, 70)
 
 
-@pytest.fixture(autouse=True)
-def needs_the_editor(vv):
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
-
-
 @pytest.fixture
 def editor(window):
     w = window(WORLD, "--size", "640x420")
@@ -39,23 +34,18 @@ def editor(window):
     return w
 
 
-def press(w, place):
-    w.tool("mousemove", "--window", w.id, *place)
-    w.tool("click", 1)
-
-
 def test_a_click_on_a_problem_selects_its_node(editor, vv):
-    w, file = editor, vv.folder / "world.wrl"
-    press(w, PROBLEMS)
+    w = editor
+    press(w, *PROBLEMS)
 
     def tried():  # the list is read when the world can be used
-        press(w, FIRST_ROW)
+        press(w, *FIRST_ROW)
         w.key("Delete")
         w.key("ctrl+s")
-        return file.read_text() != WORLD
+        return text(vv) != WORLD
 
     w.wait(tried, "the file")
-    now = file.read_text()
+    now = text(vv)
     assert "RIGHT" not in now and "INNER" not in now and "DEF LEFT" in now
 
 
@@ -64,12 +54,12 @@ def test_a_report_has_the_picture_the_edits_and_a_command_that_repeats_it(editor
     w.click(-0.25, 0)
     w.key("g", "x", "1", "Return")
     w.key("ctrl+s")
-    w.wait(lambda: (vv.folder / "world.wrl").read_text() != WORLD, "the file")
-    press(w, REPORT)
+    changed(w, vv, lambda t: t != WORLD)
+    press(w, *REPORT)
     w.said("report saved as")
-    text = page.read_text()
-    assert "<h1>world.wrl</h1>" in text and "<script" not in text
-    png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]*)"', text)[1])
+    html = page.read_text()
+    assert "<h1>world.wrl</h1>" in html and "<script" not in html
+    png = base64.b64decode(re.search(r'src="data:image/png;base64,([^"]*)"', html)[1])
     assert png.startswith(b"\x89PNG")
     rows = list(csv.DictReader(table.open()))
     assert [row["kind"] for row in rows] == ["picture", "field"]
@@ -81,7 +71,7 @@ def test_a_report_has_the_picture_the_edits_and_a_command_that_repeats_it(editor
     done = vv(*command[1:], "-o", "again.png")
     assert done.returncode == 0, done.talk
     assert (vv.folder / "again.png").read_bytes() == png
-    press(w, REPORT)
+    press(w, *REPORT)
     w.said("report saved as", 2)
     assert (vv.folder / "world-report-2.csv").exists()
-    assert page.read_text() == text
+    assert page.read_text() == html

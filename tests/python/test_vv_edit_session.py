@@ -2,12 +2,12 @@
 measured, a lamp is moved, the change is significant, undone, done again and saved."""
 import csv
 import difflib
-import re
 import time
 
 import pytest
 
 from conftest import HEADER
+from editor_window import changed, needs_the_editor, press  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
 # A lamp of 100 cd in all directions, 5 m before a black wall, with a mark beside it, and a floor that
@@ -35,12 +35,6 @@ Transform { translation 0 -4 0 children Shape {
 REPORT = (32, 118)  # the button, in pixels
 
 
-@pytest.fixture(autouse=True)
-def needs_the_editor(vv):
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
-
-
 class Reports:
     """Asks for reports and reads their tables."""
 
@@ -49,8 +43,7 @@ class Reports:
 
     def probe(self):
         self.number += 1
-        self.window.tool("mousemove", "--window", self.window.id, *REPORT)
-        self.window.tool("click", 1)
+        press(self.window, *REPORT)
         self.window.said("report saved as", self.number)
         name = "world-report.csv" if self.number == 1 else f"world-report-{self.number}.csv"
         rows = [r for r in csv.DictReader((self.folder / name).open()) if r["kind"] == "probe"]
@@ -93,10 +86,9 @@ def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv
     assert row["remark"] == "not yet certain, trusted"
     w.key("ctrl+y")
     w.key("ctrl+s")
-    file = vv.folder / "world.wrl"
-    w.wait(lambda: file.read_text() != WORLD, "the file")
+    now = changed(w, vv, lambda t: t != WORLD)
     changes = [
-        line for line in difflib.unified_diff(WORLD.split("\n"), file.read_text().split("\n"), n=0)
+        line for line in difflib.unified_diff(WORLD.split("\n"), now.split("\n"), n=0)
         if line[0] in "+-" and line[:3] not in ("+++", "---")
     ]
     assert changes == [

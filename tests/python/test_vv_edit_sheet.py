@@ -5,6 +5,7 @@ import re
 import pytest
 
 from conftest import HEADER
+from editor_window import needs_the_editor, press, saved, text  # noqa: F401
 from window_driver import red, screen, window  # noqa: F401
 
 WORLD = HEADER + """
@@ -20,12 +21,6 @@ Transform { translation 20 0 0 children Shape { appearance USE PAINT geometry Bo
 WIDTH, HEIGHT = 640, 400
 
 
-@pytest.fixture(autouse=True)
-def needs_the_editor(vv):
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
-
-
 class Panels:
     """The window with its panels: places are pixels of the window."""
 
@@ -36,24 +31,16 @@ class Panels:
         self.window.key("e")
 
     def text(self):
-        return (self.vv.folder / "world.wrl").read_text()
+        return text(self.vv)
 
     def move(self, x, y):
         self.window.tool("mousemove", "--window", self.window.id, x, y)
 
     def click(self, x, y, button=1):
-        self.move(x, y)
-        self.window.tool("click", button)
+        press(self.window, x, y, button)
 
     def saved(self, change):
-        """Saves until the file has changed in this way: what was asked for may still have to be done."""
-
-        def tried():
-            self.window.key("ctrl+s")
-            return change(self.text())
-
-        self.window.wait(tried, "the file")
-        return self.text()
+        return saved(self.window, self.vv, change)
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Tests the editor on the page of `vv serve --edit` with real WebSockets: who may edit, what edits do
 to pictures, file and history, several editors, lost connections, and what hostile ones cannot do.
-test_vv_serve_edit_browser.py works the page itself."""
+test_vv_serve_edit_tools.py tests its tools and measurements, and test_vv_serve_edit_browser.py works the
+page itself."""
 import json
 import os
 import re
@@ -9,80 +10,10 @@ import pytest
 
 from conftest import HEADER
 from page_client import Refused, serve, wait_for  # noqa: F401
+from serve_edit_tools import (
+    SIZE, WORLD, drag, field, history, newest, opened, paint, select, select_row, text_of,
+    until, value)
 from window_driver import blue, green, red
-
-SIZE = (160, 120)
-WORLD = HEADER + """# The hall
-Viewpoint { position 0 0 5 }
-DEF THING Shape { # on the table
-  appearance Appearance { material DEF PAINT Material { diffuseColor 1 0 0 } }
-  geometry DEF BLOCK Box { }
-}
-DEF LIGHTS Group { children [ DEF LAMP PointLight { on FALSE intensity 0.80 } ] }
-"""
-
-
-def newest(page, kind):
-    texts = page.of(kind)
-    return texts[-1] if texts else {}
-
-
-def until(page, kind, test):
-    """Returns the newest text of a kind, once `test` holds for it."""
-    return wait_for(
-        lambda: next((t for t in [newest(page, kind)] if t and test(t)), None), lambda:
-        (kind, newest(page, kind), page.of("said"), page.closed))
-
-
-def node(page, label):
-    """Returns the number of the node of a row."""
-    rows = until(page, "rows", lambda t: any(r["label"] == label for r in t["rows"]))["rows"]
-    return next(row["node"] for row in rows if row["label"] == label)
-
-
-def select(page, label):
-    """Selects the node of a row and returns its sheet."""
-    page.edit("select", node=node(page, label))
-    return until(page, "sheet", lambda t: t["title"] == label)
-
-
-def opened(page, *labels):
-    for label in labels:
-        page.edit("open", node=node(page, label), open=True)
-
-
-def paint(page):
-    """Selects the Material and returns its number."""
-    opened(page, "THING  Shape", "appearance: Appearance")
-    return select_row(page, "material: PAINT  Material", "PAINT  Material")["node"]
-
-
-def select_row(page, label, title):
-    page.edit("select", node=node(page, label))
-    return until(page, "sheet", lambda t: t["title"] == title)
-
-
-def field(sheet, name):
-    return next(one for one in sheet["fields"] if one["field"] == name)
-
-
-def value(page, name, wanted):
-    return until(page, "sheet", lambda t: any(
-        one["field"] == name and one.get("value") == wanted for one in t["fields"]))
-
-
-def drag(page, number, name, *values):
-    for one in values:
-        page.edit("drag", node=number, field=name, value=one)
-    page.edit("end_drag")
-
-
-def history(page, **wanted):
-    return until(page, "history", lambda t: all(t[k] == v for k, v in wanted.items()))
-
-
-def text_of(vv):
-    return (vv.folder / "world.wrl").read_text()
 
 
 # --- Who may edit ---
@@ -291,24 +222,6 @@ def test_without_the_option_nothing_is_said_of_what_was_left(serve, vv):
     assert len(kept) == 1 and kept[0].exists()
 
 
-def test_probes_measure_the_light(serve):
-    server = serve(WORLD, "--edit", "--spp", 64)
-    page = server.join_editor()
-    page.edit("probe", x=0, y=0)
-    # The interval is not known while there are few samples.
-    first = until(page, "probes", lambda t: t["list"] and t["list"][0].get("half_width") is not None)
-    probe = first["list"][0]
-    assert probe["state"] == "read" and probe["luminance"] > 0 and "trusted" in probe
-    page.edit("keep_probes")
-    drag(page, paint(page), "diffuseColor", [1, 1, 1])
-    changed = until(page, "probes", lambda t: t["list"] and t["list"][0].get("change", 0) > 0)
-    assert changed["list"][0]["luminance"] > probe["luminance"]
-    page.edit("probe", x=0.9, y=0.9)
-    assert "nothing here" in page.told("said")["text"]
-    page.edit("clear_probes")
-    until(page, "probes", lambda t: t["list"] == [])
-
-
 # --- Several editors ---
 
 
@@ -402,6 +315,14 @@ MALFORMED = [
     {"command": "step", "name": "x" * 300, "edits": [{"edit": "insert", "vrml": "Group { }"}]},
     {"command": "step", "name": "x", "edits": [{"edit": "insert", "vrml": "Group { }"}] * 101},
     {"command": "search", "text": "x" * 300}, {"command": "save", "path": "x.wrl"},
+    {"command": "tool", "kind": "move", "x": 1e3, "y": 0}, {"command": "tool", "kind": 1},
+    {"command": "tool_at", "x": None, "y": 0}, {"command": "tool_key", "key": "x" * 17},
+    {"command": "end_tool"}, {"command": "compare", "what": "all"},
+    {"command": "measure", "x0": 0, "y0": 0, "x1": 1.1, "y1": 1}, {"command": "problems"},
+    {"command": "probe", "x": 0, "y": 0, "illuminance": 1}, {"command": "point", "x": 2, "y": 0},
+    {"command": "remove_at", "node": 1, "parent": -1, "field": "children", "index": 0},
+    {"command": "move_at", "node": 1, "parent": 1, "field": "children", "index": 0, "by": 9},
+    {"command": "set_look", "number": -1}, {"command": "report", "path": "/etc/x"},
 ]  # yapf: disable
 
 REFUSED = [
@@ -412,6 +333,13 @@ REFUSED = [
     ({"command": "reset", "node": 0, "field": "on"}, "not shown any more"),
     ({"command": "add", "kind": "Script { }"}, "no such node"),
     ({"command": "remove"}, "nothing is selected"),
+    ({"command": "hide"}, "nothing is selected"),
+    ({"command": "tool", "kind": "move", "x": 0, "y": 0}, "nothing is selected"),
+    ({"command": "choices", "node": 0, "field": "on"}, "not shown any more"),
+    ({"command": "remove_at", "node": 0, "parent": None, "field": "", "index": 0},
+     "not shown any more"),
+    ({"command": "set_look", "number": 2_000_000_000}, "no such look"),
+    ({"command": "compare", "what": "a"}, "nothing is kept"),
     ({"command": "step", "name": "x", "edits": [{"edit": "rename", "node": "LAMP", "name": "L"}]},
      "by their numbers"),
     ({"command": "step", "name": "x", "edits": [{"edit": "insert", "vrml": "Group {"}]}, "edits[0]"),

@@ -5,12 +5,13 @@ import pytest
 
 from conftest import HEADER
 from page_client import serve  # noqa: F401
+from serve_edit_tools import WORLD
 from test_vv_serve_browser import (  # noqa: F401
     CANVAS, browser, errors, finished, first_picture, keep, until_pixel)
-from test_vv_serve_edit import WORLD
 from window_driver import SENSORS, blue, green, red
 
-ARROW_DOWN, ARROW_RIGHT, ENTER, TAB, CONTROL = "\ue015", "\ue014", "\ue007", "\ue004", "\ue009"
+ARROW_DOWN, ARROW_RIGHT, ARROW_LEFT = "\ue015", "\ue014", "\ue012"
+ESCAPE, ENTER, TAB, CONTROL = "\ue00c", "\ue007", "\ue004", "\ue009"
 
 
 def open_editor(browser, server):
@@ -234,4 +235,178 @@ def test_the_page_asks_before_it_replaces_a_file(browser, serve, vv, answer, end
     until_script(browser, "document.getElementById('question') !== null")
     browser.click(answer)
     browser.until(lambda: ends in (vv.folder / "world.wrl").read_text(), ends)
+    assert errors(browser) == []
+
+
+# --- A session: a lens, a lamp, and the light on a wall ---
+
+ROOM = HEADER + """
+NavigationInfo { headlight FALSE }
+Viewpoint { position 0 0 10 fieldOfView 0.785398 }
+DEF LAMP Transform { translation 0 2 0 children [ # by hand
+  ORTLight { shader ORTShader { name "Luminaire" file "luminaire" options "1f lumen 1256.6371" } }
+] }
+DEF WALL Transform { translation 0 0 -4 children Shape {
+  appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+    options "color reflectance .6 .6 .6" } }
+  geometry Box { size 30 30 2 } } }
+DEF LENS Shape {
+  appearance ORTAppearance { shader DEF GLASS ORTShader { name "Glass" file "glass"
+    exposedField SFFloat index 1.5 } }
+  geometry Sphere { radius .7 } }
+"""
+
+
+def probe_text(browser):
+    return browser.script("return document.querySelector('#readings li')?.textContent ?? ''")
+
+
+def until_probe(browser, *parts):
+    browser.until(lambda: all(part in probe_text(browser) for part in parts), parts)
+    return probe_text(browser)
+
+
+def handle(browser, axis):
+    """Returns the place of the head of a handle, from -1 to 1."""
+    found = "window.editor.tools.handles.list.find(h => h.axis === arguments[0])?.end"
+    return until_script(browser, found, axis)
+
+
+def move_pointer(browser, x, y):
+    px, py = browser.point(CANVAS, x, y)
+    steps = [{"type": "pointerMove", "duration": 40, "x": px + d, "y": py, "origin": "viewport"}
+             for d in (3, 0)]  # yapf: disable
+    browser.actions({
+        "type": "pointer",
+        "id": "mouse",
+        "parameters": {
+            "pointerType": "mouse"
+        },
+        "actions": steps
+    })
+
+
+def test_a_lens_and_a_lamp_are_changed_and_the_light_is_measured(browser, serve, vv):
+    open_editor(browser, serve(ROOM, "--edit", "--spp", 64))
+    finished(browser)
+    browser.drag(CANVAS, (0, 0))  # a click on the lens
+    until_title(browser, "LENS  Shape")
+    until_script(browser, "document.querySelector('#look .link').textContent === 'Glass'")
+    browser.click("#look button:nth-of-type(2)")
+    until_title(browser, "GLASS  ORTShader")
+    type_into(browser, number_input("index"), "1.8")
+    until_script(browser, "document.getElementById('undo').title.includes('ORTShader.index')")
+
+    browser.click(row(browser, "LAMP") + " .label")
+    until_title(browser, "LAMP  Transform")
+    x, y = handle(browser, 0)
+    keep(browser, "serve-edit-handles")
+    browser.drag(CANVAS, (x, y), (x + 0.03, y), (x + 0.1, y), (x + 0.2, y))
+    until_script(browser, "document.getElementById('undo').title.includes('Move Transform')")
+    browser.until(lambda: float(shown(browser, number_input("translation", 1))) > 0.3, "moved")
+    assert shown(browser, number_input("translation", 2)) == "2"
+    press_with_control(browser, "z")
+    browser.until(lambda: shown(browser, number_input("translation", 1)) == "0", "undone")
+
+    browser.script("document.getElementById('picture').focus()")
+    move_pointer(browser, -0.6, 0.6)
+    browser.keys("u")
+    before = until_probe(browser, "lx", "trusted")
+    assert "\u00b1" in before and "not" not in before
+    browser.keys("b")
+    until_script(browser, "window.editor.light.state.complete === true")
+    move_pointer(browser, 0.3, 0.6)
+    browser.keys("g", "x", "3")
+    until_script(browser, "document.getElementById('tool').textContent.includes('along x: 3')")
+    keep(browser, "serve-edit-tool")
+    browser.keys(ENTER)
+    until_script(browser, "document.getElementById('tool').textContent === ''")
+    assert shown(browser, number_input("translation", 1)) == "3"
+    until_probe(browser, "B - A: -", " significant")
+    wraps = browser.script(
+        "return [...document.querySelectorAll('.quantity')].map(e => e.getClientRects().length)")
+    assert set(wraps) == {1}
+
+    browser.keys("\\")
+    until_script(browser, "window.editor.light.state.shown === 'a'")
+    until_script(browser, "!document.getElementById('cover').hidden")
+    keep(browser, "serve-edit-a")
+    browser.keys("w")
+    until_script(browser, "!document.getElementById('wiper').hidden")
+    until_script(browser, "!document.getElementById('cover').hidden")
+    browser.script("document.getElementById('wiper').focus()")
+    browser.keys(ARROW_LEFT, ARROW_LEFT)
+    assert browser.script("return document.getElementById('wiper').ariaValueNow") == "46"
+    keep(browser, "serve-edit-wiper")
+    browser.keys("d")
+    until_script(browser, "window.editor.light.state.significant > 0")
+    until_script(browser, "document.getElementById('legend').textContent.includes('darker')")
+    keep(browser, "serve-edit-changes")
+    browser.keys(ESCAPE)
+    until_script(browser, "window.editor.light.state.shown === 'present'")
+
+    press_with_control(browser, "z")
+    browser.until(lambda: shown(browser, number_input("translation", 1)) == "0", "undone")
+    press_with_control(browser, "y")
+    browser.until(lambda: shown(browser, number_input("translation", 1)) == "3", "done again")
+    press_with_control(browser, "s")
+    until_script(browser, "document.body.dataset.unsaved === 'false'")
+    wanted = ROOM.replace("translation 0 2 0", "translation 3 2 0").replace("index 1.5", "index 1.8")
+    assert (vv.folder / "world.wrl").read_text() == wanted
+    assert errors(browser) == []
+
+
+def test_nodes_are_put_into_fields_by_the_keyboard(browser, serve, vv):
+    open_editor(browser, serve(WORLD, "--edit", "--spp", 1))
+    browser.click(row(browser, "LIGHTS") + " .label")
+    until_title(browser, "LIGHTS  Group")
+    add = ".field[data-field=children] .links > button"
+    browser.script("document.querySelector(arguments[0]).focus()", add)
+    browser.keys(ENTER)
+    until_script(browser, "document.querySelector('.chooser').open")
+    keep(browser, "serve-edit-chooser")
+    browser.keys(*"spotl", ENTER)
+    chips = "[...document.querySelectorAll('.field[data-field=children] .link')].map(e => e.textContent)"
+    browser.until(lambda: browser.script("return " + chips) == ["LAMP  PointLight", "SpotLight"],
+                  "a SpotLight")
+    assert browser.script("return document.querySelector('.chooser').open") is False
+    browser.click(".field[data-field=children] .chip:nth-child(2) button:nth-of-type(2)")
+    browser.until(lambda: browser.script("return " + chips) == ["SpotLight", "LAMP  PointLight"],
+                  "moved up")
+    browser.keys("w", "d")  # no A has been kept: the page says so and goes on
+    until_script(browser, "document.getElementById('said').textContent.includes('kept as A')")
+    browser.click(row(browser, "THING") + " .label")
+    until_title(browser, "THING  Shape")
+    browser.click("#look .link")
+    until_script(browser, "document.querySelector('.chooser').open")
+    browser.keys(*"physical", ENTER)
+    until_script(browser, "document.querySelector('#look .link').textContent === 'PhysicalMaterial'")
+    press_with_control(browser, "s")
+    until_script(browser, "document.body.dataset.unsaved === 'false'")
+    text = (vv.folder / "world.wrl").read_text()
+    assert "SpotLight" in text and "PhysicalMaterial" in text and "# on the table" in text
+    browser.keys("\ue031")  # F1
+    until_script(browser, "document.getElementById('content').textContent.includes('duplicate')")
+    unnamed = browser.script(
+        "return [...document.querySelectorAll('#work input, #work select, #work textarea, "
+        "#work button, .chooser input')].filter(e => !e.getAttribute('aria-label') && !e.textContent)"
+        ".length")
+    assert unnamed == 0
+    assert errors(browser) == []
+
+
+def test_problems_and_reports(browser, serve, tmp_path):
+    world = WORLD.replace("geometry DEF BLOCK Box { }", "geometry DEF BLOCK Box { size -1 1 1 }")
+    open_editor(browser, serve(world, "--edit", "--spp", 1))
+    until_script(browser, "document.getElementById('show-problems').textContent !== 'Problems (0)'")
+    browser.click("#show-problems")
+    until_script(browser, "document.querySelectorAll('#problems li button').length > 0")
+    browser.click("#problems li button")
+    until_title(browser, "BLOCK  Box")
+    until_script(browser, "document.querySelector('#problems pre').textContent.includes('size')")
+    keep(browser, "serve-edit-problems")
+    browser.click("#report")
+    until_script(browser, "document.querySelectorAll('#report-files a').length === 2")
+    browser.click("#report-files li:first-child a")
+    browser.until(lambda: (tmp_path / "world-report.html").exists(), "the file")
     assert errors(browser) == []

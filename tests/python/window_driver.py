@@ -102,6 +102,7 @@ class Window:
             "SDL_AUDIODRIVER": "dummy",
             "SDL_RENDER_DRIVER": "software",
             "XDG_STATE_HOME": str(folder / "state"),  # panels have their usual widths
+            "XDG_DATA_HOME": str(folder / "data"),  # there are no materials of a user
             **(env or {})
         }
         self.env.pop("WAYLAND_DISPLAY", None)

@@ -117,6 +117,12 @@ TEST(ControlLine, MessagesSayWhereAndWhat) {
       "render: file: the path of a file");
   bad(R"({"command":"render","file":""})", "command", "render: file: the path of a file");
   bad(R"({"command":"load","url":["a.wrl","b\u0000.wrl"]})", "command", "load: url[1]: the path");
+  bad(R"({"command":"create","vrml":"Group\u0000{ }"})", "command",
+      "create: vrml: a text without zero bytes");
+  bad(R"({"command":"edit","name":"a\u0000b","edits":[{"edit":"rename","node":"A","name":"B"}]})",
+      "command", "edit: name: a text without zero bytes");
+  bad(R"({"command":"edit","name":"a","edits":[{"edit":"rename","node":"A","name":"B\u0000"}]})",
+      "command", "name: a text without zero bytes was expected, not \"B\\u0000\"");
   bad(R"({"command":"key"})", "command", "key");
   bad(R"({"command":"key","key":"a","pressed":1})", "command", "key: pressed");
   bad(R"({"command":"time","skip":-1})", "command", "time: skip: seconds from 0");

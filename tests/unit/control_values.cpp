@@ -152,6 +152,11 @@ TEST_F(ControlValues, ImagesAreCounted) {
           "pixels: 4 numbers were expected, not 3");
   refused(all, "aSFImage", R"({"width":1,"height":1,"components":1,"pixels":[256]})",
           "pixels[0]: a whole number from 0 to 255 was expected, not 256");
+  refused(all, "aSFImage",
+          R"({"width":18446744073709551615,"height":0,"components":1,"pixels":[]})",
+          "a whole number from 0 to 65536");
+  refused(all, "aSFImage", R"({"width":0,"height":0,"components":9223372036854775809,"pixels":[]})",
+          "a whole number from 0 to 4");
   refused(all, "aSFImage", R"({"width":65536,"height":65536,"components":4,"pixels":[1]})",
           "pixels: 4294967296 numbers");
   EXPECT_EQ(text(read(all, "aSFImage", R"({"width":0,"height":0,"components":0,"pixels":[]})")),

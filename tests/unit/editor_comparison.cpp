@@ -60,16 +60,18 @@ Picture noise(int side, int replicates, std::mt19937& random) {
 
 TEST(Changes, TheChanceOfAChangeIsThatOfStudent) {
   // Half-widths of 8 replicates: 2.36462 standard errors. Against an exact reading t has 7 degrees
-  // of freedom, whose two-sided 1 % quantile is 3.49948; between equal ones 14 and 2.97684.
+  // of freedom, whose two-sided 1 % quantile is 3.49948.
   const Difference one = differenceBetween(reading(10, 0), reading(13.49948f, 2.36462f));
   EXPECT_NEAR(one.value, 3.49948, 1e-5);
   EXPECT_NEAR(one.halfWidth, 2.36462, 1e-5);
   EXPECT_NEAR(one.chance, .01, 1e-5);
+  // Between equal ones t has 14 degrees of freedom, and 1 % is at 2.97684. Readings of very many
+  // replicates have the half-width 1.95996, and 1.36 %, which is more.
   const auto root = float(std::sqrt(2.));
   const Difference two =
       differenceBetween(reading(10 + root * 2.97684f, 2.36462f), reading(10, 2.36462f));
   EXPECT_NEAR(two.value, -4.20989, 1e-4);
-  EXPECT_NEAR(two.chance, .01, 1e-5);
+  EXPECT_NEAR(two.chance, .0136092, 1e-5);
   EXPECT_EQ(differenceBetween(reading(10, 3), reading(14.9f, 4)).chance, 1) << "contains 0";
   EXPECT_EQ(differenceBetween(reading(10, 0), reading(10, 0)).chance, 1);
   EXPECT_EQ(differenceBetween(reading(10, 0), reading(10.1f, 0)).chance, 0);
@@ -120,6 +122,17 @@ TEST(Changes, NoiseIsNoChange) {
     // Above .05 * 300 by three standard deviations.
     EXPECT_LE(wrong, 26) << replicates;
   }
+}
+
+// The same for a few readings with many replicates, as probes have them.
+TEST(Changes, NoiseOfAFewReadingsIsNoChange) {
+  std::mt19937 random(1);
+  int wrong = 0;
+  constexpr int pictures = 4000;
+  for (int i = 0; i < pictures; ++i)
+    wrong += compare(noise(2, 64, random), noise(2, 64, random)).significant > 0;
+  // Above .05 * 4000 by three standard deviations.
+  EXPECT_LE(wrong, 242);
 }
 
 TEST(Changes, AChangeOfTheWholePictureIsFoundUnderNoise) {
@@ -274,6 +287,19 @@ TEST(Rectangles, TheShapesThatAreSeenInThemAreSelected) {
   EXPECT_EQ(world.editor.selected(), world.node("SB").get());
   selectIn(world.editor, view, regionBetween(-.1, .8, .1, .9), false);
   EXPECT_TRUE(world.editor.selection().empty());
+}
+
+TEST(Views, AreEqualWhereTheyShowTheSame) {
+  EditView a, b;
+  EXPECT_EQ(a, b);
+  b.camera.matrix[12] = -0.0;
+  EXPECT_EQ(a, b);
+  b.camera.matrix[12] = 1;
+  EXPECT_NE(a, b);
+  a.camera.matrix[12] = b.camera.matrix[12] = std::nan("");
+  EXPECT_EQ(a, b) << "a camera always equals itself";
+  b.aspect = 2;
+  EXPECT_NE(a, b);
 }
 
 } // namespace

@@ -253,4 +253,24 @@ TEST(HandlesOf, MirroredAndFlatParents) {
   EXPECT_TRUE(gizmo.handles().empty()) << "there is no way back from a flat place";
 }
 
+TEST_F(Handles, AnArrowBelowAPanelPointsTheOtherWay) {
+  const Imath::V3d pivot = origin();
+  place();
+  const double right = gizmo.handles()[0].end[0];
+  ASSERT_GT(right, seen(pivot)[0]) << "the x axis goes to the right";
+  FreePart free{-1, (right + seen(pivot)[0]) / 2};
+  EXPECT_TRUE(gizmo.place(world.editor, view, free));
+  ASSERT_EQ(gizmo.handles().size(), 3u);
+  const Gizmo::Handle& arrow = gizmo.handles()[0];
+  EXPECT_TRUE(arrow.isOpposite);
+  EXPECT_LT(arrow.end[0], seen(pivot)[0]);
+  EXPECT_FALSE(gizmo.handles()[1].isOpposite);
+  const double before = origin().x;
+  drag(world.editor, gizmo, view, 0, .1);
+  EXPECT_NE(origin().x, before) << "it moves the node all the same";
+  free = {seen(pivot)[0] - 1e-3, seen(pivot)[0] + 1e-3};
+  gizmo.place(world.editor, view, free);
+  EXPECT_FALSE(gizmo.handles()[0].isOpposite) << "neither end is free";
+}
+
 } // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "unit/editor_support.h"
 
@@ -259,6 +260,18 @@ TEST_F(EditorJournal, AFileBehindALinkHasItsJournalBesideItself) {
   EXPECT_EQ(fs::canonical(kept), fs::canonical(journal));
 }
 
+// It is read as a whole: a file with holes may have any size.
+TEST_F(EditorJournal, AnEndlessJournalIsRefused) {
+  leave();
+  constexpr uint64_t bytes = uint64_t(5) << 30;
+  const std::string head = "vv edits 1\nbase 1 0\ntext " + std::to_string(bytes) + " 0\n\n";
+  putContent(journal, head);
+  fs::resize_file(journal, head.size() + bytes);
+  Program program(world);
+  EXPECT_FALSE(program.journal().left());
+  EXPECT_NE(program.journal().takeMessage().find("larger than the file"), std::string::npos);
+}
+
 TEST_F(EditorJournal, WhatIsNoJournalIsRefusedWithOneMessage) {
   leave();
   const std::string good = contentOf(journal);
@@ -313,6 +326,22 @@ TEST_F(EditorJournal, WhereNothingCanBeWrittenItSaysSoOnce) {
   EXPECT_EQ(program.journal().keep(), journal + "-3");
 }
 
+TEST_F(EditorJournal, WorldsOfOthersHaveNoneUntilTheyAreSaved) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a file away";
+  ASSERT_EQ(::chown(world.c_str(), 12345, gid_t(-1)), 0);
+  Program program(world);
+  program.dimTo(0.5f);
+  EXPECT_EQ(program.journal().keep(), "");
+  EXPECT_NE(program.journal().takeMessage().find("belongs to another user"), std::string::npos);
+  program.dimTo(0.6f);
+  EXPECT_EQ(program.journal().keep(), "");
+  EXPECT_EQ(program.journal().takeMessage(), "") << "it is said once";
+  EXPECT_EQ(names(), std::vector<std::string>{"hall.wrl"});
+  program.editor.save();
+  program.dimTo(0.7f);
+  EXPECT_EQ(program.journal().keep(), journal);
+}
+
 TEST_F(EditorJournal, AnEmptyFileIsNoJournal) {
   putContent(journal, ""); // a program was killed as it began
   Program program(world);
@@ -360,6 +389,34 @@ TEST_F(EditorJournal, MarksOfTheFileStay) {
   Program program(world, *before.journal().take());
   program.editor.save();
   EXPECT_EQ(contentOf(world), std::string("\xef\xbb\xbf") + dim);
+}
+
+TEST_F(EditorJournal, AnEmptyOneIsSpokenOfAndRemoved) {
+  putContent(journal, "");
+  Program program(world);
+  EXPECT_EQ(program.journal().takeMessage(),
+            journal + " was empty, and has been removed: the vv that made it had ended before it "
+                      "kept any edits");
+  EXPECT_EQ(names(), Names{"hall.wrl"});
+  program.dimTo(0.5f);
+  EXPECT_EQ(program.journal().keep(), journal);
+}
+
+TEST_F(EditorJournal, AnEmptyOneOfAProgramThatRunsStays) {
+  const JournalFile other = JournalFile::make(world);
+  Program program(world);
+  EXPECT_EQ(program.journal().takeMessage(), "");
+  EXPECT_TRUE(fs::exists(journal));
+}
+
+TEST_F(EditorJournal, ItsNamesAreKnown) {
+  EXPECT_TRUE(isJournalOf(world, journal));
+  EXPECT_TRUE(isJournalOf(world, folder + "/./.hall.wrl.vv-edits-2"));
+  EXPECT_TRUE(isJournalOf(world, journal + ".new"));
+  EXPECT_FALSE(isJournalOf(world, world));
+  EXPECT_FALSE(isJournalOf(world, folder + "/.other.wrl.vv-edits"));
+  fs::create_symlink(journal, folder + "/link.wrl");
+  EXPECT_TRUE(isJournalOf(world, folder + "/link.wrl"));
 }
 
 } // namespace

@@ -145,6 +145,32 @@ TEST_F(Model, ADragIsOneStep) {
   EXPECT_EQ(model.redoName(), "Set PointLight.intensity");
 }
 
+// A drag in a large world must not read the outline and the places of all nodes again.
+TEST_F(Model, AValueChangesNoRows) {
+  model.select(world.node("LAMP"), false);
+  update();
+  const OutlineRow* const first = model.rows().data();
+  const uint64_t nodes = world.editor.editor().nodeChanges();
+  world.editor.editor().set(*world.node("LAMP"), "intensity", 0.25f);
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().data(), first);
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.25f);
+  EXPECT_TRUE(model.hasUnsaved());
+  world.editor.undo();
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().data(), first);
+  EXPECT_EQ(std::get<float>(row(model, "intensity").value), 0.8f);
+  EXPECT_EQ(world.editor.editor().nodeChanges(), nodes);
+  world.editor.editor().rename(*world.node("LAMP"), "SUN");
+  EXPECT_TRUE(update());
+  EXPECT_EQ(model.rows().at(1).label, "SUN  PointLight");
+  EXPECT_EQ(model.sheet().title, "SUN  PointLight");
+  EXPECT_GT(world.editor.editor().nodeChanges(), nodes);
+  world.editor.undo();
+  update();
+  EXPECT_EQ(model.rows().at(1).label, "LAMP  PointLight");
+}
+
 TEST_F(Model, WrongValuesAreSaidAndChangeNothing) {
   model.select(world.node("LAMP"), false);
   update();
@@ -272,6 +298,90 @@ TEST(EditorModel, HostileNamesAndLongListsAreShown) {
   if (!model.sheet().node) return; // a Coordinate among the roots may be left out
   EXPECT_TRUE(row(model, "point").isLong);
   EXPECT_EQ(row(model, "point").size, 1000u);
+}
+
+// Returns the least and the greatest x of a frame.
+std::pair<double, double> extent(const EditModel& model) {
+  std::pair<double, double> x(9, -9);
+  for (const EditModel::Line& line : model.frames())
+    x = {std::min({x.first, line.x0, line.x1}), std::max({x.second, line.x0, line.x1})};
+  return x;
+}
+
+TEST_F(Model, TheViewerGoesToTheSelectionBetweenPanels) {
+  model.select(world.node("LEG"), false);
+  update();
+  const FreePart free{-0.5, 0.2};
+  for (const double height : {0.0, 4.0}) { // in perspective, and parallel
+    if (height > 0) view.camera.fovy = 0;
+    view.camera.height = height;
+    view.aspect = 1.5;
+    view.camera = model.cameraAround(world.editor, view, free);
+    update();
+    const auto [left, right] = extent(model);
+    EXPECT_NEAR((left + right) / 2, free.middle(), .02);
+    if (height > 0) continue;
+    EXPECT_GT(left, free.left);
+    EXPECT_LT(right, free.right);
+  }
+}
+
+// The strings of a text, of which the user types one while another program sets the others.
+struct TextModel : testing::Test {
+  EditedWorld world{"#VRML V2.0 utf8\nDEF T Text { string [ \"a\", \"b\" ] }\n"
+                    "Shape { geometry USE T }\n"};
+  EditModel model;
+  void SetUp() override {
+    world.editor.select({world.node("T")});
+    update();
+    model.setActive(true); // the user begins to type
+  }
+  void update() { model.update(world.editor, front(), false, 0); }
+  MFString shown() { return std::get<MFString>(row(model, "string").value); }
+  MFString now() {
+    const Node& node = *world.node("T");
+    return std::get<MFString>(node.get(*node.type().find("string")));
+  }
+  void type(MFString value) { model.drag(world.node("T"), *row(model, "string").field, value); }
+};
+
+TEST_F(TextModel, WhatOthersSetMeanwhileStays) {
+  world.browser.set(*world.node("T"), "string", MFString{"a", "theirs"});
+  EXPECT_EQ(shown(), (MFString{"a", "b"}));
+  type({"mine", "b"});
+  model.setActive(false);
+  update();
+  EXPECT_EQ(now(), (MFString{"mine", "theirs"}));
+  EXPECT_EQ(shown(), now());
+  EXPECT_EQ(model.takeMessage(), "");
+}
+
+TEST_F(TextModel, AValueThatIsSetBackIsTheUsersToo) {
+  type({"mine", "b"});
+  update();
+  type({"a", "b"}); // still the same step
+  update();
+  EXPECT_EQ(now(), (MFString{"a", "b"}));
+}
+
+TEST_F(TextModel, AnotherLengthIsNotOverwritten) {
+  world.browser.set(*world.node("T"), "string", MFString{"x", "y", "z"});
+  type({"mine", "b"});
+  model.setActive(false);
+  update();
+  EXPECT_EQ(now(), (MFString{"x", "y", "z"}));
+  EXPECT_EQ(model.takeMessage(), "Text.string has changed meanwhile: its value stays");
+  EXPECT_EQ(model.undoName(), "");
+}
+
+TEST_F(TextModel, TheUserAddsElementsOneAfterTheOther) {
+  type({"a", "b", "c"});
+  type({"a", "b", "c", "d"});
+  update();
+  type({"a", "b", "c", "d", "e"}); // the panel has not been read again
+  update();
+  EXPECT_EQ(now().size(), 5u);
+  EXPECT_EQ(model.takeMessage(), "");
 }
 
 } // namespace

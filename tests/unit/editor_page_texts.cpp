@@ -1,12 +1,18 @@
 // editor_page_texts.cpp: Tests what the editor tells a page: JSON that is bounded and exact,
-// whatever a hostile file holds, and steps of edits that a page asks for.
+// whatever a hostile file holds, and edits and tools that a page asks for.
+#include <limits>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "as_json/perform_step.h"
 #include "editor_support.h"
+#include "server/edit_nodes.h"
 #include "server/edit_texts.h"
+#include "server/light_texts.h"
 #include "server/limits.h"
+#include "server/page_tool.h"
+#include "xvrml/nodes.h"
 
 namespace {
 
@@ -32,6 +38,13 @@ struct Shown {
       if (one["field"] == name) return one;
     return nullptr;
   }
+
+  // Does an edit as the server does.
+  void perform(const edit::NodeCommand& command) {
+    vv::server::perform(command, world.editor, model, numbers, front());
+    update();
+  }
+  uint64_t number(const char* name) { return numbers.of(world.node(name)); }
 
   EditedWorld world;
   vv::EditModel model;
@@ -73,6 +86,192 @@ TEST(EditorPageTexts, FieldsHaveTheirTypesAndRanges) {
   EXPECT_EQ(shown.numbers.find(links[0]["node"].get<uint64_t>()), shown.world.node("B"));
 }
 
+TEST(EditorPageTexts, NodesOfFieldsHaveTheirPlaces) {
+  Shown shown("DEF G Group { children [ DEF A Group { } DEF B Group { } USE A ] }");
+  const Json links = Shown::field(shown.sheetOf("G"), "children")["links"];
+  ASSERT_EQ(links.size(), 3u);
+  EXPECT_EQ(links[0]["places"], 2);
+  EXPECT_EQ(links[1]["places"], 1);
+  shown.model.setOpen(shown.world.node("G"), true);
+  shown.update();
+  const Json rows = shown.rows()["rows"];
+  EXPECT_FALSE(rows[0].contains("parent"));
+  EXPECT_EQ(rows[3]["parent"], rows[0]["node"]);
+  EXPECT_EQ(rows[3]["field"], "children");
+  EXPECT_EQ(rows[3]["index"], 2);
+}
+
+TEST(EditorPageTexts, ALookIsAMaterialOrAShader) {
+  Shown shown("DEF S Shape { appearance DEF L Appearance { material Material { } } }\n"
+              "Shape { appearance USE L }");
+  const Json look = shown.sheetOf("S")["look"];
+  EXPECT_EQ(look["name"], "Material");
+  EXPECT_EQ(look["places"], 2);
+  EXPECT_TRUE(look["surface"].is_number());
+  const Json looks = Json::parse(edit::looksText(shown.model.looks()));
+  EXPECT_EQ(looks["list"][0]["name"], "Material");
+  EXPECT_EQ(looks["list"][0]["shader"], false);
+  EXPECT_FALSE(shown.sheetOf("L").contains("look"));
+}
+
+TEST(EditorPageTexts, ChoicesAreWhatAFieldMayHold) {
+  Shown shown("DEF S Shape { geometry DEF B Box { } } DEF LAMP PointLight { }");
+  shown.sheetOf("S");
+  const Json choices =
+      Json::parse(edit::choicesText(7, *shown.model.sheet().find("geometry"), shown.numbers));
+  EXPECT_EQ(choices["node"], 7);
+  EXPECT_EQ(choices["field"], "geometry");
+  const auto has = [](const Json& list, const char* member, const char* text) {
+    return std::any_of(list.begin(), list.end(),
+                       [&](const Json& one) { return one[member] == text; });
+  };
+  EXPECT_TRUE(has(choices["types"], "name", "Sphere"));
+  EXPECT_FALSE(has(choices["types"], "name", "PointLight"));
+  EXPECT_TRUE(has(choices["uses"], "label", "B  Box"));
+  EXPECT_FALSE(has(choices["uses"], "label", "LAMP  PointLight"));
+}
+
+TEST(EditorPageTexts, ProblemsAreABoundedList) {
+  std::string many;
+  for (int i = 0; i < 400; ++i)
+    many += fmt::format("Shape {{ geometry Box {{ size -{} 1 1 }} }}\n", i + 1);
+  Shown shown(many);
+  Json problems = Json::parse(edit::problemsText(shown.model.problems(), shown.numbers));
+  EXPECT_EQ(problems["count"], 400);
+  EXPECT_EQ(problems["open"], false);
+  EXPECT_EQ(problems["rows"].size(), 0u);
+  shown.model.problems().setOpen(true);
+  shown.update();
+  problems = Json::parse(edit::problemsText(shown.model.problems(), shown.numbers));
+  ASSERT_EQ(problems["rows"].size(), size_t(maxProblemsShown));
+  EXPECT_GE(problems["dropped"], 200);
+  EXPECT_NE(problems["rows"][0]["text"].get<std::string>().find("line 2"), std::string::npos);
+}
+
+TEST(EditorPageTexts, NodesAreAddedUsedMovedAndRemoved) {
+  Shown shown("DEF G Group { children [ DEF A Group { } DEF B Group { } ] }");
+  const uint64_t group = shown.number("G"), a = shown.number("A");
+  shown.perform(edit::AddNode{group, "children", "PointLight"});
+  shown.perform(edit::UseNode{group, "children", a});
+  const auto children = [&] {
+    std::string text;
+    for (const xvrml::NodeRef& node :
+         xvrml::nodeCast<xvrml::nodes::Group>(shown.world.node("G"))->children)
+      text += node->defName.empty() ? "-" : node->defName;
+    return text;
+  };
+  EXPECT_EQ(children(), "AB-A");
+  shown.perform(edit::MoveAt{{a, group, "children", 0}, 1});
+  EXPECT_EQ(children(), "BA-A");
+  shown.perform(edit::RemoveAt{{a, group, "children", 3}});
+  EXPECT_EQ(children(), "BA-");
+  for (int i = 0; i < 4; ++i) shown.world.editor.undo();
+  EXPECT_EQ(children(), "AB");
+}
+
+TEST(EditorPageTexts, HostilePlacesAreRefused) {
+  Shown shown("DEF G Group { children [ DEF A Group { } ] } DEF L PointLight { }");
+  const uint64_t group = shown.number("G"), a = shown.number("A"), lamp = shown.number("L");
+  const std::string before = shown.world.editor.editor().text();
+  const auto refuses = [&](const edit::NodeCommand& command) {
+    EXPECT_THROW(shown.perform(command), std::runtime_error);
+  };
+  refuses(edit::RemoveAt{{a, group, "children", 1}});
+  refuses(edit::RemoveAt{{a, group, "nothing", 0}});
+  refuses(edit::RemoveAt{{a, group, "bboxSize", 0}});
+  refuses(edit::RemoveAt{{a, group, "addChildren", 0}});
+  refuses(edit::RemoveAt{{a, lamp, "", 0}});
+  refuses(edit::RemoveAt{{a, {}, "children", 0}});
+  refuses(edit::RemoveAt{{a, 999, "children", 0}});
+  refuses(edit::MoveAt{{lamp, {}, "", 7}, 1});
+  refuses(edit::SeparateAt{{a, group, "children", 0}});
+  refuses(edit::AddNode{group, "children", "Script { }"});
+  refuses(edit::AddNode{group, "nothing", "Group"});
+  refuses(edit::AddNode{group, "bboxSize", "Group"});
+  refuses(edit::UseNode{a, "children", group}); // a node within itself
+  refuses(edit::SetLook{1000, true});
+  EXPECT_EQ(shown.world.editor.editor().text(), before);
+  EXPECT_FALSE(shown.world.editor.isChanged());
+}
+
+TEST(EditorPageTexts, AToolMovesAndIsTakenBack) {
+  Shown shown("DEF T Transform { children Shape { geometry Box { } } }");
+  PageTool tool;
+  const auto place = [&] { tool.place(shown.world.editor, front(), true); };
+  const auto moved = [&] {
+    return xvrml::nodeCast<xvrml::nodes::Transform>(shown.world.node("T"))->translation.x;
+  };
+  shown.world.editor.select({shown.world.node("T")});
+  place();
+  const Json handles = Json::parse(edit::handlesText(tool.gizmo()));
+  EXPECT_EQ(handles["kind"], "move");
+  EXPECT_EQ(handles["list"].size(), 2u) << "z points at the viewer";
+  tool.take(edit::BeginTool{edit::BeginTool::Kind::move, 0, {0.1, 0}}, shown.world.editor, front());
+  tool.take(edit::PointTool{{0.4, 0}, false}, shown.world.editor, front());
+  EXPECT_GT(moved(), 0.5f);
+  EXPECT_NE(tool.text().find("along x"), std::string::npos);
+  tool.take(edit::TypeTool{"2"}, shown.world.editor, front());
+  EXPECT_EQ(moved(), 2);
+  tool.take(edit::EndTool{false}, shown.world.editor, front());
+  EXPECT_EQ(moved(), 0);
+  EXPECT_EQ(tool.text(), "");
+  // The rest of the commands of a tool that has been ended changes nothing.
+  tool.take(edit::PointTool{{0.9, 0}, false}, shown.world.editor, front());
+  tool.take(edit::EndTool{true}, shown.world.editor, front());
+  EXPECT_EQ(shown.world.editor.editor().undoName(), "");
+  tool.take(edit::BeginTool{edit::BeginTool::Kind::scale, -1, {0.1, 0}}, shown.world.editor,
+            front());
+  tool.take(edit::TypeTool{"3"}, shown.world.editor, front());
+  tool.accept(shown.world.editor);
+  EXPECT_EQ(shown.world.editor.editor().undoName(), "Scale Transform");
+  tool.place(shown.world.editor, front(), false);
+  EXPECT_TRUE(tool.gizmo().handles().empty());
+}
+
+TEST(EditorPageTexts, ProbesHaveUnitsAndMarks) {
+  vv::Probes probes;
+  probes.add({0, 0, 0});
+  const double point[] = {0, 0, 5}, normal[] = {0, 0, 1}, seen[] = {0, 0, -1};
+  probes.addSensor(picture::sensorAt(point, normal, seen));
+  std::vector<picture::Measurement> readings(1);
+  readings[0].sensor = probes.waitingSensors().front();
+  readings[0].value = {120};
+  readings[0].halfWidth = {std::numeric_limits<float>::infinity()};
+  readings[0].trusted = {1};
+  readings[0].samples = {64};
+  probes.take(readings);
+  probes.add({-0.5, -0.5, 0.5, 0.5}, front());
+  const Json list = Json::parse(edit::probesText(probes))["list"];
+  EXPECT_EQ(list[0]["state"], "waiting");
+  EXPECT_EQ(list[1]["illuminance"], 120);
+  EXPECT_TRUE(list[1]["half_width"].is_null());
+  EXPECT_FALSE(list[1].contains("luminance"));
+  const Json marks = Json::parse(edit::marksText(probes, front()))["list"];
+  ASSERT_EQ(marks.size(), 3u);
+  EXPECT_EQ(marks[0]["x"], 0);
+  EXPECT_EQ(marks[2]["left"], -0.5);
+  EXPECT_EQ(Json::parse(edit::marksText(probes, front(2)))["list"].size(), 2u) << "another view";
+  // Another sensor may have the number of one that has been removed meanwhile.
+  probes.clear();
+  const double other[] = {1, 0, 5};
+  probes.add({0, 0, 0});
+  probes.addSensor(picture::sensorAt(other, normal, seen));
+  probes.take(readings);
+  EXPECT_EQ(Json::parse(edit::probesText(probes))["list"][1]["state"], "waiting");
+}
+
+TEST(EditorPageTexts, AComparisonIsOfTheLeadersPicture) {
+  vv::Comparison comparison;
+  const Json none = Json::parse(edit::comparisonText(comparison, true, {}));
+  EXPECT_EQ(none["kept"], false);
+  EXPECT_EQ(none["shown"], "present");
+  const Json cover = Json::parse(edit::coverText(2, 3, "jpeg"));
+  EXPECT_EQ(cover["image"], "anBlZw==");
+  EXPECT_EQ(cover["height"], 3);
+  const std::string paths[] = {"saved/1/a.html"}, names[] = {"a.html"};
+  EXPECT_EQ(Json::parse(edit::reportText(paths, names))["files"][0]["path"], paths[0]);
+}
+
 TEST(EditorPageTexts, HostileFilesStayBounded) {
   const std::string longName(10'000, 'n'), longText(40'000, 't');
   Shown shown(
@@ -100,6 +299,39 @@ TEST(EditorPageTexts, ManyFieldsAreCutOff) {
   EXPECT_LE(shown.text.size(), size_t(maxSheetBytes) + 100);
   EXPECT_GT(sheet["hidden"], 1000);
   EXPECT_GT(sheet["fields"].size(), 100u);
+}
+
+// A page forgets its numbers when it has half of them: what it shows then takes less than the rest.
+TEST(EditorPageTexts, TheNodesOfASheetHaveNumbersLeft) {
+  std::string nodes, fields;
+  for (int i = 0; i < 200; ++i) nodes += "Fog { } ";
+  for (int i = 0; i < 100; ++i) fields += fmt::format("field MFNode f{} [ {} ] ", i, nodes);
+  Shown shown("DEF S Script { " + fields + " }");
+  EXPECT_GT(shown.sheetOf("S")["hidden"], 10);
+  EXPECT_LT(shown.numbers.size() + size_t(maxRowsShown), size_t(maxNodeNumbers) / 2);
+}
+
+// Scales may be so large that no place of the picture can be computed.
+TEST(EditorPageTexts, FramesHaveFiniteNumbers) {
+  std::string text = "DEF S Shape { geometry Box { } }";
+  for (int i = 0; i < 9; ++i)
+    text = "Transform { scale 1e38 1e38 1e38 translation 1e38 0 0 children " + text + " }";
+  Shown shown(text);
+  shown.world.editor.choose(shown.world.node("S"), false);
+  shown.update();
+  EXPECT_EQ(Json::parse(edit::framesText(shown.model))["lines"].size(), 0u);
+}
+
+TEST(EditorPageTexts, RangesOfParametersAreThoseOfTheirClass) {
+  vv::PropertySheet sheet;
+  Shown shown("DEF L PointLight { }");
+  Json light = shown.sheetOf("L");
+  EXPECT_FALSE(Shown::field(light, "location").contains("most"));
+  sheet = shown.model.sheet();
+  for (vv::PropertyRow& row : sheet.rows)
+    if (row.field->name == "location") row.range.maximum = 7;
+  light = Json::parse(edit::sheetText(sheet, shown.numbers));
+  EXPECT_EQ(Shown::field(light, "location")["most"], 7);
 }
 
 TEST(EditorPageTexts, AStepOfAPageIsAllOrNothing) {

@@ -194,4 +194,20 @@ TEST_F(ProbesOfAWall, SensorsReadIlluminanceInAnyView) {
   EXPECT_EQ(measure(5, 1), 1u);
 }
 
+TEST_F(ProbesOfAWall, AReadingOfAProbeThatHasGoneIsNotThatOfTheNextOne) {
+  const double point[3] = {0, 0, 1}, other[3] = {5, 0, 1}, normal[3] = {0, 0, 1},
+               seen[3] = {0, 0, -1};
+  probes.addSensor(picture::sensorAt(point, normal, seen));
+  picture::Measurement reading;
+  reading.sensor = probes.waitingSensors().at(0);
+  reading.value = {412};
+  reading.halfWidth = {6};
+  reading.trusted = {1};
+  reading.samples = {64};
+  probes.clear();
+  probes.addSensor(picture::sensorAt(other, normal, seen));
+  probes.take({reading});
+  EXPECT_EQ(probes.all()[0].state, Probe::State::waiting);
+}
+
 } // namespace

@@ -298,6 +298,22 @@ TEST(EditorSheet, OptionsOfAShaderAreSaid) {
   }
 }
 
+TEST(EditorSheet, AnotherClassHasOtherParameters) {
+  EditedWorld world("#VRML V2.0 utf8\nShape { appearance ORTAppearance { shader DEF S ORTShader {\n"
+                    "name \"Glass\" options \"1f index 1.2\" } } }\n");
+  EditModel model;
+  world.editor.select({world.node("S")});
+  model.update(world.editor, front(), false, 0);
+  ASSERT_NE(model.sheet().find("index"), nullptr);
+  world.editor.editor().set(*world.node("S"), "options", MFString());
+  model.update(world.editor, front(), false, 0);
+  EXPECT_FALSE(model.sheet().find("index")->isInOptions);
+  world.editor.editor().set(*world.node("S"), "name", std::string("Diffuse"));
+  model.update(world.editor, front(), false, 0);
+  EXPECT_EQ(model.sheet().find("index"), nullptr);
+  EXPECT_NE(model.sheet().find("reflectance"), nullptr);
+}
+
 // --- Choices ---
 
 TEST_F(Sheet, FieldsOfWordsOfferThem) {

@@ -197,4 +197,30 @@ TEST_F(Tool, AMirroredParentTurnsAsThePointerDoes) {
   tool.cancel(mirrored.editor);
 }
 
+TEST_F(Tool, AfterUndoWhatWasMovedIsSelectedAgain) {
+  world.editor.select({world.node("S")});
+  TransformTool tool(world.editor, Kind::move, view, 0, 0);
+  tool.point(world.editor, 0.3, 0.2);
+  tool.accept(world.editor);
+  ASSERT_EQ(world.editor.selected()->type().name, "Transform");
+  EXPECT_NE(world.editor.selected(), world.node("T").get());
+  for (int i = 0; i < 2; ++i) {
+    world.editor.undo();
+    EXPECT_EQ(world.editor.selection(), MFNode{world.node("S")});
+    EXPECT_EQ(world.editor.editor().text(), text);
+    world.editor.redo();
+  }
+}
+
+TEST(RotationOf, AnglesAreFromZeroToPi) {
+  Imath::Quatd turn;
+  turn.setAxisAngle(Imath::V3d(0, 1, 0), 4);
+  const Rotation rotation = rotationOf(turn);
+  EXPECT_NEAR(rotation.y, -1, 1e-6);
+  EXPECT_NEAR(rotation.angle, 2 * std::numbers::pi - 4, 1e-6);
+  const Rotation none = rotationOf(Imath::Quatd());
+  EXPECT_EQ(none.z, 1);
+  EXPECT_EQ(none.angle, 0);
+}
+
 } // namespace

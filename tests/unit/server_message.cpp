@@ -120,12 +120,36 @@ TEST(ServerMessage, RefusesLongTexts) {
             fmt::format("it is longer than maxMessageBytes ({})", maxMessageBytes));
 }
 
+// Returns a command, perhaps one of a group; null: it is another one.
+template <class T> const T* commandIn(const edit::Command& command) {
+  return std::visit(
+      [](const auto& one) -> const T* {
+        using One = std::remove_cvref_t<decltype(one)>;
+        if constexpr (std::is_same_v<One, T>)
+          return &one;
+        else if constexpr (std::is_same_v<One, edit::NodeCommand> ||
+                           std::is_same_v<One, edit::ToolCommand> ||
+                           std::is_same_v<One, edit::LightCommand>)
+          return std::visit(
+              [](const auto& inner) -> const T* {
+                if constexpr (std::is_same_v<std::remove_cvref_t<decltype(inner)>, T>)
+                  return &inner;
+                else
+                  return nullptr;
+              },
+              one);
+        else
+          return nullptr;
+      },
+      command);
+}
+
 template <class T> T edited(const std::string& members) {
   const ReadMessage read = readMessage(R"({"type":"edit",)" + members + "}", Rights::edit);
   EXPECT_TRUE(read.message) << members << ": " << read.fault;
   if (!read.message || !read.message->editCommand) return {};
   EXPECT_EQ(read.message->type, Type::edit);
-  const T* const command = std::get_if<T>(&*read.message->editCommand);
+  const T* const command = commandIn<T>(*read.message->editCommand);
   EXPECT_TRUE(command) << members;
   return command ? *command : T{};
 }
@@ -169,6 +193,67 @@ TEST(ServerMessage, ReadsEveryEdit) {
   edited<edit::Close>(R"("command":"close")");
 }
 
+TEST(ServerMessage, ReadsEditsOfNodes) {
+  const auto add =
+      edited<edit::AddNode>(R"("command":"add_node","node":4,"field":"children","kind":"Group")");
+  EXPECT_EQ(add.node, 4u);
+  EXPECT_EQ(add.kind, "Group");
+  EXPECT_EQ(
+      edited<edit::UseNode>(R"("command":"use_node","node":4,"field":"geometry","used":5)").used,
+      5u);
+  const edit::At at =
+      edited<edit::RemoveAt>(
+          R"("command":"remove_at","node":4,"parent":2,"field":"children","index":7)")
+          .at;
+  EXPECT_EQ(at.parent, 2u);
+  EXPECT_EQ(at.index, 7u);
+  const auto move = edited<edit::MoveAt>(
+      R"("command":"move_at","node":4,"parent":null,"field":"","index":7,"by":-1)");
+  EXPECT_EQ(move.by, -1);
+  EXPECT_FALSE(move.at.parent);
+  edited<edit::SeparateAt>(
+      R"("command":"separate_at","node":4,"parent":2,"field":"appearance","index":0)");
+  const auto look = edited<edit::SetLook>(R"("command":"set_look","number":3,"only_here":true)");
+  EXPECT_EQ(look.number, 3u);
+  EXPECT_TRUE(look.onlyHere);
+  EXPECT_FALSE(edited<edit::SetLook>(R"("command":"set_look","number":3)").onlyHere);
+  edited<edit::SelectSameLook>(R"("command":"select_same_look")");
+  EXPECT_EQ(edited<edit::AskChoices>(R"("command":"choices","node":1,"field":"a")").field, "a");
+  EXPECT_TRUE(edited<edit::ShowProblems>(R"("command":"problems","open":true)").open);
+  EXPECT_EQ(edited<edit::Hide>(R"("command":"hide_others")").what, edit::Hide::What::others);
+  EXPECT_EQ(edited<edit::Hide>(R"("command":"show_all")").what, edit::Hide::What::nothing);
+  edited<edit::Frame>(R"("command":"frame")");
+}
+
+TEST(ServerMessage, ReadsToolsAndLight) {
+  const auto begin =
+      edited<edit::BeginTool>(R"("command":"tool","kind":"turn","axis":2,"x":-99,"y":0.5)");
+  EXPECT_EQ(begin.kind, edit::BeginTool::Kind::turn);
+  EXPECT_EQ(begin.axis, 2);
+  EXPECT_EQ(begin.place.x, -99);
+  EXPECT_EQ(edited<edit::BeginTool>(R"("command":"tool","kind":"move","x":0,"y":0)").axis, -1);
+  EXPECT_TRUE(edited<edit::PointTool>(R"("command":"tool_at","x":0,"y":0,"snap":true)").snap);
+  EXPECT_EQ(edited<edit::TypeTool>(R"("command":"tool_key","key":"-")").key, "-");
+  EXPECT_FALSE(edited<edit::EndTool>(R"("command":"end_tool","accept":false)").accept);
+  edited<edit::NextHandles>(R"("command":"handles")");
+  EXPECT_TRUE(
+      edited<edit::PutProbe>(R"("command":"probe","x":0,"y":0,"illuminance":true)").illuminance);
+  const auto measure =
+      edited<edit::Measure>(R"("command":"measure","x0":-1,"y0":0,"x1":1,"y1":0.5)");
+  EXPECT_EQ(measure.from.x, -1);
+  EXPECT_EQ(measure.to.y, 0.5);
+  EXPECT_TRUE(
+      edited<edit::SelectIn>(R"("command":"select_in","x0":-1,"y0":0,"x1":1,"y1":0.5,"add":true)")
+          .add);
+  EXPECT_EQ(edited<edit::Compare>(R"("command":"compare","what":"difference")").what,
+            edit::Compare::What::difference);
+  EXPECT_EQ(edited<edit::PointAt>(R"("command":"point","x":0.25,"y":0)").place.x, 0.25);
+  EXPECT_EQ(edited<edit::KeepInWorld>(R"("command":"keep_in_world","probe":2)").probe, 2);
+  edited<edit::ShowSensors>(R"("command":"show_sensors")");
+  edited<edit::ProbeTable>(R"("command":"probe_table")");
+  edited<edit::Report>(R"("command":"report")");
+}
+
 TEST(ServerMessage, RefusesEditsThatAreNone) {
   const auto has = [](const std::string& members, const std::string& part) {
     const std::string fault = editFault(members);
@@ -193,6 +278,17 @@ TEST(ServerMessage, RefusesEditsThatAreNone) {
   has(R"("command":"search","text":")" + std::string(257, 'a') + "\"", "at most 256 bytes");
   has(R"("command":"search","text":")" + std::string(maxEditBytes, 'a') + "\"", "lineBytes");
   has(R"("command":"undo","command":"redo")", "twice");
+  has(R"("command":"remove_at","node":4,"field":"children","index":7)", "\"parent\" is missing");
+  has(R"("command":"remove_at","node":4,"parent":2,"field":"children","index":-1)", "from 0 to");
+  has(R"("command":"move_at","node":4,"parent":2,"field":"a","index":0,"by":2)", "from -1 to 1");
+  has(R"("command":"add_node","node":4,"field":"a","kind":")" + std::string(201, 'a') + "\"",
+      "at most 200 bytes");
+  has(R"("command":"tool","kind":"bend","x":0,"y":0)", "one of move turn scale");
+  has(R"("command":"tool","kind":"move","axis":3,"x":0,"y":0)", "from 0 to 2");
+  has(R"("command":"tool","kind":"move","x":101,"y":0)", "from -100 to 100");
+  has(R"("command":"tool_key","key":")" + std::string(17, '1') + "\"", "at most 16 bytes");
+  has(R"("command":"measure","x0":-1.5,"y0":0,"x1":1,"y1":0)", "from -1 to 1");
+  has(R"("command":"compare","what":"b")", "one of a wiper difference");
 }
 
 TEST(ServerMessage, OnlyEditorsEdit) {

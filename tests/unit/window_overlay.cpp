@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "session/input/keys.h"
+#include "session/input/editor_keys.h"
 #include "session/overlay.h"
 
 using namespace vv;
@@ -96,8 +96,10 @@ TEST(Overlay, aRestlessWorldIsSaidToHavePauses) {
 }
 
 TEST(Overlay, theHelpListsAllKeys) {
-  const std::vector<std::string> lines = helpLines();
-  EXPECT_EQ(lines.size(), keyTable().size() + mouseTable().size());
+  EXPECT_EQ(helpLines(false).size(), keyTable().size() + mouseTable().size());
+  const std::vector<std::string> lines = helpLines(true);
+  EXPECT_EQ(lines.size(), editorTable().size());
+  for (const std::string& line : lines) EXPECT_LT(line.size(), 100u) << "a small window cuts it";
   InputEvent key;
   key.kind = InputEvent::Kind::down;
   key.text = "N";

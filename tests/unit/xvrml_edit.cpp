@@ -1,6 +1,8 @@
 // xvrml_edit.cpp: Tests edits of a world's file: what becomes of its text, undo, and what is
 // refused.
 #include "edit/gzip.h"
+#include <thread>
+
 #include "unit/xvrml_edit_support.h"
 
 namespace {
@@ -348,6 +350,8 @@ TEST(Editor, AFileThatHasBeenWrittenToSinceIsNotEdited) {
     EXPECT_EQ(error.what(),
               path + " has been written to since the world was loaded: load it again");
   }
+  EXPECT_THROW(editor.insert({nullptr, "", 0}, "Group { }"), EditError);
+  EXPECT_THROW(editor.insert({nullptr, "", 1}, "Group { }"), EditError);
 }
 
 TEST(Editor, AnotherWorldIsNotEdited) {
@@ -398,6 +402,65 @@ TEST_P(Edited, RandomEditsCanBeUndone) {
        "{ Group { children IS kids } }\nDEF I P { kids [ Group { } ] }\n");
   for (unsigned seed = 1; seed <= 20; ++seed)
     editAtRandom(seed, "Group { }", "DEF N Transform { children [ Group { } ] }");
+}
+
+TEST_P(Edited, ATextWithAZeroByteIsRefused) {
+  load("DEF T Text { string \"a\" }\nDEF A Anchor { description \"b\" }\n");
+  const std::string zero("x\0y", 3);
+  EXPECT_NE(refusal([&] {
+              editor->set(node("T"), "string", MFString{"a", zero});
+            }).find("zero byte"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { editor->set(node("A"), "description", zero); }).find("zero byte"),
+            std::string::npos);
+}
+
+TEST(Editor, AFileIsReadOnAnotherThread) {
+  const Folder folder;
+  const std::string text = "#VRML V2.0 utf8\nDEF L PointLight { radius 3 }\n";
+  const auto world = loadWorld(folder.write("w.wrl", text));
+  Node& lamp = *world->scope.names.at("L");
+  {
+    Editor editor(*world);
+    const std::function<void()> read = editor.preparation();
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(editor.isPreparing());
+    EXPECT_FALSE(editor.preparation()) << "it has been given out";
+    std::thread thread(read);
+    editor.set(lamp, "radius", 4.f); // waits
+    EXPECT_FALSE(editor.isPreparing());
+    EXPECT_EQ(editor.text(), "#VRML V2.0 utf8\nDEF L PointLight { radius 4 }\n");
+    EXPECT_FALSE(editor.preparation());
+    thread.join();
+    editor.undo();
+  }
+  {
+    Editor editor(*world);
+    editor.preparation() = nullptr; // nobody reads it
+    editor.set(lamp, "radius", 5.f);
+    EXPECT_NE(editor.text().find("radius 5"), std::string::npos);
+    editor.undo();
+  }
+  std::function<void()> late;
+  {
+    Editor editor(*world);
+    late = editor.preparation();
+  }
+  late();
+}
+
+TEST_P(Edited, WhetherANodeStandsInTheFile) {
+  load("DEF A Group { children DEF B Shape { } }\nGroup { children USE B }\n");
+  Node &a = node("A"), &b = node("B");
+  EXPECT_FALSE(editor->stands(a)) << "the file has not been read";
+  ASSERT_EQ(editor->whyReadOnly(), "");
+  EXPECT_TRUE(editor->stands(a) && editor->stands(b));
+  const NodeRef kept(&a);
+  editor->remove({nullptr, "", 0});
+  EXPECT_FALSE(editor->stands(a));
+  EXPECT_TRUE(editor->stands(b));
+  editor->undo();
+  EXPECT_TRUE(editor->stands(a));
 }
 
 } // namespace

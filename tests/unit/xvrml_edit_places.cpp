@@ -1,5 +1,7 @@
 // xvrml_edit_places.cpp: Tests where nodes of a file may stand: not in themselves, and also in
 // fields that could not be read as a whole; and lists of many nodes in one line.
+#include "edit/history.h"
+#include "parse/parser.h"
 #include "unit/xvrml_edit_support.h"
 #include "xvrml/set_field.h"
 
@@ -59,6 +61,7 @@ TEST_P(EditedPlaces, NothingIsPutIntoANodeThatHasGone) {
   };
   isRefused([&] { editor->move({nullptr, "", 0}, inside); });
   isRefused([&] { editor->use(inside, node("B")); });
+  isRefused([&] { editor->use({&node("B"), "children", 0}, *gone); });
   isRefused([&] { editor->insert(inside, "Group { }"); });
   isRefused([&] { editor->set(*gone, "bboxCenter", xvrml::Vec3f{1, 2, 3}); });
   isRefused([&] { editor->addRoute(*gone, "children", node("B"), "children"); });
@@ -107,6 +110,40 @@ TEST_P(EditedPlaces, AStepThatCannotBeUndoneStaysDone) {
   EXPECT_EQ(editor->undoName(), "Step");
   ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
   undoAll();
+}
+
+// It stays as a step, which can be undone when the world allows it again.
+TEST_P(EditedPlaces, WhatCannotBeCancelledStaysDone) {
+  load("DEF A Group { children DEF B Group { } }\nDEF C Group { children USE B }\n");
+  editor->begin("Step");
+  editor->remove({&node("A"), "children", 0});
+  if (!browser) return;
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{NodeRef(&node("A"))}));
+  EXPECT_THROW(editor->cancel(), EditError);
+  EXPECT_FALSE(editor->isInStep());
+  EXPECT_EQ(editor->undoName(), "Step");
+  EXPECT_NE(editor->text(), original);
+  ASSERT_TRUE(browser->set(node("B"), "children", MFNode{}));
+  undoAll();
+}
+
+// An exception must not leave the end of a scope while another one is on its way.
+TEST(EditHistory, AStepWhoseUndoFailsDoesNotEndTheProgram) {
+  History history;
+  int value = 0;
+  const auto failing = [&] {
+    OpenStep outer(history, "Outer");
+    OpenStep inner(history, "Inner");
+    history.perform({[&] { ++value; }, [] { throw EditError("not now"); }});
+    throw EditError("the reason");
+  };
+  try {
+    failing();
+    ADD_FAILURE() << "it throws";
+  } catch (const EditError& error) { EXPECT_STREQ(error.what(), "the reason"); }
+  EXPECT_FALSE(history.isOpen());
+  EXPECT_EQ(history.undoName(), "Outer");
+  EXPECT_EQ(value, 1);
 }
 
 // Nodes in fields that could not be read as a whole are edited in their places.
@@ -215,6 +252,21 @@ TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
   undoAll();
 }
 
+// Groups around groups may nest deeper than any file, but the text of the file takes no more stack.
+TEST(EditorPlaces, NodesThatNestTooDeepHaveNoText) {
+  const Folder folder;
+  const std::string text = "#VRML V2.0 utf8\nDEF G Group { children Shape { } }\n";
+  const auto world = loadWorld(folder.write("w.wrl", text));
+  Editor editor(*world);
+  Node& group = *world->scope.names.at("G");
+  for (uint64_t i = 0; i < Parser::maximumNesting; ++i) editor.wrap({&group, "children", 0});
+  EXPECT_THROW(editor.draft(), EditError);
+  EXPECT_THROW(editor.text(), EditError);
+  EXPECT_THROW(editor.duplicate({nullptr, "", 0}), EditError);
+  while (editor.undo()) {}
+  EXPECT_EQ(editor.text(), text);
+}
+
 TEST(EditorPlaces, LongLines) {
   const Folder folder;
   std::string text = "#VRML V2.0 utf8\nDEF G Group { children [ ";
@@ -235,6 +287,63 @@ TEST(EditorPlaces, LongLines) {
   EXPECT_EQ(editor.text().size(),
             text.size() + 999 * std::string("bboxSize 1 1 1 ").size() -
                 std::string("Group { children [ DEF S0 Shape { } ] } ").size());
+}
+
+// All that is not edited is copied as one piece. These edits reach into pieces that have not been
+// edited themselves: a node is defined at another place now.
+TEST_P(EditedPlaces, AReferenceInAnotherGroupBecomesTheNode) {
+  const std::string head = "DEF G Group { children [ Group { children DEF A Shape { } } ] }\n",
+                    tail = "Group { children [ Group { children [ USE A Transform { } ] } ] }\n"
+                           "Group { children USE A }\n";
+  load(head + tail);
+  editor->move({nullptr, "", 0}, {nullptr, "", 1});
+  EXPECT_EQ(text(), "Group { children [ Group { children [ DEF A Shape { } Transform { } ] } ] }\n"
+                    "DEF G Group { children [ Group { children USE A } ] }\n"
+                    "Group { children USE A }\n");
+  undoAll();
+  while (editor->undo()) {}
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text(), "Group { children [ Group { children [ DEF A Shape { } Transform { } ] } ] }\n"
+                    "Group { children USE A }\n");
+  undoAll();
+}
+
+TEST_P(EditedPlaces, ANodeWithinAPieceIsUsedBeforeIt) {
+  load("DEF F Group { children [ ] }\n"
+       "Group { children [ Group { children [ DEF A Shape { geometry DEF B Box { } } ] } ] }\n"
+       "Group { children [ USE A Shape { geometry USE B } ] }\n");
+  editor->use({&node("F"), "children", 0}, node("A"));
+  EXPECT_EQ(text(), "DEF F Group { children [\n  DEF A Shape { geometry DEF B Box { } }\n] }\n"
+                    "Group { children [ Group { children [ USE A ] } ] }\n"
+                    "Group { children [ USE A Shape { geometry USE B } ] }\n");
+  undoAll();
+}
+
+TEST_P(EditedPlaces, NamesAndRoutesWithinPieces) {
+  const std::string before = "DEF T TimeSensor { }\nDEF G Group { children [ DEF A Group { } ",
+                    behind = "Group { children [ USE A DEF B Group { } ] } ] }\n"
+                             "Group { children [ DEF C TimeSensor { }\n"
+                             "ROUTE T.time TO C.startTime\nROUTE C.time TO C.stopTime ] }\n";
+  load(before + behind);
+  editor->rename(node("A"), "Z");
+  EXPECT_NE(text().find("children [ DEF Z Group { } Group { children [ USE Z DEF B"),
+            std::string::npos);
+  editor->rename(node("T"), "U");
+  EXPECT_NE(text().find("ROUTE U.time TO C.startTime\nROUTE C.time TO C.stopTime ]"),
+            std::string::npos);
+  editor->remove({nullptr, "", 0});
+  EXPECT_EQ(text().find("ROUTE U"), std::string::npos);
+  EXPECT_NE(text().find("ROUTE C.time TO C.stopTime"), std::string::npos);
+  undoAll();
+}
+
+TEST_P(EditedPlaces, APieceWithAnInstanceStaysBehindItsPrototype) {
+  load("DEF F Group { children [ ] }\nGroup { children [\n"
+       "PROTO P [ ] { Group { } }\n  Group { children [ DEF I P { } ] } ] }\n");
+  editor->use({&node("F"), "children", 0}, node("I"));
+  const std::string now = text();
+  EXPECT_LT(now.find("PROTO P"), now.find("DEF I P"));
+  undoAll();
 }
 
 } // namespace

@@ -54,6 +54,18 @@ TEST(NodeMap, AnEmptyMapFindsNothing) {
   EXPECT_EQ(map.size(), 0u);
 }
 
+TEST(NodeMap, RoomIsMadeAtOnceAndKeepsWhatIsThere) {
+  const std::vector<const Node*> all = keys(100, 8);
+  NodeMap<int> map;
+  map.insert(all[0], 7);
+  map.reserve(all.size());
+  for (size_t i = 1; i < all.size(); ++i) map.insert(all[i], int(i));
+  map.reserve(2); // there is room
+  EXPECT_EQ(map.size(), all.size());
+  EXPECT_EQ(*map.find(all[0]), 7);
+  EXPECT_EQ(*map.find(all[99]), 99);
+}
+
 TEST(SeenNodes, TellsWhetherANodeIsNew) {
   SeenNodes seen;
   for (const Node* node : keys(100, 16)) {

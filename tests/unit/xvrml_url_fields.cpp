@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <set>
 
-#include "graph/url.h"
 #include "unit/xvrml_parser_support.h"
 #include "xvrml/node_table.h"
 #include "xvrml/set_field.h"
@@ -159,6 +158,17 @@ TEST_F(UrlsThroughIs, RelativeAndAbsolutePathsOfFilesCanBeCompared) {
   rebaseUrls(urls, "w.wrl", folder.path("lib/p.wrl"));
   EXPECT_EQ(urls, MFString{"../worlds/mine.png"});
   std::filesystem::current_path(former);
+}
+
+TEST_F(UrlsThroughIs, AFileIsNamedFromAnother) {
+  const std::string from = folder.write("worlds/w.wrl", header);
+  for (const std::string name : {"worlds/leg.stl", "lib/a b#1%20.wrl", "x:y?/z.wrl"}) {
+    const std::string url = relativeUrl(folder.write(name, header), from);
+    const ResolvedUrl resolved = resolveUrl(url, from, {});
+    EXPECT_EQ(resolved.error + resolved.fragment, "") << url;
+    EXPECT_TRUE(std::filesystem::equivalent(resolved.path, folder.path(name))) << url;
+  }
+  EXPECT_EQ(relativeUrl(folder.path("worlds/leg.stl"), from), "leg.stl");
 }
 
 TEST_F(UrlsThroughIs, NamesOfFoldersAreNoPartsOfAUrl) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "xvrml/numbers.h"
+#include "xvrml/value_words.h"
 #include "xvrml/world.h"
 
 namespace vv::json {
@@ -17,46 +18,20 @@ using namespace xvrml;
 
 namespace {
 
-// Says what the value of a field looks like, from the C++ type of its elements.
-template <class T> std::string expectation() {
-  using Element = ElementOf<T>;
-  std::string one;
-  if constexpr (std::is_same_v<T, Color>)
-    return "an array of 3 numbers (red, green, blue)";
-  else if constexpr (std::is_same_v<T, Rotation>)
-    return "an array of 4 numbers (axis x, y, z and angle in radians)";
-  else if constexpr (std::is_same_v<Element, bool>)
-    one = isList<T> ? "truth values" : "true or false";
-  else if constexpr (std::is_same_v<Element, Image>)
-    one = isList<T> ? "objects with width, height, components and pixels"
-                    : "an object with width, height, components and pixels (a whole number for "
-                      "each pixel, as in VRML)";
-  else if constexpr (std::is_same_v<Element, NodeRef>)
-    one = isList<T> ? "DEF names or numbers of nodes"
-                    : "the DEF name or the number of a node, or null";
-  else if constexpr (std::is_same_v<Element, std::string>)
-    one = isList<T> ? "texts" : "a text";
-  else if constexpr (std::is_same_v<Element, int32_t>)
-    one = isList<T> ? "whole numbers of 32 bits" : "a whole number of 32 bits";
-  else if constexpr (numberCount<Element> == 1)
-    one = isList<T> ? "numbers" : "a number";
-  else
-    one = fmt::format("{} of {} numbers", isList<T> ? "arrays" : "an array", numberCount<Element>);
-  return (isList<T> ? "an array of " : "") + one;
-}
-std::string expectation(FieldType type) {
-  return std::visit([](const auto& value) { return expectation<std::decay_t<decltype(value)>>(); },
-                    defaultValue(type));
-}
-
-// Whether the numbers of a type are more exact than floats.
-bool hasWideNumbers(FieldType type) {
-  return std::visit(
-      [](const auto& value) {
-        return !std::is_same_v<ScalarOf<ElementOf<std::decay_t<decltype(value)>>>, float>;
-      },
-      defaultValue(type));
-}
+// How the values of fields are written in JSON.
+constexpr ValueWords words{
+    .colour = "an array of 3 numbers (red, green, blue)",
+    .rotation = "an array of 4 numbers (axis x, y, z and angle in radians)",
+    .truth = {"true or false", "an array of truth values"},
+    .image = {"an object with width, height, components and pixels (a whole number for each pixel, "
+              "as in VRML)",
+              "an array of objects with width, height, components and pixels"},
+    .node = {"the DEF name or the number of a node, or null",
+             "an array of DEF names or numbers of nodes"},
+    .text = {"a text", "an array of texts"},
+    .whole = {"a whole number of 32 bits", "an array of whole numbers of 32 bits"},
+    .number = {"a number", "an array of numbers"},
+    .numbers = {"an array of {} numbers", "an array of arrays of {} numbers"}};
 
 // Returns whether a field of these node types accepts the node. nodeTypes: names and abstract
 // types, separated by blanks; empty: any.
@@ -98,7 +73,7 @@ class Reader {
   }
   // Says what the whole value should be, and what stands at the place of the reader.
   [[noreturn]] void wrong(const Json& got) const {
-    fail(fmt::format("{} was expected, not {}{}", expectation(field_.type), shownJson(got),
+    fail(fmt::format("{} was expected, not {}{}", wordsFor(field_.type, words), shownJson(got),
                      path_.empty() ? "" : " at value" + path_));
   }
   [[noreturn]] void wrongNumber(double got) const {
@@ -216,7 +191,8 @@ class Reader {
   int32_t imageNumber(const Json& json, const char* name, int32_t most) {
     const auto found = json.find(name);
     if (found == json.end()) fail(fmt::format("the member \"{}\" of the image is missing", name));
-    if (!found->is_number_unsigned() || *found > most)
+    // Compared as values of JSON, numbers from 2^63 on would be negative.
+    if (!found->is_number_unsigned() || found->get<uint64_t>() > uint64_t(most))
       fail(fmt::format("{}: a whole number from 0 to {} was expected, not {}", name, most,
                        shownJson(*found)));
     return found->get<int32_t>();

@@ -85,9 +85,11 @@ Json readJsonLine(std::string_view line, const LineLimits& allowed) {
   return json;
 }
 
-std::string jsonText(std::string_view text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string jsonLine(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
+
+std::string jsonText(std::string_view text) { return jsonLine(Json(text)); }
 
 std::string shownJson(const Json& value) {
   constexpr size_t most = 60;

@@ -31,7 +31,9 @@ struct CommandError : std::runtime_error {
 // twice; "limit" if it is too deep or has too many values.
 Json readJsonLine(std::string_view line, const LineLimits& allowed);
 
-// Returns a text as a JSON string. Bytes that are not UTF-8 become U+FFFD.
+// Returns a value in one line. Bytes of texts that are not UTF-8 become U+FFFD.
+std::string jsonLine(const Json& value);
+// Does the same for a text, which becomes a JSON string.
 std::string jsonText(std::string_view text);
 
 // Returns the beginning of a value, for messages.

@@ -27,13 +27,15 @@ std::string shownNode(const NodeName& name) {
 
 std::string textOf(const std::string& where, const Json& json) {
   if (!json.is_string()) refuse(where, "a text", json);
-  return json.get<std::string>();
+  std::string text = json.get<std::string>();
+  if (text.find('\0') != text.npos) refuse(where, "a text without zero bytes", json);
+  return text;
 }
 
 std::string nameOf(const std::string& where, const Json& json) {
   if (!json.is_string() || json.get_ref<const std::string&>().empty())
     refuse(where, "a name", json);
-  return json.get<std::string>();
+  return textOf(where, json);
 }
 
 bool switchOf(const std::string& where, const Json& json) {
@@ -61,7 +63,8 @@ NodeName nodeOf(const std::string& where, const Json& json) {
 }
 
 std::string pathOf(const std::string& where, const Json& json) {
-  std::string path = textOf(where, json);
+  if (!json.is_string()) refuse(where, "a text", json);
+  std::string path = json.get<std::string>();
   if (path.empty() || path.find('\0') != path.npos) refuse(where, "the path of a file", json);
   return path;
 }
@@ -72,7 +75,7 @@ std::vector<std::string> pathsOf(const std::string& where, const Json& json) {
 }
 
 std::vector<std::string> textsOf(const std::string& where, const Json& json) {
-  if (json.is_string()) return {json.get<std::string>()};
+  if (json.is_string()) return {textOf(where, json)};
   return listOf<std::string>(where, json, textOf);
 }
 

@@ -18,6 +18,7 @@ namespace vv::json {
 // Returns "; did you mean NAME?" for the known name that is nearest, or "" if none is near.
 std::string nearTo(const std::string& name, const std::vector<std::string>& known);
 
+// Reads a text. Whatever it is shown or written in would cut it off at a zero byte.
 std::string textOf(const std::string& where, const Json& json);
 // Reads a text that is not empty.
 std::string nameOf(const std::string& where, const Json& json);

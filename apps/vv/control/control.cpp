@@ -58,6 +58,7 @@ struct Control::Impl {
   // The client that something is rendered for; 0: none. Others wait for their turn.
   ClientId renderer = 0;
   Rendering rendering;
+  bool hasQuit = false; // a client has ended vv: nothing more is done
   // A world is being read. Commands that load others wait, so that only one is read at a time.
   bool loading = false;
 
@@ -148,6 +149,12 @@ struct Control::Impl {
       refuse(letter, code, failure);
   }
 
+  // Refuses all that waits: edits behind "quit" would be lost.
+  void refuseWaiting(std::string_view why) {
+    for (auto& [id, client] : clients)
+      for (const auto& one : std::exchange(client.waiting, {})) refuse(one.letter, "refused", why);
+  }
+
   // --- Commands ---
 
   // Does the first command of a client.
@@ -181,6 +188,7 @@ struct Control::Impl {
       if (quit->discard && session) session->editor().journal().throwAway();
       answer(letter, "null");
       host.quit();
+      hasQuit = true;
     } else if (const auto* load = std::get_if<Load>(&command.action)) {
       if (load->urls.empty()) throw CommandError("command", "load: url: the array is empty");
       if (std::find(load->urls.begin(), load->urls.end(), "-") != load->urls.end())
@@ -274,6 +282,8 @@ struct Control::Impl {
     if (rendering.waitForFile(patience)) followRendering();
     rendering.giveUp(session);
     detach("vv ended");
+    collect();
+    refuseWaiting("vv has ended");
   }
 
   bool serve(Session* current, bool isLoading) {
@@ -284,7 +294,7 @@ struct Control::Impl {
     followRendering();
     loading = isLoading;
     const Clock::time_point end = Clock::now() + turn;
-    while (Client* client = next()) {
+    for (Client* client = next(); client && !hasQuit; client = next()) {
       doOne(*client);
       if (Clock::now() > end) break;
     }

@@ -1,10 +1,12 @@
 #include "control/world_commands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -102,8 +104,12 @@ NodeRef childOf(Node* node, const char* field) {
   return *static_cast<const NodeRef*>(real->storage(*info));
 }
 
+// Numbers may be none where nodes are scaled beyond all measure.
 std::string triple(const std::array<double, 3>& v) {
-  return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
+  const auto text = [](double number) {
+    return std::isfinite(number) ? fmt::format("{}", number) : "null";
+  };
+  return fmt::format("[{},{},{}]", text(v[0]), text(v[1]), text(v[2]));
 }
 
 struct Performer {
@@ -369,9 +375,13 @@ std::string WorldCommands::pick(const Pick& pick) {
   for (const PickHit::Step& step : hit.path) path.push_back(step.node);
   Node* const shape = path.empty() ? nullptr : path.back().get();
   const NodeRef appearance = childOf(shape, "appearance");
+  const CameraRay ray =
+      rayThrough(session_.pilot().camera(), session_.pilot().aspect(), pick.x, pick.y);
+  const bool isFacing =
+      std::inner_product(hit.normal.begin(), hit.normal.end(), ray.direction, 0.0) < 0;
   return fmt::format(
-      R"({{"point":{},"normal":{},"distance":{},"path":{},"geometry":{},"appearance":{},"shader":{}}})",
-      triple(hit.point), triple(hit.normal), hit.distance, factsOf(path),
+      R"({{"point":{},"normal":{},"facing":{},"distance":{},"path":{},"geometry":{},"appearance":{},"shader":{}}})",
+      triple(hit.point), triple(hit.normal), isFacing, hit.distance, factsOf(path),
       factsOf(childOf(shape, "geometry")), factsOf(appearance),
       factsOf(childOf(appearance.get(), "shader")));
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "edit/node_fields.h"
+#include "edit/transform_tool.h"
 
 namespace vv {
 
@@ -34,20 +35,6 @@ std::string nameOf(const char* verb, const MFNode& nodes) {
 const FieldInfo* childrenOf(const Node& node) {
   const FieldInfo* const field = node.type().find("children");
   return field && field->type == FieldType::MFNode && holdsValue(*field) ? field : nullptr;
-}
-
-// Returns the place for a new node: at the end of the group that is selected, behind the selected
-// node, or at the end of the world.
-NodeSlot placeForNew(WorldEditor& editor) {
-  Node* const selected = editor.selected();
-  if (selected && childrenOf(*selected)) return editor.endOf(selected, "children");
-  if (selected)
-    for (NodeSlot place : editor.editor().placesOf(*selected))
-      if (!place.parent || place.field == "children") {
-        ++place.index;
-        return place;
-      }
-  return editor.endOf(nullptr, "");
 }
 
 } // namespace
@@ -103,6 +90,18 @@ void wrapSelected(WorldEditor& editor) {
 
 std::span<const NewNode> newNodes() { return table; }
 
+NodeSlot placeForNew(WorldEditor& editor) {
+  Node* const selected = editor.selected();
+  if (selected && childrenOf(*selected)) return editor.endOf(selected, "children");
+  if (selected)
+    for (NodeSlot place : editor.editor().placesOf(*selected))
+      if (!place.parent || place.field == "children") {
+        ++place.index;
+        return place;
+      }
+  return editor.endOf(nullptr, "");
+}
+
 void add(WorldEditor& editor, const NewNode& node) {
   NodeRef made;
   editor.step(fmt::format("Add {}", node.name), [&] {
@@ -119,8 +118,6 @@ void addViewpoint(WorldEditor& editor, const EditView& view) {
   const double* const m = view.camera.matrix;
   Imath::M44d matrix;
   std::copy(m, m + 16, &matrix.x[0][0]);
-  const Imath::Quatd turn = Imath::extractQuat(matrix);
-  const Imath::V3d axis = turn.angle() > 1e-9 ? turn.axis() : Imath::V3d(0, 0, 1);
   if (view.camera.fovy == 0) throw EditError("a parallel view cannot be added as a Viewpoint");
   const double angle = view.aspect >= 1
                            ? view.camera.fovy
@@ -133,7 +130,7 @@ void addViewpoint(WorldEditor& editor, const EditView& view) {
     };
     set("description", std::string("view"));
     set("position", Vec3f{float(m[12]), float(m[13]), float(m[14])});
-    set("orientation", Rotation{float(axis.x), float(axis.y), float(axis.z), float(turn.angle())});
+    set("orientation", rotationOf(Imath::extractQuat(matrix)));
     set("fieldOfView", float(angle));
   });
   editor.select({made});

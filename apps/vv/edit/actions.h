@@ -26,8 +26,10 @@ struct NewNode {
   bool isGeometry;
 };
 std::span<const NewNode> newNodes();
-// Adds a node to the group that is selected, or else behind what is selected, or else at the end of
-// the world. Selects it.
+// Returns the place for a new node: at the end of the group that is selected, or else behind the
+// selected node, or else at the end of the world.
+xvrml::NodeSlot placeForNew(WorldEditor& editor);
+// Adds a node there, and selects it.
 void add(WorldEditor& editor, const NewNode& node);
 // Adds a Viewpoint that looks as the viewer does.
 void addViewpoint(WorldEditor& editor, const EditView& view);

@@ -17,8 +17,10 @@ namespace {
 
 constexpr double level = 0.05;
 // Degrees of freedom of an interval that is trusted: it has at least 8 replicates. Most have more,
-// so that fewer changes are called significant than could be.
+// but a picture does not say how many.
 constexpr double fewestFreedom = 7;
+// Half-width in standard errors where there are very many.
+constexpr double normalQuantile = 1.959963985;
 
 // Returns the probability that the absolute value of Student's t exceeds a value (M. Abramowitz, I.
 // Stegun, "Handbook of Mathematical Functions", 26.7.3 and 26.7.4). freedom: above 1.
@@ -60,13 +62,6 @@ uint8_t mixed(double from, double to, double part) {
 
 } // namespace
 
-bool areEqual(const EditView& a, const EditView& b) {
-  return std::equal(std::begin(a.camera.matrix), std::end(a.camera.matrix),
-                    std::begin(b.camera.matrix)) &&
-         a.camera.fovy == b.camera.fovy && a.camera.height == b.camera.height &&
-         a.camera.shader == b.camera.shader && a.aspect == b.aspect;
-}
-
 Difference differenceBetween(const picture::PixelReading& before,
                              const picture::PixelReading& now) {
   const double a = double(before.luminanceHalfWidth), b = double(now.luminanceHalfWidth);
@@ -80,9 +75,12 @@ Difference differenceBetween(const picture::PixelReading& before,
   // Degrees of freedom of the difference: F. E. Satterthwaite, Biometrics Bulletin 2, 1946.
   const double p = a / difference.halfWidth, q = b / difference.halfWidth;
   const double freedom = fewestFreedom / (p * p * p * p + q * q * q * q);
-  const double t =
-      std::abs(difference.value) / difference.halfWidth * student::quantile95(fewestFreedom);
-  difference.chance = chanceBeyond(t, std::max(int(freedom + 1e-9), int(fewestFreedom)));
+  // The chance is the largest one that any degrees of freedom from there on give: that of the
+  // fewest, or of very many, whose half-widths are fewer standard errors.
+  const double ratio = std::abs(difference.value) / difference.halfWidth;
+  difference.chance = std::max(chanceBeyond(ratio * student::quantile95(fewestFreedom),
+                                            std::max(int(freedom + 1e-9), int(fewestFreedom))),
+                               std::erfc(ratio * normalQuantile / std::numbers::sqrt2));
   return difference;
 }
 
@@ -128,6 +126,12 @@ ChangePicture compare(const picture::Picture& before, const picture::Picture& no
   return out;
 }
 
+float ChangePicture::at(double x, double y) const {
+  const int column = std::clamp(int((1 + x) / 2 * width), 0, width - 1),
+            row = std::clamp(int((1 - y) / 2 * height), 0, height - 1);
+  return changes[size_t(row) * size_t(width) + size_t(column)];
+}
+
 std::vector<uint8_t> drawChanges(const ChangePicture& changes, const std::vector<uint8_t>& rgb) {
   constexpr double gain[] = {255, 150, 20}, loss[] = {70, 140, 255};
   constexpr double dimming = 0.45, weakest = 0.4; // the strength of the colour of a small change
@@ -152,7 +156,7 @@ void Comparison::ask(uint64_t changes, const EditView& view) {
 
 std::string Comparison::whyNot(const EditView& view, int width, int height) const {
   if (!hasA()) return "nothing is kept as A yet: B keeps the picture";
-  if (!areEqual(view, view_))
+  if (view != view_)
     return "the view has changed since A: the pictures cannot be compared (B keeps a new A)";
   if (width != a_.width || height != a_.height)
     return fmt::format("A has {}x{} pixels, the window {}x{}: the pictures cannot be compared",
@@ -180,7 +184,7 @@ bool Comparison::take(const picture::Picture& picture, uint64_t frame, uint64_t 
                       const EditView& view, bool isFinished) {
   if (asked_) {
     const Asked asked = *std::exchange(asked_, std::nullopt);
-    if (asked.changes == changes && areEqual(asked.view, view)) {
+    if (asked.changes == changes && asked.view == view) {
       frame_ = frame;
       isComplete_ = false;
       message_ = "A is kept";

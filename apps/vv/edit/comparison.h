@@ -13,9 +13,6 @@
 
 namespace vv {
 
-// Tells whether two views show the same places in the same pixels, where their sizes are equal.
-bool areEqual(const EditView& a, const EditView& b);
-
 // --- Changes of light ---
 
 // The change of the luminance from one reading to another.
@@ -42,6 +39,9 @@ struct ChangePicture {
   std::vector<float> changes;
   size_t judged = 0, significant = 0; // pixels; those that are not trusted are not judged
   float most = 0, least = 0;          // the largest gain, and the largest loss (below 0)
+
+  // Returns the change at a place of the picture, from -1 to 1 each way.
+  float at(double x, double y) const;
 };
 // The pictures have picture::readingChannels, linear light and one size.
 ChangePicture compare(const picture::Picture& before, const picture::Picture& now);

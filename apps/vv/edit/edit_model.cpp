@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "edit/merged_list.h"
 #include "edit/shader_parameters.h"
+#include "libpicture/files/atomic_file.h"
 
 namespace vv {
 
@@ -68,24 +70,40 @@ void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
   if (dragged_ != dragged) {
     finishDrag();
     dragged_ = dragged;
+    touched_.clear();
     if (node->type().find(field.name)) begin(dragged);
   }
   if (!node->type().find(field.name)) {
     undeclared_ = std::move(value);
     return;
   }
-  request([this, node, name = field.name, value = std::move(value)](WorldEditor& editor) {
-    if (!isRefused_) editor.editor().set(*node, name, value);
+  const PropertyRow* const row = sheet_.node == node ? sheet_.find(field.name) : nullptr;
+  ChangedList change{row ? row->shown : Value(), std::move(value), {}};
+  noteTouched(change.shown, change.wanted, touched_);
+  change.touched = touched_;
+  requestValue([this, dragged, change = std::move(change)](WorldEditor& editor) {
+    if (isRefused_) return;
+    const Node& node = *dragged.node;
+    const FieldInfo& info = *node.type().find(dragged.field);
+    const Value now = node.get(info);
+    const bool isOwn = set_ == std::pair(dragged, now);
+    editor.editor().set(*dragged.node, dragged.field,
+                        mergedList(change, now, isOwn, nameOf(dragged)));
+    set_ = {dragged, node.get(info)};
   });
+}
+
+std::string EditModel::nameOf(const Dragged& dragged) {
+  return fmt::format("{}.{}", dragged.node->type().name, dragged.field);
 }
 
 void EditModel::begin(const Dragged& dragged) {
   const PropertyRow* const row = sheet_.node == dragged.node ? sheet_.find(dragged.field) : nullptr;
-  request(
+  requestValue(
       [this, dragged, shown = row ? row->edits : 0, isShown = row != nullptr](WorldEditor& editor) {
         isRefused_ = true;
         refuseWithinStep(editor);
-        const std::string what = fmt::format("{}.{}", dragged.node->type().name, dragged.field);
+        const std::string what = nameOf(dragged);
         const uint64_t edits = editor.editor().editsOf(*dragged.node, dragged.field);
         if (isShown && edits != shown && own_ != std::pair(dragged, edits))
           throw EditError(
@@ -103,7 +121,7 @@ void EditModel::finishDrag() {
       refuseWithinStep(editor);
       declareParameter(editor, dragged.node, dragged.field, value);
     });
-  request([this, dragged](WorldEditor& editor) {
+  requestValue([this, dragged](WorldEditor& editor) {
     if (std::exchange(isRefused_, false)) return;
     editor.editor().end();
     own_ = {dragged, editor.editor().editsOf(*dragged.node, dragged.field)};
@@ -143,24 +161,29 @@ void EditModel::select(const NodeRef& node, bool add) {
 }
 
 bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, double seconds) {
-  while (!commands_.empty()) {
-    const Command command = std::move(commands_.front());
-    commands_.pop_front();
-    isStale_ = true;
+  while (!requests_.empty()) {
+    const Request request = std::move(requests_.front());
+    requests_.pop_front();
+    (request.setsValue ? areValuesStale_ : isStale_) = true;
     try {
-      command(editor);
+      request.command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
   }
-  const uint64_t changes = editor.editor().changes();
-  if (std::exchange(changes_, changes) != changes) isStale_ = true;
+  const uint64_t changes = editor.editor().changes(), nodes = editor.editor().nodeChanges();
+  areValuesStale_ |= std::exchange(changes_, changes) != changes;
+  isStale_ |= std::exchange(nodeChanges_, nodes) != nodes;
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
     isStale_ = true;
     if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
       shown_ = NodeRef(node);
   }
-  if (!std::exchange(hasAsked_, true)) readOnly_ = editor.editor().whyReadOnly();
-  bool reads = isStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  if (!hasAsked_ && editor.prepare()) {
+    hasAsked_ = isStale_ = true;
+    unwritable_ = picture::whyNotEditable(editor.browser().world().path);
+    readOnly_ = editor.editor().whyReadOnly();
+  }
+  bool reads = isStale_ || areValuesStale_ || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
@@ -178,16 +201,21 @@ void EditModel::readSheet(WorldEditor& editor) {
         std::string(sheet_.note.empty() ? "" : "; ") + "hidden for now, which is not saved";
 }
 
+// A value that is dragged in a world of a million nodes must not cost a walk over all of them: rows
+// and places of nodes are read again only if more than values has changed.
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
-  if (std::exchange(isStale_, false)) {
+  const bool all = std::exchange(isStale_, false), values = std::exchange(areValuesStale_, false);
+  if (all) {
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
+  } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {
+    readSheet(editor);
+  }
+  if (all || values) {
     undoName_ = editor.editor().undoName();
     redoName_ = editor.editor().redoName();
     unsaved_ = editor.isChanged();
-  } else if (sheet_.node && !isActive_) {
-    refresh(editor, sheet_);
   }
   if (!shown_) return;
   const NodeRef wanted = std::exchange(shown_, NodeRef());
@@ -195,7 +223,8 @@ void EditModel::read(WorldEditor& editor) {
     if (rows_[i].node == wanted) scroll_ = int(i);
 }
 
-CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view) const {
+CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view,
+                                       const FreePart& free) const {
   double low[3], high[3];
   std::fill(low, low + 3, std::numeric_limits<double>::infinity());
   std::fill(high, high + 3, -std::numeric_limits<double>::infinity());
@@ -211,12 +240,17 @@ CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view
   CameraSettings camera = view.camera;
   const double radius = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2;
   if (!std::isfinite(radius)) return camera;
-  // A sphere around the box fills nine tenths of the smaller side.
-  const double tangent = std::tan(camera.fovy / 2) * std::min(1.0, view.aspect);
-  const double distance = camera.fovy > 0 ? radius / std::sin(std::atan(tangent * .9)) : radius * 2;
+  // A sphere around the box fills nine tenths of the smaller side, in the middle of the free part.
+  constexpr double leastFree = 0.2; // part of the picture
+  const double part = std::max((free.right - free.left) / 2, leastFree);
+  const double half = std::tan(camera.fovy / 2), tangent = half * std::min(1.0, view.aspect * part);
+  const double distance =
+      std::max(camera.fovy > 0 ? radius / std::sin(std::atan(tangent * .9)) : radius * 2, 1e-6);
+  const double across =
+      free.middle() * view.aspect * (camera.fovy > 0 ? half * distance : camera.height / 2);
   for (size_t k = 0; k < 3; ++k)
     camera.matrix[12 + k] =
-        (low[k] + high[k]) / 2 + camera.matrix[8 + k] * std::max(distance, 1e-6);
+        (low[k] + high[k]) / 2 + camera.matrix[8 + k] * distance - camera.matrix[k] * across;
   return camera;
 }
 
@@ -229,7 +263,8 @@ std::vector<EditModel::Line> EditModel::framesOf(WorldEditor& editor, const Edit
     bool inFront = true;
     for (size_t i = 0; i < corners.size() && inFront; ++i)
       inFront =
-          projectPoint(view.camera, view.aspect, corners[i].data(), places[i][0], places[i][1]);
+          projectPoint(view.camera, view.aspect, corners[i].data(), places[i][0], places[i][1]) &&
+          std::isfinite(places[i][0]) && std::isfinite(places[i][1]);
     if (!inFront) continue;
     for (size_t i = 0; i < corners.size(); ++i)
       for (size_t k = 0; k < 3; ++k)

@@ -19,10 +19,20 @@
 
 namespace vv {
 
-// Where the viewer stands, and the shape of the picture.
+// Where the viewer stands, and the shape of the picture. Equal views show the same places in the
+// same pixels, where their sizes are equal.
 struct EditView {
   xvrml::CameraSettings camera{};
   double aspect = 1;
+  bool operator==(const EditView&) const = default;
+};
+// The part of the picture that no panel of a face covers, from its left to its right, as places of
+// the pointer.
+struct FreePart {
+  double left = -1, right = 1;
+  bool contains(double x) const { return x >= left && x <= right; }
+  double middle() const { return (left + right) / 2; }
+  bool operator==(const FreePart&) const = default;
 };
 
 class EditModel {
@@ -49,26 +59,31 @@ class EditModel {
   bool hasUnsaved() const { return unsaved_; }
   // Why the file cannot be edited; "": it can, or this is not known yet.
   const std::string& readOnly() const { return readOnly_; }
+  // Why the file could not be saved in place; "": it can be.
+  const std::string& unwritable() const { return unwritable_; }
   // The messages about the world.
   ProblemList& problems() { return problems_; }
   // The edges of a box around each node that is selected.
   const std::vector<Line>& frames() const { return frames_; }
   // Returns the camera that looks as the viewer does and shows what is selected; the viewer's own
-  // if nothing is to be seen of it. [while the world can be used]
-  xvrml::CameraSettings cameraAround(WorldEditor& editor, const EditView& view) const;
+  // if nothing is to be seen of it. free: the part of the picture that it shall fill. [while the
+  // world can be used]
+  xvrml::CameraSettings cameraAround(WorldEditor& editor, const EditView& view,
+                                     const FreePart& free = {}) const;
   // The number of the row to scroll to; -1: none is new. It is given out once.
   int takeScroll() { return std::exchange(scroll_, -1); }
   // Returns, once, what is to be said to the user.
   std::string takeMessage() { return std::exchange(message_, {}); }
 
   // --- What is asked for ---
-  void request(Command command) { commands_.push_back(std::move(command)); }
+  void request(Command command) { requests_.push_back({std::move(command)}); }
   // Requests an edit of a panel, which is a step of its own: it is refused while another step is
   // open, because that may still be taken back with all that is in it.
   void edit(Command command);
-  bool hasRequests() const { return !commands_.empty(); }
+  bool hasRequests() const { return !requests_.empty(); }
   // Sets a field. All values until no widget is active any more are one step. It is refused if
-  // another program has edited the field since it was shown. A parameter of a shader that is not
+  // another program has edited the field since it was shown. In a list those elements count that
+  // differ from what was shown: others may have changed since. A parameter of a shader that is not
   // declared yet gets its last value then.
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
@@ -95,31 +110,42 @@ class EditModel {
     bool operator==(const Dragged&) const = default;
   };
 
+  struct Request {
+    Command command;
+    bool setsValue = false; // it changes nothing but the value of a field
+  };
+
+  void requestValue(Command command) { requests_.push_back({std::move(command), true}); }
+  static std::string nameOf(const Dragged& dragged); // "Text.string"
   void begin(const Dragged& dragged);
   void finishDrag();
   void read(WorldEditor& editor);
   void readSheet(WorldEditor& editor);
   std::vector<Line> framesOf(WorldEditor& editor, const EditView& view) const;
 
-  std::deque<Command> commands_;
+  std::deque<Request> requests_;
   Outline outline_;
   std::vector<OutlineRow> rows_;
   PropertySheet sheet_;
   ProblemList problems_;
   xvrml::MFNode selection_;
-  std::string undoName_, redoName_, readOnly_, message_, search_;
+  std::string undoName_, redoName_, readOnly_, unwritable_, message_, search_;
   std::vector<Line> frames_;
   std::vector<Look> looks_;
   Hiding hiding_;
-  bool unsaved_ = false, isStale_ = true, hasAsked_ = false, isActive_ = false;
+  bool unsaved_ = false, hasAsked_ = false, isActive_ = false;
+  // Everything that is shown may have changed; only the values of fields may have.
+  bool isStale_ = true, areValuesStale_ = false;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
+  std::vector<bool> touched_;              // elements of a list that it has changed
+  std::pair<Dragged, xvrml::Value> set_;   // the last value that it has set
   bool isRefused_ = false;                 // the open step must not be
   std::pair<Dragged, uint64_t> own_;       // the last field that was dragged, and its edits then
   int scroll_ = -1;
   xvrml::NodeRef shown_; // the node whose row is to be scrolled to
   double readAt_ = 0;
-  uint64_t changes_ = 0; // Editor::changes() when it was read
+  uint64_t changes_ = 0, nodeChanges_ = 0; // those of the Editor when it was read
 };
 
 } // namespace vv

@@ -34,23 +34,28 @@ std::optional<std::array<double, 2>> project(const EditView& view, const V3d& po
   return at;
 }
 
-std::optional<Gizmo::Handle> arrow(const EditView& view, const V3d& pivot, const V3d& way,
-                                   int axis) {
-  const auto start = project(view, pivot), to = project(view, pivot + way);
+std::optional<Gizmo::Handle> arrow(const EditView& view, const FreePart& free, const V3d& pivot,
+                                   const V3d& way, int axis) {
+  const auto start = project(view, pivot);
+  auto to = project(view, pivot + way);
+  const auto opposite = project(view, pivot - way);
+  const auto isFree = [&free](const auto& place) { return place && free.contains((*place)[0]); };
+  const bool isOpposite = !isFree(to) && isFree(opposite);
+  if (isOpposite) to = opposite;
   if (!start || !to) return {};
   const double length = std::hypot(((*to)[0] - (*start)[0]) * view.aspect, (*to)[1] - (*start)[1]);
   if (length < shortest) return {};
   const auto between = [&](size_t k) {
     return (*start)[k] + ((*to)[k] - (*start)[k]) * gap / length;
   };
-  return Gizmo::Handle{axis, {{between(0), between(1), (*to)[0], (*to)[1]}}, *to};
+  return Gizmo::Handle{axis, {{between(0), between(1), (*to)[0], (*to)[1]}}, *to, isOpposite};
 }
 
 std::optional<Gizmo::Handle> ring(const EditView& view, const V3d& pivot, double radius, int axis) {
   V3d across(0), along(0);
   across[(axis + 1) % 3] = radius;
   along[(axis + 2) % 3] = radius;
-  Gizmo::Handle handle{axis, {}, {}};
+  Gizmo::Handle handle{axis, {}, {}, false};
   // The letters stand apart: at the top, at the right, and between.
   const double up = axis == 1 ? 0 : 1, right = axis == 0 ? 0 : 1;
   double farthest = 0;
@@ -92,7 +97,7 @@ void Gizmo::cycle() {
   handles_.clear(); // until they are placed
 }
 
-bool Gizmo::place(WorldEditor& editor, const EditView& view) {
+bool Gizmo::place(WorldEditor& editor, const EditView& view, const FreePart& free) {
   std::vector<Handle> handles;
   aspect_ = view.aspect;
   Node* const node = editor.selection().size() == 1 ? editor.selected() : nullptr;
@@ -104,7 +109,7 @@ bool Gizmo::place(WorldEditor& editor, const EditView& view) {
       for (int axis = 0; axis < 3; ++axis)
         if (auto handle = *kind_ == Kind::turn
                               ? ring(view, frame->pivot, size, axis)
-                              : arrow(view, frame->pivot,
+                              : arrow(view, free, frame->pivot,
                                       frame->axis(axis, *kind_ == Kind::scale) * size, axis))
           handles.push_back(*std::move(handle));
     }

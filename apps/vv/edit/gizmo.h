@@ -18,6 +18,7 @@ class Gizmo {
     int axis = 0;                       // 0 to 2: x, y, z; it says the colour and the letter
     std::vector<EditModel::Line> lines; // an arrow has one, which begins near the pivot
     std::array<double, 2> end{};        // the place of the head of an arrow, and of the letter
+    bool isOpposite = false;            // an arrow that points against its axis
     bool operator==(const Handle&) const = default;
   };
 
@@ -27,8 +28,10 @@ class Gizmo {
   // Places the handles at the selected node, with the same size in each picture. There are none
   // unless one node is selected that can have a place, and its parent is not flat. Arrows that
   // point at the viewer are left out. Arrows that scale are the node's own axes, the others those
-  // of the world. Returns whether something else is shown now. [while the world can be used]
-  bool place(WorldEditor& editor, const EditView& view);
+  // of the world. An arrow that would end outside of the free part of the picture points the other
+  // way, if it ends inside then. Returns whether something else is shown now. [while the world can
+  // be used]
+  bool place(WorldEditor& editor, const EditView& view, const FreePart& free = {});
   void clear() { handles_.clear(); }
   const std::vector<Handle>& handles() const { return handles_; }
   // Returns the axis of the handle at a place of the picture; -1: none is there.

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace vv {
 
@@ -19,6 +22,12 @@ constexpr double largestShare = 1. / 20;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Returns whether a file belongs to another user. Once it is saved, it is this user's.
+bool isOthers(const std::string& path) {
+  struct stat info;
+  return ::stat(path.c_str(), &info) == 0 && info.st_uid != ::geteuid();
 }
 
 } // namespace
@@ -48,6 +57,7 @@ void Journal::advance(double seconds) {
 void Journal::begin() {
   written_ = editor_.changes();
   try {
+    if (isOthers(world_)) throw std::runtime_error("the file belongs to another user");
     if (!base_) {
       const std::string text = editor_.textOnDisk();
       if (!editor_.isChangedOnDisk()) base_ = stampOf(text);
@@ -120,13 +130,11 @@ void Journal::look() {
   FoundJournal found = findJournal(
       world_, [this] { return editor_.textOnDisk(); }, refused);
   if (!found.path.empty()) left_ = std::move(found);
+  message_ = refused;
   if (left_)
-    message_ =
-        fmt::format("{} has unsaved edits that an earlier session has left in {}: the editor "
-                    "offers them",
-                    world_, left_->path);
-  else
-    message_ = refused;
+    message_ += fmt::format("{}{} has unsaved edits that an earlier session has left in {}: the "
+                            "editor offers them",
+                            refused.empty() ? "" : "; ", world_, left_->path);
 }
 
 std::shared_ptr<LeftEdits> Journal::take() {

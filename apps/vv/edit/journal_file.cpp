@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 
@@ -17,11 +18,14 @@
 
 namespace vv {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr int mostJournals = 9; // beside one file
 constexpr std::string_view firstLine = "vv edits 1\n";
 constexpr size_t longestHead = 200;
+constexpr const char* freshSuffix = ".new"; // names the file that takes its place
 
 // A descriptor that is closed with this object.
 class Descriptor {
@@ -134,6 +138,17 @@ int openOwn(const std::string& path) {
   return file.release();
 }
 
+// Removes a journal that is empty and that no program uses: the vv that made it has been killed, or
+// the machine, before anything was written. Returns whether it has.
+bool removeEmpty(const std::string& path) {
+  try {
+    const Descriptor file(openOwn(path));
+    struct stat info;
+    return lock(file.get()) && isAt(file.get(), path) && ::fstat(file.get(), &info) == 0 &&
+           info.st_size == 0 && ::unlink(path.c_str()) == 0;
+  } catch (const std::runtime_error&) { return false; }
+}
+
 // The name of a file is on the disk when its folder is.
 void syncFolderOf(const std::string& path) {
   const size_t slash = path.rfind('/');
@@ -183,6 +198,8 @@ JournalFile JournalFile::open(const std::string& path, JournalContent& content, 
   if (!readHead(readBytes(file.get(), longestHead, path), head))
     refuse("it is damaged, or not a file of vv");
   if (uint64_t(info.st_size) - head.bytes != head.text.bytes) refuse("it is not complete");
+  constexpr uint64_t mostBytes = uint64_t(4) << 30; // as of a world's file: fileBytes
+  if (head.text.bytes > mostBytes) refuse("it is larger than the file of a world may be");
   if (::lseek(file.get(), off_t(head.bytes), SEEK_SET) < 0) fail("read", path, errno);
   content.base = head.base;
   content.text = readBytes(file.get(), head.text.bytes, path);
@@ -204,7 +221,7 @@ bool JournalFile::isInPlace() const { return descriptor_ >= 0 && isAt(descriptor
 
 void JournalFile::write(const TextStamp& base, std::string_view text) {
   // The lock makes this name ours, too: what stands there is left from a program that was killed.
-  const std::string fresh = path_ + ".new";
+  const std::string fresh = path_ + freshSuffix;
   ::unlink(fresh.c_str());
   Descriptor file(::open(fresh.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (file.get() < 0) fail("write", path_, errno);
@@ -225,7 +242,7 @@ void JournalFile::write(const TextStamp& base, std::string_view text) {
 
 void JournalFile::remove() {
   if (isInPlace()) {
-    ::unlink((path_ + ".new").c_str());
+    ::unlink((path_ + freshSuffix).c_str());
     ::unlink(path_.c_str());
   }
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
@@ -238,7 +255,14 @@ FoundJournal findJournal(const std::string& world, const std::function<std::stri
   for (int number = 1; number <= mostJournals; ++number) {
     const std::string path = pathOf(world, number);
     struct stat info;
-    if (::lstat(path.c_str(), &info) != 0 || (S_ISREG(info.st_mode) && info.st_size == 0)) continue;
+    if (::lstat(path.c_str(), &info) != 0) continue;
+    if (S_ISREG(info.st_mode) && info.st_size == 0) {
+      if (removeEmpty(path) && refused.empty())
+        refused = fmt::format("{} was empty, and has been removed: the vv that made it had ended "
+                              "before it kept any edits",
+                              path);
+      continue;
+    }
     bool isBusy = false;
     try {
       JournalContent content;
@@ -260,6 +284,19 @@ FoundJournal findJournal(const std::string& world, const std::function<std::stri
     }
   }
   return last;
+}
+
+bool isJournalOf(const std::string& world, const std::string& path) {
+  const auto placeOf = [](const std::string& name) {
+    std::error_code none;
+    return fs::weakly_canonical(fs::absolute(picture::followLinks(name), none), none);
+  };
+  const fs::path place = placeOf(path);
+  for (int number = 1; number <= mostJournals; ++number) {
+    const std::string journal = pathOf(world, number);
+    if (place == placeOf(journal) || place == placeOf(journal + freshSuffix)) return true;
+  }
+  return false;
 }
 
 std::string journalBeside(const std::string& world) {

@@ -1,12 +1,15 @@
 #include "edit/looks.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "edit/copy_node.h"
+#include "edit/material_files.h"
 #include "edit/node_fields.h"
 #include "xvrml/nodes.h"
 #include "xvrml/walk.h"
@@ -25,6 +28,12 @@ struct Material {
 constexpr Material materials[] = {{"Material", "diffuseColor"},
                                   {"PhysicalMaterial", "baseColor"},
                                   {"UnlitMaterial", "emissiveColor"}};
+
+// A look, and the Appearance that its file gives; null: it has no file.
+struct Wanted {
+  const Look& look;
+  NodeRef model;
+};
 
 // Returns the node in an SFNode; null if there is none, or no such field.
 NodeRef nodeIn(const Node& node, const char* name) {
@@ -53,7 +62,9 @@ void insertShader(WorldEditor& editor, Node& appearance, const Look& look) {
 }
 
 // Inserts a whole appearance with a look. Returns it.
-NodeRef insertAppearance(WorldEditor& editor, const NodeSlot& slot, const Look& look) {
+NodeRef insertAppearance(WorldEditor& editor, const NodeSlot& slot, const Wanted& wanted) {
+  if (wanted.model) return copyNode(editor, slot, wanted.model);
+  const Look& look = wanted.look;
   NodeRef made = insertNew(editor, slot, look.isShader() ? "ORTAppearance" : "Appearance");
   if (look.isShader())
     insertShader(editor, *made, look);
@@ -84,16 +95,19 @@ void setMaterial(WorldEditor& editor, Node& appearance, const Look& look) {
   takeOver(editor, *before, "transparency", *made, "transparency");
 }
 
-// Puts an ORTAppearance with a shader into all places of an Appearance. It takes over what both can
-// hold, and its name.
-void replaceAppearance(WorldEditor& editor, const NodeRef& before, const Look& look) {
+// Puts an ORTAppearance with a shader, or the Appearance of a file, into all places of an
+// appearance. It takes over the name, and beside a shader what both can hold.
+void replaceAppearance(WorldEditor& editor, const NodeRef& before, const Wanted& wanted) {
   Editor& file = editor.editor();
   const std::vector<NodeSlot> places = file.placesOf(*before);
+  MFNode parents; // Scripts that an edit runs may let them go
+  for (const NodeSlot& place : places) parents.emplace_back(place.parent);
   // Nodes are moved while both stand in the file, so that they keep their names and routes.
   const NodeRef holder = insertNew(editor, editor.endOf(nullptr, ""), "Shape");
-  const NodeRef made = insertAppearance(editor, {holder.get(), "appearance", 0}, look);
+  const NodeRef made = insertAppearance(editor, {holder.get(), "appearance", 0}, wanted);
   for (const char* field : {"material", "texture", "textureTransform"})
-    if (nodeIn(*before, field)) file.move({before.get(), field, 0}, {made.get(), field, 0});
+    if (!wanted.model && nodeIn(*before, field))
+      file.move({before.get(), field, 0}, {made.get(), field, 0});
   file.move({holder.get(), "appearance", 0}, places.front());
   for (size_t i = 1; i < places.size(); ++i) file.use(places[i], *made);
   if (!before->defName.empty()) file.rename(*made, before->defName);
@@ -101,17 +115,19 @@ void replaceAppearance(WorldEditor& editor, const NodeRef& before, const Look& l
 }
 
 void setLookOf(WorldEditor& editor, const NodeSlot& slot, const NodeRef& appearance,
-               const Look& look) {
+               const Wanted& wanted) {
   Editor& file = editor.editor();
+  const Look& look = wanted.look;
   if (!isAppearance(appearance)) {
-    insertAppearance(editor, slot, look);
+    insertAppearance(editor, slot, wanted);
     return;
   }
+  if (wanted.model) return replaceAppearance(editor, appearance, wanted);
   if (!look.isShader()) {
     if (nodeIn(*appearance, "shader")) file.remove({appearance.get(), "shader", 0});
     return setMaterial(editor, *appearance, look);
   }
-  if (nodeCast<nodes::Appearance>(appearance)) return replaceAppearance(editor, appearance, look);
+  if (nodeCast<nodes::Appearance>(appearance)) return replaceAppearance(editor, appearance, wanted);
   const auto* const known = nodeCast<nodes::ORTShader>(nodeIn(*appearance, "shader"));
   if (known && known->name == look.name) return;
   insertShader(editor, *appearance, look);
@@ -152,6 +168,13 @@ std::vector<Look> looksFor(WorldEditor& editor) {
   return looks;
 }
 
+std::vector<Look> looksIn(const std::string& folder) {
+  std::vector<Look> looks;
+  for (const std::string& file : materialFiles(folder))
+    looks.push_back({std::filesystem::path(file).stem().string(), "", file, file});
+  return looks;
+}
+
 ShapeLook lookOf(const Node& shape) {
   ShapeLook look;
   look.appearance = nodeIn(shape, "appearance");
@@ -166,6 +189,8 @@ void setLook(WorldEditor& editor, const Look& look, bool onlyHere) {
   for (const NodeRef& node : editor.selection())
     if (nodeCast<nodes::Shape>(node)) shapes.push_back(node);
   if (shapes.empty()) throw EditError("select a Shape first");
+  const UserMaterial own = look.file.empty() ? UserMaterial() : readMaterial(look.file);
+  const Wanted wanted{look, own.appearance};
   std::unordered_map<const Node*, size_t> users; // the selected Shapes of each appearance
   for (const NodeRef& shape : shapes) ++users[nodeIn(*shape, "appearance").get()];
   editor.step(fmt::format("Set look {}", look.name), [&] {
@@ -175,14 +200,14 @@ void setLook(WorldEditor& editor, const Look& look, bool onlyHere) {
       const NodeSlot slot{shape.get(), "appearance", 0};
       const NodeRef appearance = nodeIn(*shape, "appearance");
       if (!appearance) {
-        insertAppearance(editor, slot, look);
+        insertAppearance(editor, slot, wanted);
       } else if (const auto other = instead.find(appearance.get()); other != instead.end()) {
         editor.editor().use(slot, *other->second);
       } else if (!done.contains(appearance.get())) {
         const bool isShared =
             editor.editor().placesOf(*appearance).size() > users[appearance.get()];
         const bool copies = isAppearance(appearance) && onlyHere && isShared;
-        setLookOf(editor, slot, copies ? editor.editor().separate(slot) : appearance, look);
+        setLookOf(editor, slot, copies ? editor.editor().separate(slot) : appearance, wanted);
         const NodeRef now = nodeIn(*shape, "appearance");
         if (copies || !isAppearance(appearance)) instead.emplace(appearance.get(), now);
         done.insert(now.get());

@@ -26,14 +26,28 @@ bool accepts(const FieldInfo& field, const NodeType& type) {
   return false;
 }
 
+// Returns the field of a place; null: the node is a root of the file. Throws EditError if the
+// parent has no such field of nodes.
+const FieldInfo* fieldOf(const PlacedNode& place) {
+  if (!place.parent) return nullptr;
+  const FieldInfo* const field = place.parent->type().find(place.field);
+  const bool holdsNodes = field && holdsValue(*field) &&
+                          (field->type == FieldType::SFNode || field->type == FieldType::MFNode);
+  if (!holdsNodes)
+    throw EditError(
+        fmt::format("{} has no field {} that holds nodes", place.parent->type().name, place.field));
+  return field;
+}
+
 const MFNode& listAt(WorldEditor& editor, const PlacedNode& place) {
-  if (!place.parent) return editor.browser().world().scope.roots;
-  return *static_cast<const MFNode*>(
-      place.parent->storage(*place.parent->type().find(place.field)));
+  const FieldInfo* const field = fieldOf(place);
+  return field ? *static_cast<const MFNode*>(place.parent->storage(*field))
+               : editor.browser().world().scope.roots;
 }
 
 bool isInList(const PlacedNode& place) {
-  return !place.parent || place.parent->type().find(place.field)->type == FieldType::MFNode;
+  const FieldInfo* const field = fieldOf(place);
+  return !field || field->type == FieldType::MFNode;
 }
 
 // Returns the place for the editor. Throws EditError if another edit has moved the node.
@@ -41,8 +55,7 @@ NodeSlot slotOf(WorldEditor& editor, const PlacedNode& place) {
   const NodeSlot slot{place.parent.get(), place.field, place.index};
   bool stands = false;
   if (!isInList(place)) {
-    const FieldInfo& field = *place.parent->type().find(place.field);
-    stands = *static_cast<const SFNode*>(place.parent->storage(field)) == place.node;
+    stands = *static_cast<const SFNode*>(place.parent->storage(*fieldOf(place))) == place.node;
   } else {
     const MFNode& list = listAt(editor, place);
     stands = place.index < list.size() && list[place.index] == place.node;

@@ -29,10 +29,16 @@ template <class Visit> void forEachChild(Node& parent, const Visit& visit) {
   }
 }
 
-bool hasChildren(Node& node) {
-  bool any = false;
-  forEachChild(node, [&any](const NodeSlot&, const NodeRef&) { any = true; });
-  return any;
+bool hasChildren(const Node& node) {
+  return std::any_of(
+      node.type().fields.begin(), node.type().fields.end(), [&node](const FieldInfo& field) {
+        if (!holdsValue(field) || field.isMetadata) return false;
+        if (field.type == FieldType::SFNode)
+          return static_cast<const SFNode*>(node.storage(field))->get() != nullptr;
+        if (field.type != FieldType::MFNode) return false;
+        const MFNode& list = *static_cast<const MFNode*>(node.storage(field));
+        return std::any_of(list.begin(), list.end(), [](const NodeRef& one) { return bool(one); });
+      });
 }
 
 bool contains(std::string_view text, std::string_view part) {

@@ -12,6 +12,8 @@ namespace {
 // How far a probe may lie off the surface that is seen there, as a part of its distance.
 constexpr double tolerance = 2e-3;
 
+bool readsIlluminance(const Probe& probe) { return probe.sensor && !probe.sensor->luminance; }
+
 // Tells whether the viewer sees a point, and not something before or behind it.
 bool isSeen(xvrml::Browser& browser, const EditView& view, double x, double y,
             const std::array<double, 3>& point) {
@@ -42,7 +44,7 @@ void read(Probe& probe, xvrml::Browser& browser, const picture::Picture& picture
 }
 
 void readArea(Probe& probe, const picture::Picture& picture, const EditView& view) {
-  if (!areEqual(probe.area->view, view)) {
+  if (probe.area->view != view) {
     probe.state = Probe::State::otherView;
     return;
   }
@@ -53,8 +55,10 @@ void readArea(Probe& probe, const picture::Picture& picture, const EditView& vie
 
 } // namespace
 
-const char* quantityOf(const Probe& probe) { return probe.sensor ? "illuminance" : "luminance"; }
-const char* unitOf(const Probe& probe) { return probe.sensor ? "lx" : "cd/m2"; }
+const char* quantityOf(const Probe& probe) {
+  return readsIlluminance(probe) ? "illuminance" : "luminance";
+}
+const char* unitOf(const Probe& probe) { return readsIlluminance(probe) ? "lx" : "cd/m2"; }
 
 std::string probeText(const Probe& probe, const std::optional<Difference>& change) {
   std::string text = fmt::format("{}  {}", probe.number, probe.area ? "mean " : "");
@@ -142,6 +146,10 @@ void Probes::take(const std::vector<picture::Measurement>& readings) {
   for (const picture::Measurement& reading : readings)
     for (Probe& probe : probes_) {
       if (!probe.sensor || std::to_string(probe.number) != reading.sensor.name) continue;
+      // All probes may have been removed meanwhile, and numbers begin anew.
+      if (!std::equal(std::begin(reading.sensor.first), std::end(reading.sensor.first),
+                      std::begin(probe.sensor->first)))
+        continue;
       probe.now = {};
       probe.now.luminance = reading.value[0];
       probe.now.luminanceHalfWidth = reading.halfWidth[0];
@@ -176,7 +184,7 @@ std::vector<std::optional<Difference>> Probes::differences() const {
   for (size_t i = 0; i < probes_.size(); ++i) {
     const Probe& probe = probes_[i];
     if (!probe.hasBefore || probe.state != Probe::State::read) continue;
-    if (!probe.sensor && !areEqual(view_, kept_)) continue;
+    if (!probe.sensor && view_ != kept_) continue;
     all[i] = differenceBetween(probe.before, probe.now);
     // An interval that cannot be trusted proves nothing.
     if (!probe.now.trusted || !probe.before.trusted) continue;

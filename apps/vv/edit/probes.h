@@ -26,11 +26,12 @@ struct Probe {
   int number = 0;
   std::array<double, 3> point{}; // in the world, if there is no area
   std::optional<Area> area;
-  // Reads the illuminance of the surface at the point, whatever the view is; none: the probe reads
-  // the luminance in pictures.
+  // Reads the light at the point, whatever the view is: the illuminance of the surface, or the
+  // luminance that a sensor of the world sees; none: the probe reads the luminance in pictures.
   std::optional<picture::PlacedSensor> sensor;
   State state = State::waiting;
-  // The reading of its pixel, the mean of its area, or the illuminance in lux as its luminance.
+  // The reading of its pixel, the mean of its area, or that of its sensor as a luminance, also in
+  // lux.
   picture::PixelReading now;
   picture::PixelReading before; // the same, as it was kept
   bool hasBefore = false;

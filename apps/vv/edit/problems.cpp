@@ -51,6 +51,7 @@ bool ProblemList::update(WorldEditor& editor, double seconds) {
   const bool isRead = hasRead_ && list_ == &messages && read_ == messages.list().size();
   dropped_ = messages.dropped();
   if (isRead || (hasRead_ && seconds < readAt_ + refreshInterval)) return hasChanged;
+  if (!editor.prepare()) return hasChanged; // the nodes are not known yet
   readAt_ = seconds;
   read(editor);
   return true;

@@ -50,6 +50,7 @@ void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
   row.isLong = row.size > PropertySheet::mostElements;
   row.edits = editor.editor().editsOf(node, row.field->name);
   if (row.isLong) row.value = Value();
+  row.shown = isMultiple(row.field->type) ? row.value : Value();
 }
 
 PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field) {
@@ -154,9 +155,24 @@ PropertySheet sheetOf(WorldEditor& editor, const NodeRef& node) {
   return sheet;
 }
 
-void refresh(WorldEditor& editor, PropertySheet& sheet) {
-  for (PropertyRow& row : sheet.rows)
-    if (row.isDeclared) readValue(editor, *sheet.node, row);
+bool refresh(WorldEditor& editor, PropertySheet& sheet) {
+  const bool isShader = nodeCast<nodes::ORTShader>(sheet.node) != nullptr;
+  bool isSame = true;
+  for (PropertyRow& row : sheet.rows) {
+    if (!row.isDeclared) continue;
+    const std::string& name = row.field->name;
+    const bool isClass = isShader && (name == "name" || name == "file" || name == "options");
+    const Value before = isClass ? row.value : Value();
+    readValue(editor, *sheet.node, row);
+    isSame &= !isClass || row.value == before;
+  }
+  // The name of the look may be a value of its shader.
+  if (sheet.hasLook) {
+    const size_t places = sheet.look.places;
+    sheet.look = lookOf(*sheet.node);
+    sheet.look.places = places;
+  }
+  return isSame;
 }
 
 } // namespace vv

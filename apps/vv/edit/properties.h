@@ -16,6 +16,7 @@ struct PropertyRow {
   const xvrml::FieldInfo* field = nullptr;
   std::shared_ptr<const xvrml::FieldInfo> parameter; // keeps the latter
   xvrml::Value value; // empty for lists that are too long to be shown
+  xvrml::Value shown; // a list as it was read, which a face does not change
   xvrml::Value defaultValue;
   size_t size = 0; // elements of a list
   bool isDefault = false;
@@ -49,8 +50,9 @@ struct PropertySheet {
 // Returns the sheet of a node: its fields and exposedFields, without metadata, and the parameters
 // of a shader's class.
 PropertySheet sheetOf(WorldEditor& editor, const xvrml::NodeRef& node);
-// Reads the values again. Other nodes, and nodes of a Script whose fields have changed, need
-// sheetOf.
-void refresh(WorldEditor& editor, PropertySheet& sheet);
+// Reads the values again. Returns false if the node has other rows now, so that sheetOf is needed:
+// an ORTShader of another class. Other nodes, nodes that stand elsewhere, and nodes of a Script
+// whose fields have changed need sheetOf, too.
+bool refresh(WorldEditor& editor, PropertySheet& sheet);
 
 } // namespace vv

@@ -54,6 +54,13 @@ Quatd turnOf(const Rotation& r) {
   return turn.setAxisAngle(axis.normalized(), r.angle);
 }
 
+// Returns what a key types, without the name of the keypad.
+std::string signOf(const std::string& key) {
+  return key.starts_with("Keypad ") ? key.substr(7) : key;
+}
+
+} // namespace
+
 Rotation rotationOf(const Quatd& turn) {
   const double angle = turn.angle();
   if (!(std::abs(angle) > 1e-9)) return {0, 0, 1, 0};
@@ -66,13 +73,6 @@ Rotation rotationOf(const Quatd& turn) {
   return {float(shown.x), float(shown.y), float(shown.z),
           float(opposite ? 2 * std::numbers::pi - angle : angle)};
 }
-
-// Returns what a key types, without the name of the keypad.
-std::string signOf(const std::string& key) {
-  return key.starts_with("Keypad ") ? key.substr(7) : key;
-}
-
-} // namespace
 
 V3d TransformFrame::axis(int axis, bool isOwn) const {
   V3d unit(0);

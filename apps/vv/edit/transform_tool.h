@@ -24,6 +24,8 @@ struct TransformFrame {
   // an axis of its own, because its parent is flat, a node has that of the world.
   Imath::V3d axis(int axis, bool isOwn) const;
 };
+// Returns a rotation as files have it, with an angle from 0 to pi.
+xvrml::Rotation rotationOf(const Imath::Quatd& turn);
 // Returns the frame of a node; nothing if it is not in the scene.
 std::optional<TransformFrame> frameOf(xvrml::Browser& browser, xvrml::Node& node);
 

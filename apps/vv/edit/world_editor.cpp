@@ -1,12 +1,15 @@
 #include "edit/world_editor.h"
 
 #include <algorithm>
+#include <atomic>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
 
 #include "libpicture/files/save_edits.h"
-#include "xvrml/walk.h"
 
 namespace vv {
 
@@ -14,20 +17,36 @@ using namespace xvrml;
 
 namespace {
 
-// Returns the nodes that stand in the world's file.
-SeenNodes standing(const World& world) {
-  SeenNodes nodes;
-  walk(rootsOf(world.scope), nodes,
-       [](Node& node, std::vector<Node*>& open) { appendChildren(node, open); });
-  return nodes;
-}
+std::atomic<int> readers{0}; // threads that read files
 
-bool allIn(const MFNode& nodes, const SeenNodes& known) {
+bool allStand(const Editor& editor, const MFNode& nodes) {
   return std::all_of(nodes.begin(), nodes.end(),
-                     [&](const NodeRef& node) { return known.contains(node.get()); });
+                     [&editor](const NodeRef& node) { return editor.stands(*node); });
 }
 
 } // namespace
+
+bool WorldEditor::prepare() {
+  constexpr uintmax_t small = 256 << 10; // bytes, which are read in some hundredths of a second
+  if (std::function<void()> read = editor_.preparation()) {
+    std::error_code none;
+    if (std::filesystem::file_size(browser_.world().path, none) < small) {
+      read();
+      return true;
+    }
+    ++readers;
+    try {
+      std::thread([read = std::move(read)]() mutable {
+        read();
+        read = nullptr; // forgets a file that nobody edits any more, before the process may end
+        --readers;
+      }).detach();
+    } catch (const std::system_error&) { --readers; } // the first edit reads it
+  }
+  return !editor_.isPreparing();
+}
+
+bool WorldEditor::isReading() { return readers > 0; }
 
 const std::vector<picture::ShaderClass>& WorldEditor::shaderClasses() {
   if (!shaderClasses_) {
@@ -88,11 +107,10 @@ NodeSlot WorldEditor::endOf(Node* parent, const std::string& field) const {
 
 std::string WorldEditor::undo() {
   const std::string name = editor_.undoName();
-  const bool stood = allIn(selection_, standing(browser_.world()));
+  const bool stood = allStand(editor_, selection_);
   if (!editor_.undo()) return {};
   if (!stood) return name; // it has been removed before, or is in no file
-  const SeenNodes now = standing(browser_.world());
-  while (!allIn(selection_, now) && !earlier_.empty()) {
+  while (!allStand(editor_, selection_) && !earlier_.empty()) {
     selection_ = std::move(earlier_.back());
     earlier_.pop_back();
   }

@@ -25,7 +25,12 @@ class WorldEditor {
       : browser_(browser), editor_(browser), shaderPath_(std::move(shaderPath)) {}
 
   xvrml::Editor& editor() { return editor_; }
+  // Reads the file for the first edit, a large one on a thread of its own. Returns whether that has
+  // been done. isReading(): tells whether such a thread still works, for any editor.
+  bool prepare();
+  static bool isReading();
   xvrml::Browser& browser() { return browser_; }
+  const std::string& shaderPath() const { return shaderPath_; }
   // The classes of the shader plug-ins that are installed. They are read at the first call.
   const std::vector<picture::ShaderClass>& shaderClasses();
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "edit/journal_file.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "options/names.h"
@@ -151,6 +152,10 @@ void protectFilesOf(const xvrml::World& world, const Options& options) {
 // Without an existing file of this name, nothing can be replaced, and the walk over the world is
 // skipped.
 void protectFilesOf(const xvrml::World& world, const std::string& output) {
+  if (isJournalOf(world.path, output))
+    throw Failure{exitRender, fmt::format("{} is where the edits of {} are kept until they are "
+                                          "saved: another name is needed",
+                                          output, world.path)};
   std::error_code error;
   if (!fs::is_regular_file(output, error)) return;
   for (const std::string& file : usedFiles(world))

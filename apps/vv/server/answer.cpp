@@ -59,6 +59,7 @@ std::string withEditor(std::string_view page) {
   if (const size_t at = text.find(script); at != text.npos)
     text.replace(at, script.size(),
                  "<link rel=\"stylesheet\" href=\"edit.css\">\n"
+                 "<link rel=\"stylesheet\" href=\"overlay.css\">\n"
                  "<script src=\"edit.js\" type=\"module\"></script>");
   return text;
 }

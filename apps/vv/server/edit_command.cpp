@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,8 +18,9 @@ using json::Members;
 
 namespace {
 
-constexpr size_t mostSearchBytes = 256, mostNameBytes = 200;
-constexpr int largestRow = 100'000'000;
+constexpr size_t mostSearchBytes = 256, mostNameBytes = 200, mostKeyBytes = 16;
+constexpr int largestRow = 100'000'000, largestIndex = std::numeric_limits<int>::max();
+constexpr double farthest = 100; // a pointer that drags outside of the picture
 
 uint64_t numberOfNode(const std::string& where, const Json& value) {
   if (!value.is_number_unsigned()) json::refuse(where, "the number of a node", value);
@@ -37,12 +40,25 @@ std::string text(Members& m, const char* name, size_t longest) {
   return read;
 }
 
-Place place(Members& m) {
-  const auto read = [&](const char* name) {
-    return json::numberOf(m.at(name), m.need(name), "a number", -1, 1);
-  };
-  return {read("x"), read("y")};
+// Returns the number of a word.
+int choice(Members& m, const char* name, std::span<const char* const> words) {
+  const std::string read = m.text(name);
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](const char* word) { return read == word; });
+  if (found != words.end()) return int(found - words.begin());
+  std::string expected = "one of";
+  for (const char* word : words) expected += std::string(" ") + word;
+  throw CommandError("value", fmt::format("{}: {} was expected", m.at(name), expected));
 }
+
+Place place(Members& m, const char* x = "x", const char* y = "y", double most = 1) {
+  const auto read = [&](const char* name) {
+    return json::numberOf(m.at(name), m.need(name), "a number", -most, most);
+  };
+  return {read(x), read(y)};
+}
+Place from(Members& m) { return place(m, "x0", "y0"); }
+Place to(Members& m) { return place(m, "x1", "y1"); }
 
 Command readRows(Members& m) {
   const int first = json::wholeNumberOf(m.at("first"), m.need("first"), 0, largestRow);
@@ -77,14 +93,86 @@ Command readDrag(Members& m) {
 
 Command readReset(Members& m) {
   const uint64_t edited = node(m);
-  return Reset{edited, m.text("field")};
+  return NodeCommand(Reset{edited, m.text("field")});
 }
 
 Command readStep(Members& m) {
-  json::edits::Step step = json::edits::readStep(m, maxEditsOfStep);
+  Step step = json::edits::readStep(m, maxEditsOfStep);
   if (step.name.size() > mostNameBytes)
     throw CommandError("limit", fmt::format("{}: at most {} bytes", m.at("name"), mostNameBytes));
-  return step;
+  return NodeCommand(std::move(step));
+}
+
+Command readSelectIn(Members& m) {
+  SelectIn select{from(m), to(m)};
+  select.add = flag(m, "add");
+  return select;
+}
+
+Command readAskChoices(Members& m) {
+  const uint64_t asked = node(m);
+  return AskChoices{asked, m.text("field")};
+}
+
+// --- Edits of nodes ---
+
+Command readAddNode(Members& m) {
+  AddNode add{node(m), m.text("field"), {}};
+  add.kind = text(m, "kind", mostNameBytes);
+  return NodeCommand(std::move(add));
+}
+
+Command readUseNode(Members& m) {
+  UseNode use{node(m), m.text("field")};
+  use.used = numberOfNode(m.at("used"), m.need("used"));
+  return NodeCommand(std::move(use));
+}
+
+At readAt(Members& m) {
+  At at{node(m)};
+  if (const Json& parent = m.need("parent"); !parent.is_null())
+    at.parent = numberOfNode(m.at("parent"), parent);
+  at.field = m.text("field");
+  at.index = size_t(json::wholeNumberOf(m.at("index"), m.need("index"), 0, largestIndex));
+  return at;
+}
+
+Command readMoveAt(Members& m) {
+  MoveAt move{readAt(m)};
+  move.by = json::wholeNumberOf(m.at("by"), m.need("by"), -1, 1);
+  return NodeCommand(std::move(move));
+}
+
+Command readSetLook(Members& m) {
+  const int number = json::wholeNumberOf(m.at("number"), m.need("number"), 0, largestIndex);
+  return NodeCommand(SetLook{size_t(number), flag(m, "only_here")});
+}
+
+// --- Tools and light ---
+
+Command readBeginTool(Members& m) {
+  constexpr const char* kinds[] = {"move", "turn", "scale"};
+  BeginTool begin{BeginTool::Kind(choice(m, "kind", kinds))};
+  if (m.has("axis")) begin.axis = json::wholeNumberOf(m.at("axis"), m.need("axis"), 0, 2);
+  begin.place = place(m, "x", "y", farthest);
+  return ToolCommand(begin);
+}
+
+Command readPointTool(Members& m) {
+  PointTool point{place(m, "x", "y", farthest)};
+  point.snap = flag(m, "snap");
+  return ToolCommand(point);
+}
+
+Command readPutProbe(Members& m) {
+  PutProbe put{place(m)};
+  put.illuminance = flag(m, "illuminance");
+  return LightCommand(put);
+}
+
+Command readCompare(Members& m) {
+  constexpr const char* names[] = {"a", "wiper", "difference"};
+  return LightCommand(Compare{Compare::What(choice(m, "what", names))});
 }
 
 struct Row {
@@ -98,24 +186,65 @@ constexpr Row table[] = {
     {"open", readOpen},
     {"select", readSelect},
     {"select_at", readSelectAt},
+    {"select_in", readSelectIn},
+    {"select_same_look", [](Members&) -> Command { return SelectSameLook{}; }},
+    {"choices", readAskChoices},
+    {"problems",
+     [](Members& m) -> Command {
+       return ShowProblems{json::switchOf(m.at("open"), m.need("open"))};
+     }},
+    {"hide", [](Members&) -> Command { return Hide{Hide::What::selected}; }},
+    {"hide_others", [](Members&) -> Command { return Hide{Hide::What::others}; }},
+    {"show_all", [](Members&) -> Command { return Hide{Hide::What::nothing}; }},
+    {"frame", [](Members&) -> Command { return Frame{}; }},
+    {"close", [](Members&) -> Command { return Close{}; }},
     {"drag", readDrag},
     {"end_drag", [](Members&) -> Command { return EndDrag{}; }},
-    {"reset", readReset},
-    {"step", readStep},
-    {"add", [](Members& m) -> Command { return Add{m.text("kind")}; }},
-    {"duplicate", [](Members&) -> Command { return Duplicate{}; }},
-    {"remove", [](Members&) -> Command { return Remove{}; }},
-    {"wrap", [](Members&) -> Command { return Wrap{}; }},
     {"undo", [](Members&) -> Command { return Undo{false}; }},
     {"redo", [](Members&) -> Command { return Undo{true}; }},
     {"save", [](Members& m) -> Command { return Save{flag(m, "overwrite")}; }},
     {"revert", [](Members&) -> Command { return Revert{}; }},
     {"recover",
      [](Members& m) -> Command { return Recover{json::switchOf(m.at("use"), m.need("use"))}; }},
-    {"probe", [](Members& m) -> Command { return PutProbe{place(m)}; }},
-    {"keep_probes", [](Members&) -> Command { return KeepProbes{}; }},
-    {"clear_probes", [](Members&) -> Command { return ClearProbes{}; }},
-    {"close", [](Members&) -> Command { return Close{}; }},
+    {"reset", readReset},
+    {"step", readStep},
+    {"add", [](Members& m) -> Command { return NodeCommand(Add{m.text("kind")}); }},
+    {"duplicate", [](Members&) -> Command { return NodeCommand(Duplicate{}); }},
+    {"remove", [](Members&) -> Command { return NodeCommand(Remove{}); }},
+    {"wrap", [](Members&) -> Command { return NodeCommand(Wrap{}); }},
+    {"add_node", readAddNode},
+    {"use_node", readUseNode},
+    {"remove_at", [](Members& m) -> Command { return NodeCommand(RemoveAt{readAt(m)}); }},
+    {"move_at", readMoveAt},
+    {"separate_at", [](Members& m) -> Command { return NodeCommand(SeparateAt{readAt(m)}); }},
+    {"set_look", readSetLook},
+    {"tool", readBeginTool},
+    {"tool_at", readPointTool},
+    {"tool_key",
+     [](Members& m) -> Command { return ToolCommand(TypeTool{text(m, "key", mostKeyBytes)}); }},
+    {"end_tool",
+     [](Members& m) -> Command {
+       return ToolCommand(EndTool{json::switchOf(m.at("accept"), m.need("accept"))});
+     }},
+    {"handles", [](Members&) -> Command { return ToolCommand(NextHandles{}); }},
+    {"probe", readPutProbe},
+    {"measure",
+     [](Members& m) -> Command {
+       const Place begin = from(m);
+       return LightCommand(Measure{begin, to(m)});
+     }},
+    {"keep_probes", [](Members&) -> Command { return LightCommand(KeepProbes{}); }},
+    {"clear_probes", [](Members&) -> Command { return LightCommand(ClearProbes{}); }},
+    {"compare", readCompare},
+    {"point", [](Members& m) -> Command { return LightCommand(PointAt{place(m)}); }},
+    {"keep_in_world",
+     [](Members& m) -> Command {
+       return LightCommand(
+           KeepInWorld{json::wholeNumberOf(m.at("probe"), m.need("probe"), 1, largestIndex)});
+     }},
+    {"show_sensors", [](Members&) -> Command { return LightCommand(ShowSensors{}); }},
+    {"probe_table", [](Members&) -> Command { return LightCommand(ProbeTable{}); }},
+    {"report", [](Members&) -> Command { return LightCommand(Report{}); }},
 };
 
 } // namespace

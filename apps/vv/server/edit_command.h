@@ -13,6 +13,8 @@
 
 namespace vv::server::edit {
 
+// --- What is shown and selected ---
+
 struct ShowRows {
   int first = 0, count = 0; // the rows of the outline that the page shows
 };
@@ -27,7 +29,7 @@ struct Select {
   std::optional<uint64_t> node; // none: nothing is to be selected
   bool add = false;
 };
-// A place of the picture, from -1 to 1.
+// A place of the picture, from -1 to 1; that of a pointer which drags may be outside.
 struct Place {
   double x = 0, y = 0;
 };
@@ -35,22 +37,33 @@ struct SelectAt {
   Place place;
   bool group = false, add = false;
 };
+struct SelectIn {
+  Place from, to; // corners of a rectangle
+  bool add = false;
+};
+struct SelectSameLook {};
+struct AskChoices {
+  uint64_t node = 0;
+  std::string field;
+};
+struct ShowProblems {
+  bool open = true;
+};
+struct Hide {
+  enum class What : uint8_t { selected, others, nothing };
+  What what = What::selected;
+};
+struct Frame {}; // the viewer goes to what is selected
+struct Close {};
+
+// --- Values, history and file ---
+
 struct Drag {
   uint64_t node = 0;
   std::string field;
   json::Json value;
 };
 struct EndDrag {};
-struct Reset {
-  uint64_t node = 0;
-  std::string field;
-};
-struct Add {
-  std::string kind; // a name of newNodes(), or viewpointKind
-};
-struct Duplicate {};
-struct Remove {};
-struct Wrap {};
 struct Undo {
   bool again = false; // redo
 };
@@ -61,16 +74,104 @@ struct Revert {};
 struct Recover {
   bool use = true; // false: the edits that an earlier program has left are thrown away
 };
+
+// --- Edits that are steps of their own ---
+
+struct Reset {
+  uint64_t node = 0;
+  std::string field;
+};
+struct Add {
+  std::string kind; // a name of newNodes(), or viewpointKind
+};
+struct Duplicate {};
+struct Remove {};
+struct Wrap {};
+struct AddNode {
+  uint64_t node = 0;
+  std::string field, kind; // kind: the type of the new node
+};
+struct UseNode {
+  uint64_t node = 0;
+  std::string field;
+  uint64_t used = 0;
+};
+// A node at one of its places.
+struct At {
+  uint64_t node = 0;
+  std::optional<uint64_t> parent; // none: the node is a root of the file
+  std::string field;
+  size_t index = 0;
+};
+struct RemoveAt {
+  At at;
+};
+struct MoveAt {
+  At at;
+  int by = 1; // places in its list
+};
+struct SeparateAt {
+  At at;
+};
+struct SetLook {
+  size_t number = 0; // in EditModel::looks()
+  bool onlyHere = true;
+};
+using Step = json::edits::Step;
+using NodeCommand = std::variant<Reset, Step, Add, Duplicate, Remove, Wrap, AddNode, UseNode,
+                                 RemoveAt, MoveAt, SeparateAt, SetLook>;
+
+// --- Handles and tools over the picture ---
+
+struct BeginTool {
+  enum class Kind : uint8_t { move, turn, scale };
+  Kind kind = Kind::move;
+  int axis = -1; // 0 to 2; -1: none
+  Place place;
+};
+struct PointTool {
+  Place place;
+  bool snap = false;
+};
+struct TypeTool {
+  std::string key; // "X", "Y", "Z", or a key of a number
+};
+struct EndTool {
+  bool accept = true;
+};
+struct NextHandles {};
+using ToolCommand = std::variant<BeginTool, PointTool, TypeTool, EndTool, NextHandles>;
+
+// --- Light ---
+
 struct PutProbe {
   Place place;
+  bool illuminance = false;
+};
+struct Measure {
+  Place from, to; // corners of a rectangle
 };
 struct KeepProbes {};
 struct ClearProbes {};
-struct Close {};
+struct Compare {
+  enum class What : uint8_t { a, wiper, difference };
+  What what = What::a;
+};
+struct PointAt {
+  Place place; // where the change of light is wanted
+};
+struct KeepInWorld {
+  int probe = 0; // its number
+};
+struct ShowSensors {};
+struct ProbeTable {};
+struct Report {};
+using LightCommand = std::variant<PutProbe, Measure, KeepProbes, ClearProbes, Compare, PointAt,
+                                  KeepInWorld, ShowSensors, ProbeTable, Report>;
 
-using Command = std::variant<ShowRows, Search, Open, Select, SelectAt, Drag, EndDrag, Reset,
-                             json::edits::Step, Add, Duplicate, Remove, Wrap, Undo, Save, Revert,
-                             Recover, PutProbe, KeepProbes, ClearProbes, Close>;
+using Command = std::variant<ShowRows, Search, Open, Select, SelectAt, SelectIn, SelectSameLook,
+                             AskChoices, ShowProblems, Hide, Frame, Close, Drag, EndDrag, Undo,
+                             Save, Revert, Recover, NodeCommand, ToolCommand, LightCommand>;
 
 // Reads a message {"type":"edit","command":...}. Throws json::CommandError.
 Command readCommand(json::Json message);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -16,15 +17,12 @@ namespace vv::server::edit {
 
 using namespace xvrml;
 using json::Json;
+using json::jsonLine;
 using json::jsonText;
 
 namespace {
 
 constexpr size_t mostNameBytes = 1024, mostNoteBytes = 400, mostHelpBytes = 1000, mostFrames = 1200;
-
-std::string written(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 std::string shortened(const std::string& text, size_t most) {
   return text.size() <= most ? text : text.substr(0, most) + "...";
@@ -59,19 +57,50 @@ size_t roughSize(const Value& value) {
 }
 
 // Returns the nodes that a field holds, as links.
-void appendLinks(std::string& out, const Value& value, json::NodeNumbers& numbers) {
+void appendLinks(std::string& out, const PropertyRow& row, json::NodeNumbers& numbers) {
+  size_t count = 0;
   const auto link = [&](const NodeRef& node) {
-    out += out.ends_with('[') ? "" : ",";
-    if (node)
-      fmt::format_to(std::back_inserter(out), R"({{"node":{},"label":{}}})", numbers.of(node),
-                     jsonText(labelOf(*node)));
-    else
+    const size_t index = count++;
+    out += index > 0 ? "," : "";
+    if (!node) {
       out += "null";
+      return;
+    }
+    fmt::format_to(std::back_inserter(out), R"({{"node":{},"label":{},"places":{}}})",
+                   numbers.of(node), jsonText(labelOf(*node)),
+                   index < row.places.size() ? row.places[index] : 1);
   };
   out += ",\"links\":[";
-  if (const auto* one = std::get_if<NodeRef>(&value)) link(*one);
-  if (const auto* many = std::get_if<MFNode>(&value))
+  if (const auto* one = std::get_if<NodeRef>(&row.value)) link(*one);
+  if (const auto* many = std::get_if<MFNode>(&row.value))
     for (const NodeRef& node : *many) link(node);
+  out += ']';
+}
+
+const char* nameOf(std::optional<Gizmo::Kind> kind) {
+  if (!kind) return "none";
+  switch (*kind) {
+  case Gizmo::Kind::move: return "move";
+  case Gizmo::Kind::turn: return "turn";
+  case Gizmo::Kind::scale: break;
+  }
+  return "scale";
+}
+
+const char* nameOf(Severity severity) {
+  switch (severity) {
+  case Severity::error: return "error";
+  case Severity::warning: return "warning";
+  default: return "note";
+  }
+}
+
+// Appends lines of the picture as an array.
+void appendLines(std::string& out, std::span<const EditModel::Line> lines) {
+  out += '[';
+  for (size_t i = 0; i < lines.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "{}[{:.4f},{:.4f},{:.4f},{:.4f}]", i > 0 ? "," : "",
+                   lines[i].x0, lines[i].y0, lines[i].x1, lines[i].y1);
   out += ']';
 }
 
@@ -94,29 +123,18 @@ std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers&
       fmt::format(R"({{"field":{},"type":"{}","default":{},"declared":{},"size":{},"help":{})",
                   jsonText(field.name), fieldTypeName(field.type), row.isDefault, row.isDeclared,
                   row.size, jsonText(shortened(row.help, mostHelpBytes)));
-  appendRange(out, field.range);
+  appendRange(out, row.range);
   if (isLinear(node, row)) out += ",\"linear\":true";
-  if (!row.choices.empty()) out += ",\"choices\":" + written(row.choices);
+  if (!row.choices.empty()) out += ",\"choices\":" + jsonLine(row.choices);
   if (row.isLong || row.isInOptions || roughSize(row.value) > size_t(maxValueBytes)) {
     out += ",\"long\":true";
   } else if (field.type == FieldType::SFNode || field.type == FieldType::MFNode) {
-    appendLinks(out, row.value, numbers);
+    appendLinks(out, row, numbers);
   } else {
     out += ",\"value\":";
     json::appendValue(out, row.value, {});
   }
   return out + "}";
-}
-
-const char* nameOf(Probe::State state) {
-  switch (state) {
-  case Probe::State::waiting: return "waiting";
-  case Probe::State::hidden: return "hidden";
-  case Probe::State::outside: return "outside";
-  case Probe::State::otherView: return "other_view";
-  case Probe::State::read: break;
-  }
-  return "read";
 }
 
 } // namespace
@@ -125,11 +143,11 @@ std::string editorText() {
   Json kinds = Json::array();
   for (const NewNode& one : newNodes()) kinds.push_back(one.name);
   kinds.push_back(viewpointKind);
-  return written({{"type", "editor"},
-                  {"kinds", kinds},
-                  {"mostBytes", maxEditBytes},
-                  {"mostRows", maxRowsShown},
-                  {"mostElements", PropertySheet::mostElements}});
+  return jsonLine({{"type", "editor"},
+                   {"kinds", kinds},
+                   {"mostBytes", maxEditBytes},
+                   {"mostRows", maxRowsShown},
+                   {"mostElements", PropertySheet::mostElements}});
 }
 
 std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int first, int count) {
@@ -143,12 +161,17 @@ std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int fir
     if (row.canOpen && !row.isUse) one["open"] = row.isOpen;
     if (row.isUse) one["use"] = true;
     if (model.isSelected(*row.node)) one["selected"] = true;
+    if (row.place.parent) {
+      one["parent"] = numbers.of(row.place.parent);
+      one["field"] = row.place.field;
+    }
+    one["index"] = row.place.index;
     rows.push_back(std::move(one));
   }
-  return written({{"type", "rows"}, {"first", begin}, {"total", all.size()}, {"rows", rows}});
+  return jsonLine({{"type", "rows"}, {"first", begin}, {"total", all.size()}, {"rows", rows}});
 }
 
-std::string revealText(int row) { return written({{"type", "reveal"}, {"row", row}}); }
+std::string revealText(int row) { return jsonLine({{"type", "reveal"}, {"row", row}}); }
 
 std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
   if (!sheet.node) return R"({"type":"sheet","node":null,"title":"","note":"","fields":[]})";
@@ -157,6 +180,11 @@ std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
       fmt::format(R"({{"type":"sheet","node":{},"title":{},"note":{})", numbers.of(sheet.node),
                   jsonText(sheet.title), jsonText(shortened(sheet.note, mostNoteBytes)));
   if (name.size() <= mostNameBytes) out += ",\"name\":" + jsonText(name);
+  if (sheet.hasLook)
+    out += fmt::format(R"(,"look":{{"name":{},"surface":{},"places":{}}})",
+                       jsonText(shortened(sheet.look.name, mostNameBytes)),
+                       sheet.look.surface ? std::to_string(numbers.of(sheet.look.surface)) : "null",
+                       sheet.look.places);
   out += ",\"fields\":[";
   size_t shown = 0;
   for (const PropertyRow& row : sheet.rows) {
@@ -168,56 +196,95 @@ std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
   return out + fmt::format(R"(],"hidden":{}}})", sheet.rows.size() - shown);
 }
 
-std::string framesText(const EditModel& model) {
-  std::string lines;
-  size_t count = 0;
-  for (const EditModel::Line& line : model.frames()) {
-    if (++count > mostFrames) break;
-    fmt::format_to(std::back_inserter(lines), "{}[{:.4f},{:.4f},{:.4f},{:.4f}]",
-                   count > 1 ? "," : "", line.x0, line.y0, line.x1, line.y1);
-  }
-  return fmt::format(R"({{"type":"frames","lines":[{}]}})", lines);
-}
-
-std::string historyText(WorldEditor& editor, const std::string& readOnly) {
-  const std::optional<FoundJournal>& left = editor.journal().left();
-  return written({{"type", "history"},
-                  {"undo", shortened(editor.editor().undoName(), mostNoteBytes)},
-                  {"redo", shortened(editor.editor().redoName(), mostNoteBytes)},
-                  {"unsaved", editor.isChanged()},
-                  {"readOnly", readOnly},
-                  {"selected", editor.selection().size()},
-                  {"left", left ? Json(left->written) : Json()}});
-}
-
-std::string probesText(const Probes& probes) {
-  const std::vector<std::optional<Difference>> changes = probes.differences();
+std::string looksText(const std::vector<Look>& looks) {
   Json list = Json::array();
-  for (size_t i = 0; i < changes.size(); ++i) {
-    const Probe& probe = probes.all()[i];
-    Json one = {{"number", probe.number}, {"state", nameOf(probe.state)}};
-    if (probe.state == Probe::State::read) {
-      one["luminance"] = probe.now.luminance;
-      one["half_width"] = probe.now.luminanceHalfWidth;
-      one["trusted"] = probe.now.trusted;
+  for (const Look& one : looks)
+    list.push_back({{"name", shortened(one.name, mostNameBytes)},
+                    {"text", shortened(one.text, mostNoteBytes)},
+                    {"shader", one.isShader()}});
+  return jsonLine({{"type", "looks"}, {"list", list}});
+}
+
+std::string choicesText(uint64_t node, const PropertyRow& row, json::NodeNumbers& numbers) {
+  Json types = Json::array(), uses = Json::array();
+  for (const NodeType* type : row.addable)
+    types.push_back({{"name", type->name}, {"text", shortened(type->text, mostNoteBytes)}});
+  for (const NodeRef& used : row.usable)
+    uses.push_back({{"node", numbers.of(used)}, {"label", labelOf(*used)}});
+  return jsonLine({{"type", "choices"},
+                   {"node", node},
+                   {"field", row.field->name},
+                   {"types", types},
+                   {"uses", uses}});
+}
+
+std::string problemsText(const ProblemList& problems, json::NodeNumbers& numbers) {
+  Json rows = Json::array();
+  uint64_t dropped = 0;
+  if (problems.isOpen()) {
+    const size_t shown = std::min(problems.rows().size(), size_t(maxProblemsShown));
+    dropped = problems.dropped() + problems.rows().size() - shown;
+    for (size_t i = 0; i < shown; ++i) {
+      const ProblemRow& row = problems.rows()[i];
+      Json one = {{"severity", nameOf(row.severity)},
+                  {"text", shortened(problemText(row), mostHelpBytes)},
+                  {"line", shortened(row.sourceLine, mostNoteBytes)}};
+      if (row.node) {
+        one["node"] = numbers.of(row.node);
+        one["label"] = row.label;
+      }
+      rows.push_back(std::move(one));
     }
-    if (changes[i]) {
-      one["change"] = changes[i]->value;
-      one["change_half_width"] = changes[i]->halfWidth;
-      one["significant"] = changes[i]->isSignificant;
-    }
-    list.push_back(std::move(one));
   }
-  return written({{"type", "probes"}, {"list", list}});
+  return jsonLine({{"type", "problems"},
+                   {"count", problems.count()},
+                   {"open", problems.isOpen()},
+                   {"rows", rows},
+                   {"dropped", dropped}});
+}
+
+std::string framesText(const EditModel& model) {
+  const std::vector<EditModel::Line>& frames = model.frames();
+  std::string out = R"({"type":"frames","lines":)";
+  appendLines(out, std::span(frames).first(std::min(frames.size(), mostFrames)));
+  return out + "}";
+}
+
+std::string handlesText(const Gizmo& gizmo) {
+  std::string out = fmt::format(R"({{"type":"handles","kind":"{}","list":[)", nameOf(gizmo.kind()));
+  for (const Gizmo::Handle& handle : gizmo.handles()) {
+    out += fmt::format(R"({}{{"axis":{},"opposite":{},"end":[{:.4f},{:.4f}],"lines":)",
+                       out.ends_with('[') ? "" : ",", handle.axis, handle.isOpposite, handle.end[0],
+                       handle.end[1]);
+    appendLines(out, handle.lines);
+    out += '}';
+  }
+  return out + "]}";
+}
+
+std::string toolText(const std::string& text) {
+  return jsonLine({{"type", "tool"}, {"text", shortened(text, mostNoteBytes)}});
+}
+
+std::string historyText(WorldEditor& editor, const std::string& readOnly, size_t hidden) {
+  const std::optional<FoundJournal>& left = editor.journal().left();
+  return jsonLine({{"type", "history"},
+                   {"undo", shortened(editor.editor().undoName(), mostNoteBytes)},
+                   {"redo", shortened(editor.editor().redoName(), mostNoteBytes)},
+                   {"unsaved", editor.isChanged()},
+                   {"readOnly", readOnly},
+                   {"selected", editor.selection().size()},
+                   {"hidden", hidden},
+                   {"left", left ? Json(left->written) : Json()}});
 }
 
 std::string saidText(const std::string& text, bool isError) {
-  return written({{"type", "said"}, {"text", shortened(text, mostNoteBytes)}, {"error", isError}});
+  return jsonLine({{"type", "said"}, {"text", shortened(text, mostNoteBytes)}, {"error", isError}});
 }
 
 std::string questionText() {
-  return written({{"type", "question"},
-                  {"text", "Another program has changed or removed the file since it was read."}});
+  return jsonLine({{"type", "question"},
+                   {"text", "Another program has changed or removed the file since it was read."}});
 }
 
 } // namespace vv::server::edit

@@ -1,15 +1,17 @@
 // edit_texts.h: Writes what the editor of a page shows as JSON: rows of the outline, the fields of
-// a node, what can be undone, and probes. Pure functions, apart from the numbers of nodes that they
-// give out. Everything is bounded, whatever the world holds. docs/serve.md lists the messages.
-// [the browser's thread]
+// a node, handles, problems, and what can be undone. Pure functions, apart from the numbers of
+// nodes that they give out. Everything is bounded, whatever the world holds. docs/serve.md lists
+// the messages. [the browser's thread]
 #pragma once
 
 #include <cstdint>
 #include <string>
 
+#include <vector>
+
 #include "as_json/node_numbers.h"
 #include "edit/edit_model.h"
-#include "edit/probes.h"
+#include "edit/gizmo.h"
 
 namespace vv::server::edit {
 
@@ -23,11 +25,20 @@ std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int fir
 // Tells a page to show a row, which others have selected.
 std::string revealText(int row);
 std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers);
+// Returns the looks that the selected Shapes can have.
+std::string looksText(const std::vector<Look>& looks);
+// Returns what may be put into a field of nodes. node: the number of its node.
+std::string choicesText(uint64_t node, const PropertyRow& row, json::NodeNumbers& numbers);
+// Returns the messages about the world; without rows while their list is closed.
+std::string problemsText(const ProblemList& problems, json::NodeNumbers& numbers);
 // Returns the lines around what is selected, in the picture.
 std::string framesText(const EditModel& model);
+std::string handlesText(const Gizmo& gizmo);
+// text: what the tool does; "": none is in use.
+std::string toolText(const std::string& text);
 // Returns what can be undone and done again, and whether there are edits that are not saved.
-std::string historyText(WorldEditor& editor, const std::string& readOnly);
-std::string probesText(const Probes& probes);
+// hidden: how many nodes are hidden for now.
+std::string historyText(WorldEditor& editor, const std::string& readOnly, size_t hidden);
 // Tells the user something. isError: a command was refused.
 std::string saidText(const std::string& text, bool isError);
 // Asks whether a file is to be replaced that another program has changed.

@@ -1,43 +1,34 @@
 #include "server/editing.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "as_json/field_json.h"
-#include "as_json/fields.h"
-#include "as_json/perform_step.h"
 #include "edit/actions.h"
+#include "edit/region.h"
 #include "edit/shader_parameters.h"
+#include "server/edit_nodes.h"
 #include "server/edit_texts.h"
+#include "server/light_texts.h"
 
 namespace vv::server {
 
 using namespace xvrml;
-using json::CommandError;
 
 namespace {
 
 constexpr double interval = 0.05; // seconds between two looks at what has changed
 
-NodeRef nodeOf(const json::NodeNumbers& numbers, uint64_t number) {
-  NodeRef node = numbers.find(number);
-  if (!node) throw CommandError("node", "this node is not shown any more: choose it again");
-  return node;
-}
-
-NodeRef namedNode(const json::NodeNumbers& numbers, const json::NodeName& name) {
-  if (const auto* number = std::get_if<uint64_t>(&name)) return nodeOf(numbers, *number);
-  throw CommandError("node", "a page names nodes by their numbers");
-}
-
-const FieldInfo& valueField(const Node& node, const std::string& name) {
-  const FieldInfo& field = json::storedField(node, name);
-  if (field.type == FieldType::SFNode || field.type == FieldType::MFNode)
-    throw EditError(
-        fmt::format("{}.{} holds nodes: insert or remove them", node.type().name, field.name));
-  return field;
+// Tells whether a command edits the world, or begins to.
+bool isEdit(const edit::Command& command) {
+  if (const auto* const light = std::get_if<edit::LightCommand>(&command))
+    return std::holds_alternative<edit::KeepInWorld>(*light);
+  return std::holds_alternative<edit::Drag>(command) ||
+         std::holds_alternative<edit::Undo>(command) ||
+         std::holds_alternative<edit::Save>(command) ||
+         std::holds_alternative<edit::NodeCommand>(command) ||
+         std::holds_alternative<edit::ToolCommand>(command);
 }
 
 } // namespace
@@ -49,6 +40,7 @@ void Editing::leave(uint64_t page) {
   if (found == faces_.end()) return;
   endDrag(page, found->second);
   faces_.erase(found);
+  light_.leave(page);
 }
 
 void Editing::take(uint64_t page, const edit::Command& command) {
@@ -58,8 +50,13 @@ void Editing::take(uint64_t page, const edit::Command& command) {
   Face& face = found->second;
   face.isStale = true;
   try {
+    if (world_.isReverting() && isEdit(command))
+      throw EditError("the file is being read again: what is edited now would be lost");
     std::visit([&](const auto& one) { perform(page, face, one); }, command);
-  } catch (const std::exception& error) { say(page, error.what(), true); }
+  } catch (const std::exception& error) {
+    say(page, error.what(), true);
+    face.told.erase("sheet"); // the page shows what was refused
+  }
 }
 
 void Editing::beginAnew() {
@@ -67,23 +64,35 @@ void Editing::beginAnew() {
     Face fresh;
     fresh.first = face.first;
     fresh.count = face.count;
+    // A message on its way may name a node by its number: no number is given out again.
+    fresh.numbers = std::move(face.numbers);
+    fresh.numbers.releaseAll();
     face = std::move(fresh);
   }
-  probes_.clear();
+  hiding_ = {};
+  light_.beginAnew();
 }
 
 void Editing::update(double now) {
   if (faces_.empty()) return;
   Session& session = world_.session();
-  readProbes(session, now);
+  light_.update(now);
+  for (const auto& [reader, text] : light_.takeMessages())
+    for (const auto& [page, face] : faces_)
+      if (reader == 0 || reader == page) say(page, text, false);
   const bool moves = session.pictures().isMoving();
   for (auto& [page, face] : faces_) {
     if (!face.isStale && now < face.next) continue;
     face.next = now + interval;
-    const bool changed = face.model.update(session.editor(), viewOf(page), moves, now);
+    const EditView view = viewOf(page);
+    const bool changed = face.model.update(session.editor(), view, moves, now);
+    face.tool.place(session.editor(), view, face.model.readOnly().empty());
     if (std::exchange(face.isStale, false) || changed) show(page, face);
-    tell(page, face, "history", edit::historyText(session.editor(), face.model.readOnly()));
-    tell(page, face, "probes", edit::probesText(probes_));
+    tell(page, face, "handles", edit::handlesText(face.tool.gizmo()));
+    tell(page, face, "tool", edit::toolText(face.tool.text()));
+    tell(page, face, "history",
+         edit::historyText(session.editor(), face.model.readOnly(), hiding_.count()));
+    showLight(page, face);
   }
 }
 
@@ -93,6 +102,11 @@ EditView Editing::viewOf(uint64_t number) {
   const Page* const page = pages_.find(number);
   const Pilot& pilot = world_.session().viewers().findOrOwn(page ? page->view : 0).pilot;
   return {pilot.camera(), pilot.aspect()};
+}
+
+bool Editing::showsLeadersView(uint64_t number) {
+  const Page* const page = pages_.find(number);
+  return page && page->view == 0;
 }
 
 // Opens the editor of a page. Returns false if that cannot be.
@@ -119,15 +133,30 @@ void Editing::tell(uint64_t page, Face& face, const std::string& type, std::stri
 }
 
 void Editing::show(uint64_t page, Face& face) {
+  // Everything that is shown at once takes less than half of the numbers.
   if (face.numbers.size() > size_t(maxNodeNumbers) / 2) {
     face.numbers.releaseAll(); // everything that is shown gets new ones
     face.told.clear();
   }
   tell(page, face, "rows", edit::rowsText(face.model, face.numbers, face.first, face.count));
   tell(page, face, "sheet", edit::sheetText(face.model.sheet(), face.numbers));
+  tell(page, face, "looks", edit::looksText(face.model.looks()));
+  tell(page, face, "problems", edit::problemsText(face.model.problems(), face.numbers));
   tell(page, face, "frames", edit::framesText(face.model));
   if (const int row = face.model.takeScroll(); row >= 0)
     host_.sendText(page, "", edit::revealText(row));
+}
+
+void Editing::showLight(uint64_t page, Face& face) {
+  const bool isLeaders = showsLeadersView(page);
+  tell(page, face, "probes", edit::probesText(light_.probes()));
+  tell(page, face, "marks", edit::marksText(light_.probes(), viewOf(page)));
+  tell(page, face, "comparison", light_.comparisonText(page, isLeaders));
+  tell(page, face, "progress", edit::progressText(light_.progress(page)));
+  if (!isLeaders) return;
+  const uint64_t cover = light_.cover();
+  if (cover != 0 && std::exchange(face.cover, cover) != cover)
+    host_.sendText(page, "cover", light_.coverText());
 }
 
 // --- The outline and the selection ---
@@ -153,6 +182,46 @@ void Editing::perform(uint64_t page, Face&, const edit::SelectAt& select) {
   selectAt(editor(), viewOf(page), select.place.x, select.place.y, select.group, select.add);
 }
 
+void Editing::perform(uint64_t page, Face&, const edit::SelectIn& select) {
+  selectIn(editor(), viewOf(page),
+           regionBetween(select.from.x, select.from.y, select.to.x, select.to.y), select.add);
+}
+
+void Editing::perform(uint64_t, Face&, const edit::SelectSameLook&) { selectSameLook(editor()); }
+
+void Editing::perform(uint64_t page, Face& face, const edit::AskChoices& ask) {
+  const NodeRef node = nodeOf(face.numbers, ask.node);
+  const PropertySheet& sheet = face.model.sheet();
+  const PropertyRow* const row = sheet.node == node ? sheet.find(ask.field) : nullptr;
+  if (!row) throw EditError("this field is not shown any more");
+  host_.sendText(page, "choices", edit::choicesText(ask.node, *row, face.numbers));
+}
+
+void Editing::perform(uint64_t, Face& face, const edit::ShowProblems& show) {
+  face.model.problems().setOpen(show.open);
+}
+
+// Nodes are hidden for all pages, also for those that do not edit.
+void Editing::perform(uint64_t, Face&, const edit::Hide& hide) {
+  using What = edit::Hide::What;
+  if (hide.what == What::selected)
+    hiding_.hideSelected(editor());
+  else if (hide.what == What::others)
+    hiding_.isolateSelected(editor());
+  else
+    hiding_.showAll(editor());
+}
+
+void Editing::perform(uint64_t number, Face& face, const edit::Frame&) {
+  const Page* const page = pages_.find(number);
+  if (!page || page->role == Page::Role::follower)
+    throw EditError("this page follows: take an own view to move it");
+  Pilot& pilot = world_.session().viewers().findOrOwn(page->view).pilot;
+  pilot.putAt(face.model.cameraAround(editor(), viewOf(number)));
+}
+
+void Editing::perform(uint64_t page, Face&, const edit::Close&) { leave(page); }
+
 // --- Values ---
 
 // While several pages drag, what they change is one step.
@@ -167,6 +236,7 @@ void Editing::perform(uint64_t, Face& face, const edit::Drag& drag) {
   }
   const FieldInfo& field = valueField(*node, drag.field);
   Value value = json::readValue(drag.value, *node, field, {});
+  endTools(); // their steps can be taken back
   if (!std::exchange(face.isDragging, true))
     editor().editor().begin(fmt::format("Set {}.{}", node->type().name, field.name));
   editor().editor().set(*node, field.name, std::move(value));
@@ -176,66 +246,40 @@ void Editing::perform(uint64_t page, Face& face, const edit::EndDrag&) { endDrag
 
 void Editing::endDrag(uint64_t page, Face& face) {
   if (std::exchange(face.isDragging, false)) editor().editor().end();
+  face.tool.accept(editor());
   const std::optional<Face::Parameter> parameter = std::exchange(face.parameter, std::nullopt);
   if (!parameter) return;
   try {
     declareParameter(editor(), parameter->shader, parameter->name, parameter->value);
-  } catch (const std::exception& error) { say(page, error.what(), true); }
+  } catch (const std::exception& error) {
+    say(page, error.what(), true);
+    face.told.erase("sheet");
+  }
 }
 
 void Editing::endDrags() {
   for (auto& [page, face] : faces_) endDrag(page, face);
 }
 
-void Editing::perform(uint64_t, Face& face, const edit::Reset& reset) {
-  const NodeRef node = nodeOf(face.numbers, reset.node);
-  const FieldInfo& field = valueField(*node, reset.field);
-  // A parameter of a shader has the default of its class.
-  const PropertySheet& sheet = face.model.sheet();
-  const PropertyRow* const row = sheet.node == node ? sheet.find(field.name) : nullptr;
-  const Value value = row ? row->defaultValue : field.defaultValue;
-  endDrags();
-  editor().step(fmt::format("Reset {}.{}", node->type().name, field.name),
-                [&] { editor().editor().set(*node, field.name, value); });
+void Editing::endTools() {
+  for (auto& [page, face] : faces_) face.tool.accept(editor());
 }
 
-// --- Nodes ---
+// --- Edits of nodes, tools and light ---
 
-void Editing::perform(uint64_t, Face& face, const json::edits::Step& step) {
+void Editing::perform(uint64_t page, Face& face, const edit::NodeCommand& command) {
   endDrags();
-  MFNode made;
-  editor().step(step.name, [&] {
-    made = json::edits::perform(step, editor(), [&face](const json::NodeName& name) {
-      return namedNode(face.numbers, name);
-    });
-  });
-  std::erase(made, NodeRef());
-  if (!made.empty()) editor().select(std::move(made));
+  server::perform(command, editor(), face.model, face.numbers, viewOf(page));
 }
 
-void Editing::perform(uint64_t page, Face&, const edit::Add& add) {
-  endDrags();
-  if (add.kind == edit::viewpointKind) return addViewpoint(editor(), viewOf(page));
-  const auto kinds = newNodes();
-  const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                 [&](const NewNode& one) { return add.kind == one.name; });
-  if (kind == kinds.end()) throw EditError("there is no such node to be added");
-  vv::add(editor(), *kind);
+void Editing::perform(uint64_t page, Face& face, const edit::ToolCommand& command) {
+  if (std::holds_alternative<edit::BeginTool>(command)) endDrags();
+  face.tool.take(command, editor(), viewOf(page));
 }
 
-void Editing::perform(uint64_t, Face&, const edit::Duplicate&) {
-  endDrags();
-  duplicateSelected(editor());
-}
-
-void Editing::perform(uint64_t, Face&, const edit::Remove&) {
-  endDrags();
-  removeSelected(editor());
-}
-
-void Editing::perform(uint64_t, Face&, const edit::Wrap&) {
-  endDrags();
-  wrapSelected(editor());
+void Editing::perform(uint64_t page, Face&, const edit::LightCommand& command) {
+  if (std::holds_alternative<edit::KeepInWorld>(command)) endDrags(); // it is an edit
+  light_.take(page, viewOf(page), showsLeadersView(page), command);
 }
 
 // --- History and file ---
@@ -254,7 +298,10 @@ void Editing::perform(uint64_t page, Face&, const edit::Save& save) {
   say(page, "saved", false);
 }
 
-void Editing::perform(uint64_t, Face&, const edit::Revert&) { world_.revert(); }
+void Editing::perform(uint64_t, Face&, const edit::Revert&) {
+  endDrags();
+  world_.revert();
+}
 
 void Editing::perform(uint64_t, Face&, const edit::Recover& recover) {
   if (recover.use)
@@ -262,46 +309,5 @@ void Editing::perform(uint64_t, Face&, const edit::Recover& recover) {
   else
     editor().journal().throwLeftAway();
 }
-
-// --- Probes ---
-
-// Reads the probes from the still picture of the world as it is, a few times a second.
-void Editing::readProbes(Session& session, double now) {
-  constexpr double pause = 0.25;
-  if (probes_.all().empty()) return;
-  if (session.captures().isPending()) return; // other channels would cancel its frame
-  const bool outdated = session.viewers().own().isOutdated();
-  if (outdated) probes_.expire();
-  if (outdated || now < probesRead_ + pause) return;
-  session.pictures().wantReadings();
-  const uint64_t finished =
-      session.pictures().isFinished(session.pilot()) ? session.pictures().number() : 0;
-  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting()) return;
-  picture::Picture picture;
-  if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
-  probesRead_ = now;
-  finishedRead_ = finished;
-  probes_.read(session.browser(), picture, {session.pilot().camera(), session.pilot().aspect()});
-}
-
-void Editing::perform(uint64_t page, Face&, const edit::PutProbe& put) {
-  if (probes_.all().size() >= size_t(maxProbes))
-    throw EditError(fmt::format("there are {} probes already (maxProbes)", maxProbes));
-  const EditView view = viewOf(page);
-  const CameraRay ray = rayThrough(view.camera, view.aspect, put.place.x, put.place.y);
-  PickHit hit;
-  if (!editor().browser().pick(ray.origin, ray.direction, {.bothSides = true}, hit))
-    throw EditError("there is nothing here to be measured");
-  probes_.add(hit.point);
-}
-
-void Editing::perform(uint64_t, Face&, const edit::KeepProbes&) {
-  if (editor().browser().hasChanges()) probes_.expire();
-  probes_.keep();
-}
-
-void Editing::perform(uint64_t, Face&, const edit::ClearProbes&) { probes_.clear(); }
-
-void Editing::perform(uint64_t page, Face&, const edit::Close&) { leave(page); }
 
 } // namespace vv::server

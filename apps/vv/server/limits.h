@@ -37,8 +37,10 @@ inline constexpr int maxEditsOfStep = 100;
 inline constexpr int maxRowsShown = 500;
 inline constexpr int maxValueBytes = 32'768;
 inline constexpr int maxSheetBytes = 262'144;
-inline constexpr int maxNodeNumbers = 20'000;
+inline constexpr int maxNodeNumbers = 30'000;
 inline constexpr int maxProbes = 50;
+inline constexpr int maxComparedPixels = 2'097'152;
+inline constexpr int maxProblemsShown = 200;
 
 inline constexpr Limit limits[] = {
     {"maxViewers", maxViewers, "pages that are connected at a time"},
@@ -71,6 +73,8 @@ inline constexpr Limit limits[] = {
     {"maxSheetBytes", maxSheetBytes, "bytes of the fields of a node; further ones are not shown"},
     {"maxNodeNumbers", maxNodeNumbers, "nodes that a page can name; older ones are forgotten"},
     {"maxProbes", maxProbes, "probes of the light"},
+    {"maxComparedPixels", maxComparedPixels, "pixels of a picture whose changes since A are shown"},
+    {"maxProblemsShown", maxProblemsShown, "messages about the world that a page gets"},
 };
 
 } // namespace vv::server

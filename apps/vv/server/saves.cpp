@@ -1,13 +1,11 @@
 #include "server/saves.h"
 
-#include <filesystem>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "libpicture/files/formats.h"
-#include "options/names.h"
 #include "server/limits.h"
 #include "server/texts.h"
 #include "session/saving.h"
@@ -58,9 +56,8 @@ void Saves::makeFile(const SaveQueue::Wish& wish, const picture::Picture& pictur
   ++inMaking_;
   if (Page* const page = pages_.find(wish.page)) page->saving = Page::Saving::file;
   const std::string suffix = wish.format == Message::Format::exr ? "exr" : "png";
-  std::string name =
-      fileNamePart(std::filesystem::path(world_.session().browser().world().path).stem().string());
-  name = fmt::format("{}-{}.{}", name.empty() || name == "-" ? "vv" : name, ++begun_, suffix);
+  const std::string name = downloadName(world_.session().browser().world().path,
+                                        fmt::format("-{}.{}", ++begun_, suffix));
   auto wanted =
       std::make_shared<picture::Picture>(picture::withChannels(picture, options_.render.channels));
   encoder_.post(

@@ -26,7 +26,8 @@ void ServedWorld::reload() {
 }
 
 void ServedWorld::revert() {
-  session_->editor().journal().throwAway();
+  if (session_->browser().world().path == "-")
+    throw xvrml::EditError("standard input cannot be read again");
   isReverted_ = true;
   reload();
 }
@@ -101,7 +102,10 @@ void ServedWorld::begin(std::unique_ptr<xvrml::World> world, const std::string& 
   if (left) fresh->editor().journal().adopt(*left);
   fresh->begin(size.width, size.height, place, fragment);
   callbacks_.onLeave();
-  keepEdits(session_.get());
+  if (isReverted_)
+    session_->editor().journal().throwAway();
+  else
+    keepEdits(session_.get());
   session_ = std::move(fresh); // ends the previous session
   if (options_.serve.edit) session_->editor().journal().look();
   watch_.follow(session_->browser().world());

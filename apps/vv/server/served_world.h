@@ -36,8 +36,11 @@ class ServedWorld {
   void openFirst();
   // Reads the world again, in the background, and keeps the leader's view.
   void reload();
-  // Throws the edits that are not saved away, and reads the world again.
+  // Reads the world again; edits that are not saved are thrown away when that has been done. Throws
+  // xvrml::EditError.
   void revert();
+  // Tells whether this is under way.
+  bool isReverting() const { return isReverted_; }
   // Loads the world with the edits that an earlier program has left. Throws xvrml::EditError.
   void recover();
   // Reloads the world if --watch is given and a file has changed, but not by an edit. now: seconds

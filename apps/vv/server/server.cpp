@@ -142,6 +142,7 @@ class Server {
   double time_ = 0, advanced_ = 0, next_ = 0;
   double lastWatched_ = 0;
   bool hasRested_ = false; // the pictures are freed, and nobody has looked since
+  uint64_t kept_ = 0;      // Editor::changes() when nobody looked last
 
   std::unique_ptr<Host> host_;
   std::unique_ptr<Saves> saves_;
@@ -155,7 +156,7 @@ int Server::run() {
   saves_ = std::make_unique<Saves>(
       options_, pages_, world_, reports_, *host_,
       [this](uint32_t view, const std::string& text) { notify(view, text, 6); });
-  editing_ = std::make_unique<Editing>(pages_, world_, *host_);
+  editing_ = std::make_unique<Editing>(pages_, world_, *host_, arguments_);
   deferInterrupt(true, interruptSeconds);
   writeOut(urlOf(options_.serve, hostOptions_, host_->port()) + "\n");
   if (const std::string url = editUrlOf(hostOptions_, host_->port()); !url.empty())
@@ -404,7 +405,12 @@ void Server::advance(double time) {
   const double passed = time - advanced_;
   advanced_ = time;
   next_ = time + 1 / options_.fps;
-  if (!watched_) return;
+  if (!watched_) { // the world stands still, and its clock, by which edits are kept
+    WorldEditor& editor = world_.session().editor();
+    const uint64_t changes = editor.editor().changes();
+    if (std::exchange(kept_, changes) != changes) editor.journal().keep();
+    return;
+  }
   time_ += steps_ ? passed : 0;
   steps_ = true;
   Session& session = world_.session();

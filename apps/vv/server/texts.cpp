@@ -1,11 +1,13 @@
 #include "server/texts.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "as_json/json_line.h"
 #include "lower_case.h"
+#include "options/names.h"
 #include "report/describe.h"
 #include "session/input/keys.h"
 
@@ -13,12 +15,8 @@ namespace vv::server {
 
 namespace {
 
-using Json = nlohmann::json;
-
-// Texts of worlds need not be UTF-8.
-std::string written(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+using json::Json;
+using json::jsonLine;
 
 std::string_view nameOf(Page::Role role) {
   return role == Page::Role::leader ? "leader" : role == Page::Role::own ? "own" : "follower";
@@ -39,53 +37,58 @@ std::string helloText() {
     if (key.action != Action::quit && key.action != Action::falseColours)
       keys.push_back({key.keys, key.text});
   for (const MouseInfo& one : mouseTable()) mouse.push_back({one.what, one.text});
-  return written({{"type", "hello"}, {"version", version()}, {"keys", keys}, {"mouse", mouse}});
+  return jsonLine({{"type", "hello"}, {"version", version()}, {"keys", keys}, {"mouse", mouse}});
 }
 
 std::string stateText(const PageState& state) {
-  return written({{"type", "state"},
-                  {"world", state.world},
-                  {"role", nameOf(state.role)},
-                  {"pages", state.pages},
-                  {"viewpoint", state.viewpoint},
-                  {"hand", state.hand},
-                  {"bottom", state.bottom},
-                  {"facts", state.facts},
-                  {"keys", state.keys}});
+  return jsonLine({{"type", "state"},
+                   {"world", state.world},
+                   {"role", nameOf(state.role)},
+                   {"pages", state.pages},
+                   {"viewpoint", state.viewpoint},
+                   {"hand", state.hand},
+                   {"bottom", state.bottom},
+                   {"facts", state.facts},
+                   {"keys", state.keys}});
 }
 
 std::string viewpointsText(const std::vector<xvrml::ViewpointName>& viewpoints) {
   Json list = Json::array();
   for (const xvrml::ViewpointName& one : viewpoints) list.push_back(nameOf(one, list.size()));
-  return written({{"type", "viewpoints"}, {"list", list}});
+  return jsonLine({{"type", "viewpoints"}, {"list", list}});
 }
 
 std::string commandText(const std::string& line) {
-  return written({{"type", "command"}, {"text", line}});
+  return jsonLine({{"type", "command"}, {"text", line}});
 }
 
 std::string savedText(const std::string& path, const std::string& name) {
-  return written({{"type", "saved"}, {"path", path}, {"name", name}});
+  return jsonLine({{"type", "saved"}, {"path", path}, {"name", name}});
 }
 
-std::string openText(const std::string& url) { return written({{"type", "open"}, {"url", url}}); }
+std::string openText(const std::string& url) { return jsonLine({{"type", "open"}, {"url", url}}); }
 
 std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, int wanted,
                            std::string_view jpeg) {
   const bool still = facts.purpose == picture::LiveFrame::Purpose::still;
-  const std::string header = written({{"picture", number},
-                                      {"width", facts.width},
-                                      {"height", facts.height},
-                                      {"samples", facts.samples},
-                                      {"wanted", still ? wanted : 0},
-                                      {"preview", facts.preview},
-                                      {"finished", still && facts.finished}});
+  const std::string header = jsonLine({{"picture", number},
+                                       {"width", facts.width},
+                                       {"height", facts.height},
+                                       {"samples", facts.samples},
+                                       {"wanted", still ? wanted : 0},
+                                       {"preview", facts.preview},
+                                       {"finished", still && facts.finished}});
   std::string message;
   message.reserve(4 + header.size() + jpeg.size());
   for (int i = 0; i < 4; ++i) message += char(header.size() >> (8 * i) & 255);
   message += header;
   message += jpeg;
   return message;
+}
+
+std::string downloadName(const std::string& world, const std::string& end) {
+  const std::string name = fileNamePart(std::filesystem::path(world).stem().string());
+  return (name.empty() || name == "-" ? "vv" : name) + end;
 }
 
 std::string webUrlOf(std::span<const std::string> urls) {

@@ -37,6 +37,9 @@ std::string openText(const std::string& url);
 std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, int wanted,
                            std::string_view jpeg);
 
+// Returns the name of a file for pages: that of the world's file without its suffix, and an end.
+std::string downloadName(const std::string& world, const std::string& end);
+
 // Returns the first URL that leads to a page of the web; empty if there is none.
 std::string webUrlOf(std::span<const std::string> urls);
 

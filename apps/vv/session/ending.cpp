@@ -30,7 +30,8 @@ void keepEdits(Session* session) {
 void stopOrExit(Session* session, int code, Others others) {
   constexpr double patience = .5; // seconds
   const bool stopped = !session || session->stop(patience);
-  if (stopped && !WorldLoader::working() && others == Others::rest) return;
+  const bool isReading = WorldLoader::working() || WorldEditor::isReading();
+  if (stopped && !isReading && others == Others::rest) return;
   picture::removeTemporaries();
   std::fflush(nullptr);
   ::_exit(code);

@@ -5,7 +5,7 @@
 #include "libpicture/transport.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
-#include "session/input/keys.h"
+#include "session/input/editor_keys.h"
 
 namespace vv {
 
@@ -108,9 +108,9 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
   return lines;
 }
 
-std::vector<std::string> helpLines() {
+std::vector<std::string> helpLines(bool isEditing) {
   std::vector<std::string> lines;
-  const std::string text = listKeys();
+  const std::string text = isEditing ? listEditorKeys() : listKeys();
   for (std::string_view rest : split(text, '\n'))
     if (!rest.empty()) lines.emplace_back(rest);
   return lines;

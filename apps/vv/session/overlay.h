@@ -16,6 +16,7 @@ enum class OverlayLevel : uint8_t { none, brief, all };
 std::string filterText(const std::string& denoisedBy);
 
 std::vector<std::string> overlayLines(const SessionFacts& facts, bool paused, OverlayLevel level);
-std::vector<std::string> helpLines();
+// Lists the keys of the window, or of its editor.
+std::vector<std::string> helpLines(bool isEditing);
 
 } // namespace vv

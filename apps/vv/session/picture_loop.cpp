@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "libpicture/live/denoise_choice.h"
 #include "libpicture/pixel_reading.h"
@@ -16,11 +15,6 @@ using Purpose = picture::LiveFrame::Purpose;
 // Seconds in which previews still follow each other when nothing moves any more. They are larger
 // and accumulate, so that the still picture begins over a good one.
 constexpr double settlingTime = 0.35;
-
-bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
-  return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy &&
-         a.height == b.height && a.shader == b.shader;
-}
 
 } // namespace
 
@@ -36,7 +30,7 @@ void PictureLoop::resize(int width, int height) {
 // --- Decisions ---
 
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
-  return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
+  return phase_ == Phase::unstarted || fit.isWanted() || pilot.camera() != camera_ ||
          shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
          pilot.exposure() != exposure_ || pilot.falseColour() != falseColour_ ||
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
@@ -127,7 +121,7 @@ void PictureLoop::wantReadings() {
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {
   return isRefining() && still_ == Progress::finished && !shared_.isOutdated(world_) &&
-         equal(pilot.camera(), camera_);
+         pilot.camera() == camera_;
 }
 
 // --- Frames ---

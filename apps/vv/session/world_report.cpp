@@ -59,16 +59,25 @@ Shot shotOf(std::string title, const picture::Picture& picture,
   return shot;
 }
 
-// Encodes the pictures and writes both files. Returns what the user is told. [a thread of its own]
-std::string write(Report report, const std::vector<Shot>& shots, const std::string& world) {
+// Encodes the pictures and writes or delivers both files. Returns what the user is told. [a thread
+// of its own]
+std::string write(Report report, const std::vector<Shot>& shots, const std::string& world,
+                  const WorldReport::Deliver& deliver) {
   try {
     for (const Shot& shot : shots) {
       report.pictures.push_back(shot.text);
       report.pictures.back().png = picture::encodePng(shot.picture);
     }
+    if (deliver) return deliver(reportPage(report), reportTable(report));
     const std::string name = freeReportName(world);
-    picture::writeRegularFile(name + ".html", reportPage(report));
     picture::writeRegularFile(name + ".csv", reportTable(report));
+    try {
+      picture::writeRegularFile(name + ".html", reportPage(report));
+    } catch (...) { // there is a whole report or none
+      std::error_code error;
+      fs::remove(name + ".csv", error);
+      throw;
+    }
     return fmt::format("report saved as {0}.html and {0}.csv", name);
   } catch (const std::bad_alloc&) {
     return "no report: not enough memory";
@@ -80,6 +89,8 @@ std::string write(Report report, const std::vector<Shot>& shots, const std::stri
 struct WorldReport::Work {
   std::string message;
   bool waits = false;             // for the picture
+  bool isDelivered = false;       // there are no files
+  int samples = 0;                // that the picture gets
   std::future<std::string> files; // valid: they are being written
 };
 
@@ -87,8 +98,8 @@ WorldReport::WorldReport() : work_(std::make_shared<Work>()) {}
 WorldReport::~WorldReport() = default;
 
 void WorldReport::begin(Session& session, const Probes& probes, const picture::Picture* before,
-                        const std::vector<std::string>& arguments) {
-  if (work_->waits) return session.captures().giveUp(asker);
+                        const std::vector<std::string>& arguments, Deliver deliver) {
+  if (work_->waits) return giveUp(session);
   if (work_->files.valid()) return;
   WorldEditor& editor = session.editor();
   const xvrml::World& world = session.browser().world();
@@ -104,18 +115,35 @@ void WorldReport::begin(Session& session, const Probes& probes, const picture::P
   std::vector<Shot> shots;
   if (before) shots.push_back(shotOf("Before (A)", *before, falseColour));
   work_->waits = true;
-  work_->message = "the report waits for its picture; Report again gives it up";
+  work_->isDelivered = deliver != nullptr;
+  work_->samples = session.pictures().stillOf(session.pilot()).samples;
   session.capture(0, asker,
                   [work = work_, report, shots, falseColour, command = session.command(arguments),
-                   path = world.path](const picture::Picture* made) mutable {
+                   path = world.path, deliver](const picture::Picture* made) mutable {
                     work->waits = false;
-                    work->message = made ? "" : "no report: its picture was given up";
-                    if (!made) return;
+                    if (!made) {
+                      work->message = "no report: its picture was given up";
+                      if (!work->isDelivered) say("vv: " + work->message);
+                      return;
+                    }
                     shots.push_back(shotOf(shots.empty() ? "The view" : "Now (B)", *made,
                                            falseColour, command));
                     work->files = std::async(std::launch::async, write, std::move(report),
-                                             std::move(shots), path);
+                                             std::move(shots), path, deliver);
                   });
+}
+
+bool WorldReport::isWaiting() const { return work_->waits; }
+
+void WorldReport::giveUp(Session& session) {
+  if (work_->waits) session.captures().giveUp(asker);
+}
+
+std::string WorldReport::progress(Session& session) const {
+  if (work_->waits)
+    return fmt::format("Report: its picture has {:.0f} of {} samples; Escape gives it up",
+                       session.captures().samples(), work_->samples);
+  return work_->files.valid() ? "Report: the files are being written" : "";
 }
 
 void WorldReport::reset() { work_ = std::make_shared<Work>(); }
@@ -124,7 +152,7 @@ std::string WorldReport::takeMessage() {
   if (work_->files.valid() &&
       work_->files.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     work_->message = work_->files.get();
-    say("vv: " + work_->message);
+    if (!work_->isDelivered) say("vv: " + work_->message);
   }
   return std::exchange(work_->message, {});
 }

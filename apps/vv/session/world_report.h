@@ -1,8 +1,9 @@
 // world_report.h: Makes the report of a session: it asks for the true picture of the instant, and
-// writes a page and a table beside the file of the world. Owned by the window. [the browser's
-// thread]
+// writes a page and a table beside the file of the world, or hands them over. Owned by a face of
+// the editor. [the browser's thread]
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,14 +17,24 @@ class WorldReport {
  public:
   WorldReport();
   ~WorldReport(); // Waits for the files.
+  // Takes the page and the table instead of files. Returns what the user is told. [a thread of its
+  // own]
+  using Deliver = std::function<std::string(std::string page, std::string table)>;
+
   // Begins a report, or gives up the one that still waits for its picture. before: a picture that
   // is shown beside it; null: none. arguments: of the command line. [while the world can be used]
   void begin(Session& session, const Probes& probes, const picture::Picture* before,
-             const std::vector<std::string>& arguments);
+             const std::vector<std::string>& arguments, Deliver deliver = {});
+  // Tells whether a report waits for its picture.
+  bool isWaiting() const;
+  // Gives up such a report: no file is written.
+  void giveUp(Session& session);
+  // Returns what it is doing, as a line for the user; "" if there is nothing to do.
+  std::string progress(Session& session) const;
   // Forgets the session, because it ends.
   void reset();
-  // Returns, once, what has become of the report, which is also printed; "" if there is nothing to
-  // say.
+  // Returns, once, what has become of the report, which is also printed if it is in files; "" if
+  // there is nothing to say.
   std::string takeMessage();
 
  private:

@@ -1,10 +1,11 @@
 #include "window/comparison_view.h"
 
-#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
+
+#include "window/parts.h"
 
 namespace vv {
 
@@ -12,6 +13,11 @@ namespace {
 
 constexpr ImU32 lineColour = IM_COL32(255, 170, 40, 220), shadow = IM_COL32(0, 0, 0, 170);
 constexpr float top = 40; // below the overlay
+
+// Returns where the middle of a part of the picture is, in units of the window.
+float middleOf(const FreePart& part) {
+  return float(1 + part.middle()) / 2 * ImGui::GetIO().DisplaySize.x;
+}
 
 // Draws a text in the middle of the picture, or so that it ends or begins at a place.
 void drawLabel(const char* text, float x, float part) {
@@ -35,25 +41,24 @@ void drawWiper(double place) {
 }
 
 // A line of the legend behind a square of its colour.
-void entry(ImU32 colour, const std::string& text) {
+void entry(ImU32 colour, const std::string& text, float width) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float side = ImGui::GetTextLineHeight();
   ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + side, at.y + side), colour);
   ImGui::Dummy(ImVec2(side, side));
   ImGui::SameLine();
-  ImGui::TextUnformatted(text.c_str());
+  drawParts(text, width - side - ImGui::GetStyle().ItemSpacing.x);
 }
 
 std::string changeAt(const ChangePicture& changes, double x, double y) {
-  const int column = std::clamp(int((1 + x) / 2 * changes.width), 0, changes.width - 1),
-            row = std::clamp(int((1 - y) / 2 * changes.height), 0, changes.height - 1);
-  const float change = changes.changes[size_t(row) * size_t(changes.width) + size_t(column)];
+  const float change = changes.at(x, y);
   return change == 0 ? "no significant change" : fmt::format("{:+.3g} cd/m2", change);
 }
 
-void drawLegend(const Comparison& comparison, double x, double y) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(size.x / 2, top), ImGuiCond_Always, ImVec2(.5f, 0));
+void drawLegend(const Comparison& comparison, double x, double y, const FreePart& free) {
+  const float width = float(free.right - free.left) / 2 * ImGui::GetIO().DisplaySize.x -
+                      4 * ImGui::GetStyle().WindowPadding.x;
+  ImGui::SetNextWindowPos(ImVec2(middleOf(free), top), ImGuiCond_Always, ImVec2(.5f, 0));
   if (ImGui::Begin("##difference", nullptr,
                    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoInputs)) {
@@ -63,18 +68,21 @@ void drawLegend(const Comparison& comparison, double x, double y) {
       ImGui::TextUnformatted("waits for a still picture");
     } else {
       entry(IM_COL32(255, 150, 20, 255),
-            changes->most > 0 ? fmt::format("+ brighter, up to {:+.3g} cd/m2", changes->most)
-                              : "+ brighter: none");
+            changes->most > 0 ? fmt::format("+ brighter,  up to {:+.3g} cd/m2", changes->most)
+                              : "+ brighter: none",
+            width);
       entry(IM_COL32(70, 140, 255, 255),
-            changes->least < 0 ? fmt::format("- darker, down to {:+.3g} cd/m2", changes->least)
-                               : "- darker: none");
-      entry(IM_COL32(110, 110, 110, 255), "no significant change (5 %, all pixels together)");
+            changes->least < 0 ? fmt::format("- darker,  down to {:+.3g} cd/m2", changes->least)
+                               : "- darker: none",
+            width);
+      entry(IM_COL32(110, 110, 110, 255), "no significant change  (5 %, all pixels together)",
+            width);
       const size_t pixels = changes->changes.size();
-      ImGui::TextUnformatted(fmt::format("{} of {} pixels have changed; {} are not trusted",
-                                         changes->significant, pixels, pixels - changes->judged)
-                                 .c_str());
-      if (!comparison.isComplete()) ImGui::TextUnformatted("A was kept without all its samples");
-      ImGui::TextUnformatted(("here: " + changeAt(*changes, x, y)).c_str());
+      drawParts(fmt::format("{} of {} pixels have changed;  {} are not trusted",
+                            changes->significant, pixels, pixels - changes->judged),
+                width);
+      if (!comparison.isComplete()) drawParts("A was kept  without all its samples", width);
+      drawParts("here: " + changeAt(*changes, x, y), width);
     }
   }
   ImGui::End();
@@ -82,12 +90,12 @@ void drawLegend(const Comparison& comparison, double x, double y) {
 
 } // namespace
 
-void drawComparison(const Comparison& comparison, double x, double y) {
+void drawComparison(const Comparison& comparison, double x, double y, const FreePart& free) {
   switch (comparison.shown()) {
   case Comparison::Shown::present: break;
-  case Comparison::Shown::a: drawLabel("A", ImGui::GetIO().DisplaySize.x / 2, .5f); break;
+  case Comparison::Shown::a: drawLabel("A", middleOf(free), .5f); break;
   case Comparison::Shown::wiper: drawWiper(comparison.wiper()); break;
-  case Comparison::Shown::difference: drawLegend(comparison, x, y); break;
+  case Comparison::Shown::difference: drawLegend(comparison, x, y, free); break;
   }
 }
 

@@ -8,8 +8,8 @@
 
 namespace vv {
 
-// x, y: where the pointer is in the picture.
-void drawComparison(const Comparison& comparison, double x, double y);
+// x, y: where the pointer is in the picture. free: the part that texts may stand in.
+void drawComparison(const Comparison& comparison, double x, double y, const FreePart& free);
 // text: stands at the left upper corner.
 void drawRectangle(const Region& region, const char* text);
 

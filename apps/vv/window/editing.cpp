@@ -1,10 +1,12 @@
 #include "window/editing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "edit/import.h"
 #include "window/comparison_view.h"
 #include "window/gizmo_view.h"
 #include "window/window.h"
@@ -19,33 +21,26 @@ namespace {
 constexpr double clickDistance = 0.012;
 // How far the pointer may be from the line of the wiper, in halves of the picture's width.
 constexpr double wiperReach = 0.02;
-struct SurfaceSeen {
-  CameraRay ray;
-  PickHit hit;
-};
-// Returns what the pointer is at. inside: it is over the picture. Throws EditError.
-SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, const InputEvent& at,
-                      bool inside) {
-  if (!inside) throw EditError("put the pointer where the light is to be measured");
-  SurfaceSeen seen{rayThrough(view.camera, view.aspect, at.x, at.y), {}};
-  if (!editor.browser().pick(seen.ray.origin, seen.ray.direction, {.bothSides = true}, seen.hit))
-    throw EditError("there is nothing here to be measured");
-  return seen;
+void needPicture(bool isOverPicture) {
+  if (!isOverPicture) throw EditError("put the pointer where the light is to be measured");
 }
 constexpr const char* kindNames[] = {"move", "turn", "scale"};
+constexpr int framesToOpen = 3; // until a menu gets the keys
 
 } // namespace
 
 void Editing::open(bool open) {
   if (open && editorLibrary().empty()) {
-    message_ = "vv was built without the editor: build with Dear ImGui (Debian: libimgui-dev)";
+    say("vv was built without the editor: build with Dear ImGui (Debian: libimgui-dev)");
     return;
   }
   if (open && !model_) {
     model_.emplace();
-    panels_.emplace(*model_, probes_, [this] { save(); });
+    panels_.emplace(*model_, probes_, library_, [this] { save(); });
+    library_.refresh();
   }
   if (hasTool_) endTool(false);
+  if (measures_ || drag_ == Drag::measure) show("");
   isOpen_ = open;
   pressed_.reset();
   drag_ = Drag::none;
@@ -54,6 +49,7 @@ void Editing::open(bool open) {
     screen_.setGui([this] { draw(); });
   } else {
     screen_.setGui(nullptr);
+    screen_.setFree({});
     if (comparison_.shown() != Comparison::Shown::present) comparison_.toggle(comparison_.shown());
     showCover();
     if (model_) model_->setActive(false);
@@ -66,11 +62,12 @@ void Editing::reset() {
   tool_.reset();
   panels_.reset();
   model_.reset();
-  probes_.clear();
-  comparison_.clear();
+  light_.clear();
   showCover();
   gizmo_.clear();
   report_.reset();
+  progress_.clear();
+  givesUpReport_ = false;
   if (isOpen_) open(true);
 }
 
@@ -79,17 +76,19 @@ void Editing::draw() {
   const InputEvent& at = drag_ == Drag::handle && pressed_ ? *pressed_ : pointer_;
   const int pointed = isOverPicture_ && !hasTool_ ? gizmo_.axisAt(at.x, at.y) : -1;
   drawGizmo(gizmo_, isUsed ? tool_->axis() : pointed);
-  drawComparison(comparison_, pointer_.x, pointer_.y);
+  drawComparison(comparison_, pointer_.x, pointer_.y, panels_->freePart());
   if (pressed_ && (drag_ == Drag::measure || drag_ == Drag::select))
     drawRectangle(regionBetween(pressed_->x, pressed_->y, pointer_.x, pointer_.y), "");
   panels_->draw();
+  screen_.setFree(panels_->freePart());
   questions_.draw();
 }
 
-std::string Editing::takeMessage() {
-  if (std::string text = report_.takeMessage(); !text.empty()) return text;
-  if (!message_.empty() || !model_) return std::exchange(message_, {});
-  return model_->takeMessage();
+std::optional<EditingMessage> Editing::takeMessage() {
+  if (std::string text = report_.takeMessage(); !text.empty()) say(std::move(text));
+  if (!message_ && model_)
+    if (std::string text = model_->takeMessage(); !text.empty()) say(std::move(text));
+  return std::exchange(message_, std::nullopt);
 }
 
 bool Editing::take(InputEvent& event) {
@@ -99,6 +98,10 @@ bool Editing::take(InputEvent& event) {
   if (event.kind == Kind::move || event.kind == Kind::leave)
     isOverPicture_ = event.kind == Kind::move;
   if (!isOpen_) return false;
+  if (event.kind == Kind::open) {
+    model_->edit([file = event.text](WorldEditor& editor) { importFile(editor, file); });
+    return true;
+  }
   if (hasTool_ && takeForTool(event)) return true;
   switch (event.kind) {
   case Kind::press:
@@ -113,6 +116,7 @@ bool Editing::take(InputEvent& event) {
     if (drag_ != Drag::none) follow(event);
     return drag_ != Drag::none;
   case Kind::leave:
+    if (drag_ == Drag::measure) show("");
     if (drag_ != Drag::tool) drag_ = Drag::none;
     return false;
   case Kind::release: return event.button == Button::left && endDrag(event);
@@ -161,8 +165,9 @@ bool Editing::endDrag(const InputEvent& release) {
         selectIn(editor, view, region, add);
     });
     pressed_.reset();
+    if (drag == Drag::measure) show("");
   } else if (drag == Drag::measure) {
-    message_ = "drag from one corner of the rectangle to the other";
+    say("drag from one corner of the rectangle to the other");
   } else if (drag != Drag::wiper && drag != Drag::tool) {
     click(release);
   }
@@ -194,29 +199,38 @@ bool Editing::press(const InputEvent& event) {
   }
   const bool measures = !event.control && !event.alt && (key == "V" || key == "U");
   if (measures && !hasLight_) {
-    message_ = "--colour vrml97 makes colours for screens, not light";
+    say("--colour vrml97 makes colours for screens, not light");
     return true;
   }
   if (measures && event.shift && key == "V") {
     measures_ = true;
-    message_ = "drag a rectangle over what is to be measured (Escape: none)";
+    show("drag a rectangle over what is to be measured (Escape: none)");
     return true;
   }
   if (measures && key == "V")
     return request(
         [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          probes_.add(surfaceAt(editor, view, at, inside).hit.point);
+          needPicture(inside);
+          light_.addProbe(editor, view, at.x, at.y);
         });
   if (measures && !event.shift)
     return request(
         [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          const auto [ray, hit] = surfaceAt(editor, view, at, inside);
-          probes_.addSensor(picture::sensorAt(hit.point.data(), hit.normal.data(), ray.direction));
+          needPicture(inside);
+          light_.addSensor(editor, view, at.x, at.y);
         });
   if (pressForComparison(event)) return true;
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
   if (event.control && key == "G") return request(wrapSelected);
   if (event.control || event.alt) return false;
+  if (event.shift && key == "A") {
+    panels_->openAddMenu();
+    for (int frame = 0; frame < framesToOpen; ++frame) {
+      screen_.redraw();
+      screen_.present();
+    }
+    return true;
+  }
   if (event.shift) return key == "D" && request(duplicateSelected);
   if (key == "X" || key == "Delete") return request(removeSelected);
   if (key == ".") return wantsFrame_ = true;
@@ -225,14 +239,16 @@ bool Editing::press(const InputEvent& event) {
   if (key == "S") return beginTool(TransformTool::Kind::scale, -1, pointer_);
   if (key == "T") {
     gizmo_.cycle();
-    message_ = fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none");
+    say(fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none"));
     return true;
   }
   if (key == "Escape" && (measures_ || drag_ == Drag::measure || drag_ == Drag::select)) {
     measures_ = false;
     pressed_.reset();
+    show("");
     return true;
   }
+  if (key == "Escape" && report_.isWaiting()) return givesUpReport_ = true;
   if (key == "Escape")
     return request([this](WorldEditor& editor) {
       if (comparison_.shown() != Comparison::Shown::present)
@@ -250,7 +266,7 @@ bool Editing::pressForComparison(const InputEvent& event) {
   using Shown = Comparison::Shown;
   if (event.control || event.alt || event.shift) return false;
   if (event.text == "B") {
-    model_->request([this](WorldEditor& editor) { keepLight(editor); });
+    model_->request([this](WorldEditor& editor) { light_.keep(editor, view_); });
     return true;
   }
   const Shown wanted = event.text == "\\"  ? Shown::a
@@ -279,7 +295,7 @@ void Editing::useTool(std::function<void(TransformTool& tool, WorldEditor& edito
   model_->request([this, use = std::move(use)](WorldEditor& editor) {
     if (!tool_) return;
     use(*tool_, editor);
-    message_ = tool_->text();
+    show(tool_->text());
   });
 }
 
@@ -289,6 +305,7 @@ void Editing::endTool(bool accept) {
     if (!tool_) return;
     accept ? tool_->accept(editor) : tool_->cancel(editor);
     tool_.reset();
+    show("");
   });
 }
 
@@ -317,7 +334,7 @@ bool Editing::takeForTool(const InputEvent& event) {
     if (hasToolFailed_ && (event.control || !(isAxis || TransformTool::isNumberKey(key))))
       return hasTool_ = false;
     if ((event.control || event.alt) && !key.ends_with("Ctrl") && !key.ends_with("Alt")) {
-      message_ = "end this first: Enter keeps it, Escape takes it back";
+      say("end this first: Enter keeps it, Escape takes it back");
       return true;
     }
     if (key == "Return" || key == "Keypad Enter" || key == "Escape") {
@@ -340,24 +357,46 @@ bool Editing::takeForTool(const InputEvent& event) {
 void Editing::update(Session& session, double seconds) {
   if (!model_ || (!isOpen_ && !model_->hasRequests())) return;
   if (isOpen_) offerLeft(session.editor());
-  view_ = {session.pilot().camera(), session.pilot().aspect()};
+  view_ = viewOf(session);
   hasLight_ = session.pilot().hasLight();
   panels_->setView(view_);
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
+  drawBalls(session);
   if (std::exchange(wantsFrame_, false))
-    session.pilot().putAt(model_->cameraAround(session.editor(), view_));
+    session.pilot().putAt(model_->cameraAround(session.editor(), view_, panels_->freePart()));
   if (!model_->readOnly().empty())
     gizmo_.clear();
-  else if (gizmo_.place(session.editor(), view_))
+  else if (gizmo_.place(session.editor(), view_, panels_->freePart()))
     screen_.redraw();
-  if (probes_.takeKeep()) keepLight(session.editor());
-  compare(session);
-  readStill(session, seconds);
-  readSensors(session, seconds);
-  if (std::string text = comparison_.takeMessage(); !text.empty()) message_ = std::move(text);
+  if (probes_.takeKeep()) light_.keep(session.editor(), view_);
+  if (light_.update(session, seconds)) screen_.redraw();
+  // Below a panel the line could not be dragged.
+  const FreePart& free = panels_->freePart();
+  comparison_.setWiper(std::clamp(comparison_.wiper(), free.left, free.right));
+  if (std::string text = light_.takeMessage(); !text.empty()) say(std::move(text));
   showCover();
+  followReport(session);
+}
+
+// Begins a report or gives it up, and shows how far it is.
+void Editing::followReport(Session& session) {
   if (panels_->takeReportWish()) report_.begin(session, probes_, comparison_.a(), arguments_);
+  if (std::exchange(givesUpReport_, false)) report_.giveUp(session);
+  std::string progress = report_.progress(session);
+  if (progress == progress_) return;
+  progress_ = progress;
+  if (!progress.empty()) show(std::move(progress)); // the outcome follows
+}
+
+// Lets the looks of the library be drawn while the picture needs nobody, or the user waits for
+// them.
+void Editing::drawBalls(Session& session) {
+  const bool isStill = session.pictures().isRefining() && !session.viewers().own().isOutdated();
+  const bool mayRender =
+      isOpen_ && isStill && !model_->looks().empty() &&
+      (panels_->isChoosingLook() || session.pictures().isFinished(session.pilot()));
+  if (library_.advance(model_->looks(), session.editor().shaderPath(), mayRender)) screen_.redraw();
 }
 
 void Editing::showCover() {
@@ -365,75 +404,6 @@ void Editing::showCover() {
   if (std::exchange(cover_, cover.number) != cover.number)
     screen_.setCover(cover.width, cover.height, cover.rgb);
   screen_.setCoverPart(comparison_.coverPart());
-}
-
-// Keeps the light of the probes, and the next still picture.
-void Editing::keepLight(WorldEditor& editor) {
-  if (editor.browser().hasChanges()) {
-    probes_.expire();
-    probes_.expireSensors();
-  }
-  probes_.keep();
-  comparison_.ask(editor.editor().changes(), view_);
-}
-
-void Editing::compare(Session& session) {
-  const PictureLoop& pictures = session.pictures();
-  comparison_.follow(view_, pictures.width(), pictures.height(),
-                     {pictures.transformOf(session.pilot()), pictures.facts().scaleEnd},
-                     session.viewers().own().isOutdated());
-}
-
-// Reads the probes and what is compared from the still picture of the world as it is, a few times a
-// second.
-void Editing::readStill(Session& session, double seconds) {
-  // Comparing all pixels takes up to a quarter of a second for a window of 600,000.
-  const double interval = comparison_.shown() == Comparison::Shown::difference ? 1 : 0.25;
-  const bool isCompared =
-      comparison_.wantsPicture() || comparison_.shown() == Comparison::Shown::difference;
-  if (!probes_.readPictures() && !isCompared && !comparison_.isRefined(session.pictures().number()))
-    return;
-  if (session.captures().isPending()) return; // other channels would cancel its frame
-  const bool outdated = session.viewers().own().isOutdated();
-  if (outdated) probes_.expire();
-  if (outdated || seconds < stillRead_ + interval) return;
-  session.pictures().wantReadings();
-  const uint64_t number = session.pictures().number();
-  const uint64_t finished = session.pictures().isFinished(session.pilot()) ? number : 0;
-  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting() &&
-      !comparison_.wantsPicture())
-    return;
-  picture::Picture picture;
-  if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
-  stillRead_ = seconds;
-  finishedRead_ = finished;
-  probes_.read(session.browser(), picture, view_);
-  if (comparison_.take(picture, number, session.editor().editor().changes(), view_, finished != 0))
-    probes_.keep();
-  screen_.redraw();
-}
-
-// Reads the probes of illuminance when the previews have ended. The still picture begins anew then.
-void Editing::readSensors(Session& session, double seconds) {
-  constexpr double patience = 2; // seconds after a failure
-  Measuring& measuring = session.measuring();
-  if (measuring.isOutdated()) probes_.expireSensors();
-  if (!session.pictures().isRefining() || session.viewers().own().isOutdated() ||
-      measuring.isPending() || seconds < nextSensors_)
-    return;
-  const std::vector<picture::PlacedSensor> sensors = probes_.waitingSensors();
-  if (sensors.empty()) return;
-  measuring.want({.view = session.pictures().stillOf(session.pilot()).view,
-                  .sensors = sensors,
-                  .samples = measuring.samples()},
-                 [this, seconds](const picture::LiveReadings& read) {
-                   if (!read.failure.empty()) {
-                     message_ = "not measured: " + read.failure;
-                     nextSensors_ = seconds + patience;
-                   }
-                   probes_.take(read.sensors);
-                   screen_.redraw();
-                 });
 }
 
 } // namespace vv

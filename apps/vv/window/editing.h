@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "edit/comparison.h"
 #include "edit/edit_model.h"
 #include "edit/gizmo.h"
 #include "edit/transform_tool.h"
+#include "session/light_reader.h"
 #include "session/session.h"
 #include "session/world_loader.h"
 #include "session/world_report.h"
@@ -20,6 +20,13 @@
 #include "window/screen.h"
 
 namespace vv {
+
+// The bottom of the window shows such a message. lasts: until it says something else, instead of
+// some seconds; an empty text ends what has been said.
+struct EditingMessage {
+  std::string text;
+  bool lasts = false;
+};
 
 class Editing {
  public:
@@ -49,7 +56,7 @@ class Editing {
   // Forgets the world, because another takes its place.
   void reset();
   // Returns, once, what is to be said to the user.
-  std::string takeMessage();
+  std::optional<EditingMessage> takeMessage();
 
  private:
   // A drag of the left button that is not the session's: of the line of the wiper, of a rectangle
@@ -57,6 +64,9 @@ class Editing {
   enum class Drag : uint8_t { none, wiper, measure, select, handle, tool };
 
   void draw();
+  void say(std::string text) { message_ = {std::move(text), false}; }
+  // Shows a text until it is ended by an empty one.
+  void show(std::string text) { message_ = {std::move(text), true}; }
   void ask(Question question);
   // Saves the file, or asks first if somebody else has changed it.
   void save();
@@ -75,28 +85,25 @@ class Editing {
   bool beginTool(TransformTool::Kind kind, int axis, const InputEvent& at);
   void useTool(std::function<void(TransformTool& tool, WorldEditor& editor)> use);
   void endTool(bool accept);
+  void drawBalls(Session& session);
   bool takeForTool(const InputEvent& event);
-  void keepLight(WorldEditor& editor);
-  void compare(Session& session);
   void showCover();
-  void readStill(Session& session, double seconds);
-  void readSensors(Session& session, double seconds);
+  void followReport(Session& session);
 
   Screen& screen_;
   Questions& questions_;
   const std::vector<std::string>& arguments_;
   const std::function<void(LoadRequest)> recover_;
   WorldReport report_;
+  LookLibrary library_;
   bool isOpen_ = false;
   bool hasOffered_ = false;        // what an earlier session has left, if there is anything
   std::optional<EditModel> model_; // one for each world
-  Probes probes_;
-  Comparison comparison_;
+  LightReader light_;
+  Probes& probes_ = light_.probes();
+  Comparison& comparison_ = light_.comparison();
   Gizmo gizmo_;
-  double stillRead_ = 0;      // when
-  double nextSensors_ = 0;    // when sensors are read again, after a failure
-  uint64_t finishedRead_ = 0; // the number of the finished frame that was read
-  uint64_t cover_ = 0;        // the number of the comparison's cover that the screen shows
+  uint64_t cover_ = 0; // the number of the comparison's cover that the screen shows
   std::optional<EditorPanels> panels_;
   EditView view_;
   std::optional<InputEvent> pressed_; // the left button is held down since then
@@ -110,7 +117,9 @@ class Editing {
   std::optional<TransformTool> tool_;
   bool hasLight_ = true;    // pictures have light that can be measured
   bool wantsFrame_ = false; // the viewer is to see what is selected
-  std::string message_;
+  bool givesUpReport_ = false;
+  std::string progress_; // what is shown of the report
+  std::optional<EditingMessage> message_;
 };
 
 } // namespace vv

@@ -11,7 +11,8 @@
 
 namespace vv {
 
-// While the editor is open, an event before this one may be an edit that is still to be done.
+// While the editor is open, an event before this one may be an edit that is still to be done. The
+// menu of what can be added gets the keys behind its own.
 bool Editing::mayAsk(WorldEditor& editor, const InputEvent& event) const {
   using Kind = InputEvent::Kind;
   const Action action = event.kind == Kind::down ? actionOf(event) : Action::none;
@@ -23,7 +24,7 @@ bool Editing::mayAsk(WorldEditor& editor, const InputEvent& event) const {
   case Kind::release: return event.alt || !isOpen_; // it may work an Anchor
   case Kind::down:
     return action == Action::quit || action == Action::reload ||
-           (event.control && event.text == "S");
+           (event.control && event.text == "S") || (event.shift && event.text == "A");
   default: return false;
   }
 }

@@ -6,8 +6,11 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "edit/import.h"
+#include "edit/kept_probes.h"
 #include "printable.h"
 #include "window/comparison_view.h"
+#include "window/parts.h"
 #include "window/property_widgets.h"
 
 namespace vv {
@@ -55,14 +58,33 @@ bool toolButton(const char* label, bool active, const std::string& hint) {
   return button(label, active, hint);
 }
 
+// Returns the nodes that are offered only when a text filters the menu: all other types that can
+// stand in a group, or be the geometry of a Shape.
+const std::vector<NewNode>& otherNodes() {
+  static const std::vector<NewNode> others = [] {
+    std::vector<NewNode> nodes;
+    const auto isShort = [](const std::string& name) {
+      return std::any_of(newNodes().begin(), newNodes().end(),
+                         [&](const NewNode& one) { return one.name == name; });
+    };
+    for (const NodeType* type : nodeTypes())
+      if (!isShort(type->name) && (type->is("child") || type->is("geometry")))
+        nodes.push_back({type->name.c_str(), type->is("geometry")});
+    return nodes;
+  }();
+  return others;
+}
+
 } // namespace
 
 void EditorPanels::draw() {
   drawFrames();
   drawOutline();
   drawSheet();
+  const auto width = double(ImGui::GetIO().DisplaySize.x);
+  free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
   drawProbes();
-  drawProblems(model_);
+  drawProblems(model_, free_);
   model_.setActive(ImGui::IsAnyItemActive());
 }
 
@@ -82,7 +104,10 @@ void EditorPanels::drawTools() {
   if (toolButton("Redo", !model_.redoName().empty(), "Redo " + model_.redoName() + " (Ctrl+Y)"))
     model_.edit([](WorldEditor& editor) { editor.redo(); });
   if (toolButton("Save", model_.hasUnsaved(), "Save the file in place (Ctrl+S)")) save_();
-  if (toolButton("Add", writable, "Add a node to the selected group, or behind the selected node"))
+  const bool adds = std::exchange(opensAdd_, false) && writable;
+  if (toolButton("Add", writable,
+                 "Add a node to the selected group, or behind the selected node (Shift+A)") ||
+      adds)
     ImGui::OpenPopup("##new");
   if (toolButton("Copy", any, "Duplicate what is selected (Shift+D)"))
     model_.edit(duplicateSelected);
@@ -93,20 +118,48 @@ void EditorPanels::drawTools() {
     ImGui::OpenPopup("##view");
   ImGui::NewLine();
   drawReports();
-  if (ImGui::BeginPopup("##new")) {
-    closeOnEscape();
-    for (const NewNode& one : newNodes())
-      if (ImGui::Selectable(one.name))
-        model_.edit([&one](WorldEditor& editor) { add(editor, one); });
-    if (ImGui::Selectable("Viewpoint from here"))
-      model_.edit([view = view_](WorldEditor& editor) { addViewpoint(editor, view); });
-    ImGui::EndPopup();
+  drawAddMenu();
+  drawFileQuestion();
+  if (Menu menu; menu.begin("##view")) {
+    drawViewItems(menu);
+    if (menu.item("Show sensors as probes"))
+      model_.request([&probes = probes_](WorldEditor& editor) { showSensors(editor, probes); });
+    menu.end();
   }
-  if (ImGui::BeginPopup("##view")) {
-    closeOnEscape();
-    drawViewItems();
-    ImGui::EndPopup();
+}
+
+void EditorPanels::drawAddMenu() {
+  Menu menu;
+  if (!menu.begin("##new")) return;
+  menu.beginFilter();
+  const auto item = [&](const NewNode& one) {
+    if (menu.item(one.name)) model_.edit([one](WorldEditor& editor) { add(editor, one); });
+  };
+  for (const NewNode& one : newNodes()) item(one);
+  if (menu.item("Viewpoint from here"))
+    model_.edit([view = view_](WorldEditor& editor) { addViewpoint(editor, view); });
+  opensFile_ |= menu.item("Inline from a file ...", "Put another world, or a mesh, into this one");
+  if (Menu::isFiltered())
+    for (const NewNode& one : otherNodes()) item(one);
+  menu.end();
+}
+
+void EditorPanels::drawFileQuestion() {
+  if (std::exchange(opensFile_, false)) ImGui::OpenPopup("##file");
+  if (!ImGui::BeginPopup("##file")) return;
+  closeOnEscape();
+  ImGui::TextUnformatted("File of a world or a mesh; a relative path counts from this world's");
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(std::min(340.f, ImGui::GetIO().DisplaySize.x / 2));
+  bool isGiven = ImGui::InputTextWithHint("##path", "or drop it on the window", &path_,
+                                          ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::SameLine();
+  isGiven |= ImGui::Button("Import");
+  if (isGiven && !path_.empty()) {
+    model_.edit([path = path_](WorldEditor& editor) { importFile(editor, path); });
+    ImGui::CloseCurrentPopup();
   }
+  ImGui::EndPopup();
 }
 
 void EditorPanels::drawReports() {
@@ -125,7 +178,10 @@ void EditorPanels::drawOutline() {
   if (ImGui::Begin("##outline", nullptr, panelFlags)) {
     watchWidth(outlineWidth_, widths_.outline);
     drawTools();
-    if (!model_.readOnly().empty()) ImGui::TextWrapped("%s", model_.readOnly().c_str());
+    if (!model_.readOnly().empty())
+      ImGui::TextWrapped("%s", model_.readOnly().c_str());
+    else if (!model_.unwritable().empty())
+      ImGui::TextWrapped("%s", model_.unwritable().c_str());
     if (model_.hiddenCount() > 0)
       ImGui::TextWrapped("%zu nodes are hidden: View, Show all", model_.hiddenCount());
     ImGui::SetNextItemWidth(-1);
@@ -172,11 +228,11 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
 }
 
 // Draws the items of a menu that change what is seen and selected, and not the file.
-void EditorPanels::drawViewItems() {
-  if (ImGui::MenuItem("Hide")) model_.hideSelected();
-  if (ImGui::MenuItem("Show only this")) model_.isolateSelected();
-  if (ImGui::MenuItem("Show all", nullptr, false, model_.hiddenCount() > 0)) model_.showAll();
-  if (ImGui::MenuItem("Select all with this look")) model_.request(selectSameLook);
+void EditorPanels::drawViewItems(Menu& menu) {
+  if (menu.item("Hide")) model_.hideSelected();
+  if (menu.item("Show only this")) model_.isolateSelected();
+  if (menu.item("Show all", "", model_.hiddenCount() > 0)) model_.showAll();
+  if (menu.item("Select all with this look")) model_.request(selectSameLook);
 }
 
 // Keeps the width of the present panel when the user has dragged its edge. A smaller window makes
@@ -193,25 +249,24 @@ void EditorPanels::watchWidth(float& drawn, float& chosen) {
 
 void EditorPanels::drawRowMenu() {
   if (std::exchange(opensMenu_, false)) ImGui::OpenPopup("##row");
-  if (!ImGui::BeginPopup("##row")) return;
-  closeOnEscape();
-  drawViewItems();
+  Menu menu;
+  if (!menu.begin("##row")) return;
+  drawViewItems(menu);
   ImGui::Separator();
-  ImGui::BeginDisabled(!model_.readOnly().empty());
-  const auto item = [this](const char* label, void (*edit)(WorldEditor&, const PlacedNode&)) {
-    if (ImGui::MenuItem(label))
+  const auto item = [&](const char* label, void (*edit)(WorldEditor&, const PlacedNode&)) {
+    if (menu.item(label, "", model_.readOnly().empty()))
       model_.edit([edit, place = menuRow_.place](WorldEditor& editor) { edit(editor, place); });
   };
   item("Move up", [](WorldEditor& editor, const PlacedNode& place) { moveBy(editor, place, -1); });
   item("Move down", [](WorldEditor& editor, const PlacedNode& place) { moveBy(editor, place, 1); });
   item("Make this one separate", separateAt);
   item("Remove from here", removeAt);
-  ImGui::EndDisabled();
-  ImGui::EndPopup();
+  menu.end();
 }
 
 void EditorPanels::drawSheet() {
   placePanel(Edge::right, widths_.sheet, 0.3f);
+  isChoosingLook_ = false;
   if (ImGui::Begin("##sheet", nullptr, panelFlags)) {
     watchWidth(sheetWidth_, widths_.sheet);
     PropertySheet& sheet = model_.sheet();
@@ -223,7 +278,7 @@ void EditorPanels::drawSheet() {
       if (!sheet.note.empty()) ImGui::TextWrapped("%s", printable(sheet.note).c_str());
       ImGui::Separator();
       ImGui::BeginDisabled(!model_.readOnly().empty());
-      if (sheet.hasLook) drawLook(model_, sheet);
+      if (sheet.hasLook) isChoosingLook_ = drawLook(model_, library_, thumbnails_);
       for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row);
       ImGui::EndDisabled();
       ImGui::PopID();
@@ -237,7 +292,7 @@ void EditorPanels::drawProbes() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   for (const Probe& probe : probes_.all()) {
-    if (probe.area && areEqual(probe.area->view, view_))
+    if (probe.area && probe.area->view == view_)
       drawRectangle(probe.area->region, std::to_string(probe.number).c_str());
     if (probe.area) continue;
     double x = 0, y = 0;
@@ -247,22 +302,26 @@ void EditorPanels::drawProbes() {
     list.AddText(ImVec2(at.x + 6, at.y - 8), frameColour, std::to_string(probe.number).c_str());
   }
   // Between the panels.
-  const float width = 0.42f * size.x;
-  ImGui::SetNextWindowPos(ImVec2(0.27f * size.x, size.y - 30), ImGuiCond_Always, ImVec2(0, 1));
+  constexpr float margin = 6;
+  const float left = float(1 + free_.left) / 2 * size.x + margin,
+              width = float(free_.right - free_.left) / 2 * size.x - 2 * margin;
+  ImGui::SetNextWindowPos(ImVec2(left, size.y - 30), ImGuiCond_Always, ImVec2(0, 1));
   if (ImGui::Begin("Probes", nullptr,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
-    ImGui::PushTextWrapPos(width);
+    const float inside = width - 2 * ImGui::GetStyle().WindowPadding.x;
     const std::vector<std::optional<Difference>> changes = probes_.differences();
     for (size_t i = 0; i < changes.size(); ++i) {
       const std::string text = probeText(probes_.all()[i], changes[i]);
       const bool certain = changes[i] && changes[i]->isSignificant;
+      ImGui::BeginGroup();
       ImGui::PushStyleColor(
           ImGuiCol_Text,
           ImGui::GetStyleColorVec4(!changes[i] || certain ? ImGuiCol_Text : ImGuiCol_TextDisabled));
-      ImGui::TextUnformatted(text.c_str());
+      drawParts(text, inside);
       ImGui::PopStyleColor();
+      ImGui::EndGroup();
+      drawProbeMenu(probes_.all()[i]);
     }
-    ImGui::PopTextWrapPos();
     if (button("Keep as A", true, "Compare what follows with the light of now (B)"))
       probes_.askToKeep();
     if (button("Copy", true, "Copy all as a table (CSV)"))
@@ -271,6 +330,19 @@ void EditorPanels::drawProbes() {
     ImGui::NewLine();
   }
   ImGui::End();
+}
+
+// Draws the menu of a probe, whose line is the last item.
+void EditorPanels::drawProbeMenu(const Probe& probe) {
+  hint(canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "");
+  ImGui::PushID(probe.number);
+  if (Menu menu; menu.beginContext("##probe")) {
+    if (menu.item("Keep in the world", "Add an ORTSensor that reads the same",
+                  canBeKept(probe) && model_.readOnly().empty()))
+      model_.edit([probe, view = view_](WorldEditor& editor) { keepInWorld(editor, probe, view); });
+    menu.end();
+  }
+  ImGui::PopID();
 }
 
 } // namespace vv

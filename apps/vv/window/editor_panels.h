@@ -9,50 +9,66 @@
 
 #include "edit/actions.h"
 #include "edit/edit_model.h"
+#include "edit/look_library.h"
 #include "edit/probes.h"
+#include "window/menu.h"
 #include "window/panel_state.h"
+#include "window/thumbnails.h"
 
 namespace vv {
 
 class EditorPanels {
  public:
   // save: saves the file.
-  EditorPanels(EditModel& model, Probes& probes, std::function<void()> save)
-      : model_(model), probes_(probes), save_(std::move(save)) {}
+  EditorPanels(EditModel& model, Probes& probes, LookLibrary& library, std::function<void()> save)
+      : model_(model), probes_(probes), library_(library), save_(std::move(save)) {}
 
   void draw();
   // Where the viewer stands, for a new Viewpoint.
   void setView(const EditView& view) { view_ = view; }
+  // The part of the picture between the panels, as they were drawn last.
+  const FreePart& freePart() const { return free_; }
   // Tells, once, whether the user has asked for a report.
   bool takeReportWish() { return std::exchange(wantsReport_, false); }
+  // Opens the menu of what can be added.
+  void openAddMenu() { opensAdd_ = true; }
+  // Tells whether the user is choosing a look.
+  bool isChoosingLook() const { return isChoosingLook_; }
 
  private:
   void drawOutline();
   void drawTools();
   void drawReports();
+  void drawAddMenu();
+  void drawFileQuestion();
   void drawRow(const OutlineRow& row, int number);
-  void drawViewItems();
+  void drawViewItems(Menu& menu);
   void drawRowMenu();
   void watchWidth(float& drawn, float& chosen);
   void drawSheet();
   void drawFrames() const;
   void drawProbes();
+  void drawProbeMenu(const Probe& probe);
 
   PanelWidths widths_ = readPanelWidths(panelStateFile()); // what the user has chosen
   float outlineWidth_ = 0, sheetWidth_ = 0;                // as the panels were drawn last
   bool isResized_ = false;                                 // the user drags the edge of a panel
-  OutlineRow menuRow_;                                     // the row that the menu is about
+  FreePart free_;
+  OutlineRow menuRow_; // the row that the menu is about
   bool opensMenu_ = false;
 
   EditModel& model_;
   Probes& probes_;
+  LookLibrary& library_;
+  Thumbnails thumbnails_;
   EditView view_;
-  std::string search_;
+  std::string search_, path_; // what the user has typed: the path of a file to be imported
   const std::function<void()> save_;
-  bool wantsReport_ = false;
+  bool wantsReport_ = false, isChoosingLook_ = false;
+  bool opensAdd_ = false, opensFile_ = false; // menus are to be opened
 };
 
 // Draws the list of the messages about the world, if it is open.
-void drawProblems(EditModel& model);
+void drawProblems(EditModel& model, const FreePart& free);
 
 } // namespace vv

@@ -11,7 +11,7 @@ namespace {
 constexpr ImU32 colours[] = {IM_COL32(235, 75, 75, 255), IM_COL32(90, 210, 90, 255),
                              IM_COL32(95, 150, 255, 255)};
 constexpr ImU32 hotColour = IM_COL32(255, 235, 90, 255), shadow = IM_COL32(0, 0, 0, 150);
-constexpr const char* letters[] = {"x", "y", "z"};
+constexpr const char *letters[] = {"x", "y", "z"}, *opposite[] = {"-x", "-y", "-z"};
 
 ImVec2 placeOf(double x, double y) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -48,8 +48,9 @@ void drawGizmo(const Gizmo& gizmo, int hot) {
       list.AddLine(placeOf(line.x0, line.y0), placeOf(line.x1, line.y1), colour, width);
     if (*gizmo.kind() != TransformTool::Kind::turn) drawHead(list, handle, *gizmo.kind(), colour);
     const ImVec2 at = placeOf(handle.end[0], handle.end[1]);
-    list.AddText(ImVec2(at.x + 8, at.y - 17), shadow, letters[handle.axis]);
-    list.AddText(ImVec2(at.x + 7, at.y - 18), colour, letters[handle.axis]);
+    const char* const letter = (handle.isOpposite ? opposite : letters)[handle.axis];
+    list.AddText(ImVec2(at.x + 8, at.y - 17), shadow, letter);
+    list.AddText(ImVec2(at.x + 7, at.y - 18), colour, letter);
   }
 }
 

@@ -92,6 +92,7 @@ struct Gui::Impl {
   std::set<int> down; // buttons and keys that the widgets have seen go down
   uint64_t drawn = SDL_GetTicks64();
   int unsettled = framesToSettle;
+  bool isKeyLeft = false; // the last event was a key that the widgets have left to others
 
   Impl(SDL_Window* window, SDL_Renderer* renderer, double scale, std::function<void()> panels)
       : window(window), renderer(renderer), panels(std::move(panels)) {
@@ -101,6 +102,7 @@ struct Gui::Impl {
     io.LogFilename = nullptr;
     io.ConfigInputTextCursorBlink = false; // nothing is drawn anew while nothing happens
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    io.BackendRendererUserData = renderer; // for those who make textures
     // Without it, the edges of panels cannot be dragged. The pointer's shape stays; edges light up.
     io.BackendFlags |= ImGuiBackendFlags_HasMouseCursors;
     std::fill(std::begin(io.KeyMap), std::end(io.KeyMap), -1);
@@ -269,12 +271,15 @@ Gui::~Gui() = default;
 
 bool Gui::take(const SDL_Event& event) {
   ImGui::SetCurrentContext(impl_->context);
+  const bool isKeyLeft = std::exchange(impl_->isKeyLeft, false);
+  if (event.type == SDL_TEXTINPUT && isKeyLeft) return false; // what that key types
   const bool before = Impl::wants(event);
   if (!Impl::feed(event)) return false;
   impl_->unsettled = framesToSettle;
   if (impl_->endsTyping(event)) return false;
   impl_->frame();
   const bool taken = before || Impl::wants(event);
+  impl_->isKeyLeft = event.type == SDL_KEYDOWN && !taken;
   // A button or key belongs to those who saw it go down.
   const auto [number, isDown, isUp] = Impl::held(event);
   if (isDown && taken) impl_->down.insert(number);

@@ -18,7 +18,7 @@ void EditorPanels::draw() {}
 void Questions::draw() {}
 
 void drawGizmo(const Gizmo&, int) {}
-void drawComparison(const Comparison&, double, double) {}
+void drawComparison(const Comparison&, double, double, const FreePart&) {}
 void drawRectangle(const Region&, const char*) {}
 
 std::string editorLibrary() { return ""; }

@@ -1,14 +1,12 @@
 // node_widgets.cpp: The widgets for fields of nodes, and for the look of a Shape.
 #include <algorithm>
-#include <cctype>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include "printable.h"
+#include "window/menu.h"
 #include "window/property_widgets.h"
 
 namespace vv {
@@ -17,87 +15,24 @@ using namespace xvrml;
 
 namespace {
 
-// Draws a text over the last item. Texts of a file are no labels: behind "##" nothing would be
-// shown.
-void drawOver(const std::string& text) {
-  const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
-  const ImVec2 inner = ImGui::GetStyle().FramePadding;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.PushClipRect(least, most, true);
-  list.AddText(ImVec2(least.x + inner.x, least.y + inner.y), ImGui::GetColorU32(ImGuiCol_Text),
-               text.c_str());
-  list.PopClipRect();
-}
-
-void hint(const std::string& text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(text).c_str());
-}
-
-// A popup with a list that a text filters. A click chooses a row, and Enter the first one; then
-// end() closes the popup.
-struct FilteredList {
-  // The popup has been opened by ImGui::OpenPopup. Returns whether it is there.
-  static bool begin(const char* name) { return ImGui::BeginPopup(name); }
-  void beginRows() {
-    closeOnEscape();
-    static std::string text; // one popup is open at a time
-    if (ImGui::IsWindowAppearing()) {
-      text.clear();
-      ImGui::SetKeyboardFocusHere();
-    }
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextItemWidth(std::min(240.f, size.x / 2));
-    takesFirst =
-        ImGui::InputTextWithHint("##filter", "Search", &text, ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::BeginChild("##rows", ImVec2(std::min(240.f, size.x / 2), std::min(260.f, size.y / 2)));
-    filter = &text;
-  }
-  // Draws a row if it passes the filter. Returns whether it was chosen.
-  bool row(int number, const std::string& label, const std::string& text) {
-    const auto same = [](char a, char b) {
-      return std::tolower(static_cast<unsigned char>(a)) ==
-             std::tolower(static_cast<unsigned char>(b));
-    };
-    if (std::search(label.begin(), label.end(), filter->begin(), filter->end(), same) ==
-        label.end())
-      return false;
-    ImGui::PushID(number);
-    const bool pressed = ImGui::Selectable("##row") || std::exchange(takesFirst, false);
-    if (!text.empty()) hint(text);
-    drawOver(printable(label));
-    ImGui::PopID();
-    chosen |= pressed;
-    return pressed;
-  }
-  void end() const {
-    ImGui::EndChild();
-    if (chosen) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-  }
-
-  const std::string* filter = nullptr;
-  bool takesFirst = false, chosen = false;
-};
-
 void drawAdd(EditModel& model, const NodeRef& node, const PropertyRow& row) {
   const auto* const single = std::get_if<SFNode>(&row.value);
   if (ImGui::Button(single && *single ? "Replace" : "Add")) ImGui::OpenPopup("##add");
   hint(single && *single ? "Put another node in its place" : "Add a node to this field");
-  FilteredList list;
-  if (!list.begin("##add")) return;
-  list.beginRows();
-  int number = 0;
+  Menu menu;
+  if (!menu.begin("##add")) return;
+  menu.beginFilter();
   for (const NodeType* type : row.addable)
-    if (list.row(number++, type->name, type->text))
+    if (menu.item(type->name, type->text))
       model.edit([node, field = row.field->name, type](WorldEditor& editor) {
         addNode(editor, node, field, *type);
       });
   for (const NodeRef& used : row.usable)
-    if (list.row(number++, "USE " + labelOf(*used), "Let this node stand here, too"))
+    if (menu.item("USE " + labelOf(*used), "Let this node stand here, too"))
       model.edit([node, field = row.field->name, used](WorldEditor& editor) {
         useNode(editor, node, field, used);
       });
-  list.end();
+  menu.end();
 }
 
 // Draws a node of a field: a click selects it, and buttons move, separate and remove it.
@@ -114,13 +49,11 @@ void drawNode(EditModel& model, const PlacedNode& place, size_t places, size_t c
                                 "click makes this one separate.",
                                 label, places)
                   : label);
-  if (ImGui::BeginPopupContextItem("##menu")) {
-    closeOnEscape();
-    if (ImGui::MenuItem("Make this one separate", nullptr, false, places > 1))
+  if (Menu menu; menu.beginContext("##menu")) {
+    if (menu.item("Make this one separate", "", places > 1))
       model.edit([place](WorldEditor& editor) { separateAt(editor, place); });
-    if (ImGui::MenuItem("Remove"))
-      model.edit([place](WorldEditor& editor) { removeAt(editor, place); });
-    ImGui::EndPopup();
+    if (menu.item("Remove")) model.edit([place](WorldEditor& editor) { removeAt(editor, place); });
+    menu.end();
   }
   const auto move = [&](const char* name, ImGuiDir direction, bool active, int by) {
     ImGui::SameLine(0, gap);
@@ -156,14 +89,18 @@ void drawNodes(EditModel& model, const NodeRef& node, const PropertyRow& row) {
   drawAdd(model, node, row);
 }
 
-void drawLook(EditModel& model, const PropertySheet& sheet) {
+bool drawLook(EditModel& model, LookLibrary& library, Thumbnails& thumbnails) {
   static bool onlyHere = true; // what the user chose last
+  const PropertySheet& sheet = model.sheet();
   const ShapeLook& look = sheet.look;
   ImGui::TextUnformatted("look");
   hint("The material or the shader of this Shape");
   const float side = ImGui::GetFrameHeight();
   const float width = std::max(side, ImGui::GetContentRegionAvail().x - 2 * (side + 2));
-  if (ImGui::Button("##look", ImVec2(width, 0))) ImGui::OpenPopup("##looks");
+  if (ImGui::Button("##look", ImVec2(width, 0))) {
+    library.refresh();
+    ImGui::OpenPopup("##looks");
+  }
   drawOver(look.name.empty() ? "choose a material or a shader" : printable(look.name));
   hint(look.places > 1
            ? fmt::format("Choose another one. The appearance stands in {} places.", look.places)
@@ -176,18 +113,21 @@ void drawLook(EditModel& model, const PropertySheet& sheet) {
   if (ImGui::Button("=", ImVec2(side, 0))) model.request(selectSameLook);
   hint("Select all Shapes with the same material or shader, or an equal one");
   ImGui::EndDisabled();
-  FilteredList list;
-  if (!list.begin("##looks")) return;
+  Menu menu;
+  if (!menu.begin("##looks")) return false;
   if (look.places > 1) {
     ImGui::Text("The appearance stands in %zu places.", look.places);
     ImGui::Checkbox("Change it only here", &onlyHere);
   }
-  list.beginRows();
-  int number = 0;
-  for (const Look& one : model.looks())
-    if (list.row(number++, one.name, one.text))
-      model.edit([one, here = onlyHere](WorldEditor& editor) { setLook(editor, one, here); });
-  list.end();
+  menu.beginFilter();
+  menu.makeTall();
+  auto* const renderer = static_cast<SDL_Renderer*>(ImGui::GetIO().BackendRendererUserData);
+  for (const std::vector<Look>* looks : {&library.own(), &model.looks()})
+    for (const Look& one : *looks)
+      if (menu.item(one.name, one.text, true, thumbnails.textureOf(renderer, library.ballOf(one))))
+        model.edit([one, here = onlyHere](WorldEditor& editor) { setLook(editor, one, here); });
+  menu.end();
+  return true;
 }
 
 } // namespace vv

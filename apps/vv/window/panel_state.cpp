@@ -1,6 +1,5 @@
 #include "window/panel_state.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,20 +9,14 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "user_folder.h"
 
 namespace vv {
 
 namespace fs = std::filesystem;
 
 std::string panelStateFile() {
-  // Relative folders are ignored (XDG Base Directory Specification).
-  const auto folder = [](const char* variable) {
-    const char* const value = std::getenv(variable);
-    return value && *value == '/' ? fs::path(value) : fs::path();
-  };
-  fs::path state = folder("XDG_STATE_HOME");
-  if (state.empty())
-    if (const fs::path home = folder("HOME"); !home.empty()) state = home / ".local" / "state";
+  const fs::path state = userFolder("XDG_STATE_HOME", ".local/state");
   return state.empty() ? std::string() : (state / "vv" / "panels").string();
 }
 

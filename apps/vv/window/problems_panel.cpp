@@ -48,12 +48,15 @@ void drawInFull(const ProblemRow& row) {
 
 } // namespace
 
-void drawProblems(EditModel& model) {
+void drawProblems(EditModel& model, const FreePart& free) {
   ProblemList& problems = model.problems();
   if (!problems.isOpen()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(0.27f * size.x, 0.08f * size.y), ImGuiCond_Appearing);
-  ImGui::SetNextWindowSize(ImVec2(0.42f * size.x, 0.45f * size.y), ImGuiCond_Appearing);
+  constexpr float margin = 6, least = 150; // the user may move it and make it larger
+  const float width = float(free.right - free.left) / 2 * size.x - 2 * margin;
+  ImGui::SetNextWindowPos(ImVec2(float(1 + free.left) / 2 * size.x + margin, 0.08f * size.y),
+                          ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize(ImVec2(std::max(width, least), 0.45f * size.y), ImGuiCond_Appearing);
   bool isOpen = true;
   if (ImGui::Begin("Problems", &isOpen, ImGuiWindowFlags_NoCollapse)) {
     const float below = 5 * ImGui::GetTextLineHeightWithSpacing();

@@ -10,6 +10,7 @@
 #include <imgui_stdlib.h>
 
 #include "printable.h"
+#include "window/menu.h"
 #include "window/property_widgets.h"
 #include "xvrml/numbers.h"
 
@@ -135,14 +136,14 @@ bool editText(std::string& value, const PropertyRow& row) {
   ImGui::SetNextItemWidth(std::max(1.f, ImGui::CalcItemWidth() - ImGui::GetFrameHeight() - 2));
   bool changes = edit(value, row.range);
   ImGui::SameLine(0, 2);
-  if (ImGui::BeginCombo("##choices", nullptr, ImGuiComboFlags_NoPreview)) {
-    closeOnEscape();
+  if (ImGui::ArrowButton("##choices", ImGuiDir_Down)) ImGui::OpenPopup("##words");
+  if (Menu menu; menu.begin("##words")) {
     for (const std::string& one : row.choices)
-      if (ImGui::Selectable(one.c_str(), one == value)) {
+      if (menu.item(one)) {
         value = one;
         changes = true;
       }
-    ImGui::EndCombo();
+    menu.end();
   }
   return changes;
 }
@@ -213,20 +214,15 @@ void drawName(const PropertyRow& row) {
 
 } // namespace
 
-void closeOnEscape() {
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) ImGui::CloseCurrentPopup();
-}
-
 void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   const FieldInfo& field = *row.field;
   const bool holdsNodes = field.type == FieldType::SFNode || field.type == FieldType::MFNode;
   ImGui::PushID(field.name.data(), field.name.data() + field.name.size());
   drawName(row);
-  if (!holdsNodes && row.isDeclared && ImGui::BeginPopupContextItem("##menu")) {
-    closeOnEscape();
-    if (ImGui::Selectable("Reset to the default") && !row.isDefault)
+  if (Menu menu; !holdsNodes && row.isDeclared && menu.beginContext("##menu")) {
+    if (menu.item("Reset to the default", "", !row.isDefault))
       model.drag(node, field, row.defaultValue);
-    ImGui::EndPopup();
+    menu.end();
   }
   if (row.isLong) {
     ImGui::SameLine();

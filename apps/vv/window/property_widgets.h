@@ -3,16 +3,17 @@
 #pragma once
 
 #include "edit/edit_model.h"
+#include "edit/look_library.h"
+#include "window/thumbnails.h"
 
 namespace vv {
 
-// Closes the menu that is being drawn if Escape was pressed.
-void closeOnEscape();
 // Draws the name of a field, and the widgets for its value.
 void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);
 // Draws the nodes of an SFNode or MFNode, and what may be added.
 void drawNodes(EditModel& model, const xvrml::NodeRef& node, const PropertyRow& row);
-// Draws how a Shape looks, and what can be chosen instead.
-void drawLook(EditModel& model, const PropertySheet& sheet);
+// Draws how the selected Shape looks, and what can be chosen instead. Returns whether the user is
+// choosing.
+bool drawLook(EditModel& model, LookLibrary& library, Thumbnails& thumbnails);
 
 } // namespace vv

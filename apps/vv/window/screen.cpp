@@ -76,6 +76,7 @@ struct Screen::Impl {
   SDL_Cursor *arrow = nullptr, *hand = nullptr;
   Texture picture, cover;
   double coverPart = 1;
+  FreePart free;
   std::array<Texture, places> panels;
   std::unique_ptr<Gui> gui;     // null: there are no widgets
   std::vector<uint32_t> pixels; // scratch storage for the picture
@@ -312,6 +313,15 @@ void Screen::setGui(std::function<void()> panels) {
   impl_->changed = true;
 }
 
+void Screen::setFree(const FreePart& part) {
+  if (std::exchange(impl_->free, part) != part) impl_->changed = true;
+}
+
+int Screen::freeWidth() const {
+  const int least = width() / 8; // panels that meet leave nothing
+  return std::max(least, int((impl_->free.right - impl_->free.left) / 2 * width()));
+}
+
 void Screen::redraw() { impl_->changed = true; }
 
 void Screen::present() {
@@ -328,7 +338,8 @@ void Screen::present() {
     const Texture& panel = impl_->panels[size_t(place)];
     if (!panel.texture) continue;
     SDL_Rect at{0, 0, panel.width, panel.height};
-    if (place == right) at.x = w - panel.width;
+    if (place == right) at.x = int((1 + impl_->free.right) / 2 * w) - panel.width;
+    if (place == top) at.x = int((1 + impl_->free.left) / 2 * w);
     if (place == bottom) at.y = h - panel.height;
     if (place == middle) {
       at.x = (w - panel.width) / 2;

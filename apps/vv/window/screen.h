@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "edit/edit_model.h"
 #include "session/input/input.h"
 #include "window/panel.h"
 
@@ -41,8 +42,12 @@ class Screen {
   // Shows panels of widgets over the picture, below the texts at the bottom and in the middle. They
   // get the events that are for them first. null: hides them. See Gui.
   void setGui(std::function<void()> panels);
-  void redraw();  // lets present() draw, because the widgets show something else
-  void present(); // draws if anything has changed
+  // The part of the picture that widgets leave free: the panels at the right and the top stand
+  // there.
+  void setFree(const FreePart& part);
+  int freeWidth() const; // pixels
+  void redraw();         // lets present() draw, because the widgets show something else
+  void present();        // draws if anything has changed
   void setHand(bool hand);
   void setTitle(const std::string& title);
   void toggleFullScreen();

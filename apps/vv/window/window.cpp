@@ -147,7 +147,8 @@ class Window {
   OverlayLevel level_ = OverlayLevel::brief;
   std::string loading_, message_, bottom_;
   double messageEnds_ = 0, shownAt_ = -1;
-  std::vector<std::string> lines_;
+  std::vector<std::string> lines_; // those that the overlay shows
+  int linesWidth_ = 0;             // the width that they were painted for
 };
 
 int Window::run() {
@@ -196,11 +197,15 @@ bool Window::isTime(double time, double next, double period) const {
 
 void Window::passOn() {
   for (InputEvent& event : std::exchange(events_, {})) {
+    if (help_ && event.kind == InputEvent::Kind::down && event.text == "Escape") {
+      showHelp(false);
+      continue;
+    }
+    if (editing_.take(event)) continue;
     if (event.kind == InputEvent::Kind::quit) leaveWorld([this] { ended_ = true; });
     if (event.kind == InputEvent::Kind::open)
       leaveWorld([this, file = event.text] { open({{file}, "", {}}, false); });
     if (event.kind == InputEvent::Kind::quit || event.kind == InputEvent::Kind::open) continue;
-    if (editing_.take(event)) continue;
     if (session_)
       input_.push_back(std::move(event));
     else if (event.kind == InputEvent::Kind::down)
@@ -345,9 +350,7 @@ void Window::onAction(const InputEvent& event, Action action) {
   case Action::help: showHelp(!help_); break;
   case Action::fullScreen: screen_.toggleFullScreen(); break;
   case Action::quit:
-    if (help_ && event.text == "Escape")
-      showHelp(false);
-    else if (event.text != "Escape" || !session_ || !session_->saver().giveUp())
+    if (event.text != "Escape" || !session_ || !session_->saver().giveUp())
       leaveWorld([this] { ended_ = true; });
     break;
   default: break;
@@ -381,7 +384,8 @@ void Window::command() {
 void Window::showHelp(bool shown) {
   help_ = shown;
   screen_.setPanel(Screen::middle,
-                   shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
+                   shown ? painter_->paint(helpLines(editing_.isOpen()), screen_.width(), true)
+                         : Panel());
 }
 
 // A recording would not have the edits, and its replay would show another world.
@@ -423,7 +427,7 @@ void Window::tell() {
   reportClusterMessages();
   if (session_ && session_->resting())
     if (const std::string text = session_->takeMessage(); !text.empty()) message(text, 3);
-  if (const std::string text = editing_.takeMessage(); !text.empty()) message(text, 6);
+  if (const auto told = editing_.takeMessage()) message(told->text, told->lasts ? 1e9 : 6);
   const std::string bottom = bottomLine();
   if (bottom != bottom_ || shownAt_ < 0) {
     bottom_ = bottom;
@@ -435,9 +439,10 @@ void Window::tell() {
   shownAt_ = seconds();
   std::vector<std::string> lines;
   if (session_) lines = overlayLines(session_->facts(), session_->pilot().paused(), level_);
-  if (lines == lines_) return;
+  const int width = screen_.freeWidth();
+  if (std::exchange(linesWidth_, width) == width && lines == lines_) return;
   lines_ = lines;
-  screen_.setPanel(Screen::top, painter_->paint(lines, screen_.width()));
+  screen_.setPanel(Screen::top, painter_->paint(lines, width));
 }
 
 void Window::sound() {

@@ -546,8 +546,8 @@ class Control:
 
     def pick(self, x: float, y: float) -> Optional[Dict[str, Any]]:
         """Returns what is seen at a place of the picture, which is (-1, -1) at the left and bottom
-        and (1, 1) at the right and top: point, normal, distance, path, geometry, appearance,
-        shader. None if nothing is there."""
+        and (1, 1) at the right and top: point, normal, facing, distance, path, geometry,
+        appearance, shader. None if nothing is there."""
         hit: Optional[Dict[str, Any]] = self._call("pick", {"x": x, "y": y}, None)
         return hit
 

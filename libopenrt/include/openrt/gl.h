@@ -17,7 +17,8 @@
  *    and RT_ stay as they are.
  *
  * The functions use the context that is current on the thread. Without one, the first call makes
- * one by rtInit. All of them: [context-thread].
+ * one by rtInit. State, lists and textures are those of the thread and this context: a call under
+ * another context forgets them. All functions: [context-thread].
  */
 #ifndef OPENRT_GL_H
 #define OPENRT_GL_H

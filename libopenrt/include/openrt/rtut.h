@@ -25,7 +25,8 @@ RT_API void rtutInit(int* argc, char** argv);
 RT_API void rtutInitDisplayMode(unsigned int mode);
 RT_API void rtutInitWindowSize(int width, int height);
 RT_API void rtutInitWindowPosition(int x, int y);
-/* Returns 1, or 0 if there is no display and no frames are rendered into files. */
+/* Returns 1, or 0 if there is no display and no frames are rendered into files, or a window
+ * already. */
 RT_API int rtutCreateWindow(const char* title);
 RT_API void rtutDestroyWindow(int window);
 RT_API void rtutSetWindowTitle(const char* title);

@@ -50,6 +50,25 @@ Points sensorPoints(const Rays& rays, Arena& arena) {
   return points;
 }
 
+// Tells which sensors have a part of the scene before them, as far as its bounds tell. Nothing can
+// send light to the others but lamps without extent and the sky.
+const uint8_t* findCovered(const RenderScene& scene, const Rays& rays, Arena& arena) {
+  auto* covered = arena.takeZero<uint8_t>(rays.count);
+  if (scene.records.empty()) return covered;
+  float low[3], high[3];
+  scene.kernel->bounds(low, high);
+  for (uint32_t i = 0; i < rays.count; i++) {
+    // The corner of the bounds that is farthest before the sensor, along its normal.
+    double distance = 0;
+    for (int k = 0; k < 3; k++) {
+      const double normal = double(rays.dir[k][i]);
+      distance += normal * (double(normal > 0 ? high[k] : low[k]) - double(rays.org[k][i]));
+    }
+    covered[i] = !(distance < 0);
+  }
+  return covered;
+}
+
 // Shades the white matt surfaces of the sensors. Writes what lamps without extent give, by path, to
 // `lampLight`.
 void shadeSensors(PathTracer& tracer, const Wave& wave, float* const lampLight[3],
@@ -72,16 +91,18 @@ void shadeSensors(PathTracer& tracer, const Wave& wave, float* const lampLight[3
   // exact and needs no random path.
   addLamps(batch, sent);
   for (uint32_t i = 0; i < n; i++) store(load(sent.radiance, i), lampLight, wave.states.path[i]);
-  if (!scene.records.empty() || scene.skyShines) tracer.continueFromLobes(batch, {}, sent);
+  const uint8_t* const covered = findCovered(scene, wave.rays, arena);
+  const bool isAnyCovered = std::find(covered, covered + n, 1) != covered + n;
+  if (isAnyCovered || scene.skyShines) tracer.continueFromLobes(batch, {}, sent);
   // Under a sky of one radiance and nothing else every path finds the same light.
   const SkySampler* sky = scene.emitters->sky();
-  const bool even = scene.records.empty() && sky && !sky->black() && !sky->usable();
+  const bool even = !scene.skyShines || (sky && !sky->black() && !sky->usable());
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t path = wave.states.path[i];
     store(load(found.radiance, path) + load(sent.radiance, i), found.radiance, path);
     found.alpha[path] = 1;
     found.first[path] = 0;
-    if (even) tracer.samples().random[path] = 0;
+    if (even && !covered[i]) tracer.samples().random[path] = 0;
   }
 }
 

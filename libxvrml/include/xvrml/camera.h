@@ -14,6 +14,14 @@ struct CameraSettings {
   // An ORTShader that generates the rays; null: the built-in camera. It must outlive these
   // settings.
   Node* shader = nullptr;
+
+  // Numbers that are none (NaN) equal each other, so that each camera equals itself.
+  bool operator==(const CameraSettings& other) const {
+    const auto same = [](double a, double b) { return a == b || (a != a && b != b); };
+    bool equal = same(fovy, other.fovy) && same(height, other.height) && shader == other.shader;
+    for (int i = 0; i < 16; ++i) equal = equal && same(matrix[i], other.matrix[i]);
+    return equal;
+  }
 };
 
 // The ray through a place of the picture, from -1 at its left and bottom to 1 at its right and top.

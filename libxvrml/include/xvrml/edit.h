@@ -13,6 +13,7 @@
 // changed nothing.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -45,6 +46,7 @@ struct NodeSlot {
   size_t index = 0;  // in an MFNode or among the roots; one past the last appends
 };
 
+// Wide because each kind of edit is a function, and so is each question about the file.
 class Editor {
  public:
   // Edit a world that runs, or one that does not. The world must outlive the editor, and must not
@@ -60,8 +62,9 @@ class Editor {
   // --- Steps ---
   // Edits from begin() to end() are one step, which is undone as a whole; other edits are a step
   // each. Values of a field that follow each other within a step are one edit. begin() and end()
-  // may nest; the outermost name counts. cancel() undoes and ends what the innermost
-  // begin() has begun.
+  // may nest; the outermost name counts. cancel() undoes and ends what the innermost begin() has
+  // begun. It throws EditError if a Script has changed the world so that this cannot be; what is
+  // left stays as a step.
   void begin(std::string name);
   void end();
   void cancel();
@@ -77,6 +80,8 @@ class Editor {
 
   // Grows with each edit, undo and redo, so that who shows the world knows when to look again.
   uint64_t changes() const;
+  // Grows as changes() does, but not with those that only set fields without nodes.
+  uint64_t nodeChanges() const;
 
   // Returns how many edits of those that are not undone have set a field. Edits of one step that
   // follow each other are one.
@@ -85,6 +90,10 @@ class Editor {
   // Returns the places where a node stands in the world now: once where it is defined, and once for
   // each USE. Places in Inlines and in the bodies of prototypes are left out.
   std::vector<NodeSlot> placesOf(const Node& node);
+
+  // Returns whether a node stands anywhere in the file as it is edited; false before the first
+  // edit. Unlike placesOf() it does not look through the world.
+  bool stands(const Node& node) const;
 
   // Returns for each place in the world's file, as it was read, the innermost node whose text holds
   // it, as the messages about the file have places; null if there is none, or it is not in the
@@ -133,6 +142,11 @@ class Editor {
   void removeRoute(Node& from, std::string_view out, Node& to, std::string_view in);
 
   // --- The file ---
+  // Returns what reads the file for editing, so that the first edit need not wait for it: it is to
+  // be called once, on any thread, also after the end of the editor. null: nothing is to be read.
+  // isPreparing() tells whether it has not ended yet; edits wait for that.
+  std::function<void()> preparation();
+  bool isPreparing() const;
   // Returns why the world's file cannot be edited; empty if it can.
   std::string whyReadOnly();
   // Returns the text of the file with all edits. It has been read back, and gives the edited world.

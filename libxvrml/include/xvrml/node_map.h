@@ -3,6 +3,7 @@
 // only compared, never read. [any thread, one at a time]
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -31,6 +32,12 @@ template <class V> class NodeMap {
   }
   bool contains(const Node* node) const { return find(node) != nullptr; }
   size_t size() const { return size_; }
+  // Makes room for this many nodes at once.
+  void reserve(size_t nodes) {
+    size_t entries = std::max(entries_.size(), least);
+    while (3 * entries < 4 * nodes) entries *= 2;
+    if (entries > entries_.size()) resize(entries);
+  }
 
   void erase(const Node* node) {
     if (!contains(node)) return;
@@ -47,6 +54,7 @@ template <class V> class NodeMap {
   }
 
  private:
+  static constexpr size_t least = 16; // entries
   struct Entry {
     const Node* node = nullptr; // null: the entry is free
     [[no_unique_address]] V value{};
@@ -61,8 +69,9 @@ template <class V> class NodeMap {
     while (entries_[i].node && entries_[i].node != node) i = (i + 1) & (entries_.size() - 1);
     return i;
   }
-  void grow() {
-    std::vector<Entry> before(entries_.empty() ? 16 : 2 * entries_.size());
+  void grow() { resize(std::max(2 * entries_.size(), least)); }
+  void resize(size_t entries) {
+    std::vector<Entry> before(entries);
     before.swap(entries_);
     shift_ = 64;
     for (size_t n = entries_.size(); n > 1; n /= 2) --shift_;

@@ -148,6 +148,12 @@ struct ResolvedUrl {
   std::string error;
 };
 ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile, const LoadOptions& options);
+// Returns the relative URL that leads from the file `from` to a file. Files with relative paths are
+// in or beside the current directory.
+std::string relativeUrl(const std::string& file, const std::string& from);
+// Rewrites relative URLs that count from the file `from` so that they lead to the same files when
+// they count from the file `to`. URLs with a scheme, absolute paths and "#name" stay as they are.
+void rebaseUrls(MFString& urls, const std::string& from, const std::string& to);
 
 class World {
  public:

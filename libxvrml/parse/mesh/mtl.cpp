@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "graph/url.h"
 #include "parse/mesh/text_cursor.h"
 #include "parse/source.h"
+#include "xvrml/world.h"
 
 namespace xvrml {
 namespace {

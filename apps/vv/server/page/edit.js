@@ -1,17 +1,22 @@
 // edit.js: The editor on the page of `vv serve --edit`, for those who have opened its second
-// address: the outline at the left, the fields of the selected node at the right, and clicks on the
-// picture that select. docs/serve.md lists the messages. It works on top of page.js.
+// address: the outline at the left, the fields of the selected node at the right, and questions.
+// The other files of the editor are its parts. docs/serve.md lists the messages. It works on top of
+// page.js.
 "use strict";
 
 import "./page.js";
+import { Chooser } from "./chooser.js";
+import { EditorKeys } from "./edit_keys.js";
 import { Fields, make } from "./fields.js";
+import { Light } from "./light.js";
+import { Nodes } from "./nodes.js";
 import { Outline } from "./outline.js";
+import { Problems, reportPanel } from "./reports.js";
+import { Tools, clickDistance } from "./tools.js";
 
 const $ = (id) => document.getElementById(id);
 const page = window.page;
 
-// How far the pointer may move between press and release of a click, as a part of the picture.
-const clickDistance = 0.012;
 const saidSeconds = 6;
 const narrow = 640; // pixels of a page that has no room for both panels
 
@@ -29,17 +34,41 @@ class Editor {
     this.pressed = null; // where the left button went down on the picture
     this.pointer = null; // where the pointer is on the picture
     this.drag = null; // a value that is to be sent with the next frame of the page
+    const edit = (command, members) => this.edit(command, members);
     this.layOut();
-    this.outline = new Outline($("rows"), (command, members) => this.edit(command, members));
+    this.chooser = new Chooser();
+    this.nodes = new Nodes(this.chooser, edit);
+    this.outline = new Outline($("rows"), edit, (row, item) => this.openRow(row, item));
     this.fields = new Fields($("fields"), {
       drag: (node, field, value, ends) => this.dragTo({ node, field, value }, ends),
       reset: (node, field) => this.edit("reset", { node, field }),
-      select: (node) => this.edit("select", { node }),
+      nodes: (node, facts) => this.nodes.widget(node, facts),
     });
+    this.tools = new Tools($("stage"), page.picture, {
+      edit,
+      say: (text, isError) => this.say(text, isError),
+      isOpen: () => this.isOpen() && this.mayEdit,
+    });
+    this.light = new Light($("stage"), $("probes"), page.picture, edit);
+    this.problems = new Problems($("problems"), $("show-problems"), edit);
+    this.keys = new EditorKeys(this);
     this.listen();
-    for (const type of ["editor", "rows", "reveal", "sheet", "frames", "history", "probes", "said"])
-      page[`on_${type}`] = (message) => this[`on_${type}`](message);
+    const types = ["editor", "rows", "reveal", "sheet", "history", "said"];
+    for (const type of types) page[`on_${type}`] = (message) => this[`on_${type}`](message);
     page.on_question = (message) => this.askToReplace(message.text);
+    page.on_frames = (message) => this.tools.onFrames(message);
+    page.on_handles = (message) => this.onHandles(message);
+    page.on_marks = (message) => this.tools.onMarks(message);
+    page.on_tool = (message) => this.onTool(message);
+    page.on_looks = (message) => this.nodes.onLooks(message);
+    page.on_choices = (message) => this.nodes.onChoices(message);
+    page.on_probes = (message) => this.light.onProbes(message);
+    page.on_comparison = (message) => this.light.onComparison(message);
+    page.on_cover = (message) => this.light.onCover(message);
+    page.on_problems = (message) => this.problems.onProblems(message);
+    page.on_progress = (message) => this.onProgress(message);
+    page.on_report = (message) => page.showPanel(reportPanel(message));
+    page.showHelp = () => this.keys.showHelp();
   }
 
   edit(command, members = {}) {
@@ -86,7 +115,17 @@ class Editor {
       button("group", "Group", "Put a Transform around what is selected (Ctrl+G)", () =>
         this.edit("wrap"),
       ),
-      button("remove", "Remove", "Remove what is selected (Delete)", () => this.edit("remove")),
+      button("remove", "Remove", "Remove what is selected (X, Delete)", () => this.edit("remove")),
+      button("handles", "Handles", "Handles that move, turn, scale, or none (T)", () =>
+        this.edit("handles"),
+      ),
+      button("view", "View", "Hide nodes for now, show them again, go to them", () =>
+        this.chooser.open("View", this.viewItems(), $("view")),
+      ),
+      button("show-problems", "Problems (0)", "Messages about the world", () => {}),
+      button("report", "Report", "Make a page and a table of this view to download", () =>
+        this.edit("report"),
+      ),
     );
     const search = make("input", {
       id: "search",
@@ -101,16 +140,18 @@ class Editor {
       tools,
       make("p", { id: "readonly", hidden: true }),
       search,
+      make("p", { id: "hidden", hidden: true }),
       make("div", { id: "rows", label: "Nodes of the world" }),
       make(
         "section",
-        { id: "probes", label: "Probes of the light", hidden: true },
-        make("h2", { textContent: "Probes" }),
-        make("ol", { id: "readings" }),
-        button("keep", "Keep as A", "Compare what follows with the light of now (B)", () =>
-          this.edit("keep_probes"),
-        ),
-        button("clear", "Clear", "Remove all probes", () => this.edit("clear_probes")),
+        { id: "problems", label: "Problems of the world", hidden: true },
+        make("h2", { textContent: "Problems" }),
+        make("ul"),
+      ),
+      make(
+        "section",
+        { id: "probes", label: "Light" },
+        make("h2", { textContent: "Light" }),
       ),
     );
     const rename = make("input", { id: "rename", label: "Name (DEF)", maxLength: 200 });
@@ -121,17 +162,12 @@ class Editor {
       make("h2", { id: "title" }),
       make("p", { id: "note" }),
       rename,
+      make("div", { id: "look", label: "Look" }),
       make("div", { id: "fields" }),
     );
     work.append(outline, stage, sheet);
-    stage.append(make("p", { id: "said" }));
+    for (const id of ["progress", "tool", "said"]) stage.append(make("p", { id }));
     $("said").setAttribute("role", "status");
-    this.frames = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-    this.frames.id = "frames";
-    this.frames.setAttribute("viewBox", "-1 -1 2 2");
-    this.frames.setAttribute("preserveAspectRatio", "none");
-    this.frames.setAttribute("aria-hidden", "true");
-    stage.append(this.frames);
     const toggle = (id, text, panel) => {
       const one = button(id, text, `Show or hide: ${text}`, () => this.toggle(panel));
       one.setAttribute("aria-controls", panel);
@@ -167,7 +203,8 @@ class Editor {
     this.showToggles(true);
     if (this.isOpen() && !wasOpen) this.begin();
     if (!this.isOpen()) {
-      this.frames.replaceChildren();
+      this.tools.clear();
+      this.light.clear();
       this.edit("close");
     }
   }
@@ -185,18 +222,17 @@ class Editor {
       const edits = [{ edit: "rename", node: this.fields.message.node, name: $("rename").value }];
       this.edit("step", { name: "Rename", edits });
     });
-    window.addEventListener("keydown", (event) => this.keydown(event), { capture: true });
     const canvas = $("picture");
     canvas.addEventListener("pointerdown", (event) => {
       const isClick = this.isOpen() && event.button === 0 && !event.altKey;
       this.pressed = isClick ? page.picture.placeOf(event) : null;
     });
-    canvas.addEventListener("pointermove", (event) => {
-      this.pointer = page.picture.placeOf(event);
-    });
-    canvas.addEventListener("pointerleave", () => (this.pointer = null));
+    const follow = (event) => {
+      const isOver = $("stage").contains(event.target);
+      this.pointer = isOver ? page.picture.placeOf(event) : null;
+    };
+    window.addEventListener("pointermove", follow, { capture: true });
     canvas.addEventListener("pointerup", (event) => this.release(event));
-    new ResizeObserver(() => this.placeFrames()).observe($("stage"));
     const onState = page.connection.handlers.onState;
     page.connection.handlers.onState = (state, ...more) => {
       onState(state, ...more);
@@ -207,6 +243,8 @@ class Editor {
   // Until vv says again that this page may edit, it may not.
   lose() {
     this.drag = null;
+    this.tools.clear();
+    this.light.clear();
     this.setAllowed(false);
   }
 
@@ -214,8 +252,6 @@ class Editor {
     this.mayEdit = mayEdit;
     for (const panel of ["outline", "sheet"]) $(panel).classList.toggle("off", !mayEdit);
   }
-
-  // --- Mouse and keys ---
 
   release(event) {
     const from = this.pressed;
@@ -227,39 +263,23 @@ class Editor {
     this.edit("select_at", { x, y, group: event.ctrlKey, add: event.shiftKey });
   }
 
-  // The window's keys of the editor. Where text is typed they belong to the text.
-  keydown(event) {
-    if (!this.isOpen() || $("panel").open || event.altKey || event.metaKey) return;
-    const isTyped = /^(INPUT|TEXTAREA|SELECT)$/.test(event.target.tagName ?? "");
-    const key = event.key.length === 1 ? event.key.toUpperCase() : event.key;
-    const name = `${event.ctrlKey ? "Ctrl+" : ""}${event.shiftKey ? "Shift+" : ""}${key}`;
-    const everywhere = {
-      "Ctrl+Z": () => this.edit("undo"),
-      "Ctrl+Y": () => this.edit("redo"),
-      "Ctrl+Shift+Z": () => this.edit("redo"),
-      "Ctrl+S": () => this.edit("save"),
-    };
-    const besidesText = {
-      Delete: () => this.edit("remove"),
-      "Shift+D": () => this.edit("duplicate"),
-      "Ctrl+G": () => this.edit("wrap"),
-      V: () => this.putProbe(),
-      B: () => this.edit("keep_probes"),
-    };
-    if (this.selected > 0) besidesText.Escape = () => this.edit("select", { node: null });
-    const action = everywhere[name] || (isTyped ? null : besidesText[name]);
-    if (!action) return;
-    event.preventDefault();
-    event.stopImmediatePropagation();
-    if (isTyped) event.target.blur(); // what was typed counts before
-    if (!event.repeat || name === "Ctrl+Z" || name === "Ctrl+Y") action();
+  // --- Lists of commands ---
+
+  viewItems() {
+    const item = (label, command) => ({ label, action: () => this.edit(command) });
+    return [
+      item("Hide", "hide"),
+      item("Show only this", "hide_others"),
+      item("Show all", "show_all"),
+      item("Select all with this look", "select_same_look"),
+      item("Go to what is selected", "frame"),
+    ];
   }
 
-  putProbe() {
-    const at = this.pointer;
-    if (!at || Math.max(Math.abs(at.x), Math.abs(at.y)) > 1)
-      return this.say("put the pointer where the light is to be measured", true);
-    this.edit("probe", { x: at.x, y: at.y });
+  openRow(row, item) {
+    const { node, parent = null, field = "", index } = row;
+    const at = { node, parent, field, index };
+    this.nodes.openPlace(row.label, at, null, item, ...this.viewItems());
   }
 
   // --- Messages ---
@@ -299,32 +319,23 @@ class Editor {
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);
     if (document.activeElement !== $("rename")) $("rename").value = message.name ?? "";
+    this.nodes.showLook($("look"), message.look, this.readOnly === "");
     this.fields.show(message);
   }
 
-  on_frames(message) {
-    const lines = message.lines.map(([x1, y1, x2, y2]) => {
-      const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
-      for (const [name, value] of Object.entries({ x1, y1: -y1, x2, y2: -y2 }))
-        line.setAttribute(name, value);
-      return line;
-    });
-    this.frames.replaceChildren(...lines);
-    this.placeFrames();
+  onHandles(message) {
+    $("handles").textContent = `Handles: ${message.kind}`;
+    this.tools.onHandles(message);
   }
 
-  // The lines lie over the picture, which may be narrower than its place.
-  placeFrames() {
-    const canvas = $("picture");
-    const { clientWidth: width, clientHeight: height } = $("stage");
-    const scale = Math.min(width / canvas.width, height / canvas.height);
-    const [w, h] = [canvas.width * scale, canvas.height * scale];
-    Object.assign(this.frames.style, {
-      left: `${(width - w) / 2}px`,
-      top: `${(height - h) / 2}px`,
-      width: `${w}px`,
-      height: `${h}px`,
-    });
+  onTool(message) {
+    $("tool").textContent = message.text;
+    this.tools.onTool(message);
+  }
+
+  onProgress(message) {
+    this.isReporting = message.text !== "";
+    $("progress").textContent = message.text;
   }
 
   on_history(message) {
@@ -340,6 +351,10 @@ class Editor {
     for (const id of ["copy", "group", "remove"])
       $(id).disabled = !isEditable || message.selected === 0;
     $("rename").disabled = !isEditable;
+    $("handles").disabled = !isEditable;
+    $("save").textContent = message.unsaved ? "Save *" : "Save";
+    $("hidden").hidden = message.hidden === 0;
+    $("hidden").textContent = `${message.hidden} nodes are hidden: View, Show all`;
     $("readonly").hidden = isEditable;
     $("readonly").textContent = message.readOnly;
     document.body.dataset.unsaved = message.unsaved;
@@ -348,40 +363,13 @@ class Editor {
     this.offered = message.left;
   }
 
-  on_probes(message) {
-    $("probes").hidden = message.list.length === 0;
-    const items = message.list.map((probe) => {
-      const item = make("li", { value: probe.number, textContent: this.textOf(probe) });
-      item.classList.toggle("uncertain", "change" in probe && !probe.significant);
-      return item;
-    });
-    $("readings").replaceChildren(...items);
-  }
-
-  textOf(probe) {
-    const states = {
-      waiting: "waits for a still picture",
-      hidden: "not seen from here",
-      outside: "outside of the picture",
-      other_view: "of another view",
-    };
-    if (probe.state !== "read") return states[probe.state];
-    const digits = (number) => (number === null ? "?" : Number(number.toPrecision(3)));
-    const value = `${digits(probe.luminance)} \u00b1 ${digits(probe.half_width)} cd/m\u00b2`;
-    const trust = probe.trusted ? "trusted" : "not trusted";
-    if (!("change" in probe)) return `${value} ${trust}`;
-    const verdict = probe.significant ? "significant" : "not yet certain";
-    const sign = probe.change > 0 ? "+" : "";
-    const change = `${sign}${digits(probe.change)} \u00b1 ${digits(probe.change_half_width)}`;
-    return `${value} ${trust}, B - A: ${change} ${verdict}`;
-  }
-
   on_said(message) {
+    if (message.error) this.tools.onRefused();
     this.say(message.text, message.error);
   }
 
   say(text, isError) {
-    $("said").textContent = text;
+    $("said").textContent = isError ? `\u26a0 ${text}` : text;
     $("said").classList.toggle("error", isError);
     clearTimeout(this.silence);
     this.silence = setTimeout(() => ($("said").textContent = ""), saidSeconds * 1000);

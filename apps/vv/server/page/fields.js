@@ -243,7 +243,8 @@ function listWidget(type, facts, most, change) {
 // --- The sheet ---
 
 export class Fields {
-  // actions: drag(node, field, value, ends), reset(node, field), select(node).
+  // actions: drag(node, field, value, ends), reset(node, field), and nodes(node, facts), which
+  // returns a widget for a field of nodes.
   constructor(element, actions) {
     this.element = element;
     this.actions = actions;
@@ -259,7 +260,7 @@ export class Fields {
 
   // Says which fields there are: while that stays, only values are set.
   shapeOf(message) {
-    const rows = message.fields.map((f) => [f.field, f.type, f.long, f.declared, f.links?.length]);
+    const rows = message.fields.map((f) => [f.field, f.type, f.long, f.declared, !f.links]);
     return JSON.stringify([message.node, rows]);
   }
 
@@ -272,6 +273,7 @@ export class Fields {
       this.shape = shape;
     }
     message.fields.forEach((facts, i) => this.update(this.rows[i], facts));
+    this.setEditable(this.isEditable);
   }
 
   rebuild(message) {
@@ -283,7 +285,6 @@ export class Fields {
     this.element.replaceChildren(...this.rows.map((row) => row.element));
     if (message.hidden) this.element.append(more);
     if (path) this.controls().find((one) => this.pathOf(one) === path)?.focus();
-    this.setEditable(this.isEditable);
   }
 
   controls(within = this.element) {
@@ -318,8 +319,8 @@ export class Fields {
   content(row) {
     const facts = row.facts;
     if (facts.links) {
-      const links = facts.links.map((one) => this.link(one));
-      return make("div", { className: "links" }, ...links);
+      row.nodes = this.actions.nodes(this.node, facts);
+      return row.nodes.element;
     }
     const type = facts.type.slice(2);
     const isList = facts.type.startsWith("MF");
@@ -332,30 +333,18 @@ export class Fields {
     return make("span", { className: "long", textContent: text });
   }
 
-  link(one) {
-    if (!one) return make("span", { className: "long", textContent: "NULL" });
-    const button = make("button", { type: "button", textContent: one.label });
-    button.dataset.node = one.node;
-    button.addEventListener("click", () => this.actions.select(one.node));
-    return button;
-  }
-
   update(row, facts) {
     row.facts = facts;
     row.element.classList.toggle("default", facts.default);
     row.reset.hidden = facts.default || !facts.declared || Boolean(facts.links);
     if (row.widget && !row.widget.isActive()) row.widget.set(facts.value);
-    facts.links?.forEach((one, i) => {
-      const child = row.element.querySelector(".links").children[i];
-      const isSame = child.textContent === (one?.label ?? "NULL");
-      if (!isSame || child.dataset.node !== one?.node.toString()) child.replaceWith(this.link(one));
-    });
+    row.nodes?.set(facts);
   }
 
   setEditable(isEditable) {
     this.isEditable = isEditable;
     this.element.classList.toggle("readonly", !isEditable);
     for (const control of this.controls())
-      if (!control.closest(".links")) control.disabled = !isEditable;
+      if (!control.classList.contains("link")) control.disabled = !isEditable;
   }
 }

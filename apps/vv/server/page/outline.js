@@ -3,15 +3,21 @@
 // text.
 "use strict";
 
-const rowHeight = 22; // pixels, as in edit.css
+// Pixels; edit.css has the same. Rows are as high as the texts that the user has chosen need.
+const rowHeight = Math.round(
+  1.5714 * parseFloat(getComputedStyle(document.documentElement).fontSize),
+);
+document.documentElement.style.setProperty("--row", `${rowHeight}px`);
 const spare = 10; // rows above and below those that are seen
 const mostHeight = 8e6; // pixels; browsers cut off higher elements
 
 export class Outline {
-  // list: the element that scrolls. edit: sends a command of the editor.
-  constructor(list, edit) {
+  // list: the element that scrolls. edit: sends a command of the editor. openMenu: lists what can
+  // be done with a row, beside an element.
+  constructor(list, edit, openMenu) {
     this.list = list;
     this.edit = edit;
+    this.openMenu = openMenu;
     this.rows = [];
     this.first = 0; // number of the first of these rows
     this.total = 0;
@@ -30,6 +36,7 @@ export class Outline {
     list.addEventListener("scroll", () => this.ask());
     list.addEventListener("keydown", (event) => this.keydown(event));
     list.addEventListener("click", (event) => this.click(event));
+    list.addEventListener("contextmenu", (event) => this.menu(event));
     new ResizeObserver(() => this.ask()).observe(list);
   }
 
@@ -149,6 +156,18 @@ export class Outline {
     const row = this.row(this.cursor);
     if (event.target.className === "sign" && row && "open" in row) this.open(row, !row.open);
     else this.select(row, event.shiftKey || event.ctrlKey);
+  }
+
+  // Lists the commands of the row under the pointer, or by key of the one with the cursor.
+  menu(event) {
+    event.preventDefault();
+    const item = event.target.closest(".row") ?? document.getElementById(`row-${this.cursor}`);
+    const row = item && this.row(Number(item.dataset.number));
+    if (!row) return;
+    this.cursor = Number(item.dataset.number);
+    this.mark();
+    if (!row.selected) this.select(row, false);
+    this.openMenu(row, item);
   }
 
   keydown(event) {

@@ -76,10 +76,14 @@ std::string listKeys() {
     std::string names;
     for (const char* at = info.keys; *at; ++at)
       names += *at == ' ' ? std::string(", ") : std::string(1, *at);
-    out += fmt::format("{:<24}{}\n", names, info.text);
+    out += keyLine(names, info.text);
   }
-  for (const MouseInfo& info : mouse) out += fmt::format("{:<24}{}\n", info.what, info.text);
+  for (const MouseInfo& info : mouse) out += keyLine(info.what, info.text);
   return out;
+}
+
+std::string keyLine(std::string_view keys, std::string_view text) {
+  return fmt::format("{:<24}{}\n", keys, text);
 }
 
 } // namespace vv

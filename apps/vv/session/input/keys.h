@@ -58,5 +58,7 @@ struct MouseInfo {
 std::span<const MouseInfo> mouseTable();
 
 std::string listKeys(); // for people: keys, then the mouse
+// Returns a line of such a list.
+std::string keyLine(std::string_view keys, std::string_view text);
 
 } // namespace vv

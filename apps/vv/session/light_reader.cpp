@@ -1,0 +1,118 @@
+#include "session/light_reader.h"
+
+namespace vv {
+
+using namespace xvrml;
+
+namespace {
+
+struct SurfaceSeen {
+  CameraRay ray;
+  PickHit hit;
+};
+SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, double x, double y) {
+  SurfaceSeen seen{rayThrough(view.camera, view.aspect, x, y), {}};
+  if (!editor.browser().pick(seen.ray.origin, seen.ray.direction, {.bothSides = true}, seen.hit))
+    throw EditError("there is nothing here to be measured");
+  return seen;
+}
+
+} // namespace
+
+EditView viewOf(Session& session) { return {session.pilot().camera(), session.pilot().aspect()}; }
+
+void LightReader::addProbe(WorldEditor& editor, const EditView& view, double x, double y) {
+  probes_.add(surfaceAt(editor, view, x, y).hit.point);
+}
+
+void LightReader::addSensor(WorldEditor& editor, const EditView& view, double x, double y) {
+  const auto [ray, hit] = surfaceAt(editor, view, x, y);
+  probes_.addSensor(picture::sensorAt(hit.point.data(), hit.normal.data(), ray.direction));
+}
+
+void LightReader::keep(WorldEditor& editor, const EditView& view) {
+  if (editor.browser().hasChanges()) {
+    probes_.expire();
+    probes_.expireSensors();
+  }
+  probes_.keep();
+  comparison_.ask(editor.editor().changes(), view);
+}
+
+bool LightReader::update(Session& session, double seconds) {
+  const EditView view = viewOf(session);
+  const PictureLoop& pictures = session.pictures();
+  comparison_.follow(view, pictures.width(), pictures.height(),
+                     {pictures.transformOf(session.pilot()), pictures.facts().scaleEnd},
+                     session.viewers().own().isOutdated());
+  readStill(session, view, seconds);
+  readSensors(session, seconds);
+  return std::exchange(hasChanged_, false);
+}
+
+std::string LightReader::takeMessage() {
+  std::string message = comparison_.takeMessage();
+  return message.empty() ? std::exchange(message_, {}) : message;
+}
+
+void LightReader::clear() {
+  probes_.clear();
+  comparison_.clear();
+  stillRead_ = nextSensors_ = 0;
+  finishedRead_ = 0;
+  message_.clear();
+}
+
+// Reads the probes and what is compared from the still picture of the world as it is, a few times a
+// second.
+void LightReader::readStill(Session& session, const EditView& view, double seconds) {
+  // Comparing all pixels takes up to a quarter of a second for a picture of 600,000.
+  const bool showsChanges = comparison_.shown() == Comparison::Shown::difference;
+  const double interval = showsChanges ? 1 : 0.25;
+  if (!probes_.readPictures() && !comparison_.wantsPicture() && !showsChanges &&
+      !comparison_.isRefined(session.pictures().number()))
+    return;
+  if (session.captures().isPending()) return; // other channels would cancel its frame
+  const bool outdated = session.viewers().own().isOutdated();
+  if (outdated) probes_.expire();
+  if (outdated || seconds < stillRead_ + interval) return;
+  session.pictures().wantReadings();
+  const uint64_t number = session.pictures().number();
+  const uint64_t finished = session.pictures().isFinished(session.pilot()) ? number : 0;
+  if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting() &&
+      !comparison_.wantsPicture())
+    return;
+  picture::Picture picture;
+  if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
+  stillRead_ = seconds;
+  finishedRead_ = finished;
+  probes_.read(session.browser(), picture, view);
+  if (comparison_.take(picture, number, session.editor().editor().changes(), view, finished != 0))
+    probes_.keep();
+  hasChanged_ = true;
+}
+
+// Reads the probes of illuminance when the previews have ended. The still picture begins anew then.
+void LightReader::readSensors(Session& session, double seconds) {
+  constexpr double patience = 2; // seconds after a failure
+  Measuring& measuring = session.measuring();
+  if (measuring.isOutdated()) probes_.expireSensors();
+  if (!session.pictures().isRefining() || session.viewers().own().isOutdated() ||
+      measuring.isPending() || seconds < nextSensors_)
+    return;
+  const std::vector<picture::PlacedSensor> sensors = probes_.waitingSensors();
+  if (sensors.empty()) return;
+  measuring.want({.view = session.pictures().stillOf(session.pilot()).view,
+                  .sensors = sensors,
+                  .samples = measuring.samples()},
+                 [this, seconds](const picture::LiveReadings& read) {
+                   if (!read.failure.empty()) {
+                     message_ = "not measured: " + read.failure;
+                     nextSensors_ = seconds + patience;
+                   }
+                   probes_.take(read.sensors);
+                   hasChanged_ = true;
+                 });
+}
+
+} // namespace vv
