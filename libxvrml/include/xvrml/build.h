@@ -29,8 +29,8 @@ struct PlacedShape {
 // Throws std::length_error beyond 4 million visits to nodes.
 std::vector<PlacedShape> placedShapes(const World& world, const double* view = nullptr);
 
-// The arrays of a geometry node, one entry per vertex. normals, texCoords and colors are either
-// empty or as long as points.
+// The arrays of a geometry node, one entry per vertex. normals, texCoords, colors and
+// alphas are either empty or as long as points.
 struct GeometryArrays {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
@@ -39,6 +39,7 @@ struct GeometryArrays {
   std::vector<Vec3f> normals;    // empty: flat shading
   std::vector<Vec2f> texCoords;
   std::vector<Color> colors;
+  std::vector<float> alphas; // opacities of `colors`, 0 to 1; empty: all are opaque
   bool solid = true, ccw = true;
   float radius = 0; // radius of a sphere around the origin
 };
