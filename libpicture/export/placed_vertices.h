@@ -26,7 +26,7 @@ class PlacedVertices {
   size_t triangles() const { return vertices_.indices().size() / 3; }
   // Returns the normal of a triangle; 0 0 0 if it has no area.
   xvrml::Vec3f faceNormal(size_t t) const;
-  bool isFinite(size_t t) const; // of a triangle, whose corners may be too far away for floats
+  bool isFinite(size_t t) const; // false: a corner of triangle t is too far away for floats
 
  private:
   Vertices vertices_;

@@ -178,8 +178,8 @@ Surface Surfaces::make(const AppearanceParts& parts, VertexColors colors, bool l
 
 namespace {
 
-// What a class of shaders becomes. Parameters of roughness are alpha of GGX, so that the root of it
-// is the roughness of glTF.
+// Sets what a class of shaders becomes. Parameters of roughness are alpha of GGX, so that the root
+// of it is the roughness of glTF.
 using Apply = void (*)(const ShaderValues& values, Surface& surface, Remarks& remarks);
 
 void useMaterial(const ShaderValues& v, Surface& s, Remarks&) {

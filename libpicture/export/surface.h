@@ -26,14 +26,14 @@ struct Surface {
   std::string name; // the DEF name of the appearance or of its material; may be empty
   bool visible = true;
   bool lit = true;               // false: the surface shows its colour in any light
-  xvrml::Color color{1, 1, 1};   // of the diffuse base, or F0 of a metal
+  xvrml::Color color{1, 1, 1};   // diffuse reflectance, or F0 for a metal
   bool showsVertexColors = true; // the colours of vertices multiply `color`, which is white then
   enum class Alpha : uint8_t { opaque, mask, blend } alpha = Alpha::opaque;
   float opacity = 1, alphaCutoff = 0.5f;
   float metallic = 0, roughness = 1; // roughness is the root of the width alpha of GGX
   xvrml::Color emission{0, 0, 0};    // may exceed 1
-  // What Phong's model has instead of roughness, for formats with that model: a colour that is
-  // linear, too, and an exponent.
+  // Formats with Phong's model take a colour, which is linear, too, and an exponent instead of
+  // roughness.
   xvrml::Color specular{0, 0, 0};
   float exponent = 0;
   float index = 1.5f, transmission = 0, dispersion = 0, clearcoat = 0;

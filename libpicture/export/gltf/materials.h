@@ -28,7 +28,7 @@ Json materialOf(const Surface& surface, bool doubleSided, float thickness, Docum
 struct MaterialUse {
   std::optional<size_t> material; // none: the surface cannot be drawn
   bool textured = false, showsVertexColors = false;
-  std::array<float, 6> bakedTransform{1, 0, 0, 1, 0, 0}; // of texture coordinates
+  std::array<float, 6> bakedTransform{1, 0, 0, 1, 0, 0}; // applied to texture coordinates
 };
 
 // Writes materials when they are first used.

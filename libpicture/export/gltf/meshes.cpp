@@ -138,7 +138,7 @@ Json Meshes::primitiveOf(const DrawnShape& shape, Geometry& geometry, const Mate
 }
 
 std::optional<MeshUse> Meshes::use(const DrawnShape& shape) {
-  // What ClipPlanes leave of a geometry differs from place to place.
+  // ClipPlanes leave other parts of a geometry at each place.
   const bool cut = !shape.kept().empty();
   Geometry own;
   Geometry* geometry = &own;

@@ -30,7 +30,7 @@ class Meshes {
   std::optional<MeshUse> use(const xvrml::DrawnShape& shape);
 
  private:
-  // What has been written of a geometry node. An index of -1: not written.
+  // Accessors of a geometry node; -1: not written.
   struct Geometry {
     xvrml::GeometryArrays::Kind kind = xvrml::GeometryArrays::Kind::empty;
     bool solid = true;

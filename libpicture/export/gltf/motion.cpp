@@ -36,7 +36,7 @@ bool isOf(std::string_view event, std::string_view interface) {
 // Returns the ends within prototypes that stand for a field, which IS connects with others. A field
 // that is none of a prototype's instance stands for itself.
 std::vector<End> endsBelow(const Node* node, const std::string& field) {
-  constexpr size_t most = 1000; // of a hostile prototype
+  constexpr size_t most = 1000; // steps; a hostile prototype asks for more
   std::vector<End> open = {{node, field}}, ends;
   for (size_t steps = 0; !open.empty() && steps < most; ++steps) {
     const End end = std::move(open.back());
@@ -143,7 +143,7 @@ void appendTurns(Keys& keys, const xvrml::nodes::OrientationInterpolator& node, 
     return Quaternion{v[0], v[1], v[2], v[3]};
   };
   for (size_t i = 0; i < sparse.times.size(); ++i) {
-    constexpr double near = 0.1; // of quaternions at right angles
+    constexpr double near = 0.1; // 0 is the product of quaternions at right angles
     if (i > 0 && dot(quaternionAt(i - 1), quaternionAt(i)) < near)
       append(keys, 0.5 * (double(sparse.times[i - 1]) + double(sparse.times[i])),
              valueOf(halfway(quaternionAt(i - 1), quaternionAt(i))));
@@ -199,7 +199,7 @@ Keys keysOf(const Motion& motion) {
 
 Motions::Motions(const xvrml::World& world, Remarks& remarks) {
   const std::vector<Link> links = linksOf(world);
-  std::unordered_map<const Node*, const xvrml::nodes::TimeSensor*> clocks; // of interpolators
+  std::unordered_map<const Node*, const xvrml::nodes::TimeSensor*> clocks; // by interpolator
   std::unordered_set<const Link*> written;
   std::set<std::tuple<const Node*, const Node*, Path>> taken;
   for (const Link& link : links) {

@@ -36,7 +36,7 @@ double scaleOf(const double m[16]) {
 
 float positive(float v, float most) { return v > 0 ? std::min(v, most) : 0; } // NaN: 0
 
-constexpr float largest = 1e30f; // of an intensity or a distance
+constexpr float largest = 1e30f; // upper limit for intensities and distances
 
 // Nodes that say something about the whole world or about other nodes, and draw nothing.
 bool isSilent(const Node& node) {

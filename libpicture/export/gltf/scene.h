@@ -51,7 +51,7 @@ class Scene : public xvrml::Renderer {
     const xvrml::Node* node = nullptr;
     std::vector<Json> chain; // objects of glTF nodes, each of which holds the next one
     size_t scaleAt = 0;      // place in the chain with the scale
-    Vec offset;              // of an animated translation
+    Vec offset;              // added to an animated translation
     std::vector<size_t> children;
     struct Drawn {
       size_t mesh;
@@ -64,7 +64,7 @@ class Scene : public xvrml::Renderer {
     Json object;
     Vec place;            // in the world
     double scale = 1;     // metres per unit
-    double intensity = 0; // of a light with a place
+    double intensity = 0; // field of a light with a place
     xvrml::Vec3f attenuation;
   };
   template <class T> Visit open(T& node, const State& state);
