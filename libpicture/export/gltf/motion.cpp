@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "libpicture/walk.h"
@@ -36,7 +37,7 @@ bool isOf(std::string_view event, std::string_view interface) {
 // Returns the ends within prototypes that stand for a field, which IS connects with others. A field
 // that is none of a prototype's instance stands for itself.
 std::vector<End> endsBelow(const Node* node, const std::string& field) {
-  constexpr size_t most = 1000; // steps; a hostile prototype asks for more
+  constexpr size_t most = 100; // steps; a hostile prototype asks for more
   std::vector<End> open = {{node, field}}, ends;
   for (size_t steps = 0; !open.empty() && steps < most; ++steps) {
     const End end = std::move(open.back());
@@ -61,8 +62,10 @@ struct Link {
 
 // Returns the ROUTEs of a world between nodes that are no instances.
 std::vector<Link> linksOf(const xvrml::World& world) {
+  constexpr size_t most = 1'000'000;
   std::vector<Link> links;
   const auto add = [&](const xvrml::Scope& scope) {
+    if (links.size() >= most) return;
     for (const xvrml::Route& route : scope.routes)
       for (const End& from : endsBelow(route.from.get(), route.fromField))
         for (const End& to : endsBelow(route.to.get(), route.toField)) {
@@ -173,6 +176,12 @@ Json samplerOf(const Keys& keys, Document& document) {
           {"interpolation", "LINEAR"}};
 }
 
+// Returns a sum that is finite.
+float sumOf(float a, double b) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return float(std::clamp(double(a) + b, -most, most));
+}
+
 constexpr const char* pathNames[] = {"translation", "rotation", "scale"};
 
 } // namespace
@@ -215,8 +224,9 @@ Motions::Motions(const xvrml::World& world, Remarks& remarks) {
     const Motion motion{clock->second, link.from, link.to, *path};
     // An animation moves a field once.
     if (!taken.emplace(motion.clock, motion.target, motion.path).second) continue;
-    if (keysOf(motion).times.empty()) continue;
-    motions_.push_back(motion);
+    Keys keys = keysOf(motion);
+    if (keys.times.empty()) continue;
+    motions_.emplace_back(motion, std::move(keys));
     targets_.insert(link.to);
     used_.insert(link.from);
     used_.insert(clock->second);
@@ -238,17 +248,16 @@ void Motions::place(const Node& target, const Placed& placed) {
 void Motions::write(Document& document) {
   std::vector<const xvrml::nodes::TimeSensor*> order;
   std::unordered_map<const Node*, std::pair<Json, Json>> animations; // samplers, channels
-  for (const Motion& motion : motions_) {
+  for (auto& [motion, keys] : motions_) {
     const auto places = places_.find(motion.target);
     if (places == places_.end()) continue; // not drawn
     const auto [found, fresh] = animations.try_emplace(motion.clock, Json::array(), Json::array());
     if (fresh) order.push_back(motion.clock);
     auto& [samplers, channels] = found->second;
-    Keys keys = keysOf(motion);
     if (motion.path == Path::translation)
       for (auto& value : keys.values) {
         const Vec& offset = places->second.front().offset;
-        value = {value[0] + float(offset.x), value[1] + float(offset.y), value[2] + float(offset.z),
+        value = {sumOf(value[0], offset.x), sumOf(value[1], offset.y), sumOf(value[2], offset.z),
                  0};
       }
     const size_t sampler = samplers.size();

@@ -58,7 +58,7 @@ class Motions {
   void write(Document& document);
 
  private:
-  std::vector<Motion> motions_; // in the order of the ROUTEs
+  std::vector<std::pair<Motion, Keys>> motions_; // in the order of the ROUTEs
   std::unordered_set<const xvrml::Node*> targets_, used_;
   std::unordered_map<const xvrml::Node*, std::vector<Placed>> places_;
 };

@@ -36,6 +36,9 @@ double scaleOf(const double m[16]) {
 
 float positive(float v, float most) { return v > 0 ? std::min(v, most) : 0; } // NaN: 0
 
+// Returns a number in its range; one that is none becomes the lower end.
+double clamped(double v, double low, double high) { return v > low ? std::min(v, high) : low; }
+
 constexpr float largest = 1e30f; // upper limit for intensities and distances
 
 // Nodes that say something about the whole world or about other nodes, and draw nothing.
@@ -258,13 +261,13 @@ void Scene::addLight(Deferred light, const Place& place, const Node& node) {
 }
 
 // A light that is off may be turned on in the world; glTF has no such light.
-static bool isOff(const bool on, Remarks& remarks) {
-  if (!on) remarks.change("a light that is off is left out");
+bool Scene::isOff(bool on) {
+  if (!on) remarks_.change("a light that is off is left out");
   return !on;
 }
 
 Scene::Visit Scene::renderDirectionalLight(nodes::DirectionalLight& node, const State& state) {
-  if (isOff(node.on, remarks_)) return Visit::skip;
+  if (isOff(node.on)) return Visit::skip;
   if (!node.global && state.path.size() > 1)
     remarks_.change("a DirectionalLight of a group shines on everything");
   Deferred light = lightOf(node, "directional", state);
@@ -276,33 +279,32 @@ Scene::Visit Scene::renderDirectionalLight(nodes::DirectionalLight& node, const 
   return Visit::skip;
 }
 
-// Sets what lights with a place have.
-template <class T> static void setPlaced(const T& node, const double matrix[16], Json& object,
-                                         double scale, Place& place, Vec& world, Vec3f& falloff) {
+// Sets what lights with a place have. Returns the place of the glTF node.
+template <class T> Place Scene::placeLight(const T& node, const State& state, Deferred& light) {
+  Place place;
   if (isFinite(vecOf(node.location))) place.translation = vecOf(node.location);
-  world = transformed(matrix, place.translation);
-  falloff = {positive(node.attenuation.x, largest), positive(node.attenuation.y, largest),
-             positive(node.attenuation.z, largest)};
+  light.place = transformed(state.matrix, place.translation);
+  light.attenuation = {positive(node.attenuation.x, largest), positive(node.attenuation.y, largest),
+                       positive(node.attenuation.z, largest)};
   constexpr double endless = 1e9;
-  const double range = double(positive(node.radius, largest)) * scale;
-  if (range > 0 && range < endless) object["range"] = float(range);
+  const double range = double(positive(node.radius, largest)) * light.scale;
+  if (range > 0 && range < endless) light.object["range"] = float(range);
+  return place;
 }
 
 Scene::Visit Scene::renderPointLight(nodes::PointLight& node, const State& state) {
-  if (isOff(node.on, remarks_)) return Visit::skip;
+  if (isOff(node.on)) return Visit::skip;
   Deferred light = lightOf(node, "point", state);
-  Place place;
-  setPlaced(node, state.matrix, light.object, light.scale, place, light.place, light.attenuation);
+  const Place place = placeLight(node, state, light);
   addLight(std::move(light), place, node);
   return Visit::skip;
 }
 
 Scene::Visit Scene::renderSpotLight(nodes::SpotLight& node, const State& state) {
-  if (isOff(node.on, remarks_)) return Visit::skip;
+  if (isOff(node.on)) return Visit::skip;
   Deferred light = lightOf(node, "spot", state);
-  Place place;
+  Place place = placeLight(node, state, light);
   place.rotation = quaternionToward(node.direction);
-  setPlaced(node, state.matrix, light.object, light.scale, place, light.place, light.attenuation);
   constexpr float narrowest = 1e-3f, widest = float(std::numbers::pi / 2);
   const float outer = std::clamp(positive(node.cutOffAngle, widest), narrowest, widest);
   // The inner angle must be smaller (KHR_lights_punctual).
@@ -339,31 +341,33 @@ void Scene::finishCamera(Deferred& camera) {
           ? 0
           : 0.5 * std::hypot(high_[0] - low_[0], high_[1] - low_[1], high_[2] - low_[2]);
   const double distance = length(centre() + camera.place * -1.0);
-  const bool parallel = camera.object.contains("orthographic");
-  Json& numbers = camera.object[parallel ? "orthographic" : "perspective"];
-  if (!parallel) numbers["znear"] = float(std::clamp(0.01 * distance, 1e-5, 0.1));
-  if (parallel) {
-    numbers["znear"] = 0;
-    numbers["zfar"] = float(std::clamp(2 * (distance + radius), 1.0, 1e30));
+  if (!camera.object.contains("orthographic")) {
+    camera.object["perspective"]["znear"] = float(clamped(0.01 * distance, 1e-5, 0.1));
+    return;
   }
+  Json& numbers = camera.object["orthographic"];
+  numbers["znear"] = 0;
+  numbers["zfar"] = float(clamped(2 * (distance + radius), 1, largest));
+}
+
+// Sets the candela of a light with a place. A DirectionalLight has its intensity already.
+void Scene::finishLight(Deferred& light) {
+  if (light.object.contains("intensity")) return;
+  const Vec3f& falloff = light.attenuation;
+  const double distance = std::max(length(centre() + light.place * -1.0), 1e-3 * light.scale);
+  double candela = candelaOf(light.intensity, falloff, distance, light.scale);
+  if (falloff.x == 0 && falloff.y == 0 && falloff.z > 0)
+    candela = std::numbers::pi * light.intensity * light.scale * light.scale / double(falloff.z);
+  else
+    remarks_.change("a light falls off with the square of the distance, and is as bright as in the "
+                    "world at the middle of what is drawn");
+  light.object["intensity"] = float(clamped(candela, 0, largest));
 }
 
 void Scene::finish() {
   Json list = Json::array();
   for (Deferred& light : lights_) {
-    if (!light.object.contains("intensity")) {
-      const double distance = std::max(length(centre() + light.place * -1.0), 1e-3 * light.scale);
-      const bool square =
-          light.attenuation.x == 0 && light.attenuation.y == 0 && light.attenuation.z > 0;
-      if (!square)
-        remarks_.change("a light falls off with the square of the distance, and is as bright as in "
-                        "the world at the middle of what is drawn");
-      const double candela =
-          square ? std::numbers::pi * light.intensity * light.scale * light.scale /
-                       double(light.attenuation.z)
-                 : candelaOf(light.intensity, light.attenuation, distance, light.scale);
-      light.object["intensity"] = float(std::min(candela, double(largest)));
-    }
+    finishLight(light);
     list.push_back(std::move(light.object));
   }
   if (!list.empty()) document_.addExtension("KHR_lights_punctual", {{"lights", std::move(list)}});

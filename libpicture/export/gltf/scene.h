@@ -75,12 +75,15 @@ class Scene : public xvrml::Renderer {
   // Adds a glTF node with a place of its own to the open one.
   void addPlaced(Json node, const Place& place, const xvrml::Node& of);
   template <class T> Deferred lightOf(const T& node, const char* type, const State& state);
+  template <class T> Place placeLight(const T& node, const State& state, Deferred& light);
+  bool isOff(bool on);
   void addLight(Deferred light, const Place& place, const xvrml::Node& node);
   void addCamera(Json camera, const std::string& name, const xvrml::Vec3f& position,
                  const xvrml::Rotation& orientation, const xvrml::Node& node, const State& state);
   void grow(const Box& box, const double matrix[16]);
   Vec centre() const;
   void finishCamera(Deferred& camera);
+  void finishLight(Deferred& light);
 
   Document& document_;
   Meshes& meshes_;
