@@ -1,22 +1,23 @@
 include_guard(GLOBAL)
 # xvrml_generate_nodes(PREFIX NUMBERS spec.node...): runs nodegen on node specifications and sets
 # PREFIX_sources and PREFIX_include. NUMBERS is the list of the nodes' numbers. It generates, in namespace xvrml::nodes, the header
-# xvrml/nodes.h, one .cpp per component and the list of types, and also the node reference nodes.md
-# and the Python stub nodes.pyi. The files are in the build tree and are never committed.
+# xvrml/nodes.h, one .cpp per component and the list of types, and also the callbacks of renderers
+# (xvrml/node_renderer.h), the node reference nodes.md and the Python stub nodes.pyi. The files are
+# in the build tree and are never committed.
 function(xvrml_generate_nodes prefix numbers)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated)
-  set(sources ${out}/nodes_list.cpp)
+  set(sources ${out}/nodes_list.cpp ${out}/nodes_renderer.cpp)
   foreach(specification ${ARGN})
     cmake_path(GET specification STEM component)
     list(APPEND sources ${out}/nodes_${component}.cpp)
   endforeach()
-  set(others ${out}/xvrml/nodes.h ${out}/nodes.md ${out}/nodes.pyi)
+  set(others ${out}/xvrml/nodes.h ${out}/xvrml/node_renderer.h ${out}/nodes.md ${out}/nodes.pyi)
   add_custom_command(OUTPUT ${sources} ${others}
                      COMMAND ${XVRML_NODEGEN} --numbers ${numbers} --output ${out} --reference ${out}/nodes.md
                              --stub ${out}/nodes.pyi ${ARGN}
                      DEPENDS ${XVRML_NODEGEN} ${numbers} ${ARGN} COMMENT "Generating nodes" VERBATIM)
   set(${prefix}_include ${out} PARENT_SCOPE)
-  set(${prefix}_sources ${sources} ${out}/xvrml/nodes.h PARENT_SCOPE)
+  set(${prefix}_sources ${sources} ${out}/xvrml/nodes.h ${out}/xvrml/node_renderer.h PARENT_SCOPE)
 endfunction()
 
 # xvrml_add_nodes(NAME spec.node... source.cpp...): builds a node plug-in NAME.so in

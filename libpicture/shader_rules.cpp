@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -14,6 +15,7 @@
 
 #include "libpicture/walk.h"
 #include "nearest.h"
+#include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 
 namespace picture {
@@ -108,31 +110,25 @@ Node& findNode(const std::string& name, const World& world) {
                                       near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
-// Returns a field of a material, or null if it has none of this name and type.
-template <class Value>
-const Value* fieldOf(const Node* material, const char* name, FieldType type) {
-  const FieldInfo* field = material ? material->type().find(name) : nullptr;
-  if (!field || field->type != type || !holdsValue(*field)) return nullptr;
-  return static_cast<const Value*>(material->storage(*field));
-}
-
-// Returns the colour of a material, or null.
-const SFColor* colourOf(const Node* material) {
-  const auto* colour = fieldOf<SFColor>(material, "diffuseColor", FieldType::SFColor);
-  return colour ? colour : fieldOf<SFColor>(material, "baseColor", FieldType::SFColor);
+// Returns the values of a material that rules find by its colour; none for one that is not lit.
+std::optional<MaterialValues> litValues(Node* material) {
+  const MaterialValues values = materialValues(material);
+  using Model = MaterialValues::Model;
+  const bool isLit = values.model == Model::phong || values.model == Model::physical;
+  return isLit ? std::optional(values) : std::nullopt;
 }
 
 // Returns whether a material has the numbers of a rule for colours.
-bool hasColour(const Node* material, const std::vector<float>& wanted) {
+bool hasColour(Node* material, const std::vector<float>& wanted) {
   const auto near = [](float a, float b, float within) { return std::abs(a - b) <= within; };
-  const SFColor* c = colourOf(material);
-  if (!c) return false;
-  const float own[] = {float(c->r), float(c->g), float(c->b)};
+  const std::optional<MaterialValues> values = litValues(material);
+  if (!values) return false;
+  const float own[] = {values->color.r, values->color.g, values->color.b};
   for (size_t k = 0; k < 3; ++k)
     if (!near(own[k], wanted[k], colourTolerance)) return false;
   if (wanted.size() == 3) return true;
-  const auto* shininess = fieldOf<SFFloat>(material, "shininess", FieldType::SFFloat);
-  return shininess && near(float(*shininess), wanted[3], shininessTolerance);
+  return values->model == MaterialValues::Model::phong &&
+         near(values->shininess, wanted[3], shininessTolerance);
 }
 
 // Returns whether a node that is written, or the one drawn in its place, has a matching DEF name.
@@ -175,8 +171,8 @@ size_t countColours(const std::vector<nodes::Shape*>& shapes) {
   std::set<std::array<float, 3>> colours;
   for (const nodes::Shape* shape : shapes) {
     const Parts parts = partsOf(renderedNode(shape->appearance.get()));
-    if (const SFColor* c = colourOf(renderedNode(parts.material.get())))
-      colours.insert({float(c->r), float(c->g), float(c->b)});
+    if (const auto values = litValues(parts.material.get()))
+      colours.insert({values->color.r, values->color.g, values->color.b});
   }
   return colours.size();
 }

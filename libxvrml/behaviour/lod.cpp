@@ -4,9 +4,9 @@
 #include "behaviour/lod.h"
 
 #include "behaviour/named_fields.h"
-#include "behaviour/viewer/descend.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
+#include "geometry/descend.h"
 
 namespace xvrml {
 namespace {

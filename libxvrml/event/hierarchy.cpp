@@ -6,6 +6,7 @@
 #include "geometry/node_matrix.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
+#include "nodes/visible.h"
 #include "xvrml/nodes.h"
 #include "xvrml/walk.h"
 
@@ -82,10 +83,7 @@ Matrix localToWorld(const Path& path) {
 bool isChosen(const Path& path) {
   for (size_t i = 0; i + 1 < path.size(); ++i) {
     const auto* choice = nodeCast<nodes::Switch>(path[i]);
-    if (!choice) continue;
-    const bool exists =
-        choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size();
-    if (!exists || choice->choice[size_t(choice->whichChoice)].get() != path[i + 1]) return false;
+    if (choice && chosenChild(*choice) != path[i + 1]) return false;
   }
   return true;
 }

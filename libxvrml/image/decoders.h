@@ -6,6 +6,9 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
 
 #include "image/image.h"
 #include "xvrml/radiance.h"
@@ -17,6 +20,13 @@ std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& r
 inline std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {
   return readPictureFile(path, ImageRoom{limits});
 }
+
+// Returns the media type of a picture by its first bytes, "image/png"; "" if it is none that is
+// read.
+std::string_view mediaTypeOf(std::span<const uint8_t> bytes);
+// Decodes a picture of colours or of radiances, whichever it is. Throws std::runtime_error.
+std::variant<Image, RadianceImage> decodePicture(std::span<const uint8_t> bytes,
+                                                 const ImageRoom& room);
 
 Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room);
 Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room);

@@ -54,19 +54,37 @@ void flipRows(Image& image) {
   }
 }
 
-Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
-  std::span<const uint8_t> content(bytes, size);
-  auto startsWith = [&](std::string_view magic) {
-    return size >= magic.size() && std::memcmp(bytes, magic.data(), magic.size()) == 0;
+std::string_view mediaTypeOf(std::span<const uint8_t> bytes) {
+  const auto startsWith = [&](std::string_view magic) {
+    return bytes.size() >= magic.size() &&
+           std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
   };
-  if (startsWith("\x89PNG\r\n\x1a\n")) return decodePng(content, room);
-  if (startsWith("\xff\xd8\xff")) return decodeJpeg(content, room);
-  if (startsWith("GIF87a") || startsWith("GIF89a")) return decodeGif(content, room);
+  if (startsWith("\x89PNG\r\n\x1a\n")) return "image/png";
+  if (startsWith("\xff\xd8\xff")) return "image/jpeg";
+  if (startsWith("GIF87a") || startsWith("GIF89a")) return "image/gif";
+  if (!looksLikeRadiance(bytes.data(), bytes.size())) return {};
+  return bytes[0] == '#'   ? "image/vnd.radiance"
+         : bytes[0] == 'P' ? "image/x-portable-floatmap"
+                           : "image/x-exr";
+}
+
+Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
+  const std::span<const uint8_t> content(bytes, size);
+  const std::string_view type = mediaTypeOf(content);
+  if (type == "image/png") return decodePng(content, room);
+  if (type == "image/jpeg") return decodeJpeg(content, room);
+  if (type == "image/gif") return decodeGif(content, room);
   if (size == 0) throw std::runtime_error("the file is empty");
-  if (looksLikeRadiance(bytes, size))
-    throw std::runtime_error("a picture of radiance cannot be used here");
+  if (!type.empty()) throw std::runtime_error("a picture of radiance cannot be used here");
   throw std::runtime_error(
       "not a PNG, JPEG or GIF picture, nor one of radiance (.hdr, .pfm, .exr)");
+}
+
+std::variant<Image, RadianceImage> decodePicture(std::span<const uint8_t> bytes,
+                                                 const ImageRoom& room) {
+  if (looksLikeRadiance(bytes.data(), bytes.size()))
+    return decodeRadiance(bytes.data(), bytes.size(), room.limits);
+  return decodeImage(bytes.data(), bytes.size(), room);
 }
 
 std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room) {

@@ -6,6 +6,7 @@
 
 #include "mapper/mapper_impl.h"
 #include "xvrml/change.h"
+#include "xvrml/renderer.h"
 
 namespace xvrml {
 
@@ -54,15 +55,8 @@ std::string reasonOf(const Node& node, Change kind) {
 
 // Returns the reason from the node below a Shape that events reach with such a change.
 std::string reasonBelow(Node& node, Change kind) {
-  if (reaches(node, kind)) return reasonOf(node, kind);
-  for (const FieldInfo& field : node.type().fields) {
-    if (field.type != FieldType::SFNode ||
-        (field.access != Access::field && field.access != Access::exposedField))
-      continue;
-    Node* held = renderedNode(static_cast<NodeRef*>(node.storage(field))->get());
-    if (held && reaches(*held, kind)) return reasonOf(*held, kind);
-  }
-  return "split: events reach it";
+  const Reach reach = reachBelow(node, kind);
+  return reach ? reasonOf(*reach.node, kind) : "split: events reach it";
 }
 
 std::string itemReason(const Graph& graph, const Item& item, const Part& part) {

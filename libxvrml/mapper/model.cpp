@@ -7,6 +7,7 @@
 
 #include "lower_case.h"
 #include "mapper/shading/appearance.h"
+#include "xvrml/appearance.h"
 #include "xvrml/comments.h"
 #include "xvrml/nodes.h"
 
@@ -111,6 +112,10 @@ UpGuess fromBounds(const Bounds& b, bool isStl) {
   return {Axis::y, "there is no sign of another axis"};
 }
 
+AppearanceParts appearanceOf(const Item& shape) {
+  return resolveAppearance(static_cast<const nodes::Shape&>(*shape.node).appearance.get());
+}
+
 } // namespace
 
 UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
@@ -136,19 +141,13 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
 }
 
 size_t countIfAllClear(const Graph& graph) {
-  const auto transparencyOf = [](const Node& material) -> float {
-    const FieldInfo* field = material.type().find("transparency");
-    return field && field->type == FieldType::SFFloat ? std::get<float>(material.get(*field)) : 0;
-  };
   size_t shapes = 0;
   for (const ItemId id : graph.order) {
     const Item& item = graph.items[id];
     if (item.kind != Kind::shape) continue;
-    const auto* appearance = nodeCast<nodes::Appearance>(
-        renderedNode(static_cast<const nodes::Shape&>(*item.node).appearance.get()));
-    const Node* material = appearance ? renderedNode(appearance->material.get()) : nullptr;
+    const AppearanceParts parts = appearanceOf(item);
     // A picture may have an alpha of its own, but it cannot make anything opaque here.
-    if (!material || !(transparencyOf(*material) >= 1)) return 0;
+    if (!parts.plain || !(materialValues(parts.material).transparency >= 1)) return 0;
     ++shapes;
   }
   return shapes;
@@ -160,9 +159,8 @@ bool hasUnspecifiedLighting(const Graph& graph, const Bound& bound) {
     const Item& item = graph.items[id];
     if (isLight(item.kind)) return false;
     if (item.kind != Kind::shape) continue;
-    const Node* appearance =
-        renderedNode(static_cast<const nodes::Shape&>(*item.node).appearance.get());
-    if (appearance && appearance->type().index == nodes::ORTAppearance::typeIndex) return false;
+    if (const AppearanceParts parts = appearanceOf(item); parts.appearance && !parts.plain)
+      return false;
   }
   return true;
 }

@@ -39,7 +39,8 @@ void describe(CLI::App& app, Options& options) {
                  "a file read for its abstract types alone; may be given several times")
       ->allow_extra_args(false);
   app.add_option("-o,--output", options.output,
-                 "folder for xvrml/nodes.h, nodes_<component>.cpp and nodes_list.cpp");
+                 "folder for xvrml/nodes.h, xvrml/node_renderer.h, nodes_<component>.cpp, "
+                 "nodes_list.cpp and nodes_renderer.cpp");
   auto* numbers =
       app.add_option("--numbers", options.numbers,
                      "list of the nodes' numbers (typeIndex); default: in the order of the files");
@@ -93,7 +94,9 @@ bool writeFile(const std::filesystem::path& path, const std::string& text) {
 bool writeCode(const Model& model, const std::filesystem::path& folder, const std::string& plugin) {
   bool good = plugin.empty()
                   ? writeFile(folder / "xvrml" / "nodes.h", writeHeader(model, plugin)) &&
-                        writeFile(folder / "nodes_list.cpp", writeList(model))
+                        writeFile(folder / "xvrml" / "node_renderer.h", writeRenderer(model)) &&
+                        writeFile(folder / "nodes_list.cpp", writeList(model)) &&
+                        writeFile(folder / "nodes_renderer.cpp", writeRendererCalls(model))
                   : writeFile(folder / (plugin + "_nodes.h"), writeHeader(model, plugin)) &&
                         writeFile(folder / (plugin + "_plugin.cpp"), writePlugin(model, plugin));
   for (const Component& component : model.components) {

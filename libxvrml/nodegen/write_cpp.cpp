@@ -11,9 +11,6 @@
 namespace xvrml::nodegen {
 namespace {
 
-constexpr std::string_view notice =
-    "// Written by nodegen from the .node files: change those, not this.\n";
-
 // Returns the sentence that names the standard and the clause, after a blank.
 std::string clauseSentence(const TypeSpec& type) {
   const std::string clause = clauseText(type);
@@ -120,41 +117,37 @@ std::string libraryFunctions(const TypeSpec& type) {
                      type.name);
 }
 
-std::string pluginFunctions(const TypeSpec& type) {
-  return fmt::format("int {0}::typeIndex = -1;\nstatic const NodeType* typeOf{0} = nullptr;\n"
+std::string pluginFunctions(const TypeSpec& type, const std::string& plugin) {
+  return writePluginCall(type, plugin) +
+         fmt::format("int {0}::typeIndex = -1;\nstatic const NodeType* typeOf{0} = nullptr;\n"
                      "const NodeType& {0}::nodeType() {{ return *typeOf{0}; }}\n"
                      "static void register{0}(const NodeType& type) {{\n  typeOf{0} = &type;\n  "
                      "{0}::typeIndex = type.index;\n}}\n"
                      "NodePluginRow pluginRowOf{0}();\n"
                      "NodePluginRow pluginRowOf{0}() {{ return {{&rowOf{0}, &{0}::implementation, "
-                     "register{0}}}; }}\n\n",
+                     "register{0}, render{0}}}; }}\n\n",
                      type.name);
-}
-
-template <class Function> void eachNode(const Component& component, Function function) {
-  for (const TypeSpec& type : component.types)
-    if (!type.isAbstract) function(type);
-}
-
-template <class Function> void eachNode(const Model& model, Function function) {
-  for (const Component& component : model.components)
-    if (!component.imported) eachNode(component, function);
 }
 
 } // namespace
 
+std::string cppNotice() {
+  return "// Written by nodegen from the .node files: change those, not this.\n";
+}
+
 std::string writeHeader(const Model& model, const std::string& plugin) {
-  std::string text(notice);
+  std::string text = cppNotice();
   text += fmt::format("// A struct per node, with a member per field and exposedField. Use "
                       "nodeCast<nodes::Box>(node) to get at them.\n"
                       "#pragma once\n\n#include \"xvrml/{}.h\"\n\nnamespace xvrml::nodes {{\n\n",
                       plugin.empty() ? "node" : "node_plugin");
   eachNode(model, [&](const TypeSpec& type) { text += writeStruct(type, !plugin.empty()); });
-  return text + "} // namespace xvrml::nodes\n";
+  text += "} // namespace xvrml::nodes\n";
+  return plugin.empty() ? text : text + '\n' + writePluginRenderer(model, plugin);
 }
 
 std::string writeTables(const Component& component, const std::string& plugin) {
-  std::string text(notice);
+  std::string text = cppNotice();
   text += fmt::format("// {}: the constant tables of its nodes.\n", component.title);
   text += "#include <cstddef>\n\n";
   text += plugin.empty() ? "#include \"xvrml/node_table.h\"\n#include \"xvrml/nodes.h\"\n\n"
@@ -166,7 +159,7 @@ std::string writeTables(const Component& component, const std::string& plugin) {
   std::string functions;
   eachNode(component, [&](const TypeSpec& type) {
     text += writeTable(type);
-    functions += plugin.empty() ? libraryFunctions(type) : pluginFunctions(type);
+    functions += plugin.empty() ? libraryFunctions(type) : pluginFunctions(type, plugin);
   });
   return text + "} // namespace\n\n" + functions + "} // namespace xvrml::nodes\n";
 }
@@ -189,7 +182,7 @@ std::string writeContainers(const Model& model) {
 } // namespace
 
 std::string writeList(const Model& model) {
-  std::string text(notice);
+  std::string text = cppNotice();
   text += "// All node types, in the order of their typeIndex.\n#include <span>\n\n#include "
           "\"nodes/registry.h\"\n#include \"xvrml/nodes.h\"\n\n"
           "namespace xvrml::nodes {\n\n"
@@ -203,7 +196,7 @@ std::string writeList(const Model& model) {
 }
 
 std::string writePlugin(const Model& model, const std::string& plugin) {
-  std::string text(notice), declarations, rows;
+  std::string text = cppNotice(), declarations, rows;
   eachNode(model, [&](const TypeSpec& type) {
     declarations += fmt::format("NodePluginRow pluginRowOf{}();\n", type.name);
     rows += fmt::format("    pluginRowOf{}(),\n", type.name);
@@ -219,7 +212,7 @@ std::string writePlugin(const Model& model, const std::string& plugin) {
          "    sizeof(xvrml::NodePlugin),\n    XVRML_CXX_ABI,\n    {xvrml::nodePluginSizes[0], "
          "xvrml::nodePluginSizes[1], xvrml::nodePluginSizes[2], xvrml::nodePluginSizes[3],\n     "
          "xvrml::nodePluginSizes[4], xvrml::nodePluginSizes[5], xvrml::nodePluginSizes[6], "
-         "xvrml::nodePluginSizes[7]},\n"
+         "xvrml::nodePluginSizes[7],\n     xvrml::nodePluginSizes[8], xvrml::nodePluginSizes[9]},\n"
          "    sizeof rows / sizeof rows[0],\n    rows};\n";
 }
 

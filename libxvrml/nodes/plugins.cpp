@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string sizesText(const uint32_t (&sizes)[8]) {
+std::string sizesText(const uint32_t (&sizes)[10]) {
   return fmt::format("{}", fmt::join(sizes, " "));
 }
 
@@ -43,7 +43,7 @@ std::string whyRefused(const NodePlugin& plugin) {
                        sizesText(plugin.sizes), sizesText(nodePluginSizes));
   for (uint32_t i = 0; i < plugin.count; ++i) {
     const NodePluginRow& one = plugin.rows[i];
-    if (!one.row || !one.row->create || !one.registered)
+    if (!one.row || !one.row->create || !one.registered || !one.render)
       return fmt::format("row {} of its nodes is incomplete", i);
     if (findNodeType(one.row->name))
       return fmt::format("there is a node type {} already", one.row->name);
@@ -65,6 +65,7 @@ bool registerNodes(const NodePlugin& plugin) {
     const NodePluginRow& one = plugin.rows[i];
     one.registered(*types[i]);
     if (one.implementation) setBehaviour(*types[i], one.implementation->behaviour);
+    setRenderCall(*types[i], one.render);
   }
   return true;
 }

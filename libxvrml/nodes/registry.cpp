@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <deque>
 #include <mutex>
 #include <unordered_map>
 
@@ -104,6 +105,21 @@ NodeType makeNodeType(const NodeRow& row, int index) {
 
 bool addNodeTypes(std::span<const NodeType* const> types) {
   return Registry::instance().add(types);
+}
+
+static std::deque<RenderCall>& renderCalls() {
+  static std::deque<RenderCall> calls; // by index of the type
+  return calls;
+}
+
+void setRenderCall(const NodeType& type, RenderCall call) {
+  if (size_t(type.index) >= renderCalls().size()) renderCalls().resize(size_t(type.index) + 1);
+  renderCalls()[size_t(type.index)] = call;
+}
+
+RenderCall renderCallOf(const NodeType& type) {
+  const std::deque<RenderCall>& calls = renderCalls();
+  return type.index >= 0 && size_t(type.index) < calls.size() ? calls[size_t(type.index)] : nullptr;
 }
 
 std::span<const NodeType* const> nodeTypes() { return Registry::instance().current().types; }

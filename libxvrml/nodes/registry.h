@@ -7,10 +7,20 @@
 
 namespace xvrml {
 
+class Renderer;
+struct RenderState;
+enum class Visit : uint8_t;
+
 // Appends types to the registry; the index of each must be its position there. Returns false, and
 // adds nothing, if an index does not fit or a name is taken. The types must live for ever.  [any
 // thread]
 bool addNodeTypes(std::span<const NodeType* const> types);
+
+// Calls the callback for a node if the renderer has those of the plug-in (NodePluginRow::render).
+using RenderCall = bool (*)(Renderer& renderer, Node& node, const RenderState& state, Visit& visit);
+// Keep it for the type of a plug-in. Types are added before worlds are loaded.
+void setRenderCall(const NodeType& type, RenderCall call);
+RenderCall renderCallOf(const NodeType& type); // null for all other types
 
 // Returns the name of the field that holds a node of this type in the XML encoding of X3D, where
 // the file does not say it (containerField, ISO/IEC 19776-1): "geometry" for a Box. It is that of

@@ -142,6 +142,9 @@ TABLE = [
         "xvrml-behaviour", "libxvrml/behaviour/",
         "what nodes do when events arrive and time passes; the viewer, the pointer, picking",
         "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event common"),
+    part("xvrml-render", "libxvrml/render/",
+         "walks over what a viewer sees, for renderers; appearances, pictures and meshes for them",
+         "xvrml-h xvrml-base xvrml-graph xvrml-geometry xvrml-image xvrml-event"),
     part("script-remote", "libxvrml/script/remote/", "Scripts in processes of their own",
          "script-sdk common system"),
     part("xvrml-script", "libxvrml/script/", "finds script engines and runs Script nodes with them",
@@ -233,7 +236,7 @@ SEARCH = [
 # Generated at build time -> the part that they belong to.
 GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"),
              (re.compile(r"messages_generated\.h$"), "backend-cluster"),
-             (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
+             (re.compile(r"xvrml/(nodes|node_renderer)\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 

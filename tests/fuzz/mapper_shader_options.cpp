@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "mapper/shading/shader_options.h"
+#include "xvrml/appearance.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   std::vector<std::string> errors;
-  xvrml::mapper::parseShaderOptions({text}, errors);
+  xvrml::parseShaderOptions({text}, errors);
   return 0;
 }

@@ -11,7 +11,8 @@ constexpr NodeRow row = {"Box", "geometry",
                          "",    "A name that is taken.",
                          {},    createNode<nodes::Box>};
 void registered(const NodeType&) {}
-const NodePluginRow rows[] = {{&row, nullptr, registered}};
+bool render(Renderer&, Node&, const RenderState&, Visit&) { return false; }
+const NodePluginRow rows[] = {{&row, nullptr, registered, render}};
 
 #ifdef FAULT_MAGIC
 constexpr uint32_t magic = 1;
@@ -54,7 +55,7 @@ XVRML_NODE_PLUGIN = {magic,
                      abi,
                      {nodeSize, nodePluginSizes[1], nodePluginSizes[2], nodePluginSizes[3],
                       nodePluginSizes[4], nodePluginSizes[5], nodePluginSizes[6],
-                      nodePluginSizes[7]},
+                      nodePluginSizes[7], nodePluginSizes[8], nodePluginSizes[9]},
                      1,
                      rows};
 #else

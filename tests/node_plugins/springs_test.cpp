@@ -7,6 +7,8 @@
 #include "xvrml/mapper.h"
 #include "xvrml/node_plugin.h"
 #include "xvrml/nodes.h"
+#include "xvrml/renderer.h"
+#include <springs_nodes.h>
 
 namespace {
 
@@ -137,6 +139,35 @@ TEST_F(Springs, WorkInsidePrototypes) {
   browser->set(node("A"), "h", SFFloat(7));
   EXPECT_FLOAT_EQ(top("A"), 7);
   EXPECT_FLOAT_EQ(top("B"), 1);
+}
+
+struct Visits : Renderer {
+  std::string names;
+  Visit render(Node& node, const RenderState&) override {
+    names += node.type().name + ' ';
+    return Visit::children;
+  }
+};
+
+// A renderer that knows the plug-in.
+struct OwnVisits : Visits, SpringsRenderer {
+  int turns = 0;
+  Visit renderSpring(nodes::Spring& node, const RenderState& state) override {
+    EXPECT_EQ(state.path.back(), &node);
+    turns += node.turns;
+    return Visit::skip;
+  }
+};
+
+TEST_F(Springs, RenderersVisitThemAndWhatTheyExpandTo) {
+  run(std::string(coil) + "Hanging { length 1 children Group { } }");
+  Visits visits;
+  render(browser->world(), visits);
+  EXPECT_EQ(visits.names, "Shape Spring Extrusion Hanging Transform Group ");
+  OwnVisits own;
+  render(browser->world(), own);
+  EXPECT_EQ(own.names, "Shape Transform Group ") << "Hanging has a callback that goes on";
+  EXPECT_EQ(own.turns, 3);
 }
 
 TEST_F(Springs, CounterBehaves) {

@@ -6,7 +6,7 @@ for name in tiny roles x3d; do
   out=$(mktemp -d)
   "$1" --output "$out" --reference "$out/nodes.md" --stub "$out/nodes.pyi" "$name.node"
   mkdir -p "expected/$name"
-  for file in xvrml/nodes.h "nodes_$name.cpp" nodes_list.cpp nodes.md nodes.pyi; do
+  for file in xvrml/nodes.h xvrml/node_renderer.h "nodes_$name.cpp" nodes_list.cpp nodes_renderer.cpp nodes.md nodes.pyi; do
     cp "$out/$file" "expected/$name/$(basename "$file").expected"
   done
   rm -r "$out"

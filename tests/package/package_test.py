@@ -139,6 +139,13 @@ with tempfile.TemporaryDirectory() as scratch:
         "-lstdc++", "-lm", rpath)
     print(run(scratch / "world_by_pkg_config"), end="")
 
+    # A renderer (docs/extend.md)
+    renderer = source / "examples/renderer"
+    run(cc, "-x", "c++", "-std=c++20", renderer / "areas.cpp", "-o", scratch / "areas", *flags,
+        "-lstdc++", "-lm", rpath)
+    if "32.000 m2  Plaster" not in (areas := run(scratch / "areas", renderer / "house.wrl")):
+        sys.exit(f"the example of a renderer lists other areas: {areas}")
+
     # Node plug-ins
     follow_tutorial(source / "docs/node-plugins.md", scratch / "tutorial", prefix)
     check_rings(scratch / "tutorial", prefix)

@@ -2,9 +2,9 @@
 // about bad ones.
 #include <gtest/gtest.h>
 
-#include "mapper/shading/shader_options.h"
+#include "xvrml/appearance.h"
 
-using namespace xvrml::mapper;
+using namespace xvrml;
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
 #include "geometry/clip_planes.h"
+#include "geometry/descend.h"
 #include "geometry/node_matrix.h"
 #include "nodes/visible.h"
 #include "xvrml/browser.h"
@@ -24,8 +24,7 @@ constexpr size_t maximumSteps = 4'000'000;
 void partsOf(Node& node, std::vector<Node*>& parts) {
   if (node.type().index == nodes::Shape::typeIndex || !isVisible(node)) return;
   if (const auto* choice = nodeCast<nodes::Switch>(&node)) {
-    if (choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size())
-      parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
+    if (Node* chosen = chosenChild(*choice)) parts.push_back(chosen);
     return;
   }
   if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {

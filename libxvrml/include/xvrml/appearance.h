@@ -56,6 +56,8 @@ struct MaterialValues {
   Node* normalTexture = nullptr;
   Node* metallicRoughnessTexture = nullptr; // roughness in green, metallic in blue
   Node* occlusionTexture = nullptr;
+  // The first mapping that a picture of a Material names (ISO/IEC 19775-1:2023 12.2.4).
+  std::string_view mapping;
 };
 // Returns the values of a material, which may be null or a prototype instance. Those of a
 // TwoSidedMaterial are the ones of its front.
@@ -64,9 +66,17 @@ MaterialValues materialValues(Node* material);
 // the back of a TwoSidedMaterial.
 std::optional<MaterialValues> backValues(const AppearanceParts& parts);
 
+// Returns the texture that gives a surface its colour: the material's own, else that of the
+// appearance. It may be a MultiTexture or a cube map; null: there is none.
+Node* colorTexture(const AppearanceParts& parts);
+
 // Returns the TextureTransform of the first picture, or null: the node itself, or of the parts of a
 // MultiTextureTransform the one with this mapping, else the first.
 const nodes::TextureTransform* firstTransform(Node* textureTransform,
+                                              std::string_view mapping = {});
+// The same for the layer `layer` of a MultiTexture. Layers after the first have a transform only in
+// a MultiTextureTransform that is long enough.
+const nodes::TextureTransform* layerTransform(Node* textureTransform, size_t layer,
                                               std::string_view mapping = {});
 
 // One picture of a surface, and how it lies on it.
@@ -106,6 +116,19 @@ struct ShaderOption {
 // not known what a list of strings leads to; its type is `file`. Options that cannot be read are
 // left out.
 std::vector<ShaderOption> shaderOptions(const nodes::ORTShader& shader);
+// Returns the parameter that a declared field of a shader sets; none for an empty list of URLs and
+// NULL. The type of a list of strings is `file`.
+std::optional<ShaderOption> declaredOption(const nodes::ORTShader& shader, const FieldInfo& field);
+
+// More than any shader has parameters. An option takes twenty times the memory of its text.
+inline constexpr size_t maximumShaderOptions = 10'000;
+// Returns the valid options in order; `errors` receives one sentence per invalid option.
+// Types: 1i 1f 2f 3f 4f 16f bool color string texture file floats.
+// A string or URL ends at the next blank or comma, or is enclosed in 'single quotes'. It is an
+// error if the rest of a word follows the comma. A list of floats ends at the first word that is
+// not a number.
+std::vector<ShaderOption> parseShaderOptions(const MFString& options,
+                                             std::vector<std::string>& errors);
 
 // The picture of a texture node.
 struct TexturePicture {
@@ -116,7 +139,7 @@ struct TexturePicture {
   // "image/png", "image/jpeg", "image/gif", "image/vnd.radiance", "image/x-exr" or
   // "image/x-portable-floatmap"; empty: the picture comes from no file.
   std::string type;
-  std::string error; // why there is no picture; empty: there is one, or the node has no URL
+  std::string error; // why there is no picture; empty: there is one, or the node names none
 };
 enum class Decode : uint8_t { yes, no };
 // Returns the picture of an ImageTexture, a PixelTexture, or the frame that a MovieTexture of a

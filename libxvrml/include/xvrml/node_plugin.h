@@ -11,6 +11,7 @@
 
 #include "xvrml/behaviour.h"
 #include "xvrml/node_table.h"
+#include "xvrml/renderer.h"
 
 namespace xvrml {
 
@@ -31,6 +32,8 @@ struct NodePluginRow {
   const NodeImplementation* implementation;
   // Tells the plug-in its type and its index in the registry.
   void (*registered)(const NodeType& type);
+  // Calls the callback for the node if the renderer has those of the plug-in. Returns false if not.
+  bool (*render)(Renderer& renderer, Node& node, const RenderState& state, Visit& visit);
 };
 
 // ASCII "XVNP".
@@ -49,15 +52,16 @@ inline constexpr uint32_t nodePluginMajor = 1, nodePluginMinor = 0;
 #define XVRML_CXX_ABI "libstdc++"
 #endif
 inline constexpr uint32_t nodePluginSizes[] = {
-    sizeof(Node),     sizeof(Value),     sizeof(NodeType),           sizeof(FieldInfo),
-    sizeof(FieldRow), sizeof(Behaviour), sizeof(NodeImplementation), sizeof(NodeRow)};
+    sizeof(Node),          sizeof(Value),      sizeof(NodeType),           sizeof(FieldInfo),
+    sizeof(FieldRow),      sizeof(Behaviour),  sizeof(NodeImplementation), sizeof(NodeRow),
+    sizeof(NodePluginRow), sizeof(RenderState)};
 
 struct NodePlugin {
   uint32_t magic;        // nodePluginMagic
   uint32_t major, minor; // version of this interface
   uint32_t size;         // sizeof(NodePlugin)
   const char* abi;       // XVRML_CXX_ABI
-  uint32_t sizes[8];     // nodePluginSizes
+  uint32_t sizes[10];    // nodePluginSizes
   uint32_t count;
   const NodePluginRow* rows;
 };

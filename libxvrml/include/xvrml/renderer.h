@@ -33,7 +33,7 @@
 
 namespace xvrml {
 
-// What a callback says about the rest of the walk.
+// The answer of a callback: how the walk goes on.
 enum class Visit : uint8_t {
   // The walk goes on into the children of the node. A Shape is drawn; its appearance and geometry
   // are its children.
@@ -59,8 +59,8 @@ struct RenderState {
   // From the coordinate system of the node's children to the world: matrix times local. Null if no
   // child can be visible, because the matrix is singular or not finite; then none is visited.
   const double* inner;
-  // What ClipPlanes leave at the node: the points of the world with a x + b y + c z + d >= 0 for
-  // each of these. Empty: everything.
+  // The part of the world that ClipPlanes leave at the node: points with a x + b y + c z + d >= 0
+  // for each of these. Empty: everything.
   std::span<const std::array<double, 4>> kept;
 
   // Returns the node above the node; null for a root.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "geometry/descend.h"
 #include "geometry/half_space.h"
 #include "mapper/graph/graph.h"
 #include "nodes/bindable.h"
@@ -35,12 +36,10 @@ void planTransform(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::Transform&>(node).children);
 }
 
-// A whichChoice below 0 or beyond the last choice draws nothing (clause 6.46).
 void planSwitch(PlanContext&, Node& node, Plan& plan) {
-  auto& s = static_cast<nodes::Switch&>(node);
   plan.kind = Kind::group;
-  if (s.whichChoice >= 0 && size_t(s.whichChoice) < s.choice.size())
-    plan.children.push_back(s.choice[size_t(s.whichChoice)].get());
+  if (Node* chosen = chosenChild(static_cast<nodes::Switch&>(node)))
+    plan.children.push_back(chosen);
 }
 
 void planLod(PlanContext&, Node& node, Plan& plan) {
@@ -121,10 +120,8 @@ void planCadFace(PlanContext&, Node& node, Plan& plan) {
   plan.children.push_back(static_cast<nodes::CADFace&>(node).shape.get());
 }
 void planCadLayer(PlanContext&, Node& node, Plan& plan) {
-  const auto& layer = static_cast<nodes::CADLayer&>(node);
   plan.kind = Kind::group;
-  for (size_t i = 0; i < layer.children.size(); ++i)
-    if (showsChild(layer, i)) plan.children.push_back(layer.children[i].get());
+  appendShownChildren(static_cast<nodes::CADLayer&>(node), plan.children);
 }
 
 void planViewpointGroup(PlanContext&, Node& node, Plan& plan) {

@@ -23,6 +23,7 @@
 #include "mapper/graph/graph.h"
 #include "xvrml/change.h"
 #include "xvrml/nodes.h"
+#include "xvrml/renderer.h"
 
 namespace xvrml::mapper {
 namespace {
@@ -32,30 +33,16 @@ constexpr uint64_t placeLimit = 200'000;
 
 bool reachedBy(const Item& item, Change kind) { return item.node && reaches(*item.node, kind); }
 
-// Returns whether events reach a geometry node or a node it holds (Coordinate, Color, FontStyle
-// ...).
-bool geometryReached(Node& geometry) {
-  if (!geometry.live) return false;
-  if (reaches(geometry, Change::geometry)) return true;
-  for (const FieldInfo& field : geometry.type().fields) {
-    if (field.type != FieldType::SFNode ||
-        (field.access != Access::field && field.access != Access::exposedField))
-      continue;
-    const Node* held = renderedNode(static_cast<NodeRef*>(geometry.storage(field))->get());
-    if (held && reaches(*held, Change::geometry)) return true;
-  }
-  return false;
-}
-
 // Returns whether events reach the Material that colours lines without colours of their own.
 bool lineColorReached(Node* shape) {
   if (!shape->live) return false;
-  Node* node = renderedNode(static_cast<nodes::Shape*>(shape)->appearance.get());
-  if (reaches(*shape, Change::appearance) || (node && reaches(*node, Change::appearance)))
-    return true;
-  const auto* appearance = nodeCast<nodes::Appearance>(node);
-  const Node* material = appearance ? renderedNode(appearance->material.get()) : nullptr;
-  return material && reaches(*material, Change::appearance);
+  const AppearanceParts parts =
+      resolveAppearance(static_cast<nodes::Shape*>(shape)->appearance.get());
+  for (const Node* node :
+       {static_cast<const Node*>(shape), static_cast<const Node*>(parts.appearance),
+        static_cast<const Node*>(parts.plain ? parts.material : nullptr)})
+    if (node && reaches(*node, Change::appearance)) return true;
+  return false;
 }
 
 class Summary {
@@ -193,7 +180,8 @@ class Summary {
     std::vector<uint8_t> reached(graph_.meshes.size());
     for (const ItemId id : graph_.order)
       if (const Item& item = graph_.items[id];
-          item.mesh != none && !item.merged && geometryReached(graph_.meshes.geometry(item.mesh)))
+          item.mesh != none && !item.merged &&
+          reachBelow(graph_.meshes.geometry(item.mesh), Change::geometry))
         reached[size_t(item.mesh)] = 1;
     for (size_t mesh = 0; mesh < reached.size(); ++mesh)
       graph_.meshes.setDynamic(int32_t(mesh), reached[mesh]);

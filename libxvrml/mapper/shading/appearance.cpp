@@ -11,54 +11,16 @@
 #include "mapper/shading/material_parameters.h"
 #include "mapper/shading/physical.h"
 #include "mapper/shading/x3d_material.h"
+#include "xvrml/appearance.h"
 #include "xvrml/change.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
-namespace {
-
-// The parts of an Appearance or ORTAppearance, with prototype instances resolved.
-struct Parts {
-  nodes::Material* material = nullptr;
-  Node* anyMaterial = nullptr; // also one of X3D 4
-  const nodes::Appearance* plain = nullptr;
-  Node* texture = nullptr;
-  Node* anyTransform = nullptr; // also a MultiTextureTransform
-  const nodes::TextureTransform* textureTransform = nullptr;
-  nodes::ORTShader* shader = nullptr;
-};
-
-template <class T> void surfaceParts(const T& appearance, Parts& parts) {
-  parts.anyMaterial = renderedNode(appearance.material.get());
-  parts.material = nodeCast<nodes::Material>(parts.anyMaterial);
-  parts.texture = renderedNode(appearance.texture.get());
-  parts.anyTransform = renderedNode(appearance.textureTransform.get());
-  parts.textureTransform = firstTransform(parts.anyTransform, "");
-}
-
-Parts partsOf(Node* appearance) {
-  Parts parts;
-  Node* node = renderedNode(appearance);
-  if (auto* plain = nodeCast<nodes::Appearance>(node)) {
-    surfaceParts(*plain, parts);
-    parts.plain = plain;
-  } else if (auto* custom = nodeCast<nodes::ORTAppearance>(node)) {
-    surfaceParts(*custom, parts);
-    parts.shader = nodeCast<nodes::ORTShader>(renderedNode(custom->shader.get()));
-  }
-  return parts;
-}
-
-X3dParts x3dPartsOf(const Parts& parts) {
-  return {parts.plain, parts.anyMaterial, parts.texture, parts.anyTransform};
-}
-
-} // namespace
 
 bool isTextured(Node* appearance) {
-  const Parts parts = partsOf(appearance);
+  const AppearanceParts parts = resolveAppearance(appearance);
   if (parts.shader || (parts.texture && !isCubeMap(parts.texture))) return true;
-  if (parts.anyMaterial && hasPictures(*parts.anyMaterial)) return true;
+  if (parts.material && hasPictures(*parts.material)) return true;
   Node* back = parts.plain ? renderedNode(parts.plain->backMaterial.get()) : nullptr;
   return back && hasPictures(*back);
 }
@@ -86,7 +48,8 @@ constexpr uint64_t bytesOfShader = bytesOfSurface - bytesOfSharedSurface;
 constexpr size_t smallWorld = 256;
 
 // Returns the bytes of all values that decide how a surface looks.
-std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply, bool vertexAlpha) {
+std::string keyOf(const AppearanceParts& parts, RTid texture, bool linear, bool multiply,
+                  bool vertexAlpha) {
   std::string key;
   key.reserve(64); // a material takes 60 bytes
   const auto add = [&key](const auto& value) {
@@ -95,12 +58,12 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply, 
   add(texture);
   add(multiply);
   add(vertexAlpha);
-  if (const nodes::Material* m = parts.material) {
+  if (const auto* m = nodeCast<nodes::Material>(parts.material)) {
     for (const Color& color : {m->diffuseColor, m->emissiveColor, m->specularColor})
       add(convert(color, linear));
     for (const float number : {m->ambientIntensity, m->shininess, m->transparency}) add(number);
   }
-  if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
+  if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform); t && texture != 0)
     add(textureMatrix(t->center, t->rotation, t->scale, t->translation));
   return key;
 }
@@ -112,11 +75,11 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply, 
 bool Surfaces::mayShare(const Entry& entry) const {
   Node* node = entry.appearance.get();
   if (!node || entries_[placeOf(entry.use)].size() <= smallWorld) return false;
-  const Parts parts = partsOf(node);
-  if (parts.shader || isPhysical(parts.anyMaterial)) return false;
+  const AppearanceParts parts = resolveAppearance(node);
+  if (parts.shader || isPhysical(parts.material)) return false;
   for (const Node* part :
-       {static_cast<const Node*>(node), static_cast<const Node*>(parts.material),
-        static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.anyTransform)})
+       {node, nodeCast<nodes::Material>(parts.material) ? parts.material : nullptr, parts.texture,
+        parts.textureTransform})
     if (part && part->live && reachOf(*part) != 0) return false;
   return true;
 }
@@ -156,10 +119,11 @@ Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
   entry.appearance = NodeRef(node);
   entry.textured = isTextured(node);
   entry.use = use;
-  const uint64_t bytes = partsOf(node).shader ? bytesOfSurface : bytesOfSharedSurface;
+  const AppearanceParts parts = resolveAppearance(node);
+  const uint64_t bytes = parts.shader ? bytesOfSurface : bytesOfSharedSurface;
   if (!take(entry, bytes)) return entry.surface;
   entry.bytes = uint32_t(bytes);
-  if (!use.lines) warnOfFaces(partsOf(node).plain, world_);
+  if (!use.lines) warnOfFaces(parts.plain, world_);
   if (!use.lines)
     makeSurface(entry);
   else if (take(entry, bytesOfShader))
@@ -176,12 +140,13 @@ Surface Surfaces::makeLines(const Entry& entry) {
   surface.shader = shader.id();
   shader.integer("lit", 0);
   if (entry.use.vertexAlpha) shader.integer("vertexAlpha", 1);
-  if (Node* material = partsOf(appearance).anyMaterial)
-    surface.lineColor = convert(emissionOf(*material), linear_);
-  const LineSizes sizes = lineSizes(partsOf(appearance).plain);
+  const AppearanceParts parts = resolveAppearance(appearance);
+  if (parts.material)
+    surface.lineColor = convert(materialValues(parts.material).lineColor, linear_);
+  const LineSizes sizes = lineSizes(parts.plain);
   surface.lineWidth = sizes.line;
   surface.pointSize = sizes.point;
-  warnOfLines(partsOf(appearance).plain, world_);
+  warnOfLines(parts.plain, world_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
   return surface;
@@ -191,34 +156,30 @@ Surface Surfaces::makeLines(const Entry& entry) {
 // the same name, where the class has them (as VRML97 does). These fields are texture,
 // textureTransform and those of the Material.
 RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
-  const Parts parts = partsOf(&appearance);
-  if (!parts.texture && !parts.textureTransform && !parts.anyMaterial)
+  const AppearanceParts parts = resolveAppearance(&appearance);
+  if (!parts.texture && !firstTransform(parts.textureTransform) && !parts.material)
     return custom_.shaderFor(node, RT_SURFACE);
   const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
-    setMaterialParameters(shader, shaderClass, node,
-                          {parts.anyMaterial, parts.texture, parts.textureTransform}, textures_,
-                          world_, linear_);
+    setMaterialParameters(shader, shaderClass, node, parts, textures_, world_, linear_);
   };
   return custom_.shaderFor(node, RT_SURFACE, &appearance, preset);
 }
 
-// In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
-// 17.2.2.3).
 bool Surfaces::multiplies(const Entry& entry) const {
-  return multiplyTextures || (entry.appearance && versionOf(*entry.appearance).texturesMultiply());
+  return multiplyTextures || resolveAppearance(entry.appearance.get()).texturesMultiply();
 }
 
 // Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
-  const Parts parts = partsOf(entry.appearance.get());
+  const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   if (parts.shader) {
     if (const RTid shader = customSurface(*entry.appearance, *parts.shader)) {
       entry.surface.shader = shader;
       return;
     }
   }
-  if (!parts.shader && needsX3dMaterial(x3dPartsOf(parts))) return makeX3d(entry);
-  if (!parts.shader && isPhysical(parts.anyMaterial)) return makePhysical(entry);
+  if (!parts.shader && needsX3dMaterial(parts)) return makeX3d(entry);
+  if (!parts.shader && isPhysical(parts.material)) return makePhysical(entry);
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
   const bool multiplied = multiplies(entry);
@@ -249,11 +210,12 @@ void Surfaces::makeSurface(Entry& entry) {
   const nodes::Material standard(*findNodeType("Material"));
   // The custom shader is unavailable, so the surface is shaded as a default Material.
   const bool fallback = parts.shader != nullptr;
-  setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
+  const auto* material = nodeCast<nodes::Material>(parts.material);
+  setMaterial(shader, material ? material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (entry.use.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);
-  if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
+  if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform); t && texture != 0)
     shader.matrix("textureTransform",
                   textureMatrix(t->center, t->rotation, t->scale, t->translation));
   else if (!shader.fresh())
@@ -281,23 +243,21 @@ bool Surfaces::setUp(Entry& entry, RTid Entry::*own, RTid shaderClass,
 
 // Makes the surface of a PhysicalMaterial or UnlitMaterial, or sets new parameters.
 void Surfaces::makePhysical(Entry& entry) {
-  const Parts parts = partsOf(entry.appearance.get());
+  const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   std::optional<ShaderSetup> setup;
   if (!setUp(entry, &Entry::physical, classes_.get("Physical", "physical"), setup)) return;
-  setPhysical(*setup, *parts.anyMaterial, {parts.plain, parts.texture, parts.textureTransform},
-              textures_, world_, linear_);
+  setPhysical(*setup, parts, textures_, world_, linear_);
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
-  report(world_.diagnostics, entry.appearance->source, parts.anyMaterial->type().name);
+  report(world_.diagnostics, entry.appearance->source, parts.material->type().name);
 }
 
 // Makes a surface that needs the class X3DMaterial, or sets new parameters.
 void Surfaces::makeX3d(Entry& entry) {
-  X3dParts parts = x3dPartsOf(partsOf(entry.appearance.get()));
-  parts.multiplies = multiplies(entry);
-  parts.byNormal = entry.use.byNormal;
+  const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   std::optional<ShaderSetup> setup;
   if (!setUp(entry, &Entry::x3d, classes_.get("X3DMaterial", ""), setup)) return;
-  setX3dMaterial(*setup, parts, {textures_, cubes_}, world_, linear_);
+  setX3dMaterial(*setup, parts, {.multiplies = multiplies(entry), .byNormal = entry.use.byNormal},
+                 {textures_, cubes_}, world_, linear_);
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, "appearance");
 }
@@ -315,9 +275,11 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
       effect.textured |= textured && !it->second.textured;
       it->second.textured = textured;
     } else {
-      Node* material = partsOf(&appearance).anyMaterial;
-      const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
-      const LineSizes sizes = lineSizes(partsOf(&appearance).plain);
+      const AppearanceParts parts = resolveAppearance(&appearance);
+      const Color color = parts.material
+                              ? convert(materialValues(parts.material).lineColor, linear_)
+                              : Surface().lineColor;
+      const LineSizes sizes = lineSizes(parts.plain);
       Surface& surface = it->second.surface;
       effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
                         sizes.point != surface.pointSize;

@@ -1,10 +1,10 @@
 #include "mapper/shading/cube_maps.h"
 
 #include <exception>
+#include <optional>
 
-#include "base/data_url.h"
-#include "base/locator.h"
 #include "image/decoders.h"
+#include "image/picture_urls.h"
 #include "xvrml/radiance.h"
 
 namespace xvrml::mapper {
@@ -82,24 +82,19 @@ CubeMap CubeMaps::composed(const nodes::ComposedCubeMapTexture& node) {
 }
 
 CubeMap CubeMaps::read(const nodes::ImageCubeMapTexture& node) {
-  const std::string& base = node.source.file ? *node.source.file : world_.path;
-  std::string error;
-  for (const std::string& url : node.url) {
-    const ResolvedUrl resolved =
-        isDataUrl(url) ? ResolvedUrl{url, {}, {}} : resolveUrl(url, base, world_.options);
-    std::string why = resolved.error;
-    if (why.empty()) {
-      try {
-        const CubeMap map = decode(resolved.path);
-        report(world_.diagnostics, node.source, "ImageCubeMapTexture");
-        return map;
-      } catch (const std::exception& failure) { why = failure.what(); }
-    }
-    if (error.empty()) error = shortenedUrl(url) + ": " + why;
-  }
-  if (!node.url.empty())
+  std::optional<CubeMap> map;
+  const std::string error =
+      openFirst(node.url, node, world_, [&](const std::string& path, std::string& why) {
+        try {
+          map = decode(path);
+        } catch (const std::exception& failure) { why = failure.what(); }
+        return map.has_value();
+      });
+  if (map)
+    report(world_.diagnostics, node.source, "ImageCubeMapTexture");
+  else if (!node.url.empty())
     world_.diagnostics.warn(node.source, "ImageCubeMapTexture: no picture: " + error);
-  return {};
+  return map.value_or(CubeMap());
 }
 
 CubeMap CubeMaps::decode(const std::string& path) {

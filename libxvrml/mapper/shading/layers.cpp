@@ -2,10 +2,14 @@
 // parameter `layers` are the places of the names in the tables below.
 #include "mapper/shading/layers.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <string_view>
 #include <vector>
+
+#include "xvrml/appearance.h"
 
 namespace xvrml::mapper {
 namespace {
@@ -85,14 +89,9 @@ Matrix matrixOf(const nodes::TextureTransform* t) {
   return t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix();
 }
 
-// Appends the six numbers of layerTransforms for the picture i >= 1. A MultiTextureTransform with
-// too few parts has identities at its end, and so has a TextureTransform.
+// Appends the six numbers of layerTransforms for the picture i >= 1.
 void appendTransform(Node* textureTransform, size_t i, std::vector<float>& numbers) {
-  const auto* multi = nodeCast<nodes::MultiTextureTransform>(renderedNode(textureTransform));
-  const nodes::TextureTransform* t = nullptr;
-  if (multi && i < multi->textureTransform.size())
-    t = nodeCast<nodes::TextureTransform>(renderedNode(multi->textureTransform[i].get()));
-  const Matrix m = matrixOf(t);
+  const Matrix m = matrixOf(layerTransform(textureTransform, i));
   std::array<float, 6> six = {float(m.x[0][0]), float(m.x[0][1]), float(m.x[1][0]),
                               float(m.x[1][1]), float(m.x[3][0]), float(m.x[3][1])};
   for (const float x : six)
@@ -102,22 +101,8 @@ void appendTransform(Node* textureTransform, size_t i, std::vector<float>& numbe
 
 } // namespace
 
-const nodes::TextureTransform* firstTransform(Node* textureTransform, const std::string& mapping) {
-  Node* node = renderedNode(textureTransform);
-  const auto* multi = nodeCast<nodes::MultiTextureTransform>(node);
-  if (!multi) return nodeCast<nodes::TextureTransform>(node);
-  if (!mapping.empty())
-    for (const NodeRef& part : multi->textureTransform)
-      if (const auto* t = nodeCast<nodes::TextureTransform>(renderedNode(part.get()));
-          t && t->mapping == mapping)
-        return t;
-  if (multi->textureTransform.empty()) return nullptr;
-  return nodeCast<nodes::TextureTransform>(renderedNode(multi->textureTransform[0].get()));
-}
-
-void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform,
-               const std::string& mapping, bool multiplies, Textures& textures, World& world,
-               bool linear) {
+void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform, std::string_view mapping,
+               bool multiplies, Textures& textures, World& world, bool linear) {
   Node* node = renderedNode(texture);
   shader.matrix("textureTransform", matrixOf(firstTransform(textureTransform, mapping)));
   std::array<RTid, mostLayers> ids{};

@@ -3,7 +3,7 @@
 // thread]
 #pragma once
 
-#include <string>
+#include <string_view>
 
 #include "mapper/rt.h"
 #include "mapper/shading/textures.h"
@@ -12,14 +12,9 @@
 
 namespace xvrml::mapper {
 
-// Returns the TextureTransform for the first picture, or null: the node itself, or of the parts of
-// a MultiTextureTransform the one with this name, else the first.
-const nodes::TextureTransform* firstTransform(Node* textureTransform, const std::string& mapping);
-
 // Sets the parameters of all layers. A single texture multiplies the colour if `multiplies`,
 // else it follows the rules of VRML97.
-void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform,
-               const std::string& mapping, bool multiplies, Textures& textures, World& world,
-               bool linear);
+void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform, std::string_view mapping,
+               bool multiplies, Textures& textures, World& world, bool linear);
 
 } // namespace xvrml::mapper

@@ -56,18 +56,6 @@ void setPhysical(const Setter& set, const nodes::PhysicalMaterial& m) {
   set.data("metallicRoughnessTexture", m.metallicRoughnessTexture.get());
 }
 
-// Returns the picture that multiplies the material's colour.
-Node* ownPicture(Node* material) {
-  Node* picture = nullptr;
-  if (const auto* m = nodeCast<nodes::Material>(material))
-    picture = renderedNode(m->diffuseTexture.get());
-  else if (const auto* physical = nodeCast<nodes::PhysicalMaterial>(material))
-    picture = renderedNode(physical->baseTexture.get());
-  else if (const auto* unlit = nodeCast<nodes::UnlitMaterial>(material))
-    picture = renderedNode(unlit->emissiveTexture.get());
-  return isCubeMap(picture) ? nullptr : picture;
-}
-
 } // namespace
 
 const char* colorParameterOf(const ShaderClass& shaderClass) {
@@ -79,11 +67,11 @@ const char* colorParameterOf(const ShaderClass& shaderClass) {
 }
 
 void setMaterialParameters(ShaderSetup& shader, const ShaderClass& shaderClass,
-                           const nodes::ORTShader& node, const MaterialParts& parts,
+                           const nodes::ORTShader& node, const AppearanceParts& parts,
                            Textures& textures, World& world, bool linear) {
   const Setter set{shader, shaderClass, textures, linear};
-  Node* const own = ownPicture(parts.material);
-  Node* const picture = own ? own : parts.texture;
+  Node* const own = materialValues(parts.material).colorTexture;
+  Node* const picture = own && !isCubeMap(own) ? own : parts.texture;
   const RTid texture = textures.ofNode(picture);
   if (set.takes("texture", RT_PARAM_TEXTURE))
     shader.texture("texture", texture);
@@ -91,7 +79,7 @@ void setMaterialParameters(ShaderSetup& shader, const ShaderClass& shaderClass,
     world.diagnostics.warn(picture->source,
                            "the shader " + node.name +
                                " has no parameter texture: the picture is not used");
-  if (const nodes::TextureTransform* t = parts.transform;
+  if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform);
       set.takes("textureTransform", RT_PARAM_MATRIX))
     shader.matrix("textureTransform",
                   t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());

@@ -4,17 +4,11 @@
 
 #include "mapper/rt.h"
 #include "mapper/shading/textures.h"
+#include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapper {
-
-// The parts of an ORTAppearance beside its shader; null where it has none.
-struct MaterialParts {
-  Node* material = nullptr; // may have any type
-  Node* texture = nullptr;  // stands for the material's own picture if it has none
-  const nodes::TextureTransform* transform = nullptr;
-};
 
 // Returns the name of the parameter that takes the colour of a material, or null. It is the first
 // of diffuseColor, baseColor, color and reflectance that the class has.
@@ -23,7 +17,7 @@ const char* colorParameterOf(const ShaderClass& shaderClass);
 // Sets the parameters that have the names and types of the material's fields, its colour, texture
 // and textureTransform. Warns of a picture that the class has no parameter for.
 void setMaterialParameters(ShaderSetup& shader, const ShaderClass& shaderClass,
-                           const nodes::ORTShader& node, const MaterialParts& parts,
+                           const nodes::ORTShader& node, const AppearanceParts& parts,
                            Textures& textures, World& world, bool linear);
 
 } // namespace xvrml::mapper

@@ -28,37 +28,36 @@ namespace {
 
 // Sets what both materials have.
 template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
-                                         const PhysicalParts& parts, Textures& textures,
+                                         const AppearanceParts& parts, Textures& textures,
                                          World& world, bool linear) {
   shader.color("emissiveColor", convert(m.emissiveColor, linear));
   shader.texture("emissiveTexture", textures.ofNode(m.emissiveTexture.get()));
   shader.texture("normalTexture", textures.ofData(m.normalTexture.get()));
   shader.number("normalScale", m.normalScale, 0, 100);
   shader.number("transparency", m.transparency, 0, 1);
-  shader.integer("alphaMode", alphaModeOf(parts.appearance, world));
-  shader.number("alphaCutoff", parts.appearance ? parts.appearance->alphaCutoff : 0.5f, 0, 1);
-  const nodes::TextureTransform* t = parts.transform;
+  shader.integer("alphaMode", alphaModeOf(parts.plain, world));
+  shader.number("alphaCutoff", parts.plain ? parts.plain->alphaCutoff : 0.5f, 0, 1);
+  const nodes::TextureTransform* t = firstTransform(parts.textureTransform);
   shader.matrix("textureTransform",
                 t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
 }
 
-void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m, const PhysicalParts& parts,
-                 Textures& textures, bool linear) {
+void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m,
+                 const AppearanceParts& parts, Textures& textures, bool linear) {
   shader.integer("lit", 1);
   shader.color("baseColor", convert(m.baseColor, linear));
   shader.number("metallic", m.metallic, 0, 1);
   shader.number("roughness", m.roughness, 0, 1);
-  Node* own = renderedNode(m.baseTexture.get());
-  shader.texture("texture", textures.ofNode(own ? own : parts.texture));
+  shader.texture("texture", textures.ofNode(colorTexture(parts)));
   shader.texture("metallicRoughnessTexture", textures.ofData(m.metallicRoughnessTexture.get()));
 }
 
 // The picture of an UnlitMaterial is its emissiveTexture; an appearance's texture stands for it.
-void setMaterial(ShaderSetup& shader, const nodes::UnlitMaterial& m, const PhysicalParts& parts,
+void setMaterial(ShaderSetup& shader, const nodes::UnlitMaterial& m, const AppearanceParts& parts,
                  Textures& textures) {
   shader.integer("lit", 0);
-  Node* own = renderedNode(m.emissiveTexture.get());
-  if (!own) shader.texture("emissiveTexture", textures.ofNode(parts.texture));
+  if (!renderedNode(m.emissiveTexture.get()))
+    shader.texture("emissiveTexture", textures.ofNode(parts.texture));
 }
 
 } // namespace
@@ -83,14 +82,6 @@ bool isPhysical(Node* material) {
   return nodeCast<nodes::PhysicalMaterial>(material) || nodeCast<nodes::UnlitMaterial>(material);
 }
 
-Color emissionOf(Node& material) {
-  if (const auto* m = nodeCast<nodes::Material>(&material)) return m->emissiveColor;
-  if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material)) return m->emissiveColor;
-  if (const auto* m = nodeCast<nodes::UnlitMaterial>(&material)) return m->emissiveColor;
-  if (const auto* m = nodeCast<nodes::TwoSidedMaterial>(&material)) return m->emissiveColor;
-  return {1, 1, 1};
-}
-
 bool hasPictures(Node& material) {
   if (const auto* m = nodeCast<nodes::Material>(&material))
     return m->ambientTexture || m->emissiveTexture || m->normalTexture || m->shininessTexture ||
@@ -101,17 +92,17 @@ bool hasPictures(Node& material) {
   return false;
 }
 
-void setPhysical(ShaderSetup& shader, Node& material, const PhysicalParts& parts,
-                 Textures& textures, World& world, bool linear) {
-  if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material)) {
+void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, Textures& textures,
+                 World& world, bool linear) {
+  if (const auto* m = nodeCast<nodes::PhysicalMaterial>(parts.material)) {
     setCommon(shader, *m, parts, textures, world, linear);
     setMaterial(shader, *m, parts, textures, linear);
     if (shader.fresh())
-      warnOfMappings(material,
+      warnOfMappings(*m,
                      {&m->baseTextureMapping, &m->emissiveTextureMapping,
                       &m->metallicRoughnessTextureMapping, &m->normalTextureMapping},
                      world);
-  } else if (const auto* flat = nodeCast<nodes::UnlitMaterial>(&material)) {
+  } else if (const auto* flat = nodeCast<nodes::UnlitMaterial>(parts.material)) {
     setCommon(shader, *flat, parts, textures, world, linear);
     setMaterial(shader, *flat, parts, textures);
   }

@@ -7,6 +7,7 @@
 
 #include "mapper/rt.h"
 #include "mapper/shading/textures.h"
+#include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
@@ -14,8 +15,6 @@ namespace xvrml::mapper {
 
 // Returns whether the node is a material that the class Physical draws.
 bool isPhysical(Node* material);
-// Returns the emissiveColor of a material of any type. It is the colour of lines and points.
-Color emissionOf(Node& material);
 // Returns the value of the parameter alphaMode for an appearance, which may be null: 0 opaque, 1
 // mask, 2 blend.
 int alphaModeOf(const nodes::Appearance* appearance, World& world);
@@ -25,16 +24,9 @@ void warnOfMappings(const Node& material, std::initializer_list<const std::strin
 // Returns whether a material has a picture of its own other than a cube map.
 bool hasPictures(Node& material);
 
-// The parts of an appearance beside its material; null where it has none.
-struct PhysicalParts {
-  const nodes::Appearance* appearance = nullptr;
-  Node* texture = nullptr; // stands for the picture of the base colour if the material has none
-  const nodes::TextureTransform* transform = nullptr;
-};
-
 // Sets all parameters of a shader of the class Physical. Warns where a material asks for different
 // texture coordinates for its pictures.
-void setPhysical(ShaderSetup& shader, Node& material, const PhysicalParts& parts,
-                 Textures& textures, World& world, bool linear);
+void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, Textures& textures,
+                 World& world, bool linear);
 
 } // namespace xvrml::mapper

@@ -1,8 +1,9 @@
 #include "mapper/shading/shader_fields.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
-#include "base/visit_storage.h"
 #include "nearest.h"
 
 namespace xvrml::mapper {
@@ -55,54 +56,6 @@ std::string problemOf(const FieldInfo& field, const nodes::ORTShader& node,
          std::string(fieldTypeName(field.type));
 }
 
-// Reads a value into an option. Returns false if the value sets nothing.
-struct Reader {
-  RTenum parameter;
-  ShaderOption& option;
-  using Type = ShaderOption::Type;
-
-  bool operator()(bool value) const {
-    option.type = Type::boolean;
-    option.integer = value;
-    return true;
-  }
-  bool operator()(int32_t value) const {
-    option.type = Type::integer;
-    option.integer = value;
-    return true;
-  }
-  bool operator()(const std::string& value) const {
-    option.type = Type::text;
-    option.text = value;
-    return true;
-  }
-  bool operator()(const MFString& urls) const {
-    if (urls.empty()) return false;
-    option.type = parameter == RT_PARAM_TEXTURE ? Type::texture : Type::file;
-    option.text = urls[0];
-    option.otherUrls.assign(urls.begin() + 1, urls.end());
-    return true;
-  }
-  bool operator()(const NodeRef& node) const {
-    option.type = Type::node;
-    option.picture = node;
-    return bool(node);
-  }
-  template <class T> bool operator()(const T& value) const {
-    if constexpr (isNumberList<T>) {
-      option.type = Type::list;
-      for (const auto& one : value) append(one);
-    } else if constexpr (Numeric<T>) {
-      option.type = Type::floats;
-      append(value);
-    }
-    return true;
-  }
-  template <class T> void append(const T& value) const {
-    for (int i = 0; i < numberCount<T>; ++i) option.numbers.push_back(float(numbersOf(value)[i]));
-  }
-};
-
 } // namespace
 
 void addDeclaredFields(const nodes::ORTShader& node, const ShaderClass& shaderClass,
@@ -114,17 +67,13 @@ void addDeclaredFields(const nodes::ORTShader& node, const ShaderClass& shaderCl
       problems.push_back({&field, true, std::move(why)});
       continue;
     }
-    ShaderOption option;
-    option.name = field.name;
-    option.field = &field;
-    const RTenum parameter = shaderClass.parameters.at(field.name);
-    const bool sets =
-        visitStorage(field.type, const_cast<void*>(node.storage(field)), [&](const auto& value) {
-          return Reader{parameter, option}(value);
-        });
+    std::optional<ShaderOption> option = declaredOption(node, field);
+    if (option && option->type == ShaderOption::Type::file &&
+        shaderClass.parameters.at(field.name) == RT_PARAM_TEXTURE)
+      option->type = ShaderOption::Type::texture;
     if (std::erase_if(options, [&](const ShaderOption& one) { return one.name == field.name; }))
       problems.push_back({&field, false, "an option sets this parameter, too; the field counts"});
-    if (sets) options.push_back(std::move(option));
+    if (option) options.push_back(std::move(*option));
   }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mapper/rt.h"
-#include "mapper/shading/shader_options.h"
+#include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {

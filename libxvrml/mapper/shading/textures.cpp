@@ -4,9 +4,8 @@
 #include <exception>
 #include <stdexcept>
 
-#include "base/data_url.h"
-#include "base/locator.h"
 #include "image/decoders.h"
+#include "image/picture_urls.h"
 #include "xvrml/media.h"
 #include "xvrml/nodes.h"
 
@@ -177,18 +176,13 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
 }
 
 RTid Textures::ofUrls(const MFString& urls, const Node& node, const Sampling& sampling) {
-  const std::string& base = node.source.file ? *node.source.file : world_.path;
-  std::string error;
-  for (const std::string& url : urls) {
-    const ResolvedUrl resolved =
-        isDataUrl(url) ? ResolvedUrl{url, {}, {}} : resolveUrl(url, base, world_.options);
-    std::string why = resolved.error;
-    if (why.empty())
-      if (const RTid id = ofFile(resolved.path, sampling, why)) return id;
-    if (error.empty())
-      error = why.find(url) == std::string::npos ? shortenedUrl(url) + ": " + why : why;
-  }
-  if (urls.empty()) return 0;
+  RTid id = 0;
+  const std::string error =
+      openFirst(urls, node, world_, [&](const std::string& path, std::string& why) {
+        id = ofFile(path, sampling, why);
+        return id != 0;
+      });
+  if (id != 0 || urls.empty()) return id;
   ++missing_;
   world_.diagnostics.warn(node.source, node.type().name + ": no picture: " + error);
   return 0;
@@ -210,12 +204,9 @@ RTid Textures::ofFile(const std::string& path, const Sampling& sampling, std::st
   auto& [id, why] = it->second;
   if (fresh) {
     try {
-      const Limits& limits = world_.options.limits;
       const ImageRoom room = roomForPicture();
-      const std::vector<uint8_t> bytes = readPictureFile(path, room);
-      id = looksLikeRadiance(bytes.data(), bytes.size())
-               ? make(decodeRadiance(bytes.data(), bytes.size(), limits), sampling)
-               : make(decodeImage(bytes.data(), bytes.size(), room), sampling);
+      id = std::visit([&](const auto& picture) { return make(picture, sampling); },
+                      decodePicture(readPictureFile(path, room), room));
       if (id == 0 && rtGetError() != RT_NO_ERROR) why = rtGetErrorMessage();
       if (id != 0 && sampling.bordered()) bordered_.emplace(id, it);
     } catch (const std::exception& failure) { why = failure.what(); }

@@ -71,22 +71,8 @@ void warnOfMaterialMappings(const nodes::Material& m, World& world) {
                  world);
 }
 
-// Returns the first name that a slot of the material refers to.
-const std::string& mappingOf(const nodes::Material& m) {
-  for (const std::string* mapping :
-       {&m.diffuseTextureMapping, &m.emissiveTextureMapping, &m.ambientTextureMapping,
-        &m.normalTextureMapping, &m.shininessTextureMapping, &m.specularTextureMapping})
-    if (!mapping->empty()) return *mapping;
-  return m.diffuseTextureMapping;
-}
-
-nodes::Material* backOf(const X3dParts& parts) {
-  if (!parts.appearance || !nodeCast<nodes::Material>(parts.material)) return nullptr;
-  return nodeCast<nodes::Material>(renderedNode(parts.appearance->backMaterial.get()));
-}
-
 // Sets the back of a surface whose appearance has a backMaterial.
-void setBack(ShaderSetup& shader, const nodes::Material& m, const X3dParts& parts,
+void setBack(ShaderSetup& shader, const nodes::Material& m, const AppearanceParts& parts,
              Textures& textures, World& world, bool linear) {
   shader.integer("twoSided", 1);
   setMaterial(shader, back, m, textures, linear);
@@ -113,36 +99,34 @@ bool isUnfilled(const nodes::Appearance* appearance) {
   return fill && !fill->filled;
 }
 
-bool needsX3dMaterial(const X3dParts& parts) {
-  if (isUnfilled(parts.appearance)) return true;
+bool needsX3dMaterial(const AppearanceParts& parts) {
+  if (isUnfilled(parts.plain)) return true;
   if (isPhysical(parts.material)) return false;
   if (nodeCast<nodes::MultiTexture>(parts.texture) || isCubeMap(parts.texture)) return true;
   if (nodeCast<nodes::TwoSidedMaterial>(parts.material)) return true;
   const auto* m = nodeCast<nodes::Material>(parts.material);
   if (!m) return false;
-  return m->diffuseTexture || hasPictures(*parts.material) || backOf(parts) ||
-         !isTransparentMode(parts.appearance);
+  return m->diffuseTexture || hasPictures(*parts.material) || parts.backMaterial ||
+         !isTransparentMode(parts.plain);
 }
 
-void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, const X3dPictures& pictures,
-                    World& world, bool linear) {
+void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse use,
+                    const X3dPictures& pictures, World& world, bool linear) {
   Textures& textures = pictures.textures;
-  shader.integer("filled", isUnfilled(parts.appearance) ? 0 : 1);
+  shader.integer("filled", isUnfilled(parts.plain) ? 0 : 1);
   shader.integer("lit", parts.material ? 1 : 0);
-  shader.integer("alphaMode", alphaModeOf(parts.appearance, world));
-  shader.number("alphaCutoff", parts.appearance ? parts.appearance->alphaCutoff : 0.5f, 0, 1);
+  shader.integer("alphaMode", alphaModeOf(parts.plain, world));
+  shader.number("alphaCutoff", parts.plain ? parts.plain->alphaCutoff : 0.5f, 0, 1);
   Node* texture = parts.texture;
-  std::string mapping;
   bool twoSided = false;
   setNoPictures(shader, front);
   setNoPictures(shader, back);
   if (const auto* m = nodeCast<nodes::Material>(parts.material)) {
     setMaterial(shader, front, *m, textures, linear);
-    if (Node* own = renderedNode(m->diffuseTexture.get())) texture = own;
-    mapping = mappingOf(*m);
+    texture = colorTexture(parts);
     if (shader.fresh()) warnOfMaterialMappings(*m, world);
-    if (const nodes::Material* behind = backOf(parts)) {
-      setBack(shader, *behind, parts, textures, world, linear);
+    if (parts.backMaterial) {
+      setBack(shader, *parts.backMaterial, parts, textures, world, linear);
       twoSided = true;
     }
   } else if (const auto* both = nodeCast<nodes::TwoSidedMaterial>(parts.material)) {
@@ -158,9 +142,9 @@ void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, const X3dPicture
     shader.integer("backPicture", 0);
   }
   shader.integer("twoSided", twoSided ? 1 : 0);
-  if (setCubeLayer(shader, texture, pictures.cubes, parts.byNormal)) texture = nullptr;
-  setLayers(shader, texture, parts.textureTransform, mapping, parts.multiplies, textures, world,
-            linear);
+  if (setCubeLayer(shader, texture, pictures.cubes, use.byNormal)) texture = nullptr;
+  setLayers(shader, texture, parts.textureTransform, materialValues(parts.material).mapping,
+            use.multiplies, textures, world, linear);
 }
 
 } // namespace xvrml::mapper

@@ -5,17 +5,14 @@
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/textures.h"
+#include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapper {
 
-// The parts of an appearance, with prototype instances resolved; null where it has none.
-struct X3dParts {
-  const nodes::Appearance* appearance = nullptr;
-  Node* material = nullptr;
-  Node* texture = nullptr;
-  Node* textureTransform = nullptr;
+// Says how the pictures of a surface are used.
+struct X3dUse {
   bool multiplies = false; // a texture multiplies diffuseColor
   bool byNormal = false;   // a cube map is looked up by the normal
 };
@@ -26,11 +23,11 @@ struct X3dPictures {
 
 // Returns whether a surface has a MultiTexture, a cube map, a back of its own, pictures in its
 // Material, an alphaMode, or is not filled.
-bool needsX3dMaterial(const X3dParts& parts);
+bool needsX3dMaterial(const AppearanceParts& parts);
 // Returns whether faces are to be left out (FillProperties).
 bool isUnfilled(const nodes::Appearance* appearance);
 // Sets all parameters of a shader of the class X3DMaterial.
-void setX3dMaterial(ShaderSetup& shader, const X3dParts& parts, const X3dPictures& pictures,
-                    World& world, bool linear);
+void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse use,
+                    const X3dPictures& pictures, World& world, bool linear);
 
 } // namespace xvrml::mapper

@@ -1,12 +1,15 @@
-// shader_options.cpp: the parser of shader options.
+// shader_options.cpp: the parameters that an ORTShader sets, in its options ("3f reflectance .9 .9
+// .9", one or several in a string) or in fields that it declares.
 //   options := { option };  option := type name value*;  the type determines the number of values.
-#include "mapper/shading/shader_options.h"
-
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
-namespace xvrml::mapper {
+#include "base/visit_storage.h"
+#include "xvrml/appearance.h"
+
+namespace xvrml {
 namespace {
 
 class Words {
@@ -149,4 +152,76 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options,
   return result;
 }
 
-} // namespace xvrml::mapper
+namespace {
+
+// Reads a value into an option. Returns false if the value sets nothing.
+struct Reader {
+  ShaderOption& option;
+  using Type = ShaderOption::Type;
+
+  bool operator()(bool value) const {
+    option.type = Type::boolean;
+    option.integer = value;
+    return true;
+  }
+  bool operator()(int32_t value) const {
+    option.type = Type::integer;
+    option.integer = value;
+    return true;
+  }
+  bool operator()(const std::string& value) const {
+    option.type = Type::text;
+    option.text = value;
+    return true;
+  }
+  bool operator()(const MFString& urls) const {
+    if (urls.empty()) return false;
+    option.type = Type::file;
+    option.text = urls[0];
+    option.otherUrls.assign(urls.begin() + 1, urls.end());
+    return true;
+  }
+  bool operator()(const NodeRef& node) const {
+    option.type = Type::node;
+    option.picture = node;
+    return bool(node);
+  }
+  template <class T> bool operator()(const T& value) const {
+    if constexpr (isNumberList<T>) {
+      option.type = Type::list;
+      for (const auto& one : value) append(one);
+    } else if constexpr (Numeric<T>) {
+      option.type = Type::floats;
+      append(value);
+    }
+    return isNumberList<T> || Numeric<T>;
+  }
+  template <class T> void append(const T& value) const {
+    for (int i = 0; i < numberCount<T>; ++i) option.numbers.push_back(float(numbersOf(value)[i]));
+  }
+};
+
+} // namespace
+
+std::optional<ShaderOption> declaredOption(const nodes::ORTShader& shader, const FieldInfo& field) {
+  ShaderOption option;
+  option.name = field.name;
+  option.field = &field;
+  const bool sets = visitStorage(field.type, const_cast<void*>(shader.storage(field)),
+                                 [&](const auto& value) { return Reader{option}(value); });
+  return sets ? std::optional(std::move(option)) : std::nullopt;
+}
+
+std::vector<ShaderOption> shaderOptions(const nodes::ORTShader& shader) {
+  std::vector<std::string> errors;
+  std::vector<ShaderOption> options = parseShaderOptions(shader.options, errors);
+  for (const FieldInfo& field : shader.type().fields) {
+    if (!field.declared || !holdsValue(field)) continue;
+    std::erase_if(options, [&](const ShaderOption& one) { return one.name == field.name; });
+    if (std::optional<ShaderOption> option = declaredOption(shader, field))
+      options.push_back(std::move(*option));
+  }
+  return options;
+}
+
+} // namespace xvrml

@@ -1,4 +1,4 @@
-#include "behaviour/viewer/descend.h"
+#include "geometry/descend.h"
 
 #include <algorithm>
 
@@ -8,9 +8,14 @@
 
 namespace xvrml {
 
-bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner) {
+bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner,
+                 Matrix* local) {
+  const auto place = [&](const Matrix& own) {
+    inner = compose(toWorld, own);
+    if (local) *local = own;
+  };
   if (hasMatrix(node)) {
-    inner = compose(toWorld, matrixOf(node));
+    place(matrixOf(node));
     return determinant(inner) != 0;
   }
   inner = toWorld;
@@ -20,8 +25,7 @@ bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Ma
     const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
         up(view.x[1][0], view.x[1][1], view.x[1][2]);
     const Vector axis = vector(static_cast<const nodes::Billboard&>(node).axisOfRotation);
-    inner = compose(toWorld, billboardMatrix(axis, transformPoint(toLocal, eye),
-                                             transformDirection(toLocal, up)));
+    place(billboardMatrix(axis, transformPoint(toLocal, eye), transformDirection(toLocal, up)));
   }
   return true;
 }

@@ -9,8 +9,10 @@
 namespace xvrml {
 
 // Computes `inner`, the world matrix of the node's children. toWorld: the world matrix of the node.
-// view: the viewer's matrix, to which Billboards turn. Returns false if no child can be visible.
-bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner);
+// view: the viewer's matrix, to which Billboards turn. local: if not null, receives the matrix from
+// the children to the node; it must be the identity. Returns false if no child can be visible.
+bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner,
+                 Matrix* local = nullptr);
 
 // Returns the level to show (clause 6.26); the first one if there are no ranges. The node must have
 // levels.

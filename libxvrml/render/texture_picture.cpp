@@ -1,0 +1,59 @@
+// texture_picture.cpp: the pictures of texture nodes for programs. Nothing is kept: each call reads
+// and decodes anew.
+#include <exception>
+#include <utility>
+
+#include "image/decoders.h"
+#include "image/picture_urls.h"
+#include "xvrml/appearance.h"
+#include "xvrml/media.h"
+
+namespace xvrml {
+namespace {
+
+// Reads a file into a picture. Throws std::exception with the reason why it cannot be used.
+TexturePicture readPicture(const std::string& path, const World& world, Decode decode) {
+  const ImageRoom room{world.options.limits, ~uint64_t(0), budgetOf(world).get()};
+  TexturePicture picture;
+  picture.path = path;
+  picture.file = readPictureFile(path, room);
+  picture.type = mediaTypeOf(picture.file);
+  if (decode == Decode::no && !picture.type.empty()) return picture;
+  auto decoded = decodePicture(picture.file, room); // says what is wrong with other files
+  if (auto* image = std::get_if<Image>(&decoded))
+    picture.image = std::move(*image);
+  else
+    picture.radiance = std::get<RadianceImage>(std::move(decoded));
+  return picture;
+}
+
+} // namespace
+
+TexturePicture texturePicture(const Node& texture, const World& world, Decode decode) {
+  TexturePicture picture;
+  const Node* rendered = renderedNode(const_cast<Node*>(&texture));
+  const Node& node = rendered ? *rendered : texture;
+  if (const auto* file = nodeCast<nodes::ImageTexture>(&node)) {
+    bool found = false;
+    picture.error =
+        openFirst(file->url, node, world, [&](const std::string& path, std::string& why) {
+          try {
+            picture = readPicture(path, world, decode);
+            found = true;
+          } catch (const std::exception& failure) { why = failure.what(); }
+          return found;
+        });
+  } else if (const auto* pixels = nodeCast<nodes::PixelTexture>(&node)) {
+    picture.image = pixels->image;
+  } else if (nodeCast<nodes::MovieTexture>(&node)) {
+    if (const Image* shown = currentImage(node))
+      picture.image = *shown;
+    else
+      picture.error = "a MovieTexture has a picture only in a running world";
+  } else {
+    picture.error = node.type().name + " has no picture of its own";
+  }
+  return picture;
+}
+
+} // namespace xvrml
