@@ -107,7 +107,7 @@ std::optional<SurfacePicture> Surfaces::pictureOf(const AppearanceParts& parts,
 // all multiply, except alpha.
 void Surfaces::setColorPicture(const AppearanceParts& parts, const MaterialValues& values,
                                Surface& surface) {
-  surface.picture = pictureOf(parts, values.colorTexture ? values.colorTexture : parts.texture);
+  surface.picture = pictureOf(parts, xvrml::colorTexture(parts));
   if (!surface.picture) return;
   const PictureFile& file = pictures_.files()[surface.picture->file];
   const bool physical = values.model == Model::physical || values.model == Model::unlit;

@@ -5,11 +5,12 @@
 
 namespace picture {
 
-// No viewer is near an exported file: Billboards face +z, as they are written.
+// An exported file has no viewer: LODs have their finest level, and Billboards face +z.
 inline xvrml::RenderOptions walkOptions() {
   static constexpr double farInFront[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1e7, 1};
   xvrml::RenderOptions options;
   options.view = farInFront;
+  options.finestLevels = true;
   return options;
 }
 

@@ -202,6 +202,18 @@ def test_shaders(vv):
     assert marble and nowhere
 
 
+def test_an_export_has_no_viewer(vv):
+    document, _, talk = export(vv, HEADER + """Viewpoint { position 0 0 100 }
+LOD { range [ 10 ] level [ DEF Fine Shape { geometry Box { } } DEF Coarse Shape { geometry Sphere { } } ] }
+Switch { whichChoice 1 choice [ DEF No Shape { geometry Box { } } DEF Yes Shape { geometry Cone { } } ] }
+DEF Sign Billboard { children Shape { geometry Box { } } }""")
+    names = {one.get("name") for one in document["nodes"]}
+    assert "Fine" in names and "Yes" in names and not names & {"Coarse", "No"}
+    assert "rotation" not in node(document, "Sign")
+    for text in ("an LOD has its finest level alone", "a Switch has its present choice", "a Billboard does not turn"):
+        assert text in talk, talk
+
+
 HOSTILE = {
     "no shapes": "Group { }",
     "nothing": "",
@@ -370,7 +382,7 @@ def shape(material, geometry="Box { }", more=""):
 ALIKE = {
     "matt": SUN + shape("material Material { diffuseColor 0.2 0.5 0.8 }"),
     "light near by": "PointLight { location 1 2 3 attenuation 0 0 0.2 }\n" + shape("material Material { }", "Sphere { }"),
-    "spot": "SpotLight { location 0 0 4 attenuation 0 0 0.05 cutOffAngle 0.3 beamWidth 0.2 }\n" +
+    "spot": "SpotLight { location 0 0 4 attenuation 0 0 0.1 cutOffAngle 0.3 beamWidth 0.2 }\n" +
             shape("material Material { }", "Box { size 4 4 1 }"),
     "emission": shape("material Material { diffuseColor 0 0 0 emissiveColor 0.3 0.6 0.1 }", "Cone { }"),
     "no material": shape("", "Cylinder { }"),

@@ -355,10 +355,11 @@ void Scene::finishLight(Deferred& light) {
   if (light.object.contains("intensity")) return;
   const Vec3f& falloff = light.attenuation;
   const double distance = std::max(length(centre() + light.place * -1.0), 1e-3 * light.scale);
-  double candela = candelaOf(light.intensity, falloff, distance, light.scale);
-  if (falloff.x == 0 && falloff.y == 0 && falloff.z > 0)
-    candela = std::numbers::pi * light.intensity * light.scale * light.scale / double(falloff.z);
-  else
+  const double candela = candelaOf(light.intensity, falloff, distance, light.scale),
+               inside = distance / light.scale;
+  // From here on the light falls off with the square in the world, too.
+  const bool square = falloff.x == 0 && falloff.y == 0 && double(falloff.z) * inside * inside >= 1;
+  if (!square)
     remarks_.change("a light falls off with the square of the distance, and is as bright as in the "
                     "world at the middle of what is drawn");
   light.object["intensity"] = float(clamped(candela, 0, largest));
