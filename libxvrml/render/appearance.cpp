@@ -23,7 +23,8 @@ std::string_view mappingOf(const nodes::Material& m) {
   return {};
 }
 
-MaterialValues valuesOf(const nodes::Material& m) {
+// Material and TwoSidedMaterial, whose front has the same names.
+template <class T> MaterialValues phongValues(const T& m) {
   MaterialValues values;
   values.model = MaterialValues::Model::phong;
   values.color = m.diffuseColor;
@@ -32,6 +33,11 @@ MaterialValues valuesOf(const nodes::Material& m) {
   values.ambientIntensity = m.ambientIntensity;
   values.shininess = m.shininess;
   values.transparency = m.transparency;
+  return values;
+}
+
+MaterialValues valuesOf(const nodes::Material& m) {
+  MaterialValues values = phongValues(m);
   values.normalScale = m.normalScale;
   values.colorTexture = pictureIn(m.diffuseTexture);
   values.emissiveTexture = pictureIn(m.emissiveTexture);
@@ -41,18 +47,6 @@ MaterialValues valuesOf(const nodes::Material& m) {
   values.normalTexture = pictureIn(m.normalTexture);
   values.occlusionTexture = pictureIn(m.occlusionTexture);
   values.mapping = mappingOf(m);
-  return values;
-}
-
-MaterialValues valuesOf(const nodes::TwoSidedMaterial& m) {
-  MaterialValues values;
-  values.model = MaterialValues::Model::phong;
-  values.color = m.diffuseColor;
-  values.emissiveColor = values.lineColor = m.emissiveColor;
-  values.specularColor = m.specularColor;
-  values.ambientIntensity = m.ambientIntensity;
-  values.shininess = m.shininess;
-  values.transparency = m.transparency;
   return values;
 }
 
@@ -108,7 +102,7 @@ AppearanceParts resolveAppearance(Node* appearance) {
 MaterialValues materialValues(Node* material) {
   Node* node = renderedNode(material);
   if (const auto* m = nodeCast<nodes::Material>(node)) return valuesOf(*m);
-  if (const auto* m = nodeCast<nodes::TwoSidedMaterial>(node)) return valuesOf(*m);
+  if (const auto* m = nodeCast<nodes::TwoSidedMaterial>(node)) return phongValues(*m);
   if (const auto* m = nodeCast<nodes::PhysicalMaterial>(node)) return valuesOf(*m);
   if (const auto* m = nodeCast<nodes::UnlitMaterial>(node)) return valuesOf(*m);
   return {};
@@ -118,7 +112,7 @@ std::optional<MaterialValues> backValues(const AppearanceParts& parts) {
   if (parts.backMaterial) return valuesOf(*parts.backMaterial);
   const auto* both = nodeCast<nodes::TwoSidedMaterial>(parts.material);
   if (!both || !both->separateBackColor) return {};
-  MaterialValues values = valuesOf(*both);
+  MaterialValues values = phongValues(*both);
   values.color = both->backDiffuseColor;
   values.emissiveColor = both->backEmissiveColor;
   values.specularColor = both->backSpecularColor;

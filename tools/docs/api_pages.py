@@ -29,6 +29,7 @@ PAGES = [
                                                         "types", "diagnostics", "limits", "camera",
                                                         "viewer", "media", "change", "behaviour",
                                                         "node_plugin", "node_table",
+                                                        "renderer", "appearance", "build",
                                                         "script_engines", "value_text")
     ]),
 ]

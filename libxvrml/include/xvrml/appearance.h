@@ -56,8 +56,8 @@ struct MaterialValues {
   Node* normalTexture = nullptr;
   Node* metallicRoughnessTexture = nullptr; // roughness in green, metallic in blue
   Node* occlusionTexture = nullptr;
-  // The first mapping that a picture of a Material names (ISO/IEC 19775-1:2023 12.2.4).
-  std::string_view mapping;
+  std::string_view
+      mapping; // the first that a Material's fields name, such as diffuseTextureMapping
 };
 // Returns the values of a material, which may be null or a prototype instance. Those of a
 // TwoSidedMaterial are the ones of its front.
