@@ -2,6 +2,8 @@
 which shares nothing with the writer, and read again by vv: the pictures must be alike."""
 import os
 import pathlib
+import random
+import re
 import struct
 
 import pytest
@@ -240,6 +242,22 @@ def test_hostile_worlds(vv, name):
     assert problems_of(vv.folder / "out.glb") == [] and problems_of(vv.folder / "out.gltf") == []
     for file in ("out.obj", "out.mtl"):
         assert b"nan" not in (vv.folder / file).read_bytes() and b"inf" not in (vv.folder / file).read_bytes()
+
+
+NASTY = ("0", "-1", "1e38", "-1e38", "1e39", "1e-45", "-0.0", "65536", "2147483647", "0.9999999")
+
+
+@pytest.mark.parametrize("first", range(0, 60, 15))
+def test_numbers_of_any_size(vv, first):
+    for seed in range(first, first + 15):
+        dice = random.Random(seed)
+        world = re.sub(r"(?<![\w.])-?[0-9.]+(?![\w.])",
+                       lambda m: dice.choice(NASTY) if dice.random() < 0.1 else m.group(), WORLD.split("\n", 1)[1])
+        vv.write("in.wrl", HEADER + world)
+        assert vv("in.wrl", "--write", "out.glb", "-q").returncode == 0, seed
+        assert problems_of(vv.folder / "out.glb") == [], seed
+        for suffix in ("stl", "ply", "obj"):
+            assert vv("in.wrl", "--write", "out." + suffix, "-q").returncode == 0, seed
 
 
 def test_deep_nesting(vv):
