@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "libpicture/export/export.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/shader_rules.h"
 #include "objects.h"
@@ -94,7 +95,13 @@ void save(const WorldPtr& self, const py::object& file) {
   {
     const ReleaseGil release;
     try {
-      picture::writeFile(path, writeWorld(world, path));
+      if (const picture::ExportFormat* format = picture::exportFormatOf(path)) {
+        const picture::Exported exported = format->make(world, {path, ""});
+        picture::writeExported(exported);
+        for (const std::string& remark : exported.remarks) world.diagnostics.warn({}, remark);
+      } else {
+        picture::writeFile(path, writeWorld(world, path));
+      }
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }
   raiseOsError(failure);
@@ -399,9 +406,10 @@ void defineWorld(py::module_& module) {
            "Returns the world as X3D text, in the encoding 'xml' or 'classic' (ClassicVRML).")
       .def("save", save, py::arg("path"),
            "Writes the world as a file: as X3D in XML if its suffix is .x3d, as X3D ClassicVRML if "
-           "it "
-           "is .x3dv, else as VRML97. Relative urls of nodes that were read from a file "
-           "lead to the same files as before.")
+           "it is .x3dv, as glTF if it is .glb or .gltf, as a mesh if it is .stl, .ply or .obj, "
+           "else "
+           "as VRML97. Relative urls of nodes that were read from a file lead to the same files as "
+           "before. What glTF or a mesh has nothing for becomes a warning of the world.")
       .def("__repr__",
            [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
   defineRender(world);

@@ -67,11 +67,12 @@ bool isLink(const std::string& path) {
          S_ISLNK(info.st_mode);
 }
 
-void writeDirectly(const std::string& path, std::string_view bytes) {
+// write(descriptor): writes the content.
+template <class Write> void writeDirectly(const std::string& path, const Write& write) {
   int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor < 0) fail(path, errno);
   try {
-    writeDescriptor(descriptor, bytes, path);
+    write(descriptor);
   } catch (...) {
     ::close(descriptor);
     throw;
@@ -171,7 +172,8 @@ enum class Targets : uint8_t {
   edited   // regular files, also protected ones
 };
 
-void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Targets targets) {
+template <class Write>
+void replaceFile(const std::string& path, const Write& write, Wait wait, Targets targets) {
   const std::string target = followLinks(path);
   struct stat info;
   const bool exists = ::stat(target.c_str(), &info) == 0;
@@ -179,7 +181,7 @@ void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Tar
   if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
   if (exists && !S_ISREG(info.st_mode) && targets != Targets::any)
     throw std::runtime_error(whyNotRegular(path));
-  if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
+  if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, write);
   if (exists && targets != Targets::edited)
     if (const std::string why = whyProtected(path, info); !why.empty())
       throw std::runtime_error(why);
@@ -187,16 +189,28 @@ void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Tar
 
   Temporary temporary(path, target, 0666);
   if (exists) (void)!::fchmod(temporary.descriptor(), info.st_mode & 0777);
-  writeDescriptor(temporary.descriptor(), bytes, path);
+  write(temporary.descriptor());
   if (wait == Wait::disk) temporary.sync();
   temporary.moveTo(target);
   if (exists && targets == Targets::edited) passProtection(info, target);
+}
+
+void replaceFile(const std::string& path, std::string_view bytes, Wait wait, Targets targets) {
+  const auto write = [&](int descriptor) { writeDescriptor(descriptor, bytes, path); };
+  replaceFile(path, write, wait, targets);
 }
 
 } // namespace
 
 void writeFile(const std::string& path, std::string_view bytes, Wait wait) {
   replaceFile(path, bytes, wait, Targets::any);
+}
+
+void writeFile(const std::string& path, std::span<const std::string> pieces) {
+  const auto write = [&](int descriptor) {
+    for (const std::string& piece : pieces) writeDescriptor(descriptor, piece, path);
+  };
+  replaceFile(path, write, Wait::no, Targets::any);
 }
 
 std::string whyNotRegular(const std::string& path) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,8 @@ enum class Wait : uint8_t { no, disk };
 // file that it leads to is replaced or made. Devices and pipes are written directly. Throws
 // std::runtime_error naming the file and the reason.
 void writeFile(const std::string& path, std::string_view bytes, Wait wait = Wait::no);
+// Writes the pieces one after the other, so that a large file need not be in memory as a whole.
+void writeFile(const std::string& path, std::span<const std::string> pieces);
 
 // Writes a file as writeFile() does, but no device and no pipe: opening or writing one may block
 // for ever. It is for writes that a program or a script asks for while others wait.

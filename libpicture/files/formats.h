@@ -45,4 +45,9 @@ std::string encodePpm(const Picture& picture);
 std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int quality,
                    const std::string& note = {});
 
+// Returns the bytes of a PNG file for sRGB bytes, first row at the top. components: 1 grey, 2 grey
+// and alpha, 3 colours, 4 colours and alpha. Throws std::runtime_error.
+std::string pngOf(const std::vector<uint8_t>& bytes, int width, int height, int components,
+                  std::string note = {});
+
 } // namespace picture

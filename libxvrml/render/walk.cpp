@@ -121,7 +121,8 @@ void RenderWalk::appendParts(Node& node, const Matrix& toWorld) {
   const auto* lod = nodeCast<nodes::LOD>(&node);
   const auto* choice = nodeCast<nodes::Switch>(&node);
   if (lod && !options_.allChoices) {
-    if (!lod->level.empty()) parts_.push_back(lod->level[levelFor(*lod, toWorld, view_)].get());
+    const size_t level = options_.finestLevels ? 0 : levelFor(*lod, toWorld, view_);
+    if (level < lod->level.size()) parts_.push_back(lod->level[level].get());
   } else if (choice && !options_.allChoices) {
     parts_.push_back(chosenChild(*choice));
   } else if (const auto* collision = nodeCast<nodes::Collision>(&node)) {

@@ -109,6 +109,11 @@ def cases(programs, python):
             }),
         "world":
             Case(vv[:2] + ["--write", "out.wrl"], {"out.wrl": of_size(50)}),
+        "export":
+            Case(vv[:2] + ["--write", "out.gltf"], {
+                "out.gltf": is_json,
+                "out.bin": of_size(500)
+            }),
         "frames":
             Case(vv + ["--frames", "0-2", "-o", "out{frame}.png", "--stats", "out.json"], {
                 **frames, "out.json": is_json

@@ -225,6 +225,8 @@ TEST(Renderer, SeesWhatAViewerSees) {
   EXPECT_EQ(namesOf(*world), (Names{"Chosen", "Near", "Child", "On"}));
   const double view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 20, 1};
   EXPECT_EQ(namesOf(*world, {.view = view}), (Names{"Chosen", "Far", "Child", "On"}));
+  EXPECT_EQ(namesOf(*world, {.view = view, .finestLevels = true}),
+            (Names{"Chosen", "Near", "Child", "On"}));
   EXPECT_EQ(namesOf(*world, {.allChoices = true}),
             (Names{"No", "Chosen", "None", "Near", "Far", "Child", "On"}));
 }

@@ -51,12 +51,13 @@ void setWrite(Options& o, const std::string& value) {
   o.write = value;
   const size_t colon = value.find(':');
   const std::string format = value.substr(0, colon == value.npos ? 0 : colon);
-  if (format == "wrl" || format == "x3dv" || format == "x3d") {
-    o.writeEncoding = xvrml::writtenEncoding("." + format);
-    o.write = value.substr(colon + 1);
-  } else {
-    o.writeEncoding = xvrml::writtenEncoding(value);
-  }
+  const bool isExport = picture::exportFormatNamed(format) != nullptr;
+  const bool named = isExport || format == "wrl" || format == "x3dv" || format == "x3d";
+  if (named) o.write = value.substr(colon + 1);
+  // The name of a format says the same as the suffix of a file name.
+  const std::string name = named ? "." + format : value;
+  o.writeFormat = picture::exportFormatOf(name);
+  o.writeEncoding = xvrml::writtenEncoding(name);
   notEmpty(o.write, "a file name");
 }
 
@@ -654,8 +655,11 @@ const OptionInfo table[] = {
      "interrupted. In the window, reload the world and keep the view.",
      [](Options& o, const std::string&) { o.watch = true; }, with(needs("-o,the window,vv serve"))},
     {"--write", "FILE", "Write",
-     "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, every other "
-     "name VRML97. FORMAT:FILE (wrl, x3dv, x3d) selects it for any name; - is standard output.",
+     "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, .glb and "
+     ".gltf "
+     "glTF, .stl, .ply and .obj meshes (docs/export.md), every other name VRML97. FORMAT:FILE "
+     "(wrl, "
+     "x3dv, glb, ...) selects it for any name; - is standard output.",
      setWrite},
     {"--record", "FILE", "Write", "Write the scene as OpenRT edits, for openrt-replay.",
      [](Options& o, const std::string& v) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libpicture/cluster.h"
+#include "libpicture/export/export.h"
 #include "libpicture/files/film.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/renderer.h"
@@ -116,6 +117,7 @@ struct Options {
   std::shared_ptr<const InputScript> script; // contents of inputScript (readScript)
   std::string write, stats;
   xvrml::Encoding writeEncoding = xvrml::Encoding::vrml97; // the encoding of --write
+  const picture::ExportFormat* writeFormat = nullptr;      // stands in place of it if not null
   std::string compare;                                     // reference picture; empty: none
   int audit = 0; // number of pictures to check the error bars with; 0: none
   ServeOptions serve;

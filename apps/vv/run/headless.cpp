@@ -18,6 +18,7 @@
 #include "run/picture_files.h"
 #include "run/pictures.h"
 #include "run/timeline.h"
+#include "run/write_world.h"
 #include "start/look.h"
 #include "start/watched.h"
 #include "start/world_clock.h"
@@ -69,7 +70,7 @@ class Headless {
                              options_.makesPictures() ? "drawn" : "done"));
       return exitProblems;
     }
-    if (!options_.write.empty()) writeText(options_.write, written(world));
+    if (!options_.write.empty()) writeWorld(options_, *browser_);
     if (options_.check) return check();
     if (inspection_.ofWorld) inspect();
     int code = exitDone;
@@ -91,12 +92,6 @@ class Headless {
   }
 
  private:
-  // Returns the text for --write. Relative URLs of a text for standard output stay as they are.
-  std::string written(const xvrml::World& world) const {
-    return xvrml::writeWorld(world, options_.write == "-" ? "" : options_.write,
-                             options_.writeEncoding);
-  }
-
   // Also maps the world, because problems of geometry and textures appear only there; nothing is
   // drawn. With --time or --frames, the world runs up to that time.
   int check() {

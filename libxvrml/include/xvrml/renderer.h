@@ -152,6 +152,8 @@ struct RenderOptions {
   // Goes into all children of a Switch and all levels of an LOD, not only those that the viewer
   // sees.
   bool allChoices = false;
+  // LODs have their first level, whatever the distance of the viewer.
+  bool finestLevels = false;
   // More visits to nodes throw std::length_error. A node that is used n times is visited n times.
   uint64_t maximumVisits = 4'000'000;
 };
