@@ -192,6 +192,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineViewer(module);
   defineScripts(module);
   defineShapes(module);
+  defineRenderer(module);
   defineRt(module);
   refuseEmptyObjects(module);
   refuseEmptyObjects(module.attr("rt"));
