@@ -3,13 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "gl/failure.h"
 
 namespace rtgl {
 
-inline constexpr size_t maxNames = size_t(1)
-                                   << 20; // lists, or textures, that a context has at most
+// A context has at most so many lists, and so many textures.
+inline constexpr size_t maxNames = size_t(1) << 20;
 
 // Returns the first of `count` names in a row that a map lacks: those behind its last name, else
 // those of its first gap that is wide enough. count is above 0.

@@ -48,7 +48,9 @@ struct Program {
   void (*reshape)(int, int) = nullptr;
   void (*idle)() = nullptr;
   void (*keyboard)(unsigned char, int, int) = nullptr;
+  void (*keyboardUp)(unsigned char, int, int) = nullptr;
   void (*special)(int, int, int) = nullptr;
+  void (*specialUp)(int, int, int) = nullptr;
   void (*mouse)(int, int, int, int) = nullptr;
   void (*motion)(int, int) = nullptr;
   void (*passiveMotion)(int, int) = nullptr;
@@ -141,10 +143,15 @@ void handle(Program& p, const rtut::Event& e) {
   case Event::resize: reshape(p, e.x, e.y); break;
   case Event::expose: present(p); break;
   case Event::key:
-    if (p.keyboard) p.keyboard(static_cast<unsigned char>(e.code), e.x, e.y);
+    if (auto* call = e.state == RTUT_UP ? p.keyboardUp : p.keyboard)
+      call(static_cast<unsigned char>(e.code), e.x, e.y);
     break;
   case Event::special:
-    if (p.special) p.special(e.code, e.x, e.y);
+    if (auto* call = e.state == RTUT_UP ? p.specialUp : p.special) call(e.code, e.x, e.y);
+    break;
+  case Event::wheel: // buttons 3 and 4, as freeglut reports it
+    for (int state : {RTUT_DOWN, RTUT_UP})
+      if (p.mouse) p.mouse(e.code, state, e.x, e.y);
     break;
   case Event::button:
     if (p.mouse) p.mouse(e.code, e.state, e.x, e.y);
@@ -265,7 +272,12 @@ void rtutDisplayFunc(void (*call)(void)) { program().display = call; }
 void rtutReshapeFunc(void (*call)(int, int)) { program().reshape = call; }
 void rtutIdleFunc(void (*call)(void)) { program().idle = call; }
 void rtutKeyboardFunc(void (*call)(unsigned char, int, int)) { program().keyboard = call; }
+void rtutKeyboardUpFunc(void (*call)(unsigned char, int, int)) { program().keyboardUp = call; }
 void rtutSpecialFunc(void (*call)(int, int, int)) { program().special = call; }
+void rtutSpecialUpFunc(void (*call)(int, int, int)) { program().specialUp = call; }
+void rtutIgnoreKeyRepeat(int ignore) {
+  if (program().window) program().window->ignoreRepeats(ignore != 0);
+}
 void rtutMouseFunc(void (*call)(int, int, int, int)) { program().mouse = call; }
 void rtutMotionFunc(void (*call)(int, int)) { program().motion = call; }
 void rtutPassiveMotionFunc(void (*call)(int, int)) { program().passiveMotion = call; }

@@ -39,7 +39,12 @@ RT_API void rtutDisplayFunc(void (*display)(void));
 RT_API void rtutReshapeFunc(void (*reshape)(int width, int height));
 RT_API void rtutIdleFunc(void (*idle)(void));
 RT_API void rtutKeyboardFunc(void (*keyboard)(unsigned char key, int x, int y));
+RT_API void rtutKeyboardUpFunc(void (*keyboard)(unsigned char key, int x, int y));
 RT_API void rtutSpecialFunc(void (*special)(int key, int x, int y));
+RT_API void rtutSpecialUpFunc(void (*special)(int key, int x, int y));
+/* ignore: a key that is held is one call, instead of several. Call it after rtutCreateWindow. */
+RT_API void rtutIgnoreKeyRepeat(int ignore);
+/* The wheel is button 3 (away from the user) or 4. */
 RT_API void rtutMouseFunc(void (*mouse)(int button, int state, int x, int y));
 RT_API void rtutMotionFunc(void (*motion)(int x, int y));
 RT_API void rtutPassiveMotionFunc(void (*motion)(int x, int y));
@@ -196,7 +201,10 @@ RT_API void rtutWireTeapot(GLdouble size);
 #define glutReshapeFunc rtutReshapeFunc
 #define glutIdleFunc rtutIdleFunc
 #define glutKeyboardFunc rtutKeyboardFunc
+#define glutKeyboardUpFunc rtutKeyboardUpFunc
 #define glutSpecialFunc rtutSpecialFunc
+#define glutSpecialUpFunc rtutSpecialUpFunc
+#define glutIgnoreKeyRepeat rtutIgnoreKeyRepeat
 #define glutMouseFunc rtutMouseFunc
 #define glutMotionFunc rtutMotionFunc
 #define glutPassiveMotionFunc rtutPassiveMotionFunc
