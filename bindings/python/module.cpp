@@ -193,6 +193,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineScripts(module);
   defineShapes(module);
   defineRenderer(module);
+  defineAppearance(module);
   defineRt(module);
   refuseEmptyObjects(module);
   refuseEmptyObjects(module.attr("rt"));

@@ -237,5 +237,6 @@ void definePicture(py::module_& module);
 void defineDenoise(py::module_& module); // after definePicture()
 void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);
-void defineRenderer(py::module_& module); // after defineShapes()
+void defineRenderer(py::module_& module);   // after defineShapes()
+void defineAppearance(py::module_& module); // after defineWorld()
 void defineRt(py::module_& module);

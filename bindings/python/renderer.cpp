@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance_object.h"
 #include "arrays.h"
 #include "mesh_object.h"
 #include "numbers.h"
@@ -196,50 +197,14 @@ MeshObject meshOf(const ShapeObject& self) {
   return {{self.walk->world, NodeRef(&shape.shape)}, arrays, matrix};
 }
 
-py::tuple colorTuple(const Color& color) { return py::make_tuple(color.r, color.g, color.b); }
-
-// Returns a class of xvrml/_renderer.py.
-py::object madeInPython(const char* name) {
-  return py::module_::import("xvrml._renderer").attr(name);
-}
-
-py::object materialObject(const WorldPtr& world, const MaterialValues& m) {
-  constexpr const char* models[] = {"none", "phong", "physical", "unlit"};
-  return madeInPython("MaterialValues")(
-      models[size_t(m.model)], colorTuple(m.color), colorTuple(m.emissiveColor),
-      colorTuple(m.lineColor), colorTuple(m.specularColor), m.ambientIntensity, m.shininess,
-      m.metallic, m.roughness, m.transparency, m.normalScale, asNode(world, m.colorTexture),
-      asNode(world, m.emissiveTexture), asNode(world, m.specularTexture),
-      asNode(world, m.ambientTexture), asNode(world, m.shininessTexture),
-      asNode(world, m.normalTexture), asNode(world, m.metallicRoughnessTexture),
-      asNode(world, m.occlusionTexture));
-}
-
-py::object appearanceOf(const ShapeObject& self) {
-  const WorldPtr& world = self.walk->world;
-  const AppearanceParts& parts = self.get().appearance();
-  py::list layers;
-  for (const TextureLayer& layer : textureLayers(parts))
-    layers.append(madeInPython("TextureLayer")(asNode(world, layer.texture),
-                                               matrixArray(layer.transform), toText(layer.mode),
-                                               toText(layer.source), toText(layer.function)));
-  py::object back = py::none();
-  if (const auto values = backValues(parts)) back = materialObject(world, *values);
-  return madeInPython("AppearanceParts")(
-      asNode(world, parts.appearance), asNode(world, parts.material),
-      asNode(world, parts.backMaterial), asNode(world, parts.texture),
-      asNode(world, parts.textureTransform), asNode(world, parts.shader), parts.texturesMultiply(),
-      materialObject(world, materialValues(parts.material)), std::move(back), layers);
-}
-
 // Returns what events can reach: a dict of the parts that they can change.
 py::dict reachesOf(const ShapeObject& self) {
   const DrawnShape& shape = self.get();
   py::dict out;
   const auto add = [&](const char* part, const Reach& reach) {
     if (!reach) return;
-    out[part] = madeInPython("Reach")(asNode(self.walk->world, const_cast<Node*>(reach.node)),
-                                      toText(reach.reason()));
+    out[part] = classInPython("Reach")(asNode(self.walk->world, const_cast<Node*>(reach.node)),
+                                       toText(reach.reason()));
   };
   add("matrix", shape.reachOfMatrix());
   add("presence", shape.reachOfPresence());
@@ -311,8 +276,11 @@ void defineRenderer(py::module_& module) {
           "mesh", meshOf,
           "The arrays of the geometry, cut by ClipPlanes: a Mesh, which stays valid. Shapes with "
           "the same geometry share the arrays. Its kind is 'empty' if there is nothing to draw.")
-      .def_property_readonly("appearance", appearanceOf,
-                             "The appearance with its references resolved: AppearanceParts.")
+      .def_property_readonly(
+          "appearance",
+          [](const D& self) { return appearanceObject(self.walk->world, self.get().appearance()); },
+
+          "The appearance with its references resolved: AppearanceParts.")
       .def_property_readonly(
           "planes", [](const D& self) { return planes(self.get().kept()); },
           "What ClipPlanes leave, in the coordinates of the shape: an array (n, 4) of planes.")

@@ -172,6 +172,29 @@ def test_appearances_are_resolved(world):
     assert second.appearance is None and second.front.model == "none" and second.layers == []
 
 
+def test_textures_have_pictures(world, tmp_path):
+    shown = world.render(size=(16, 12), spp=1)
+    shown.save(tmp_path / "shown.png")
+    (tmp_path / "a.wrl").write_text("""#VRML V2.0 utf8
+Shape { appearance Appearance { texture DEF File ImageTexture { url ["none.png", "shown.png"] } }
+  geometry Box { } }
+Shape { appearance Appearance { texture DEF Missing ImageTexture { url "none.png" } } geometry Box { } }
+Shape { appearance Appearance { texture DEF Pixels PixelTexture { image 1 2 3 0xff0000 0x0000ff } }
+  geometry Box { } }
+""")
+    other = xvrml.load(tmp_path / "a.wrl")
+    file = other.texture_picture(other["File"])
+    assert np.array_equal(file.array[..., :3], shown.display[..., :3])
+    assert file.file == (tmp_path / "shown.png").read_bytes() and file.type == "image/png"
+    assert file.path.endswith("shown.png") and not file.error
+    raw = other.texture_picture(other["File"], decode=False)
+    assert raw.array is None and raw.file == file.file
+    missing = other.texture_picture(other["Missing"])
+    assert missing.array is None and "none.png" in missing.error and missing.file == b""
+    pixels = other.texture_picture(other["Pixels"])
+    assert pixels.array.tolist() == [[[0, 0, 255]], [[255, 0, 0]]] and pixels.type == ""
+
+
 def test_clip_planes_cut_meshes():
     world = xvrml.load(b"""#X3D V3.3 utf8
 PROFILE Full

@@ -26,7 +26,8 @@ from . import _xvrml
 from ._camera import Pinhole
 from ._features import Feature, features
 from ._live import LiveView
-from ._renderer import AppearanceParts, MaterialValues, Reach, Renderer, TextureLayer
+from ._renderer import (AppearanceParts, MaterialValues, Reach, Renderer, TextureLayer,
+                        TexturePicture)
 from ._world import loads
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, DrawnShape, EditError, Editor,
                      EditStep, Film, Measurement, Mesh, Node, ParseError, Picture, RenderError,
@@ -51,8 +52,9 @@ __all__ = [
     "AppearanceParts", "Browser", "Cluster", "ClusterError", "Diagnostic", "DrawnShape",
     "EditError", "Editor", "EditStep", "Feature", "Film", "LiveView", "MaterialValues",
     "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "Reach", "RenderError",
-    "RenderState", "Renderer", "TextureLayer", "ViewpointInfo", "Worker", "World", "denoise",
-    "features", "load", "load_node_plugins", "loads", "merge", "__version__", *nodes.__all__
+    "RenderState", "Renderer", "TextureLayer", "TexturePicture", "ViewpointInfo", "Worker",
+    "World", "denoise", "features", "load", "load_node_plugins", "loads", "merge", "__version__",
+    *nodes.__all__
 ]
 
 _SUBMODULES = ("control", "dask", "interop", "notebook", "rt")

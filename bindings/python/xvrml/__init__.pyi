@@ -296,6 +296,14 @@ class TextureLayer(NamedTuple):
     function: str
 
 
+class TexturePicture(NamedTuple):
+    array: Optional[npt.NDArray[Any]]
+    file: bytes
+    path: str
+    type: str
+    error: str
+
+
 class AppearanceParts(NamedTuple):
     appearance: Optional[Node]
     material: Optional[Node]
@@ -789,6 +797,9 @@ class World:
                     spheres: int = ...,
                     all_choices: bool = ...,
                     max_visits: int = ...) -> None:
+        ...
+
+    def texture_picture(self, node: Node, decode: bool = ...) -> TexturePicture:
         ...
 
     def raycaster(self, spheres: int = ...) -> Raycaster:

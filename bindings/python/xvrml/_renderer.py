@@ -59,6 +59,15 @@ class TextureLayer(NamedTuple):
     function: str
 
 
+class TexturePicture(NamedTuple):
+    """The picture of a texture node."""
+    array: Optional[Any]  # uint8 (height, width, components), or float32 of radiances; None: no picture
+    file: bytes  # the bytes of the file; b"": it comes from no file
+    path: str
+    type: str  # "image/png" and the like; "": it comes from no file
+    error: str  # why there is no picture; "": there is one, or the node names none
+
+
 class AppearanceParts(NamedTuple):
     """The appearance of a Shape with its references resolved: nodes, or None."""
     appearance: Optional[Any]  # Appearance or ORTAppearance
