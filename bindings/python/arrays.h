@@ -21,6 +21,14 @@ template <class T> py::array_t<T> newArray(ArrayShape shape) {
   return py::array_t<T>(std::move(shape));
 }
 
+// Returns a 4x4 matrix for column vectors, of 16 numbers column by column.
+inline py::array_t<double> matrixArray(const double* columns) {
+  py::array_t<double> matrix({4, 4});
+  for (size_t i = 0; i < 16; ++i)
+    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = columns[i];
+  return matrix;
+}
+
 // Returns an array of one dimension with a copy of the numbers.
 template <class T> py::array_t<T> copiedArray(const std::vector<T>& numbers) {
   return py::array_t<T>(ArrayShape{py::ssize_t(numbers.size())}, numbers.data());

@@ -8,6 +8,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "objects.h"
 #include "parameters.h"
 
@@ -117,11 +118,7 @@ py::dict bound(const BrowserPtr& self) {
 
 py::array camera(const BrowserPtr& self, double aspect) {
   if (!(aspect > 0)) throw py::value_error("camera: aspect: a number above 0 expected");
-  const CameraSettings settings = self->running->camera(aspect);
-  py::array_t<double> matrix({4, 4}); // mathematical notation, for column vectors
-  for (size_t i = 0; i < 16; ++i)
-    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = settings.matrix[i];
-  return matrix;
+  return matrixArray(self->running->camera(aspect).matrix);
 }
 
 using Triple = std::array<double, 3>;

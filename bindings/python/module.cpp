@@ -192,6 +192,8 @@ PYBIND11_MODULE(_xvrml, module) {
   defineViewer(module);
   defineScripts(module);
   defineShapes(module);
+  defineRenderer(module);
+  defineAppearance(module);
   defineRt(module);
   refuseEmptyObjects(module);
   refuseEmptyObjects(module.attr("rt"));

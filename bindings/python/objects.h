@@ -120,6 +120,14 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   std::vector<xvrml::NodeRef> dropped_;
 };
 
+// While it exists, changes of the world by this thread are rejected. Take the lock of `drawing`
+// first, so that those of other threads wait.
+struct Drawing {
+  WorldObject& world;
+  explicit Drawing(WorldObject& w) : world(w) { world.isRenderingHere = true; }
+  ~Drawing() { world.isRenderingHere = false; }
+};
+
 // A node and its world. The world lives as long as a variable holds any of its nodes.
 class NodeObject {
  public:
@@ -229,4 +237,6 @@ void definePicture(py::module_& module);
 void defineDenoise(py::module_& module); // after definePicture()
 void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);
+void defineRenderer(py::module_& module);   // after defineShapes()
+void defineAppearance(py::module_& module); // after defineWorld()
 void defineRt(py::module_& module);

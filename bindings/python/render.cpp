@@ -45,13 +45,6 @@ py::dict statsOf(const World& world, const picture::RenderResult& result) {
   return stats;
 }
 
-// While it exists, changes by this thread are rejected, and those of other threads wait.
-struct Drawing {
-  WorldObject& world;
-  explicit Drawing(WorldObject& w) : world(w) { world.isRenderingHere = true; }
-  ~Drawing() { world.isRenderingHere = false; }
-};
-
 // A picture that is being made.
 struct Making {
   const WorldPtr& world;

@@ -4,23 +4,15 @@
 #include <cstring>
 #include <map>
 
-#include "objects.h"
-#include "xvrml/build.h"
+#include "arrays.h"
+#include "mesh_object.h"
 
 using namespace xvrml;
 
 namespace {
 
-using Arrays = std::shared_ptr<const GeometryArrays>;
-
-struct MeshObject {
-  NodeObject shape;
-  Arrays arrays; // shared by all instances of a geometry node
-  std::array<double, 16> matrix;
-};
-
 struct Keeper {
-  Arrays arrays;
+  SharedArrays arrays;
 };
 
 // Returns a read-only view of shared arrays; they no longer change.
@@ -54,13 +46,6 @@ py::array faces(const MeshObject& self) {
   return view<uint32_t>(self, self.arrays->indices, corners);
 }
 
-py::array matrixOf(const MeshObject& self) {
-  py::array_t<double> matrix({4, 4}); // mathematical notation, for column vectors
-  for (size_t i = 0; i < 16; ++i)
-    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = self.matrix[i];
-  return matrix;
-}
-
 py::array placed(const MeshObject& self) {
   const auto& points = self.arrays->points;
   py::array_t<double> out({py::ssize_t(points.size()), py::ssize_t(3)});
@@ -74,16 +59,10 @@ py::array placed(const MeshObject& self) {
 py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
   if (spheres < 0 || spheres > 1000) throw py::value_error("spheres: 0 to 1000 expected");
   std::array<double, 16> camera{};
-  if (!view.is_none()) {
-    const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(view);
-    if (PyErr_Occurred()) PyErr_Clear();
-    if (!rows || rows.ndim() != 2 || rows.shape(0) != 4 || rows.shape(1) != 4)
-      throw py::value_error("view: a 4x4 matrix expected");
-    for (size_t i = 0; i < 16; ++i) camera[i] = rows.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
-  }
+  if (!view.is_none()) camera = viewMatrix(view);
   std::vector<PlacedShape> shapes;
-  std::map<const Node*, Arrays> made; // geometries that ClipPlanes leave whole
-  std::vector<Arrays> arraysOf;       // by shape
+  std::map<const Node*, SharedArrays> made; // geometries that ClipPlanes leave whole
+  std::vector<SharedArrays> arraysOf;       // by shape
   World& world = self->graph();
   {
     const auto lock = self->lockGraph();
@@ -95,7 +74,7 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
             std::make_shared<GeometryArrays>(geometryArrays(shape, spheres, world.options.limits)));
         continue;
       }
-      Arrays& arrays = made[shape.geometry.get()];
+      SharedArrays& arrays = made[shape.geometry.get()];
       if (!arrays)
         arrays = std::make_shared<GeometryArrays>(
             geometryArrays(*shape.geometry, spheres, world.options.limits));
@@ -105,7 +84,7 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
   py::list out;
   for (size_t i = 0; i < shapes.size(); ++i) {
     const PlacedShape& shape = shapes[i];
-    const Arrays& arrays = arraysOf[i];
+    const SharedArrays& arrays = arraysOf[i];
     if (arrays->kind == GeometryArrays::Kind::empty) continue;
     std::array<double, 16> matrix;
     std::memcpy(matrix.data(), shape.matrix, sizeof matrix);
@@ -115,6 +94,16 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
 }
 
 } // namespace
+
+std::array<double, 16> viewMatrix(const py::object& view) {
+  const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(view);
+  if (PyErr_Occurred()) PyErr_Clear();
+  if (!rows || rows.ndim() != 2 || rows.shape(0) != 4 || rows.shape(1) != 4)
+    throw py::value_error("view: a 4x4 matrix expected");
+  std::array<double, 16> columns;
+  for (size_t i = 0; i < 16; ++i) columns[i] = rows.at(py::ssize_t(i % 4), py::ssize_t(i / 4));
+  return columns;
+}
 
 void defineShapes(py::module_& module) {
   py::class_<MeshObject>(module, "Mesh",
@@ -126,7 +115,7 @@ void defineShapes(py::module_& module) {
           "The Shape.")
       .def_property_readonly("kind", kindOf, "'triangles', 'lines', 'points' or 'sphere'.")
       .def_property_readonly(
-          "matrix", matrixOf,
+          "matrix", [](const MeshObject& self) { return matrixArray(self.matrix.data()); },
           "The matrix from the mesh's coordinates to the world's, 4x4 for column vectors.")
       .def_property_readonly(
           "vertices",
@@ -150,6 +139,10 @@ void defineShapes(py::module_& module) {
           "colors",
           [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->colors, 3); },
           "One colour per vertex, float32 of shape (n, 3), or None.")
+      .def_property_readonly(
+          "alphas",
+          [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->alphas, 1); },
+          "How opaque each vertex is, float32 of shape (n,), or None.")
       .def_property_readonly(
           "radius", [](const MeshObject& self) { return self.arrays->radius; },
           "The radius, if kind is 'sphere'.")

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arrays.h"
 #include "viewer.h"
 
 using namespace xvrml;
@@ -182,10 +183,7 @@ py::object Viewer::camera() {
   const auto lock = world_->lockDrawing();
   const auto settings = shownCamera();
   if (!settings) return py::none();
-  py::array_t<double> matrix({4, 4});
-  for (size_t i = 0; i < 16; ++i)
-    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = settings->matrix[i];
-  return matrix;
+  return matrixArray(settings->matrix);
 }
 
 // Returns the vertical angle of view in radians; 0 for an orthographic camera.

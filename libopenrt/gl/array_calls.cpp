@@ -109,6 +109,15 @@ size_t indexAt(GLenum type, const void* indices, size_t i) {
   }
 }
 
+// Draws `count` elements of the arrays. at(i) returns the index of the i-th one.
+template <class At> void draw(State& s, GLenum mode, GLsizei count, const At& at) {
+  if (static_cast<size_t>(count) > maxVertices) failForVertices();
+  s.begin(mode);
+  if (usable(s.arrays.vertex))
+    for (size_t i = 0; i < static_cast<size_t>(count); i++) element(s, at(i));
+  s.end();
+}
+
 // The layout of glInterleavedArrays: bytes from the start of an element; -1: no such array.
 struct Layout {
   GLenum format;
@@ -152,6 +161,10 @@ void rtglTexCoordPointer(GLint size, GLenum type, GLsizei stride, const GLvoid* 
 void rtglEdgeFlagPointer(GLsizei, const GLvoid*) {}
 void rtglGetPointerv(GLenum name, GLvoid** out) {
   guarded("glGetPointerv", [&](State& s) {
+    if (name == GL_SELECTION_BUFFER_POINTER) {
+      *out = s.selection.buffer();
+      return;
+    }
     const ClientArray* array = name == GL_VERTEX_ARRAY_POINTER          ? &s.arrays.vertex
                                : name == GL_NORMAL_ARRAY_POINTER        ? &s.arrays.normal
                                : name == GL_COLOR_ARRAY_POINTER         ? &s.arrays.color
@@ -189,10 +202,7 @@ void rtglArrayElement(GLint i) {
 void rtglDrawArrays(GLenum mode, GLint first, GLsizei count) {
   guarded("glDrawArrays", [&](State& s) {
     if (first < 0 || count < 0) fail(GL_INVALID_VALUE, "a number is below 0");
-    s.begin(mode);
-    for (GLint i = 0; i < count; i++)
-      element(s, static_cast<size_t>(first) + static_cast<size_t>(i));
-    s.end();
+    draw(s, mode, count, [=](size_t i) { return static_cast<size_t>(first) + i; });
   });
 }
 void rtglDrawElements(GLenum mode, GLsizei count, GLenum type, const GLvoid* indices) {
@@ -200,9 +210,7 @@ void rtglDrawElements(GLenum mode, GLsizei count, GLenum type, const GLvoid* ind
     if (count < 0) fail(GL_INVALID_VALUE, "the number is below 0");
     if (type != GL_UNSIGNED_BYTE && type != GL_UNSIGNED_SHORT && type != GL_UNSIGNED_INT)
       fail(GL_INVALID_ENUM, "no such type of indices");
-    s.begin(mode);
-    for (size_t i = 0; i < static_cast<size_t>(count); i++) element(s, indexAt(type, indices, i));
-    s.end();
+    draw(s, mode, count, [=](size_t i) { return indexAt(type, indices, i); });
   });
 }
 void rtglPushClientAttrib(GLbitfield mask) {

@@ -58,6 +58,13 @@ struct Polygon {
   bool cull = false;
   GLenum cullFace = GL_BACK, frontFace = GL_CCW;
   std::array<GLenum, 2> mode = {GL_FILL, GL_FILL}; // front, back
+
+  // Returns whether a polygon is left out. area: in the picture, positive if its corners are
+  // counter-clockwise there.
+  bool culls(double area) const {
+    const bool front = (area > 0) == (frontFace == GL_CCW);
+    return cull && (cullFace == GL_FRONT_AND_BACK || front == (cullFace == GL_FRONT));
+  }
 };
 
 struct Pixels { // what happens to the colours of a picture

@@ -11,6 +11,10 @@ thread_local std::unique_ptr<State> current;
 
 void fail(GLenum code, std::string text) { throw Failure{code, std::move(text)}; }
 
+void failForVertices() {
+  fail(GL_OUT_OF_MEMORY, "a primitive has at most " + std::to_string(maxVertices) + " vertices");
+}
+
 void State::record(GLenum code, const std::string& text) {
   if (error_ == GL_NO_ERROR) {
     error_ = code;

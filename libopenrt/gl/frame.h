@@ -3,6 +3,7 @@
 // it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,6 +12,11 @@
 #include "gl/matrix.h"
 
 namespace rtgl {
+
+inline constexpr size_t maxVertices = size_t(1) << 25; // between glBegin and glEnd
+// Limits of rtFrameBuffer.
+inline constexpr int maxViewportSide = 65536;
+inline constexpr int64_t maxPixels = int64_t(1) << 28;
 
 struct Vertex {
   std::array<float, 3> position, normal;
@@ -88,13 +94,16 @@ struct LightSet {
   bool operator==(const LightSet&) const = default;
 };
 
+class Overlay;
+
 struct Frame {
   std::vector<Draw> draws;
+  std::shared_ptr<Overlay> overlay; // null: nothing lies over the picture
   std::optional<LightSet> lights;   // those of the first lit draw
   std::optional<Matrix> projection; // that of the first draw
   Fog fog;                          // that of the first draw
   Color clear = {0, 0, 0, 0};
-  int width = 0, height = 0;
+  int left = 0, bottom = 0, width = 0, height = 0; // the viewport of the first draw
 };
 
 // Returns the hash of bytes.

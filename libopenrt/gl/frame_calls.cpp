@@ -81,10 +81,14 @@ void rtglReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum form
     const size_t pixel = static_cast<size_t>(components) * (type == GL_FLOAT ? sizeof(float) : 1);
     auto* first = static_cast<unsigned char*>(pixels) + static_cast<size_t>(s.pack.skipRows) * row +
                   static_cast<size_t>(s.pack.skipPixels) * pixel;
-    for (int j = 0; j < height; j++)
-      for (int i = 0; i < width; i++) {
-        const int column = x + i, line = film.height - 1 - (y + j); // rows run upwards in OpenGL
-        if (column < 0 || column >= film.width || line < 0 || line >= film.height) continue;
+    // Pixels beyond the picture are left as they are.
+    const int64_t left = std::max(-int64_t(x), int64_t(0)), low = std::max(-int64_t(y), int64_t(0));
+    const int64_t right = std::min(int64_t(width), film.width - int64_t(x));
+    const int64_t high = std::min(int64_t(height), film.height - int64_t(y));
+    for (int64_t j = low; j < high; j++)
+      for (int64_t i = left; i < right; i++) {
+        const auto column = static_cast<int>(x + i);
+        const auto line = static_cast<int>(film.height - 1 - (y + j)); // rows run upwards in OpenGL
         unsigned char* at = first + static_cast<size_t>(j) * row + static_cast<size_t>(i) * pixel;
         for (int c = 0; c < components; c++)
           write(at, static_cast<size_t>(c), type, componentOf(film, column, line, format, c));

@@ -37,6 +37,13 @@ void rtuOrtho2D(GLdouble left, GLdouble right, GLdouble bottom, GLdouble top) {
   rtglOrtho(left, right, bottom, top, -1, 1);
 }
 
+void rtuPickMatrix(GLdouble x, GLdouble y, GLdouble width, GLdouble height, const GLint* viewport) {
+  if (!(width > 0 && height > 0)) return; // as GLU does
+  rtglTranslated((viewport[2] - 2 * (x - viewport[0])) / width,
+                 (viewport[3] - 2 * (y - viewport[1])) / height, 0);
+  rtglScaled(viewport[2] / width, viewport[3] / height, 1);
+}
+
 GLint rtuProject(GLdouble x, GLdouble y, GLdouble z, const GLdouble* model,
                  const GLdouble* projection, const GLint* viewport, GLdouble* windowX,
                  GLdouble* windowY, GLdouble* windowZ) {

@@ -1,6 +1,7 @@
 // matrix_calls.cpp: Implements the calls for matrices, the view and display lists.
 #include <algorithm>
 
+#include "gl/names.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
 
@@ -105,7 +106,10 @@ void rtglOrtho(GLdouble l, GLdouble r, GLdouble b, GLdouble t, GLdouble n, GLdou
 void rtglViewport(GLint x, GLint y, GLsizei width, GLsizei height) {
   listed("glViewport", [=](State& s) {
     if (width < 0 || height < 0) fail(GL_INVALID_VALUE, "a size is below 0");
-    s.now.viewport = {x, y, width, height};
+    const GLsizei w = std::min(width, maxViewportSide), h = std::min(height, maxViewportSide);
+    if (int64_t(w) * h > maxPixels)
+      fail(GL_INVALID_VALUE, "a picture has at most " + std::to_string(maxPixels) + " pixels");
+    s.now.viewport = {x, y, w, h};
   });
 }
 // Depths are distances here.
@@ -116,18 +120,20 @@ GLuint rtglGenLists(GLsizei range) {
   guarded("glGenLists", [&](State& s) {
     if (range < 0) fail(GL_INVALID_VALUE, "the number is below 0");
     if (range == 0) return;
-    const GLuint free = s.lists.empty() ? 1 : s.lists.rbegin()->first + 1;
-    for (GLuint i = 0; i < static_cast<GLuint>(range); i++)
-      s.lists[free + i] = std::make_shared<List>();
-    first = free;
+    const auto count = static_cast<GLuint>(range);
+    const GLuint unused = unusedNames(s.lists, count);
+    for (GLuint i = 0; i < count; i++) s.lists[unused + i] = std::make_shared<List>();
+    first = unused;
   });
   return first;
 }
 void rtglDeleteLists(GLuint first, GLsizei range) {
   guarded("glDeleteLists", [&](State& s) {
     if (range < 0) fail(GL_INVALID_VALUE, "the number is below 0");
+    const auto count = static_cast<GLuint>(range);
+    const bool wraps = first + count < first; // all from the first name on
     s.lists.erase(s.lists.lower_bound(first),
-                  s.lists.lower_bound(first + static_cast<GLuint>(range)));
+                  wraps ? s.lists.end() : s.lists.lower_bound(first + count));
   });
 }
 GLboolean rtglIsList(GLuint list) {

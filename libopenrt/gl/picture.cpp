@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "gl/overlay.h"
 
 namespace rtgl {
 
@@ -14,11 +17,13 @@ float decoded(float c) {
   return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
 
-void Film::restart(int newWidth, int newHeight, bool isLinear) {
+void Film::restart(int newWidth, int newHeight, bool isLinear,
+                   std::shared_ptr<const Overlay> cover) {
   width = newWidth;
   height = newHeight;
   linear = isLinear;
   samples = 0;
+  cover_ = std::move(cover);
   sum_.assign(size_t(4) * static_cast<size_t>(width) * static_cast<size_t>(height), 0.0);
 }
 
@@ -32,7 +37,10 @@ float Film::shown(int x, int y, int c) const {
       4 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) +
       static_cast<size_t>(c);
   const auto mean = static_cast<float>(sum_[at] / samples);
-  return std::clamp(linear && c < 3 ? encoded(std::max(mean, 0.0f)) : mean, 0.0f, 1.0f);
+  const float seen = std::clamp(linear && c < 3 ? encoded(std::max(mean, 0.0f)) : mean, 0.0f, 1.0f);
+  if (!cover_) return seen;
+  const Color& over = cover_->at(x, y);
+  return std::min(over[static_cast<size_t>(c)] + (1 - over[3]) * seen, 1.0f);
 }
 
 const unsigned char* Film::bytes() const {

@@ -83,11 +83,15 @@ double turn(int i, int count, double degrees = 360) {
   return i * degrees / count * (std::numbers::pi / 180);
 }
 
+constexpr int64_t maxFacets = maxVertices / 4;
+
 bool isShape(const RTUquadric* q, int slices, int stacks) {
   bool is = false;
   guarded("a quadric", [&](State&) {
     if (!q || slices < 2 || stacks < 1)
       fail(GL_INVALID_VALUE, "a number is too small, or the quadric is NULL");
+    if (int64_t(slices) * stacks > maxFacets)
+      fail(GL_OUT_OF_MEMORY, "a quadric has at most " + std::to_string(maxFacets) + " facets");
     is = true;
   });
   return is;

@@ -11,7 +11,7 @@ constexpr const char* noLogic = "there are no logical operations on pixels";
 constexpr const char* noStipple = "draw dashes as lines, and half-tones by GL_BLEND";
 constexpr const char* noScissor = "use rtScissor (openrt/frame.h), or a smaller viewport";
 constexpr const char* noClipping = "cut the geometry in the program";
-constexpr const char* noSelection = "ask what a ray meets by rtCastRays (openrt/query.h)";
+constexpr const char* noFeedback = "gluProject tells where vertices are in the picture";
 constexpr const char* noAccumulation = "samples smooth edges and move (rtglSamples, rtglRefine)";
 constexpr const char* noRaster = "draw a rectangle with a texture";
 constexpr const char* noTransfer = "change the pixels in the program";
@@ -49,17 +49,8 @@ REFUSE(GetPolygonStipple, (GLubyte*), noStipple)
 REFUSE(Scissor, (GLint, GLint, GLsizei, GLsizei), noScissor)
 REFUSE(ClipPlane, (GLenum, const GLdouble*), noClipping)
 REFUSE(GetClipPlane, (GLenum, GLdouble*), noClipping)
-GLint rtglRenderMode(GLenum) {
-  refuse("glRenderMode", noSelection);
-  return 0;
-}
-REFUSE(FeedbackBuffer, (GLsizei, GLenum, GLfloat*), noSelection)
-REFUSE(PassThrough, (GLfloat), noSelection)
-REFUSE(SelectBuffer, (GLsizei, GLuint*), noSelection)
-REFUSE(InitNames, (), noSelection)
-REFUSE(LoadName, (GLuint), noSelection)
-REFUSE(PushName, (GLuint), noSelection)
-REFUSE(PopName, (), noSelection)
+REFUSE(FeedbackBuffer, (GLsizei, GLenum, GLfloat*), noFeedback)
+REFUSE(PassThrough, (GLfloat), noFeedback)
 REFUSE(ClearAccum, (GLfloat, GLfloat, GLfloat, GLfloat), noAccumulation)
 REFUSE(Accum, (GLenum, GLfloat), noAccumulation)
 REFUSE(RasterPos2d, (GLdouble, GLdouble), noRaster)

@@ -261,7 +261,7 @@ bool Scene::show(const Frame& frame) {
   useCamera(frame);
   rtFrameBuffer(frame.width, frame.height, RT_RGBA);
   rtQuality(RT_SHADOWS, wanted != RTGL_OPENGL);
-  film_.restart(frame.width, frame.height, linear());
+  film_.restart(frame.width, frame.height, linear(), frame.overlay);
   return render(samples);
 }
 

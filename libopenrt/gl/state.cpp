@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "gl/overlay.h"
+
 namespace rtgl {
 namespace {
 
@@ -59,6 +61,7 @@ void State::begin(GLenum mode) {
 void State::vertex(float x, float y, float z) {
   if (!open()) return; // undefined in OpenGL
   Chunk& chunk = *chunk_;
+  if (chunk.vertices.size() > maxVertices) return; // end() says so
   chunk.vertices.push_back({{x, y, z}, recording_.normal, recording_.texCoord, recording_.color});
   if (!compiles()) return;
   if (!chunk.setsColor) chunk.inheritsColor = chunk.vertices.size();
@@ -104,6 +107,7 @@ void State::setTexCoord(float s, float t) {
 void State::end() {
   if (!open()) fail(GL_INVALID_OPERATION, "glBegin is missing");
   const std::shared_ptr<Chunk> chunk = std::exchange(chunk_, nullptr);
+  if (chunk->vertices.size() > maxVertices) failForVertices();
   chunk->after = recording_;
   chunk->finish();
   if (compiles()) add([chunk](State& s) { s.draw(chunk); });
@@ -155,21 +159,15 @@ Material State::material(bool colored, const Color& color) const {
   return m;
 }
 
-// Opens the frame with the first draw: projection and fog hold for all of it. Returns whether the
-// draw belongs to the frame.
-bool State::beginsFrame() {
-  if (!frame_.projection) {
-    frame_.projection = projection();
-    frame_.fog = now.fog;
-    frame_.width = now.viewport[2];
-    frame_.height = now.viewport[3];
-  } else if (*frame_.projection != projection()) {
-    refuse("a second projection in a frame",
-           "a frame has one camera, that of its first primitive; draw overlays in the space of the "
-           "eye");
-    return false;
-  }
-  return true;
+// Opens the frame with the first draw: projection, viewport and fog hold for all of it.
+void State::beginFrame() {
+  if (frame_.projection) return;
+  frame_.projection = projection();
+  frame_.fog = now.fog;
+  frame_.left = now.viewport[0];
+  frame_.bottom = now.viewport[1];
+  frame_.width = now.viewport[2];
+  frame_.height = now.viewport[3];
 }
 
 // Returns the modelview matrix. Without a depth test, what is drawn later lies a little nearer to
@@ -192,19 +190,28 @@ void State::draw(const ChunkPtr& recorded) {
   if (recorded->setsNormal) now.current.normal = recorded->after.normal;
   if (recorded->setsTexCoord) now.current.texCoord = recorded->after.texCoord;
   trackColor();
-  if (chunk->vertices.empty() || !beginsFrame()) return;
+  if (chunk->vertices.empty()) return;
+  if (selection.mode() != GL_RENDER)
+    return selection.draw(chunk, projection() * modelview(), now.polygon);
   if (!affine(modelview()))
     return refuse("a modelview matrix with a projection", "put the projection on GL_PROJECTION");
+  beginFrame();
+  Part part = partOf(chunk);
+  const bool inherited = !chunk->colorsVary && chunk->inheritsColor == chunk->vertices.size();
+  const Material m = material(part.colored, inherited ? before.color : chunk->color);
+  if (*frame_.projection != projection()) return drawOver(part, m);
+  useLights();
+  const Matrix matrix = placed();
+  if (now.depth.test && !frame_.draws.empty() && frame_.draws.back().matrix == matrix &&
+      frame_.draws.back().material == m)
+    frame_.draws.back().parts.push_back(std::move(part));
+  else
+    frame_.draws.push_back({{std::move(part)}, matrix, m});
+}
 
+// Returns the part that a chunk is under the current state.
+Part State::partOf(const ChunkPtr& chunk) {
   const Lighting& lighting = now.lighting;
-  if (lighting.on) {
-    const LightSet lights = lightsOf(lighting);
-    if (!frame_.lights)
-      frame_.lights = lights;
-    else if (*frame_.lights != lights)
-      refuse("a change of the lights within a frame",
-             "the lights of the first primitive that is lit light the whole frame");
-  }
   Part part;
   part.chunk = chunk;
   part.textured = now.texturing.on && textures.imageOf(now.texturing.bound) != 0;
@@ -227,15 +234,41 @@ void State::draw(const ChunkPtr& recorded) {
   part.polygonMode = now.polygon.mode;
   part.lineWidth = now.lineWidth;
   part.pointSize = now.pointSize;
+  return part;
+}
 
-  const bool inherited = !chunk->colorsVary && chunk->inheritsColor == chunk->vertices.size();
-  const Material m = material(part.colored, inherited ? before.color : chunk->color);
-  const Matrix matrix = placed();
-  if (now.depth.test && !frame_.draws.empty() && frame_.draws.back().matrix == matrix &&
-      frame_.draws.back().material == m)
-    frame_.draws.back().parts.push_back(std::move(part));
-  else
-    frame_.draws.push_back({{std::move(part)}, matrix, m});
+// Gives the frame the lights of its first draw that is lit.
+void State::useLights() {
+  if (!now.lighting.on) return;
+  const LightSet lights = lightsOf(now.lighting);
+  if (!frame_.lights)
+    frame_.lights = lights;
+  else if (*frame_.lights != lights)
+    refuse("a change of the lights within a frame",
+           "the lights of the first primitive that is lit light the whole frame");
+}
+
+// Draws over the picture what has another projection than the first draw of the frame.
+void State::drawOver(const Part& part, const Material& material) {
+  if (!affine(projection()))
+    return refuse("a second perspective in a frame",
+                  "a frame has one camera, that of its first primitive; what glOrtho projects lies "
+                  "over its picture");
+  if (part.lit)
+    refuse("light under a second projection",
+           "what lies over the picture shows the diffuse colours of its materials");
+  if (!frame_.overlay) frame_.overlay = std::make_shared<Overlay>(frame_.width, frame_.height);
+  Overlay::Style style;
+  std::copy_n(now.viewport.begin(), 4, style.viewport.begin());
+  style.viewport[0] -= frame_.left;
+  style.viewport[1] -= frame_.bottom;
+  const double halfWidth = style.viewport[2] / 2.0, halfHeight = style.viewport[3] / 2.0;
+  style.toWindow = translation(style.viewport[0] + halfWidth, style.viewport[1] + halfHeight, 0) *
+                   scaling(halfWidth, halfHeight, 1) * projection() * modelview();
+  style.polygon = now.polygon;
+  style.material = material;
+  style.texture = part.textured ? &textures.at(now.texturing.bound) : nullptr;
+  frame_.overlay->draw(part, style);
 }
 
 void State::newList(GLuint name, GLenum mode) {
@@ -300,7 +333,7 @@ void State::clear(GLbitfield mask) {
     refuse("glClear(GL_STENCIL_BUFFER_BIT)", "there are no stencils; see glStencilFunc");
   if (mask & GL_ACCUM_BUFFER_BIT)
     refuse("glClear(GL_ACCUM_BUFFER_BIT)", "there is no accumulation buffer; see glAccum");
-  if (!(mask & GL_COLOR_BUFFER_BIT)) return;
+  if (!(mask & GL_COLOR_BUFFER_BIT) || selection.mode() != GL_RENDER) return;
   frame_ = Frame();
   frame_.clear = now.pixels.clear;
   cleared_ = true;

@@ -10,8 +10,10 @@
 #include <string>
 #include <unordered_map>
 
+#include "gl/failure.h"
 #include "gl/frame.h"
 #include "gl/scene.h"
+#include "gl/selection.h"
 #include "gl/textures.h"
 
 namespace rtgl {
@@ -37,13 +39,6 @@ struct PixelStore {
   GLint alignment = 4, rowLength = 0, skipRows = 0, skipPixels = 0;
 };
 
-// An error of a call of OpenGL.
-struct Failure {
-  GLenum code;
-  std::string text;
-};
-[[noreturn]] void fail(GLenum code, std::string text);
-
 class State {
  public:
   explicit State(RTcontext context) : context_(context) {}
@@ -53,6 +48,7 @@ class State {
   ClientArrays arrays;
   PixelStore unpack, pack;
   Textures textures;
+  Selection selection;
   std::map<GLuint, std::shared_ptr<const List>> lists;
   Scene scene;
   bool singleBuffer = false;
@@ -108,9 +104,12 @@ class State {
   bool endFrame();
 
  private:
+  Part partOf(const ChunkPtr& chunk);
   Material material(bool colored, const Color& color) const;
-  bool beginsFrame();
+  void beginFrame();
+  void useLights();
   Matrix placed() const;
+  void drawOver(const Part& part, const Material& material);
 
   RTcontext context_;
   GLenum error_ = GL_NO_ERROR;
@@ -137,6 +136,8 @@ class State {
   bool cleared_ = false;
 };
 
+// Fails because a primitive has more than maxVertices vertices.
+[[noreturn]] void failForVertices();
 // Returns the text of the error that takeError() returned last on this thread.
 const char* lastErrorText();
 // Returns the state of this thread's context; makes a context if there is none.

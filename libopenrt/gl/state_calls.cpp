@@ -136,8 +136,8 @@ std::vector<double> valuesOf(State& s, GLenum name) {
   case GL_MAX_LIST_NESTING: return {64};
   case GL_MAX_ATTRIB_STACK_DEPTH:
   case GL_MAX_CLIENT_ATTRIB_STACK_DEPTH: return {16};
-  case GL_MAX_TEXTURE_SIZE: return {16384};
-  case GL_MAX_VIEWPORT_DIMS: return {65536, 65536};
+  case GL_MAX_TEXTURE_SIZE: return {double(maxTextureSize)};
+  case GL_MAX_VIEWPORT_DIMS: return {double(maxViewportSide), double(maxViewportSide)};
   case GL_MAX_CLIP_PLANES: return {0};
   case GL_RED_BITS:
   case GL_GREEN_BITS:
@@ -154,7 +154,10 @@ std::vector<double> valuesOf(State& s, GLenum name) {
   case GL_STEREO: return {0};
   case GL_DOUBLEBUFFER: return {s.singleBuffer ? 0.0 : 1.0};
   case GL_RGBA_MODE: return {1};
-  case GL_RENDER_MODE: return {double(GL_RENDER)};
+  case GL_RENDER_MODE: return {double(s.selection.mode())};
+  case GL_NAME_STACK_DEPTH: return {double(s.selection.nameDepth())};
+  case GL_MAX_NAME_STACK_DEPTH: return {double(Selection::maxNameDepth)};
+  case GL_SELECTION_BUFFER_SIZE: return {double(s.selection.bufferSize())};
   case GL_UNPACK_ALIGNMENT: return {double(s.unpack.alignment)};
   case GL_PACK_ALIGNMENT: return {double(s.pack.alignment)};
   default: fail(GL_INVALID_ENUM, "no such state");

@@ -23,6 +23,8 @@ void setImage(State& s, GLenum target, GLint level, GLsizei width, GLsizei heigh
               GLenum format, GLenum type, const void* pixels) {
   requireTarget(s, target);
   if (width < 0 || height < 0 || border < 0) fail(GL_INVALID_VALUE, "a size is below 0");
+  if (width > maxTextureSize || height > maxTextureSize)
+    fail(GL_INVALID_VALUE, "a size is above " + std::to_string(maxTextureSize));
   if (level != 0 || width == 0 || height == 0) return;
   if (border != 0) s.refuse("the border of glTexImage", "use glTexParameterfv");
   Texture& texture = s.textures.at(s.now.texturing.bound);
@@ -95,12 +97,11 @@ void environmentCall(GLenum name, const Color& v) {
 } // namespace
 
 void rtglGenTextures(GLsizei n, GLuint* names) {
-  guarded("glGenTextures", [&](State& s) {
-    for (GLsizei i = 0; i < n; i++) names[i] = s.textures.newName();
-  });
+  guarded("glGenTextures", [&](State& s) { s.textures.make(n, names); });
 }
 void rtglDeleteTextures(GLsizei n, const GLuint* names) {
   guarded("glDeleteTextures", [&](State& s) {
+    if (n < 0) fail(GL_INVALID_VALUE, "the number is below 0");
     for (GLsizei i = 0; i < n; i++) {
       s.textures.remove(names[i]);
       if (s.now.texturing.bound == names[i]) s.now.texturing.bound = 0;
@@ -201,6 +202,9 @@ void rtglGetTexEnviv(GLenum, GLenum name, GLint* out) {
 void rtglPixelStorei(GLenum name, GLint value) {
   guarded("glPixelStore", [&](State& s) {
     if (value < 0) fail(GL_INVALID_VALUE, "the value is below 0");
+    if ((name == GL_UNPACK_ALIGNMENT || name == GL_PACK_ALIGNMENT) && value != 1 && value != 2 &&
+        value != 4 && value != 8)
+      fail(GL_INVALID_VALUE, "alignments are 1, 2, 4 and 8");
     switch (name) {
     case GL_UNPACK_ALIGNMENT: s.unpack.alignment = value; break;
     case GL_UNPACK_ROW_LENGTH: s.unpack.rowLength = value; break;

@@ -1,6 +1,8 @@
 // textures.cpp: Keeps textures and gives them to OpenRT, which interpolates them without mipmaps.
 #include "gl/textures.h"
 
+#include "gl/names.h"
+
 namespace rtgl {
 namespace {
 
@@ -8,10 +10,15 @@ int wrapOf(GLenum mode) { return mode == GL_REPEAT ? RT_REPEAT : RT_CLAMP_TO_EDG
 
 } // namespace
 
-GLuint Textures::newName() {
-  const GLuint name = textures_.empty() ? 1 : textures_.rbegin()->first + 1;
-  textures_[name];
-  return name;
+void Textures::make(GLsizei n, GLuint* names) {
+  if (n < 0) fail(GL_INVALID_VALUE, "the number is below 0");
+  if (n == 0) return;
+  const auto count = static_cast<GLuint>(n);
+  const GLuint first = unusedNames(textures_, count);
+  for (GLuint i = 0; i < count; i++) {
+    textures_[first + i];
+    names[i] = first + i;
+  }
 }
 
 RTid Textures::imageOf(GLuint name) const {

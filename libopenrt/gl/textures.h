@@ -8,6 +8,8 @@
 
 namespace rtgl {
 
+inline constexpr int maxTextureSize = 16384; // texels a side
+
 struct Picture {
   int width = 0, height = 0, components = 0; // components: 1 to 4, 8 bits each
   std::vector<unsigned char> texels;         // rows from the bottom up, tightly packed
@@ -27,7 +29,8 @@ struct Texture : TextureProperties {
 
 class Textures {
  public:
-  GLuint newName();
+  // Makes n textures and writes their names.
+  void make(GLsizei n, GLuint* names);
   // Returns a texture; makes it if there is none of the name.
   Texture& at(GLuint name) { return textures_[name]; }
   bool has(GLuint name) const { return name != 0 && textures_.count(name) != 0; }

@@ -3,6 +3,7 @@
 #include "openrt/rtut.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -10,11 +11,18 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
+#include "rtut/messages.h"
 #include "rtut/window.h"
 
+void rtut::complain(const std::string& text) { std::fprintf(stderr, "rtut: %s\n", text.c_str()); }
+
 namespace {
+
+using rtut::complain;
 
 constexpr int frameMilliseconds = 40; // from one frame in a file to the next
 constexpr int bestSamples = 256;      // at most, of a picture that nobody redraws
@@ -30,7 +38,7 @@ struct Program {
   bool single = true, redisplay = true, reshaped = false, leave = false, swapped = false;
   std::optional<int> frames; // in files; else in a window
   int frame = 0;
-  bool failed = false; // a picture could not be written
+  bool failed = false; // a picture could not be written, or OPENRT_UT_FRAMES is no number
   std::string pattern = "frame%04d.ppm";
   std::unique_ptr<rtut::Window> window;
   std::vector<Timer> timers;
@@ -40,7 +48,9 @@ struct Program {
   void (*reshape)(int, int) = nullptr;
   void (*idle)() = nullptr;
   void (*keyboard)(unsigned char, int, int) = nullptr;
+  void (*keyboardUp)(unsigned char, int, int) = nullptr;
   void (*special)(int, int, int) = nullptr;
+  void (*specialUp)(int, int, int) = nullptr;
   void (*mouse)(int, int, int, int) = nullptr;
   void (*motion)(int, int) = nullptr;
   void (*passiveMotion)(int, int) = nullptr;
@@ -52,7 +62,6 @@ Program& program() {
   return one;
 }
 
-void complain(const std::string& text) { std::fprintf(stderr, "rtut: %s\n", text.c_str()); }
 void printError(RTenum, const char* message, void*) { complain(message); }
 void printMessage(int level, const char* message, void*) {
   if (level >= 2) complain(message);
@@ -134,10 +143,15 @@ void handle(Program& p, const rtut::Event& e) {
   case Event::resize: reshape(p, e.x, e.y); break;
   case Event::expose: present(p); break;
   case Event::key:
-    if (p.keyboard) p.keyboard(static_cast<unsigned char>(e.code), e.x, e.y);
+    if (auto* call = e.state == RTUT_UP ? p.keyboardUp : p.keyboard)
+      call(static_cast<unsigned char>(e.code), e.x, e.y);
     break;
   case Event::special:
-    if (p.special) p.special(e.code, e.x, e.y);
+    if (auto* call = e.state == RTUT_UP ? p.specialUp : p.special) call(e.code, e.x, e.y);
+    break;
+  case Event::wheel: // buttons 3 and 4, as freeglut reports it
+    for (int state : {RTUT_DOWN, RTUT_UP})
+      if (p.mouse) p.mouse(e.code, state, e.x, e.y);
     break;
   case Event::button:
     if (p.mouse) p.mouse(e.code, e.state, e.x, e.y);
@@ -185,6 +199,19 @@ void runFrames(Program& p) {
   }
 }
 
+// Does what OPENRT_UT_FRAMES asks for. A value that is no number renders nothing: a script that
+// waits for pictures must not get a window.
+void useFrames(Program& p, std::string_view text) {
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc() || end != text.data() + text.size() || count < 1) {
+    complain("OPENRT_UT_FRAMES=" + std::string(text) + ": a number of frames from 1 is expected");
+    count = 0;
+    p.failed = true;
+  }
+  rtutFrames(count, std::getenv("OPENRT_UT_FILE"));
+}
+
 } // namespace
 
 void rtutInit(int* argc, char** argv) {
@@ -196,8 +223,7 @@ void rtutInit(int* argc, char** argv) {
   rtLogCallback(printMessage, nullptr);
   rtglErrorCallback(printError, nullptr);
   rtglSamples(1);
-  if (const char* frames = std::getenv("OPENRT_UT_FRAMES"))
-    rtutFrames(std::atoi(frames), std::getenv("OPENRT_UT_FILE"));
+  if (const char* frames = std::getenv("OPENRT_UT_FRAMES"); frames && *frames) useFrames(p, frames);
   p.start = std::chrono::steady_clock::now();
 }
 
@@ -250,7 +276,12 @@ void rtutDisplayFunc(void (*call)(void)) { program().display = call; }
 void rtutReshapeFunc(void (*call)(int, int)) { program().reshape = call; }
 void rtutIdleFunc(void (*call)(void)) { program().idle = call; }
 void rtutKeyboardFunc(void (*call)(unsigned char, int, int)) { program().keyboard = call; }
+void rtutKeyboardUpFunc(void (*call)(unsigned char, int, int)) { program().keyboardUp = call; }
 void rtutSpecialFunc(void (*call)(int, int, int)) { program().special = call; }
+void rtutSpecialUpFunc(void (*call)(int, int, int)) { program().specialUp = call; }
+void rtutIgnoreKeyRepeat(int ignore) {
+  if (program().window) program().window->ignoreRepeats(ignore != 0);
+}
 void rtutMouseFunc(void (*call)(int, int, int, int)) { program().mouse = call; }
 void rtutMotionFunc(void (*call)(int, int)) { program().motion = call; }
 void rtutPassiveMotionFunc(void (*call)(int, int)) { program().passiveMotion = call; }

@@ -3,6 +3,7 @@
 
 #include <SDL.h>
 
+#include <map>
 #include <stdexcept>
 
 #include "openrt/rtut.h"
@@ -34,9 +35,11 @@ Event pointerEvent(Event::Kind kind, int code, int state, int x, int y) {
   return {kind, code, state, x, y};
 }
 
+// Returns the event of a key that comes as no text; Event::none for others.
 Event keyEvent(const SDL_KeyboardEvent& event) {
   Event out;
   SDL_GetMouseState(&out.x, &out.y);
+  out.state = event.type == SDL_KEYDOWN ? RTUT_DOWN : RTUT_UP;
   const SDL_Keycode key = event.keysym.sym;
   out.code = specialKey(key);
   if (out.code) {
@@ -55,6 +58,10 @@ Event keyEvent(const SDL_KeyboardEvent& event) {
 
 struct Window::Parts {
   SDL_Window* window = nullptr;
+  bool ignoresRepeats = false;
+  bool repeats = false; // the last key that went down is held
+  SDL_Scancode last = SDL_SCANCODE_UNKNOWN;
+  std::map<SDL_Scancode, int> typed; // the characters of keys that are down
 };
 
 Window::Window(const std::string& title, int x, int y, int width, int height)
@@ -100,6 +107,34 @@ void Window::show(const unsigned char* rgb, int width, int height) {
   SDL_FreeSurface(from);
 }
 
+void Window::ignoreRepeats(bool ignore) { parts_->ignoresRepeats = ignore; }
+
+Event Window::keyDown(const SDL_KeyboardEvent& event) {
+  parts_->last = event.keysym.scancode;
+  parts_->repeats = event.repeat != 0;
+  if (parts_->repeats && parts_->ignoresRepeats) return {};
+  return keyEvent(event);
+}
+
+// Returns the event of the key's character, as it was when the key went down.
+Event Window::keyUp(const SDL_KeyboardEvent& event) {
+  Event out = keyEvent(event);
+  const auto found = parts_->typed.find(event.keysym.scancode);
+  if (found == parts_->typed.end()) return out;
+  out.kind = Event::key;
+  out.code = found->second;
+  parts_->typed.erase(found);
+  return out;
+}
+
+Event Window::text(const SDL_TextInputEvent& event) {
+  if (parts_->repeats && parts_->ignoresRepeats) return {};
+  Event out = {Event::key, static_cast<unsigned char>(event.text[0]), RTUT_DOWN, 0, 0};
+  parts_->typed[parts_->last] = out.code;
+  SDL_GetMouseState(&out.x, &out.y);
+  return out;
+}
+
 Event Window::next(int milliseconds) {
   SDL_Event event;
   if (!SDL_WaitEventTimeout(&event, milliseconds)) return {};
@@ -110,9 +145,12 @@ Event Window::next(int milliseconds) {
       return {Event::resize, 0, 0, event.window.data1, event.window.data2};
     if (event.window.event == SDL_WINDOWEVENT_EXPOSED) return {Event::expose, 0, 0, 0, 0};
     return {};
-  case SDL_KEYDOWN: return keyEvent(event.key);
-  case SDL_TEXTINPUT: {
-    Event out = {Event::key, static_cast<unsigned char>(event.text.text[0]), 0, 0, 0};
+  case SDL_KEYDOWN: return keyDown(event.key);
+  case SDL_KEYUP: return keyUp(event.key);
+  case SDL_TEXTINPUT: return text(event.text);
+  case SDL_MOUSEWHEEL: {
+    if (event.wheel.y == 0) return {};
+    Event out = {Event::wheel, event.wheel.y > 0 ? 3 : 4, 0, 0, 0};
     SDL_GetMouseState(&out.x, &out.y);
     return out;
   }

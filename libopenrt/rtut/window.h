@@ -4,11 +4,14 @@
 #include <memory>
 #include <string>
 
+struct SDL_KeyboardEvent;
+struct SDL_TextInputEvent;
+
 namespace rtut {
 
 struct Event {
-  enum Kind { none, close, resize, expose, key, special, button, motion } kind = none;
-  int code = 0;  // the character, RTUT_KEY_*, or RTUT_*_BUTTON
+  enum Kind { none, close, resize, expose, key, special, button, wheel, motion } kind = none;
+  int code = 0;  // the character, RTUT_KEY_*, or the button; for the wheel 3 (away) or 4
   int state = 0; // RTUT_DOWN or RTUT_UP; for motion: whether a button is held
   int x = 0, y = 0;
 };
@@ -30,9 +33,14 @@ class Window {
   // Returns the next event. Waits for one, but no longer than so many milliseconds.
   Event next(int milliseconds);
   int modifiers() const;
+  // A key that is held is one event, instead of several.
+  void ignoreRepeats(bool ignore);
 
  private:
   struct Parts;
+  Event keyDown(const SDL_KeyboardEvent& event);
+  Event keyUp(const SDL_KeyboardEvent& event);
+  Event text(const SDL_TextInputEvent& event);
   std::unique_ptr<Parts> parts_;
 };
 

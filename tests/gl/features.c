@@ -317,13 +317,95 @@ static void colourMaterial(void) {
   }
 }
 
+static void inPixels(void) { /* the idiom of displays over a scene */
+  glDisable(GL_LIGHTING);
+  glDisable(GL_DEPTH_TEST);
+  glMatrixMode(GL_PROJECTION);
+  glLoadIdentity();
+  gluOrtho2D(0, 160, 160, 0); /* y points down */
+  glMatrixMode(GL_MODELVIEW);
+  glLoadIdentity();
+}
+
+static void overlay(void) {
+  useLight(0.3f, 0.4f, 1, 0);
+  useMaterial(0.3f, 0.6f, 0.9f, 0, 0);
+  gluSphere(quadric, 1, 60, 60);
+  inPixels();
+  glColor3f(0.9f, 0.2f, 0.1f);
+  glRectf(10, 10, 60, 40);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBegin(GL_TRIANGLES);
+  glColor4f(1, 1, 0, 0.8f), glVertex2f(30, 20);
+  glColor4f(0, 1, 0, 0.2f), glVertex2f(110, 30);
+  glColor4f(0, 0, 1, 0.5f), glVertex2f(70, 90);
+  glEnd();
+  glColor4f(1, 1, 1, 1);
+  glLineWidth(3);
+  glBegin(GL_LINES);
+  glVertex2f(10, 150), glVertex2f(150, 150);
+  glVertex2f(140, 20), glVertex2f(150, 140);
+  glEnd();
+  glPointSize(6);
+  glBegin(GL_POINTS);
+  glVertex2f(20, 60);
+  glEnd();
+  picture(16, 1);
+  glBegin(GL_QUADS);
+  glTexCoord2f(0, 0), glVertex2f(90, 100);
+  glTexCoord2f(0, 1), glVertex2f(90, 140);
+  glTexCoord2f(1, 1), glVertex2f(130, 140);
+  glTexCoord2f(1, 0), glVertex2f(130, 100);
+  glEnd();
+}
+
+static void culledOverlay(void) { /* in a viewport of its own */
+  glRectf(-1, -1, 0, 0);
+  inPixels();
+  glViewport(80, 80, 80, 80);
+  glEnable(GL_CULL_FACE);
+  glColor3f(0, 1, 1);
+  glRectf(10, 10, 150, 60); /* clockwise, because y points down */
+  glColor3f(1, 0, 1);
+  glRectf(10, 150, 150, 90);
+}
+
+static void solids(void) {
+  static void (*const all[4])(void) = {glutSolidTetrahedron, glutSolidOctahedron,
+                                       glutSolidDodecahedron, glutSolidIcosahedron};
+  useLight(0.3f, 0.4f, 1, 0);
+  useMaterial(0.9f, 0.6f, 0.3f, 0, 0);
+  for (int i = 0; i < 6; i++) {
+    glPushMatrix();
+    glTranslatef(0.75f * (float)(i % 3 - 1), i < 3 ? 0.5f : -0.5f, 0);
+    glRotatef(25, 1, 1, 0);
+    glScalef(0.3f, 0.3f, 0.3f);
+    glEnable(GL_NORMALIZE);
+    if (i < 4) all[i]();
+    if (i == 4) glutSolidTorus(0.3, 0.9, 20, 30);
+    if (i == 5) glutSolidCube(1.4);
+    glPopMatrix();
+  }
+}
+
+static void teapot(void) {
+  useLight(0.3f, 0.4f, 1, 0);
+  useMaterial(0.8f, 0.3f, 0.3f, 0, 0);
+  glRotatef(30, 1, 0, 0);
+  glRotatef(40, 0, 1, 0);
+  glutSolidTeapot(0.65);
+}
+
 static void (*const features[])(void) = {
-    spot,  attenuated, highlights, twoLights, twoSides, oneSide,        flat,    flatColours,
-    modes, wires,      litTexture, decal,     clamped,  alphaTest,      blended, blendedLight,
-    lists, arrays,     painter,    skewed,    winding,  colourMaterial, softSpot};
+    spot,           attenuated,   highlights, twoLights,     twoSides, oneSide, flat,
+    flatColours,    modes,        wires,      litTexture,    decal,    clamped, alphaTest,
+    blended,        blendedLight, lists,      arrays,        painter,  skewed,  winding,
+    colourMaterial, softSpot,     overlay,    culledOverlay, solids,   teapot};
 
 static void display(void) {
   glPushAttrib(GL_ALL_ATTRIB_BITS);
+  glViewport(0, 0, 160, 160);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();

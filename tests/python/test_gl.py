@@ -8,14 +8,15 @@ import subprocess
 import numpy
 import pytest
 from conftest import ROOT, find_vv
+from flip import flip
 from xserver import display
 
 BIN = find_vv().parent
 NAMES = ("gears", "columns", "viewer")
 
 
-def pictures(program, folder, frames=3, **environment):
-    """Runs a program for some frames, and returns its pictures as arrays of 0 to 1."""
+def run(program, folder, frames=3, **environment):
+    """Runs a program for some frames, and returns what it prints."""
     if not (BIN / program).exists():
         pytest.skip(f"{program} is not built")
     done = subprocess.run([BIN / program],
@@ -31,6 +32,12 @@ def pictures(program, folder, frames=3, **environment):
                           timeout=300)
     assert done.returncode == 0, done.stderr
     assert "rtut:" not in done.stderr
+    return done.stdout
+
+
+def pictures(program, folder, frames=3, **environment):
+    """Runs a program for some frames, and returns its pictures as arrays of 0 to 1."""
+    run(program, folder, frames, **environment)
     return [read(folder / f"{program}{i}.ppm") for i in range(frames)]
 
 
@@ -47,8 +54,8 @@ def test_pictures_are_those_of_opengl(name, tmp_path):
         theirs = pictures(f"gl_{name}_opengl", tmp_path)
     ours = pictures(f"gl_{name}", tmp_path)
     for frame, (a, b) in enumerate(zip(ours, theirs)):
-        difference = numpy.abs(a - b).mean()
-        assert difference < 0.02, f"frame {frame} differs by {difference:.4f}"
+        difference = flip(a, b)
+        assert difference < 0.1, f"frame {frame} differs by FLIP {difference:.4f}"
     assert numpy.abs(ours[0] - ours[1]).mean() > 0.001, "nothing moves"
 
 
@@ -63,6 +70,45 @@ def test_each_feature_is_drawn_as_opengl_draws_it(tmp_path):
         for name, a, b in zip(names, ours, theirs)
     }
     assert max(differences.values()) < 0.02, differences
+
+
+def test_flip_is_that_of_its_authors():
+    """The values are those of their package flip-evaluator 1.7."""
+    y, x = numpy.mgrid[0:90, 0:120]
+    plain = numpy.stack((x / 119, y / 89, 0 * x + 0.5), 2)
+    disk = numpy.where(((x - 60)**2 + (y - 45)**2 < 900)[..., None], plain[..., ::-1], plain)
+    assert flip(plain, plain) == 0
+    assert flip(plain, disk) == pytest.approx(0.0912236, abs=1e-5)
+    black, white = numpy.zeros((40, 40, 3)), numpy.ones((40, 40, 3))
+    assert flip(black, white) == pytest.approx(0.9673994, abs=1e-4)
+
+
+def test_names_are_selected_as_opengl_selects_them(tmp_path):
+    with display("640x480"):
+        theirs = run("gl_picking_opengl", tmp_path, 1).split()
+    ours = run("gl_picking", tmp_path, 1).split()
+    assert len(ours) == len(theirs) > 100, ours
+    for a, b in zip(ours, theirs):
+        if "." in a:
+            assert float(a) == pytest.approx(float(b), abs=2e-4)
+        else:
+            assert a == b
+
+
+@pytest.mark.parametrize("value", ("three", "0", "-1", "2x", "99999999999"))
+def test_another_value_than_a_number_of_frames_is_reported(value, tmp_path):
+    if not (BIN / "gl_gears").exists():
+        pytest.skip("gl_gears is not built")
+    done = subprocess.run([BIN / "gl_gears"],
+                          cwd=tmp_path,
+                          env={
+                              **os.environ, "OPENRT_UT_FRAMES": value
+                          },
+                          capture_output=True,
+                          text=True,
+                          timeout=60)
+    assert f"OPENRT_UT_FRAMES={value}: a number of frames" in done.stderr
+    assert done.stderr.count("\n") == 1 and not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("light", ("shadows", "linear"))

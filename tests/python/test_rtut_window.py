@@ -1,5 +1,6 @@
 """Tests the window of rtut by real keys and drags: a program for GLUT, compiled for OpenRT, under an
 Xvfb of its own."""
+import contextlib
 import os
 import struct
 import subprocess
@@ -11,7 +12,7 @@ from conftest import find_vv
 from window_driver import PATIENCE, needs
 from xserver import display
 
-PROGRAM = find_vv().parent / "gl_viewer"
+BIN = find_vv().parent
 
 
 def screen(path):
@@ -24,12 +25,23 @@ def screen(path):
     return rows[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1] / 255.0
 
 
-class Viewer:
+class Window:
 
-    def __init__(self, folder):
+    def __init__(self, program, folder):
         self.folder = folder
         self.env = {k: v for k, v in os.environ.items() if k != "WAYLAND_DISPLAY"}
-        self.program = subprocess.Popen([PROGRAM], cwd=folder, env=self.env, stderr=subprocess.PIPE)
+        self.out = folder / "out"
+        with self.out.open("wb") as out:
+            self.program = subprocess.Popen([BIN / program],
+                                            cwd=folder,
+                                            env=self.env,
+                                            stdout=out,
+                                            stderr=subprocess.PIPE)
+
+    def focus(self, title):
+        window = self.wait(lambda: self.tool("search", "--name", title), "no window")[0]
+        self.tool("windowfocus", "--sync", window)
+        return window
 
     def tool(self, *arguments):
         done = subprocess.run(["xdotool", *map(str, arguments)],
@@ -52,18 +64,24 @@ class Viewer:
         raise AssertionError(what)
 
 
-@pytest.fixture
-def viewer(tmp_path):
+@contextlib.contextmanager
+def shown(program, folder):
     needs("xdotool")
-    if not PROGRAM.exists():
-        pytest.skip("gl_viewer is not built")
-    with display("400x300", "-noreset", "-fbdir", str(tmp_path)):
-        one = Viewer(tmp_path)
+    if not (BIN / program).exists():
+        pytest.skip(f"{program} is not built")
+    with display("400x300", "-noreset", "-fbdir", str(folder)):
+        one = Window(program, folder)
         try:
             yield one
         finally:
             one.program.kill()
             one.program.wait()
+
+
+@pytest.fixture
+def viewer(tmp_path):
+    with shown("gl_viewer", tmp_path) as one:
+        yield one
 
 
 def colourful(picture):
@@ -73,8 +91,7 @@ def colourful(picture):
 
 def test_keys_and_drags_reach_the_program(viewer):
     viewer.wait(lambda: colourful(viewer.picture()) > 0.1, "no picture")
-    window = viewer.wait(lambda: viewer.tool("search", "--name", "Viewer"), "no window")[0]
-    viewer.tool("windowfocus", "--sync", window)
+    window = viewer.focus("Viewer")
     before = viewer.picture()
 
     def drag():  # SDL ignores a click that comes with the focus
@@ -90,3 +107,35 @@ def test_keys_and_drags_reach_the_program(viewer):
                 "the window has the old size")
     viewer.tool("key", "Escape")
     assert viewer.program.wait(PATIENCE) == 0
+
+
+def test_keys_go_down_and_up_and_the_wheel_is_two_buttons(tmp_path):
+    with shown("gl_input", tmp_path) as program:
+        program.wait(lambda: "ready" in program.out.read_text(), "no picture")
+        window = program.focus("Input")
+
+        def lines():
+            return [line for line in program.out.read_text().splitlines() if line != "ready"]
+
+        def press():  # SDL ignores a key that comes before the focus
+            program.tool("key", "a")
+            return "up 97" in lines()
+
+        program.wait(press, "the key does not come")
+        before = len(lines())
+        program.tool("key", "shift+b", "key", "Left", "key", "Return", "mousemove", "--window",
+                     window, 20, 30, "click", 4, "click", 5)
+        wanted = [
+            "down 66", "up 66", "special 100", "special up 100", "down 13", "up 13",
+            "button 3 0 at 20 30", "button 3 1 at 20 30", "button 4 0 at 20 30",
+            "button 4 1 at 20 30"
+        ]
+        program.wait(lambda: len(lines()) >= before + len(wanted), "not all events come")
+        assert [line for line in lines() if "97" not in line] == wanted
+        program.tool("keydown", "c")
+        program.wait(lambda: "down 99" in lines(), "the key does not come")
+        program.tool("keyup", "c")
+        program.wait(lambda: "up 99" in lines(), "the key does not go up")
+        assert lines().count("down 99") == 1
+        program.tool("key", "Escape")
+        assert program.program.wait(PATIENCE) == 0

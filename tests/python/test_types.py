@@ -12,6 +12,8 @@ xvrml = pytest.importorskip("xvrml")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 GOOD = '''
+from typing import Optional
+
 import numpy as np
 import xvrml
 from xvrml import interop, notebook, rt
@@ -58,6 +60,20 @@ widget.update()
 widget.live.paused = True
 browser = xvrml.Browser("car.wrl", trust=True)
 browser.tick(1.0)
+
+
+class Count(xvrml.Renderer):
+    faces = 0
+
+    def render_transform(self, node: xvrml.Transform, state: xvrml.RenderState) -> Optional[str]:
+        return "skip" if state.name or node.scale[0] == 0 else None
+
+    def draw(self, shape: xvrml.DrawnShape) -> None:
+        self.faces += len(shape.mesh.faces) * shape.uses
+        print(shape.appearance.front.color, shape.reaches)
+
+
+world.render_with(Count(), spheres=8)
 '''
 BAD = {
     "xvrml.Box(sise=(1, 2, 3))": "sise",

@@ -26,10 +26,12 @@ from . import _xvrml
 from ._camera import Pinhole
 from ._features import Feature, features
 from ._live import LiveView
+from ._renderer import (AppearanceParts, MaterialValues, Reach, Renderer, TextureLayer,
+                        TexturePicture)
 from ._world import loads
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, EditError, Editor, EditStep, Film,
-                     Measurement, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo,
-                     Worker, World, load_node_plugins, __version__)
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, DrawnShape, EditError, Editor,
+                     EditStep, Film, Measurement, Mesh, Node, ParseError, Picture, RenderError,
+                     RenderState, ViewpointInfo, Worker, World, load_node_plugins, __version__)
 
 load = _arguments.explained(_xvrml.load)
 denoise = _arguments.explained(_xvrml.denoise)
@@ -47,10 +49,12 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "EditError", "Editor", "EditStep",
-    "Feature", "Film", "LiveView", "Measurement", "Mesh", "Node", "ParseError", "Picture",
-    "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "denoise", "features", "load",
-    "load_node_plugins", "loads", "merge", "__version__", *nodes.__all__
+    "AppearanceParts", "Browser", "Cluster", "ClusterError", "Diagnostic", "DrawnShape",
+    "EditError", "Editor", "EditStep", "Feature", "Film", "LiveView", "MaterialValues",
+    "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "Reach", "RenderError",
+    "RenderState", "Renderer", "TextureLayer", "TexturePicture", "ViewpointInfo", "Worker",
+    "World", "denoise", "features", "load", "load_node_plugins", "loads", "merge", "__version__",
+    *nodes.__all__
 ]
 
 _SUBMODULES = ("control", "dask", "interop", "notebook", "rt")

@@ -247,6 +247,10 @@ class Mesh:
         ...
 
     @property
+    def alphas(self) -> Optional[npt.NDArray[np.float32]]:
+        ...
+
+    @property
     def radius(self) -> float:
         ...
 
@@ -256,6 +260,151 @@ class Mesh:
 
     @property
     def ccw(self) -> bool:
+        ...
+
+
+_Rgb = Tuple[float, float, float]
+
+
+class MaterialValues(NamedTuple):
+    model: str
+    color: _Rgb
+    emissive_color: _Rgb
+    line_color: _Rgb
+    specular_color: _Rgb
+    ambient_intensity: float
+    shininess: float
+    metallic: float
+    roughness: float
+    transparency: float
+    normal_scale: float
+    color_texture: Optional[Node]
+    emissive_texture: Optional[Node]
+    specular_texture: Optional[Node]
+    ambient_texture: Optional[Node]
+    shininess_texture: Optional[Node]
+    normal_texture: Optional[Node]
+    metallic_roughness_texture: Optional[Node]
+    occlusion_texture: Optional[Node]
+
+
+class TextureLayer(NamedTuple):
+    texture: Node
+    transform: npt.NDArray[np.float64]
+    mode: str
+    source: str
+    function: str
+
+
+class TexturePicture(NamedTuple):
+    array: Optional[npt.NDArray[Any]]
+    file: bytes
+    path: str
+    type: str
+    error: str
+
+
+class AppearanceParts(NamedTuple):
+    appearance: Optional[Node]
+    material: Optional[Node]
+    back_material: Optional[Node]
+    texture: Optional[Node]
+    texture_transform: Optional[Node]
+    shader: Optional[Node]
+    textures_multiply: bool
+    front: MaterialValues
+    back: Optional[MaterialValues]
+    layers: List[TextureLayer]
+
+
+class Reach(NamedTuple):
+    node: Node
+    reason: str
+
+
+class RenderState:
+
+    @property
+    def path(self) -> List[Node]:
+        ...
+
+    @property
+    def parent(self) -> Optional[Node]:
+        ...
+
+    @property
+    def name(self) -> str:
+        ...
+
+    @property
+    def matrix(self) -> npt.NDArray[np.float64]:
+        ...
+
+    @property
+    def local(self) -> npt.NDArray[np.float64]:
+        ...
+
+    @property
+    def inner(self) -> Optional[npt.NDArray[np.float64]]:
+        ...
+
+    @property
+    def planes(self) -> npt.NDArray[np.float64]:
+        ...
+
+
+class DrawnShape:
+
+    @property
+    def node(self) -> Shape:
+        ...
+
+    @property
+    def geometry(self) -> Node:
+        ...
+
+    @property
+    def path(self) -> List[Node]:
+        ...
+
+    @property
+    def name(self) -> str:
+        ...
+
+    @property
+    def matrix(self) -> npt.NDArray[np.float64]:
+        ...
+
+    @property
+    def mesh(self) -> Mesh:
+        ...
+
+    @property
+    def appearance(self) -> AppearanceParts:
+        ...
+
+    @property
+    def planes(self) -> npt.NDArray[np.float64]:
+        ...
+
+    @property
+    def uses(self) -> int:
+        ...
+
+    @property
+    def reaches(self) -> Dict[str, Reach]:
+        ...
+
+
+class Renderer:
+
+    def render(self, node: Node, state: RenderState) -> Optional[str]:
+        ...
+
+    def leave(self, node: Node, state: RenderState) -> None:
+        ...
+
+    def draw(self, shape: DrawnShape) -> None:
         ...
 
 
@@ -639,6 +788,18 @@ class World:
         ...
 
     def meshes(self, *, spheres: int = ..., view: Optional[npt.ArrayLike] = ...) -> List[Mesh]:
+        ...
+
+    def render_with(self,
+                    renderer: Renderer,
+                    *,
+                    view: Optional[npt.ArrayLike] = ...,
+                    spheres: int = ...,
+                    all_choices: bool = ...,
+                    max_visits: int = ...) -> None:
+        ...
+
+    def texture_picture(self, node: Node, decode: bool = ...) -> TexturePicture:
         ...
 
     def raycaster(self, spheres: int = ...) -> Raycaster:

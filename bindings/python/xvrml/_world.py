@@ -192,7 +192,8 @@ def edit(self, field):
 
 
 def complete(world, node):
-    for function in (on, route, unroute, animate, film, raycaster, view, _repr_png_):
+    from ._renderer import render_with
+    for function in (on, route, unroute, animate, film, raycaster, render_with, view, _repr_png_):
         setattr(world, function.__name__, function)
     world.__reduce__ = _reduce
     world.bounds = bounds

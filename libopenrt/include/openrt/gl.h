@@ -81,6 +81,10 @@ RT_API void rtuPerspective(GLdouble fovy, GLdouble aspect, GLdouble zNear, GLdou
 RT_API void rtuLookAt(GLdouble eyeX, GLdouble eyeY, GLdouble eyeZ, GLdouble centerX,
                       GLdouble centerY, GLdouble centerZ, GLdouble upX, GLdouble upY, GLdouble upZ);
 RT_API void rtuOrtho2D(GLdouble left, GLdouble right, GLdouble bottom, GLdouble top);
+/* Narrows the view to width x height pixels around x, y (from the lower left corner), for the
+ * selection mode of glRenderMode. viewport: that of glGetIntegerv. */
+RT_API void rtuPickMatrix(GLdouble x, GLdouble y, GLdouble width, GLdouble height,
+                          const GLint* viewport);
 /* Both return 1, or 0 if a matrix is singular. */
 RT_API GLint rtuProject(GLdouble x, GLdouble y, GLdouble z, const GLdouble* model,
                         const GLdouble* projection, const GLint* viewport, GLdouble* windowX,
@@ -140,6 +144,7 @@ typedef RTUquadric RTUquadricObj;
 #define gluPerspective rtuPerspective
 #define gluLookAt rtuLookAt
 #define gluOrtho2D rtuOrtho2D
+#define gluPickMatrix rtuPickMatrix
 #define gluProject rtuProject
 #define gluUnProject rtuUnProject
 #define gluBuild2DMipmaps rtuBuild2DMipmaps

@@ -8,7 +8,8 @@
  *
  * Without a window: OPENRT_UT_FRAMES=N in the environment, or rtutFrames, renders N frames into
  * files. The clock of the program then runs 40 ms from one frame to the next, so that the pictures
- * are always the same. All functions: [context-thread].
+ * are always the same. Another value of OPENRT_UT_FRAMES than a number from 1 is reported, and
+ * nothing is rendered. All functions: [context-thread].
  */
 #ifndef OPENRT_RTUT_H
 #define OPENRT_RTUT_H
@@ -21,7 +22,8 @@ extern "C" {
 
 /* Takes the options of the library (--rt-KEY=VALUE) out of argv and makes a context. */
 RT_API void rtutInit(int* argc, char** argv);
-/* mode: RTUT_DOUBLE or RTUT_SINGLE; the other bits change nothing. */
+/* mode: RTUT_DOUBLE or RTUT_SINGLE. The other bits change nothing: there is always a depth test,
+ * and calls for stencils, accumulation and indices are refused by their names. */
 RT_API void rtutInitDisplayMode(unsigned int mode);
 RT_API void rtutInitWindowSize(int width, int height);
 RT_API void rtutInitWindowPosition(int x, int y);
@@ -38,7 +40,12 @@ RT_API void rtutDisplayFunc(void (*display)(void));
 RT_API void rtutReshapeFunc(void (*reshape)(int width, int height));
 RT_API void rtutIdleFunc(void (*idle)(void));
 RT_API void rtutKeyboardFunc(void (*keyboard)(unsigned char key, int x, int y));
+RT_API void rtutKeyboardUpFunc(void (*keyboard)(unsigned char key, int x, int y));
 RT_API void rtutSpecialFunc(void (*special)(int key, int x, int y));
+RT_API void rtutSpecialUpFunc(void (*special)(int key, int x, int y));
+/* ignore: a key that is held is one call, instead of several. Call it after rtutCreateWindow. */
+RT_API void rtutIgnoreKeyRepeat(int ignore);
+/* The wheel is button 3 (away from the user) or 4. */
 RT_API void rtutMouseFunc(void (*mouse)(int button, int state, int x, int y));
 RT_API void rtutMotionFunc(void (*motion)(int x, int y));
 RT_API void rtutPassiveMotionFunc(void (*motion)(int x, int y));
@@ -50,7 +57,7 @@ RT_API void rtutPostRedisplay(void);
 /* Ends the frame and shows it. */
 RT_API void rtutSwapBuffers(void);
 /* Runs until the window is closed, rtutLeaveMainLoop is called or the frames are rendered. Returns
- * 0, 1 if there is no window, 2 if a picture cannot be written. */
+ * 0, 1 if there is no window, 2 if a picture cannot be written or OPENRT_UT_FRAMES is no number. */
 RT_API int rtutMainLoop(void);
 RT_API void rtutLeaveMainLoop(void);
 /* Renders so many frames without a window, with four samples per pixel. pattern: file names, with
@@ -62,11 +69,29 @@ RT_API int rtutGet(GLenum what);
 /* Returns RTUT_ACTIVE_* bits of the event that is being handled. */
 RT_API int rtutGetModifiers(void);
 
+/* Solids around the origin, solid and as wires. */
 RT_API void rtutSolidSphere(GLdouble radius, GLint slices, GLint stacks);
 RT_API void rtutWireSphere(GLdouble radius, GLint slices, GLint stacks);
 RT_API void rtutSolidCube(GLdouble size);
+RT_API void rtutWireCube(GLdouble size);
+/* inner: the radius of the tube; outer: that of the circle of its middle. */
 RT_API void rtutSolidTorus(GLdouble inner, GLdouble outer, GLint sides, GLint rings);
+RT_API void rtutWireTorus(GLdouble inner, GLdouble outer, GLint sides, GLint rings);
+/* The base lies in the plane z = 0. */
 RT_API void rtutSolidCone(GLdouble base, GLdouble height, GLint slices, GLint stacks);
+RT_API void rtutWireCone(GLdouble base, GLdouble height, GLint slices, GLint stacks);
+/* Their corners are 1 from the origin; those of the dodecahedron are sqrt(3). */
+RT_API void rtutSolidTetrahedron(void);
+RT_API void rtutWireTetrahedron(void);
+RT_API void rtutSolidOctahedron(void);
+RT_API void rtutWireOctahedron(void);
+RT_API void rtutSolidDodecahedron(void);
+RT_API void rtutWireDodecahedron(void);
+RT_API void rtutSolidIcosahedron(void);
+RT_API void rtutWireIcosahedron(void);
+/* Newell's teapot, with texture coordinates: its body has the radius `size`. */
+RT_API void rtutSolidTeapot(GLdouble size);
+RT_API void rtutWireTeapot(GLdouble size);
 
 #ifdef __cplusplus
 }
@@ -75,10 +100,14 @@ RT_API void rtutSolidCone(GLdouble base, GLdouble height, GLint slices, GLint st
 #define RTUT_RGB 0
 #define RTUT_RGBA 0
 #define RTUT_SINGLE 0
+#define RTUT_INDEX 1
 #define RTUT_DOUBLE 2
+#define RTUT_ACCUM 4
 #define RTUT_ALPHA 8
 #define RTUT_DEPTH 16
+#define RTUT_STENCIL 32
 #define RTUT_MULTISAMPLE 128
+#define RTUT_STEREO 256
 #define RTUT_LEFT_BUTTON 0
 #define RTUT_MIDDLE_BUTTON 1
 #define RTUT_RIGHT_BUTTON 2
@@ -117,10 +146,14 @@ RT_API void rtutSolidCone(GLdouble base, GLdouble height, GLint slices, GLint st
 #define GLUT_RGB RTUT_RGB
 #define GLUT_RGBA RTUT_RGBA
 #define GLUT_SINGLE RTUT_SINGLE
+#define GLUT_INDEX RTUT_INDEX
 #define GLUT_DOUBLE RTUT_DOUBLE
+#define GLUT_ACCUM RTUT_ACCUM
 #define GLUT_ALPHA RTUT_ALPHA
 #define GLUT_DEPTH RTUT_DEPTH
+#define GLUT_STENCIL RTUT_STENCIL
 #define GLUT_MULTISAMPLE RTUT_MULTISAMPLE
+#define GLUT_STEREO RTUT_STEREO
 #define GLUT_LEFT_BUTTON RTUT_LEFT_BUTTON
 #define GLUT_MIDDLE_BUTTON RTUT_MIDDLE_BUTTON
 #define GLUT_RIGHT_BUTTON RTUT_RIGHT_BUTTON
@@ -169,7 +202,10 @@ RT_API void rtutSolidCone(GLdouble base, GLdouble height, GLint slices, GLint st
 #define glutReshapeFunc rtutReshapeFunc
 #define glutIdleFunc rtutIdleFunc
 #define glutKeyboardFunc rtutKeyboardFunc
+#define glutKeyboardUpFunc rtutKeyboardUpFunc
 #define glutSpecialFunc rtutSpecialFunc
+#define glutSpecialUpFunc rtutSpecialUpFunc
+#define glutIgnoreKeyRepeat rtutIgnoreKeyRepeat
 #define glutMouseFunc rtutMouseFunc
 #define glutMotionFunc rtutMotionFunc
 #define glutPassiveMotionFunc rtutPassiveMotionFunc
@@ -185,7 +221,20 @@ RT_API void rtutSolidCone(GLdouble base, GLdouble height, GLint slices, GLint st
 #define glutSolidSphere rtutSolidSphere
 #define glutWireSphere rtutWireSphere
 #define glutSolidCube rtutSolidCube
+#define glutWireCube rtutWireCube
 #define glutSolidTorus rtutSolidTorus
+#define glutWireTorus rtutWireTorus
 #define glutSolidCone rtutSolidCone
+#define glutWireCone rtutWireCone
+#define glutSolidTetrahedron rtutSolidTetrahedron
+#define glutWireTetrahedron rtutWireTetrahedron
+#define glutSolidOctahedron rtutSolidOctahedron
+#define glutWireOctahedron rtutWireOctahedron
+#define glutSolidDodecahedron rtutSolidDodecahedron
+#define glutWireDodecahedron rtutWireDodecahedron
+#define glutSolidIcosahedron rtutSolidIcosahedron
+#define glutWireIcosahedron rtutWireIcosahedron
+#define glutSolidTeapot rtutSolidTeapot
+#define glutWireTeapot rtutWireTeapot
 
 #endif
