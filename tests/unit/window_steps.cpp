@@ -61,10 +61,6 @@ struct Player {
   }
 };
 
-bool operator==(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
-  return std::equal(std::begin(a.matrix), std::end(a.matrix), std::begin(b.matrix));
-}
-
 const std::string drags = "0.1 move 0 0.8\n0.1 press left 0 0.8\n0.2 move 0.4 0.6\n"
                           "0.3 release left 0.4 0.6\n0.3 down S\n0.3 up S\n0.3 move 0 0.8\n"
                           "0.3 press left 0 0.8\n0.3 move -0.3 0.7\n0.5 release left -0.3 0.7\n";
