@@ -26,7 +26,9 @@ inline timespec modifiedTime(const struct stat& status) {
 #endif
 }
 
-// Returns the time by the clock that the file system stamps files with.
+// Returns the earliest time that a file can be stamped with when it is changed from now on. A stamp
+// may be later than the change's time by this clock: since Linux 6.13 some are of the finer
+// CLOCK_REALTIME.
 inline timespec fileClock() {
   timespec time{};
 #if defined(__linux__)
