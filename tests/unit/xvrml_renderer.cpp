@@ -152,8 +152,9 @@ TEST(Renderer, OverriddenCallbacksGetTheNode) {
 
 TEST(Renderer, TheStateSaysWhereANodeIs) {
   const auto world =
-      worldOf("DEF Car Transform { translation 1 2 3 children Transform { scale 2 2 2 children [ "
-              "DEF Eye Viewpoint { } PROTO P [ ] { Shape { geometry Sphere { } } } P { } ] } }");
+      worldOf("PROTO P [ ] { Shape { geometry Sphere { } } } DEF Car Transform { translation 1 2 3 "
+              "children "
+              "Transform { scale 2 2 2 children [ DEF Eye Viewpoint { } P { } ] } }");
   struct Places : Renderer {
     int checked = 0;
     Visit renderViewpoint(nodes::Viewpoint& node, const RenderState& state) override {
