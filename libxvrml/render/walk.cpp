@@ -70,7 +70,7 @@ void RenderWalk::visit(const NodeRef& node) {
   const Visit answer = call(renderer_, *node, state);
   if (answer != Visit::skip)
     if (auto* shape = nodeCast<nodes::Shape>(node))
-      if (Node* geometry = renderedNode(shape->geometry.get()))
+      if (const NodeRef geometry(renderedNode(shape->geometry.get())); geometry)
         renderer_.draw(DrawnShape(*shape, *geometry, state, *this));
   if (answer == Visit::children)
     enter(std::move(level));
