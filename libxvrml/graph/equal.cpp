@@ -3,12 +3,12 @@
 // are not compared. [the thread that owns both]
 #include <algorithm>
 #include <tuple>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "enough_stack.h"
 #include "graph/field_access.h"
+#include "xvrml/node_map.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -86,12 +86,10 @@ class Comparison {
 
   bool nodes(const NodeRef& a, const NodeRef& b) {
     if (!a || !b) return (!a && !b) || fail("a node and NULL");
-    const auto [first, newA] = matchA_.try_emplace(a.get(), b.get());
-    const auto [second, newB] = matchB_.try_emplace(b.get(), a.get());
-    if (first->second != b.get() || second->second != a.get())
-      return fail("nodes are shared otherwise");
+    const auto [first, newA] = matchA_.insert(a.get(), {b.get(), matchA_.size()});
+    const auto [second, newB] = matchB_.insert(b.get(), a.get());
+    if (first->node != b.get() || *second != a.get()) return fail("nodes are shared otherwise");
     if (!newA && !newB) return true;
-    order_.emplace(a.get(), order_.size());
     if (a->defName != b->defName) return fail("DEF", a->defName, b->defName);
     if (&a->type() != &b->type() && !types(a->type(), b->type(), false)) return false;
     for (size_t i = 0; i < a->type().fields.size(); ++i) {
@@ -122,12 +120,12 @@ class Comparison {
 
   // The order of routes and connections has no meaning, so they are compared sorted by node number.
   size_t number(const NodeRef& a) const {
-    const auto found = order_.find(a.get());
-    return found == order_.end() ? ~size_t(0) : found->second;
+    const Match* const found = matchA_.find(a.get());
+    return found ? found->number : ~size_t(0);
   }
   NodeRef partner(const NodeRef& b) const {
-    const auto found = matchB_.find(b.get());
-    return found == matchB_.end() ? NodeRef() : NodeRef(found->second);
+    Node* const* const found = matchB_.find(b.get());
+    return found ? NodeRef(*found) : NodeRef();
   }
 
   bool routes(const std::vector<Route>& a, const std::vector<Route>& b) {
@@ -165,8 +163,12 @@ class Comparison {
     return true;
   }
 
-  std::unordered_map<const Node*, Node*> matchA_, matchB_;
-  std::unordered_map<const Node*, size_t> order_;
+  struct Match {
+    const Node* node = nullptr;
+    size_t number = 0; // in the order of the traversal
+  };
+  NodeMap<Match> matchA_; // by the nodes of the first graph
+  NodeMap<Node*> matchB_; // by those of the second one
 };
 
 } // namespace

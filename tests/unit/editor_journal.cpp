@@ -342,14 +342,6 @@ TEST_F(EditorJournal, WorldsOfOthersHaveNoneUntilTheyAreSaved) {
   EXPECT_EQ(program.journal().keep(), journal);
 }
 
-TEST_F(EditorJournal, AnEmptyFileIsNoJournal) {
-  putContent(journal, ""); // a program was killed as it began
-  Program program(world);
-  EXPECT_EQ(program.journal().takeMessage(), "");
-  program.dimTo(0.5f);
-  EXPECT_EQ(program.journal().keep(), journal);
-}
-
 TEST_F(EditorJournal, AStepThatIsOpenIsKept) {
   Program program(world);
   program.editor.editor().begin("Drag");

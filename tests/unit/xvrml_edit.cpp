@@ -405,7 +405,7 @@ TEST_P(Edited, RandomEditsCanBeUndone) {
 }
 
 TEST_P(Edited, ATextWithAZeroByteIsRefused) {
-  load("DEF T Text { string \"a\" }\nDEF A Anchor { description \"b\" }\n");
+  load("Shape { geometry DEF T Text { string \"a\" } }\nDEF A Anchor { description \"b\" }\n");
   const std::string zero("x\0y", 3);
   EXPECT_NE(refusal([&] {
               editor->set(node("T"), "string", MFString{"a", zero});

@@ -322,14 +322,14 @@ TEST_P(EditedPlaces, ANodeWithinAPieceIsUsedBeforeIt) {
 TEST_P(EditedPlaces, NamesAndRoutesWithinPieces) {
   const std::string before = "DEF T TimeSensor { }\nDEF G Group { children [ DEF A Group { } ",
                     behind = "Group { children [ USE A DEF B Group { } ] } ] }\n"
-                             "Group { children [ DEF C TimeSensor { }\n"
-                             "ROUTE T.time TO C.startTime\nROUTE C.time TO C.stopTime ] }\n";
+                             "Group { children DEF C TimeSensor { }\n"
+                             "ROUTE T.time TO C.startTime\nROUTE C.time TO C.stopTime }\n";
   load(before + behind);
   editor->rename(node("A"), "Z");
   EXPECT_NE(text().find("children [ DEF Z Group { } Group { children [ USE Z DEF B"),
             std::string::npos);
   editor->rename(node("T"), "U");
-  EXPECT_NE(text().find("ROUTE U.time TO C.startTime\nROUTE C.time TO C.stopTime ]"),
+  EXPECT_NE(text().find("ROUTE U.time TO C.startTime\nROUTE C.time TO C.stopTime }"),
             std::string::npos);
   editor->remove({nullptr, "", 0});
   EXPECT_EQ(text().find("ROUTE U"), std::string::npos);
@@ -338,8 +338,8 @@ TEST_P(EditedPlaces, NamesAndRoutesWithinPieces) {
 }
 
 TEST_P(EditedPlaces, APieceWithAnInstanceStaysBehindItsPrototype) {
-  load("DEF F Group { children [ ] }\nGroup { children [\n"
-       "PROTO P [ ] { Group { } }\n  Group { children [ DEF I P { } ] } ] }\n");
+  load("DEF F Group { children [ ] }\nGroup {\n"
+       "PROTO P [ ] { Group { } }\n  children Group { children [ DEF I P { } ] } }\n");
   editor->use({&node("F"), "children", 0}, node("I"));
   const std::string now = text();
   EXPECT_LT(now.find("PROTO P"), now.find("DEF I P"));

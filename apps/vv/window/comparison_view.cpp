@@ -12,7 +12,7 @@ namespace vv {
 namespace {
 
 constexpr ImU32 lineColour = IM_COL32(255, 170, 40, 220), shadow = IM_COL32(0, 0, 0, 170);
-constexpr float top = 40; // below the overlay
+constexpr float top = 30; // below the overlay
 
 // Returns where the middle of a part of the picture is, in units of the window.
 float middleOf(const FreePart& part) {
@@ -52,40 +52,43 @@ void entry(ImU32 colour, const std::string& text, float width) {
 
 std::string changeAt(const ChangePicture& changes, double x, double y) {
   const float change = changes.at(x, y);
-  return change == 0 ? "no significant change" : fmt::format("{:+.3g} cd/m2", change);
+  return change == 0 ? "no significant change" : fmt::format("{:+.3g}", change);
 }
 
 void drawLegend(const Comparison& comparison, double x, double y, const FreePart& free) {
   const float width = float(free.right - free.left) / 2 * ImGui::GetIO().DisplaySize.x -
                       4 * ImGui::GetStyle().WindowPadding.x;
   ImGui::SetNextWindowPos(ImVec2(middleOf(free), top), ImGuiCond_Always, ImVec2(.5f, 0));
+  // Narrow lines: the picture is to be seen below.
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ImGui::GetStyle().ItemSpacing.x, 1));
   if (ImGui::Begin("##difference", nullptr,
                    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoInputs)) {
     const ChangePicture* const changes = comparison.changes();
-    ImGui::TextUnformatted("B - A");
+    ImGui::TextUnformatted("B - A in cd/m2");
     if (!changes) {
       ImGui::TextUnformatted("waits for a still picture");
     } else {
       entry(IM_COL32(255, 150, 20, 255),
-            changes->most > 0 ? fmt::format("+ brighter,  up to {:+.3g} cd/m2", changes->most)
+            changes->most > 0 ? fmt::format("+ brighter, up to {:+.3g}", changes->most)
                               : "+ brighter: none",
             width);
       entry(IM_COL32(70, 140, 255, 255),
-            changes->least < 0 ? fmt::format("- darker,  down to {:+.3g} cd/m2", changes->least)
+            changes->least < 0 ? fmt::format("- darker, down to {:+.3g}", changes->least)
                                : "- darker: none",
             width);
       entry(IM_COL32(110, 110, 110, 255), "no significant change  (5 %, all pixels together)",
             width);
       const size_t pixels = changes->changes.size();
-      drawParts(fmt::format("{} of {} pixels have changed;  {} are not trusted",
-                            changes->significant, pixels, pixels - changes->judged),
+      drawParts(fmt::format("{} of {} pixels changed;  {} not trusted", changes->significant,
+                            pixels, pixels - changes->judged),
                 width);
       if (!comparison.isComplete()) drawParts("A was kept  without all its samples", width);
       drawParts("here: " + changeAt(*changes, x, y), width);
     }
   }
   ImGui::End();
+  ImGui::PopStyleVar();
 }
 
 } // namespace

@@ -296,6 +296,8 @@ void Gui::draw() {
   if (impl_->unsettled > 0) --impl_->unsettled;
 }
 
+void Gui::touch() { impl_->unsettled = framesToSettle; }
+
 bool Gui::hasChanged() const { return impl_->unsettled > 0; }
 
 } // namespace vv

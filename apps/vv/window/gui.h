@@ -24,8 +24,10 @@ class Gui {
   bool take(const SDL_Event& event);
   // Draws the panels.
   void draw();
-  // Tells whether the panels have changed since they were drawn.
+  // Tells whether the panels have changed since they were drawn. touch(): they show something else,
+  // whose size they know in the next frame.
   bool hasChanged() const;
+  void touch();
 
  private:
   struct Impl;

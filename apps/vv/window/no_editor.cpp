@@ -13,6 +13,7 @@ Gui::~Gui() = default;
 bool Gui::take(const SDL_Event&) { return false; }
 void Gui::draw() {}
 bool Gui::hasChanged() const { return false; }
+void Gui::touch() {}
 
 void EditorPanels::draw() {}
 void Questions::draw() {}

@@ -322,7 +322,10 @@ int Screen::freeWidth() const {
   return std::max(least, int((impl_->free.right - impl_->free.left) / 2 * width()));
 }
 
-void Screen::redraw() { impl_->changed = true; }
+void Screen::redraw() {
+  impl_->changed = true;
+  if (impl_->gui) impl_->gui->touch();
+}
 
 void Screen::present() {
   const bool guiChanged = impl_->gui && impl_->gui->hasChanged();
