@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "gl/names.h"
+#include "gl/numbers.h"
 #include "gl/state.h"
 #include "openrt/gl.h"
 
@@ -45,7 +46,7 @@ GLuint nameAt(GLenum type, const void* lists, size_t i) {
   case GL_UNSIGNED_SHORT: return static_cast<const GLushort*>(lists)[i];
   case GL_INT:
   case GL_UNSIGNED_INT: return static_cast<const GLuint*>(lists)[i];
-  case GL_FLOAT: return static_cast<GLuint>(static_cast<const GLfloat*>(lists)[i]);
+  case GL_FLOAT: return toName(static_cast<double>(static_cast<const GLfloat*>(lists)[i]));
   case GL_2_BYTES: return bytes[2 * i] * 256u + bytes[2 * i + 1];
   default: fail(GL_INVALID_ENUM, "no such type of names");
   }

@@ -238,7 +238,7 @@ def test_the_page_asks_before_it_replaces_a_file(browser, serve, vv, answer, end
     assert errors(browser) == []
 
 
-# --- A session: a lens, a lamp, and the light on a wall ---
+# --- Sessions: a lens, a lamp, and the light on a wall ---
 
 ROOM = HEADER + """
 NavigationInfo { headlight FALSE }
@@ -286,7 +286,7 @@ def move_pointer(browser, x, y):
     })
 
 
-def test_a_lens_and_a_lamp_are_changed_and_the_light_is_measured(browser, serve, vv):
+def test_a_lens_and_a_lamp_are_changed(browser, serve, vv):
     open_editor(browser, serve(ROOM, "--edit", "--spp", 64))
     finished(browser)
     browser.drag(CANVAS, (0, 0))  # a click on the lens
@@ -307,12 +307,23 @@ def test_a_lens_and_a_lamp_are_changed_and_the_light_is_measured(browser, serve,
     assert shown(browser, number_input("translation", 2)) == "2"
     press_with_control(browser, "z")
     browser.until(lambda: shown(browser, number_input("translation", 1)) == "0", "undone")
+    press_with_control(browser, "s")
+    until_script(browser, "document.body.dataset.unsaved === 'false'")
+    assert (vv.folder / "world.wrl").read_text() == ROOM.replace("index 1.5", "index 1.8")
+    assert errors(browser) == []
 
+
+def test_the_light_of_a_lamp_is_measured_and_compared(browser, serve, vv):
+    # Light by way of the lens would take very many samples until it is trusted.
+    room = ROOM[:ROOM.index("DEF LENS")]
+    open_editor(browser, serve(room, "--edit", "--spp", 64))
+    finished(browser)
+    browser.click(row(browser, "LAMP") + " .label")
+    until_title(browser, "LAMP  Transform")
     browser.script("document.getElementById('picture').focus()")
     move_pointer(browser, -0.6, 0.6)
     browser.keys("u")
-    before = until_probe(browser, "lx", "trusted")
-    assert "\u00b1" in before and "not" not in before
+    assert "\u00b1" in until_probe(browser, "lx trusted")
     browser.keys("b")
     until_script(browser, "window.editor.light.state.complete === true")
     move_pointer(browser, 0.3, 0.6)
@@ -351,7 +362,7 @@ def test_a_lens_and_a_lamp_are_changed_and_the_light_is_measured(browser, serve,
     browser.until(lambda: shown(browser, number_input("translation", 1)) == "3", "done again")
     press_with_control(browser, "s")
     until_script(browser, "document.body.dataset.unsaved === 'false'")
-    wanted = ROOM.replace("translation 0 2 0", "translation 3 2 0").replace("index 1.5", "index 1.8")
+    wanted = room.replace("translation 0 2 0", "translation 3 2 0")
     assert (vv.folder / "world.wrl").read_text() == wanted
     assert errors(browser) == []
 

@@ -71,8 +71,7 @@ uint64_t EditLight::cover() {
 // --- Probes ---
 
 void EditLight::needRoom() {
-  Session& session = world_.session();
-  if (!session.pilot().hasLight())
+  if (!world_.hasLight())
     throw EditError("--colour vrml97 makes colours for screens, not light");
   if (light_.probes().all().size() >= size_t(maxProbes))
     throw EditError(fmt::format("there are {} probes already (maxProbes)", maxProbes));

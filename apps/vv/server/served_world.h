@@ -51,6 +51,8 @@ class ServedWorld {
   bool take(PictureSize size);
 
   Session& session() { return *session_; }
+  // Tells whether pictures have light that can be measured, and not colours for screens.
+  bool hasLight() const { return options_.render.linear; }
   // Returns the event that goes to a viewpoint of the list. Names are not always unique: the text
   // must lead to this one.
   std::optional<InputEvent> viewpointEvent(int number);

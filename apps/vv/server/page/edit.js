@@ -31,6 +31,7 @@ class Editor {
     this.mayEdit = false; // vv has said so on this connection
     this.selected = 0; // how many nodes
     this.readOnly = "";
+    this.named = { node: null, name: "" }; // what the box of the name is for
     this.pressed = null; // where the left button went down on the picture
     this.pointer = null; // where the pointer is on the picture
     this.drag = null; // a value that is to be sent with the next frame of the page
@@ -219,9 +220,11 @@ class Editor {
       }, 200);
     });
     $("rename").addEventListener("change", () => {
-      const edits = [{ edit: "rename", node: this.fields.message.node, name: $("rename").value }];
-      this.edit("step", { name: "Rename", edits });
+      this.named.name = $("rename").value;
+      this.edit("step", { name: "Rename", edits: [{ edit: "rename", ...this.named }] });
+      if (this.named.node !== this.fields.message.node) this.showName();
     });
+    $("rename").addEventListener("blur", () => this.showName());
     const canvas = $("picture");
     canvas.addEventListener("pointerdown", (event) => {
       const isClick = this.isOpen() && event.button === 0 && !event.altKey;
@@ -318,9 +321,18 @@ class Editor {
     $("title").textContent = message.title;
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);
-    if (document.activeElement !== $("rename")) $("rename").value = message.name ?? "";
     this.nodes.showLook($("look"), message.look, this.readOnly === "");
     this.fields.show(message);
+    this.showName();
+  }
+
+  // A name that is being typed stays, with the node that it is for.
+  showName() {
+    const { node = null, name = "" } = this.fields.message ?? {};
+    const box = $("rename");
+    if (document.activeElement === box && box.value !== this.named.name) return;
+    this.named = { node, name };
+    box.value = name;
   }
 
   onHandles(message) {
