@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "libpicture/export/export.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/shader_rules.h"
@@ -255,13 +256,6 @@ void setAttribute(const py::object& self, const py::str& name, const py::object&
     throw py::error_already_set();
 }
 
-py::array matrixOf(const ViewpointInfo& v) {
-  py::array_t<double> matrix({4, 4}); // mathematical notation, for column vectors
-  for (size_t i = 0; i < 16; ++i)
-    matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = v.matrix[i];
-  return matrix;
-}
-
 } // namespace
 
 size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader,
@@ -309,9 +303,10 @@ void defineWorld(py::module_& module) {
           "DEF name, '' if it has none.")
       .def_property_readonly("description",
                              [](const ViewpointInfo& v) { return toText(v.description); })
-      .def_property_readonly("matrix", matrixOf,
-                             "The pose: camera to world, 4x4 for column vectors, looking along -z "
-                             "with +y up. render(camera=...) accepts it.")
+      .def_property_readonly(
+          "matrix", [](const ViewpointInfo& v) { return matrixArray(v.matrix); },
+          "The pose: camera to world, 4x4 for column vectors, looking along -z "
+          "with +y up. render(camera=...) accepts it.")
       .def("__repr__", [](const ViewpointInfo& v) {
         return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">");
       });
