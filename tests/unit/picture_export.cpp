@@ -207,6 +207,36 @@ TEST(ExportMotion, KeysCoverTheCycleAndIncrease) {
   EXPECT_TRUE(keysOf({&clock, &move, nullptr, Path::translation}).times.empty());
 }
 
+TEST(ExportMotion, KeysOutsideOfTheCycleCutTheCurve) {
+  xvrml::nodes::TimeSensor clock;
+  clock.cycleInterval = 4;
+  xvrml::nodes::PositionInterpolator move;
+  const auto keysWith = [&](std::vector<float> key, std::vector<xvrml::Vec3f> values) {
+    move.key = std::move(key);
+    move.keyValue = std::move(values);
+    return keysOf({&clock, &move, nullptr, Path::translation});
+  };
+  Keys keys = keysWith({-1, 2}, {{0, 0, 0}, {9, 0, 0}});
+  EXPECT_EQ(keys.times, (std::vector<float>{0, 4}));
+  EXPECT_NEAR(keys.values[0][0], 3, 1e-5);
+  EXPECT_NEAR(keys.values[1][0], 6, 1e-5);
+  keys =
+      keysWith({0, 0.5f, 0.25f, 1}, {{0, 0, 0}, {1, 0, 0}, {7, 0, 0}, {2, 0, 0}}); // one goes back
+  EXPECT_EQ(keys.times, (std::vector<float>{0, 2, 4}));
+  keys = keysWith({-2, -1}, {{1, 0, 0}, {5, 0, 0}});
+  EXPECT_EQ(keys.values.front()[0], 5);
+  keys = keysWith({2, 3}, {{1, 0, 0}, {5, 0, 0}});
+  EXPECT_EQ(keys.values.back()[0], 1);
+  keys = keysWith({0, 1, 2}, {{1, 0, 0}, {2, 0, 0}, {8, 0, 0}});
+  EXPECT_EQ(keys.times, (std::vector<float>{0, 4}));
+
+  TurnMotion motion;
+  motion.clock.cycleInterval = 1;
+  motion.turn.key = {-1, 1};
+  motion.turn.keyValue = {{0, 0, 1, 0}, {0, 0, 1, float(pi / 2)}};
+  EXPECT_NEAR(motion.keys().values.front()[2], std::sin(pi / 8), 1e-6);
+}
+
 TEST(ExportVertices, KeepWhatIsGood) {
   xvrml::GeometryArrays arrays;
   arrays.kind = xvrml::GeometryArrays::Kind::triangles;

@@ -117,16 +117,58 @@ void append(Keys& keys, double time, const std::array<float, 4>& value) {
   keys.values.push_back(value);
 }
 
-// Appends what an interpolator has, key by key. valueAt(i): the value of a key.
-template <class ValueAt> void appendAll(Keys& keys, const std::vector<float>& fractions,
-                                        size_t count, double length, const ValueAt& valueAt) {
+struct Step {
+  double fraction;
+  std::array<float, 4> value;
+};
+
+// Returns what an interpolator has within a cycle, from fraction 0 to 1. A key outside of it has
+// its part in the value at 0 or 1. Keys that go back, or are no numbers, are left out. valueAt(i):
+// the value of a key; between(a, b, t): the value at a fraction of the way between two.
+template <class ValueAt, class Between>
+std::vector<Step> stepsOf(const std::vector<float>& fractions, size_t count, const ValueAt& valueAt,
+                          const Between& between) {
+  std::vector<Step> steps;
+  std::optional<Step> last;
   for (size_t i = 0; i < count; ++i) {
-    const float fraction = fractions[i];
-    if (!std::isfinite(fraction)) continue;
-    append(keys, std::clamp(double(fraction), 0.0, 1.0) * length, valueAt(i));
+    const Step now{fractions[i], valueAt(i)};
+    if (!std::isfinite(now.fraction) || (last && now.fraction < last->fraction)) continue;
+    const auto cutAt = [&](double fraction) {
+      const double t = (fraction - last->fraction) / (now.fraction - last->fraction);
+      steps.push_back({fraction, between(last->value, now.value, t)});
+    };
+    if (last && last->fraction < 0 && now.fraction > 0) cutAt(0);
+    if (now.fraction > 1) {
+      if (!last) return {{1, now.value}};
+      if (last->fraction < 1) cutAt(1);
+      return steps;
+    }
+    if (now.fraction >= 0) steps.push_back(now);
+    last = now;
   }
+  if (steps.empty() && last) steps.push_back({0, last->value});
+  return steps;
+}
+
+// Appends steps as keys, and one for the end of the cycle.
+void appendAll(Keys& keys, const std::vector<Step>& steps, double length) {
+  for (const Step& step : steps) append(keys, step.fraction * length, step.value);
   if (!keys.times.empty() && keys.times.back() < float(length))
     append(keys, length, keys.values.back());
+}
+
+std::array<float, 4> betweenPositions(const std::array<float, 4>& a, const std::array<float, 4>& b,
+                                      double t) {
+  std::array<float, 4> value{};
+  for (size_t i = 0; i < 3; ++i) value[i] = float((1 - t) * double(a[i]) + t * double(b[i]));
+  return value;
+}
+
+Quaternion turnOf(const std::array<float, 4>& v) { return {v[0], v[1], v[2], v[3]}; }
+
+std::array<float, 4> betweenTurns(const std::array<float, 4>& a, const std::array<float, 4>& b,
+                                  double t) {
+  return valueOf(between(turnOf(a), turnOf(b), t));
 }
 
 // glTF turns by the shorter way, which is not certain for nearly half a circle of quaternions. Our
@@ -140,16 +182,15 @@ void appendTurns(Keys& keys, const xvrml::nodes::OrientationInterpolator& node, 
     if (side < -1e-3) turns[i] = {-turns[i].x, -turns[i].y, -turns[i].z, -turns[i].w};
   }
   Keys sparse;
-  appendAll(sparse, node.key, count, length, [&](size_t i) { return valueOf(turns[i]); });
-  const auto quaternionAt = [&](size_t i) {
-    const auto& v = sparse.values[i];
-    return Quaternion{v[0], v[1], v[2], v[3]};
-  };
+  appendAll(sparse,
+            stepsOf(
+                node.key, count, [&](size_t i) { return valueOf(turns[i]); }, betweenTurns),
+            length);
   for (size_t i = 0; i < sparse.times.size(); ++i) {
     constexpr double near = 0.1; // 0 is the product of quaternions at right angles
-    if (i > 0 && dot(quaternionAt(i - 1), quaternionAt(i)) < near)
+    if (i > 0 && dot(turnOf(sparse.values[i - 1]), turnOf(sparse.values[i])) < near)
       append(keys, 0.5 * (double(sparse.times[i - 1]) + double(sparse.times[i])),
-             valueOf(halfway(quaternionAt(i - 1), quaternionAt(i))));
+             betweenTurns(sparse.values[i - 1], sparse.values[i], 0.5));
     append(keys, sparse.times[i], sparse.values[i]);
   }
 }
@@ -196,11 +237,14 @@ Keys keysOf(const Motion& motion) {
     appendTurns(keys, *turn, std::min(turn->key.size(), turn->keyValue.size()), length);
   } else {
     const auto& node = static_cast<const xvrml::nodes::PositionInterpolator&>(*motion.interpolator);
-    appendAll(keys, node.key, std::min(node.key.size(), node.keyValue.size()), length,
-              [&](size_t i) {
-                const xvrml::Vec3f& v = node.keyValue[i];
-                return std::array<float, 4>{v.x, v.y, v.z, 0};
-              });
+    const auto valueAt = [&](size_t i) {
+      const xvrml::Vec3f& v = node.keyValue[i];
+      return std::array<float, 4>{v.x, v.y, v.z, 0};
+    };
+    appendAll(keys,
+              stepsOf(node.key, std::min(node.key.size(), node.keyValue.size()), valueAt,
+                      betweenPositions),
+              length);
   }
   if (!std::all_of(keys.values.begin(), keys.values.end(), isFinite)) return {};
   return keys;

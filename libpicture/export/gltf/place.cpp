@@ -72,8 +72,15 @@ Vec rotated(const Quaternion& q, const Vec& v) {
   return v + twice * q.w + cross(axis, twice);
 }
 
-Quaternion halfway(const Quaternion& a, const Quaternion& b) {
-  return unit({a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w});
+Quaternion between(const Quaternion& a, const Quaternion& b, double fraction) {
+  const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0)), sine = std::sin(angle);
+  double ofA = 1 - fraction, ofB = fraction;
+  if (constexpr double least = 1e-6; sine > least) {
+    ofA = std::sin(ofA * angle) / sine;
+    ofB = std::sin(ofB * angle) / sine;
+  }
+  return unit(
+      {ofA * a.x + ofB * b.x, ofA * a.y + ofB * b.y, ofA * a.z + ofB * b.z, ofA * a.w + ofB * b.w});
 }
 
 Places placesOf(const TransformFields& fields, bool moves) {

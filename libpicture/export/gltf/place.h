@@ -27,8 +27,9 @@ Vec rotated(const Quaternion& q, const Vec& v);
 inline double dot(const Quaternion& a, const Quaternion& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
 }
-// Returns the rotation half-way between two, on the side on which the quaternions stand.
-Quaternion halfway(const Quaternion& a, const Quaternion& b);
+// Returns the rotation at a fraction of the way from one to another, on the side on which the
+// quaternions stand (K. Shoemake, "Animating Rotation with Quaternion Curves", 1985).
+Quaternion between(const Quaternion& a, const Quaternion& b, double fraction);
 
 // The place of a node: scale acts first, translation last.
 struct Place {
