@@ -1,10 +1,9 @@
 """Tests what comes into a world in the window's editor, with real clicks, keys and drops: nodes of
 the menu, other files, materials of the user's folder, and sensors; and the list of the keys."""
-import re
-
 import pytest
 
 from conftest import HEADER
+from editor_window import needs_the_editor, press, saved, text  # noqa: F401
 from window_driver import framebuffer, screen, window  # noqa: F401
 from xdrop import drop
 
@@ -25,28 +24,11 @@ OAK = HEADER + """Shape { appearance Appearance {
 WIDTH, HEIGHT = 640, 420
 
 
-@pytest.fixture(autouse=True)
-def needs_the_editor(vv):
-    if re.search(r"^edit +no", vv("--list-features").text, re.M):
-        pytest.skip("vv is built without the editor")
-
-
 @pytest.fixture
 def editor(window):
     w = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}")
     w.key("e")
     return w
-
-
-def saved(w, vv, change):
-    """Saves until the file has changed in this way: what was asked for may still have to be done."""
-
-    def tried():
-        w.key("ctrl+s")
-        return change((vv.folder / "world.wrl").read_text())
-
-    w.wait(tried, "the file")
-    return (vv.folder / "world.wrl").read_text()
 
 
 def test_the_menu_of_nodes_filters_and_works_by_keys(editor, vv):
@@ -84,7 +66,7 @@ def test_a_file_is_imported_by_its_path(editor, vv):
     w.tool("type", "parts/leg 2.wrl")
     w.key("Return")
     now = saved(w, vv, lambda t: t != WORLD)
-    assert now == WORLD + 'DEF leg_2 Inline { url "parts/leg%202.wrl" }\n'
+    assert now == WORLD + 'DEF leg_2 Inline { url [ "parts/leg%202.wrl" ] }\n'
     w.key("ctrl+z")
     saved(w, vv, lambda t: t == WORLD)
 
@@ -94,7 +76,7 @@ def test_a_dropped_file_is_imported_or_opened(editor, vv, screen):
     vv.write("leg.wrl", LEG)
     drop(screen[0], w.id, vv.folder / "leg.wrl")
     now = saved(w, vv, lambda t: t != WORLD)
-    assert now == WORLD + 'DEF leg Inline { url "leg.wrl" }\n'
+    assert now == WORLD + 'DEF leg Inline { url [ "leg.wrl" ] }\n'
     w.key("e")
     drop(screen[0], w.id, vv.folder / "leg.wrl")
     w.said("first picture", 2)
@@ -107,8 +89,7 @@ def test_a_material_of_the_user_is_chosen(editor, vv):
     folder.mkdir(parents=True)
     (folder / "oak.wrl").write_text(OAK)
     w.click(0, 0)
-    w.tool("mousemove", "--window", w.id, WIDTH - 160, 61)  # the look of the box
-    w.tool("click", 1)
+    press(w, WIDTH - 160, 61)  # the look of the box
     w.tool("type", "oak")
     w.key("Return")
     now = saved(w, vv, lambda t: t != WORLD)
