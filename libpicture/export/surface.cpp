@@ -39,7 +39,8 @@ std::string nameOf(const AppearanceParts& parts) {
 void setPhong(Surface& surface, const Color& specular, float shininess) {
   surface.specular = specular;
   surface.exponent = 128 * between0And1(shininess);
-  surface.roughness = isBlack(specular) ? 1 : roughnessOfShininess(shininess);
+  surface.isMatt = isBlack(specular);
+  surface.roughness = surface.isMatt ? 1 : roughnessOfShininess(shininess);
 }
 
 // alphaMode of X3D 4. AUTO blends where anything is transparent.
@@ -231,6 +232,7 @@ void useCarPaint(const ShaderValues& v, Surface& s, Remarks& remarks) {
 
 void useDiffuse(const ShaderValues& v, Surface& s, Remarks&) {
   s.color = clamped(v.color("reflectance"));
+  s.isMatt = true;
   s.emission = notNegative(v.color("emission"));
 }
 

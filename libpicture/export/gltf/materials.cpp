@@ -124,6 +124,7 @@ Json materialOf(const Surface& surface, bool doubleSided, float thickness, Docum
   setTransmission(surface, thickness, material, document);
   if (surface.index != 1.5f)
     extend(material, "KHR_materials_ior", {{"ior", surface.index}}, document);
+  if (surface.isMatt) extend(material, "KHR_materials_specular", {{"specularFactor", 0}}, document);
   if (surface.clearcoat > 0)
     extend(material, "KHR_materials_clearcoat", {{"clearcoatFactor", surface.clearcoat}}, document);
   return material;
