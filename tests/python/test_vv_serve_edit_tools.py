@@ -180,7 +180,8 @@ def test_probes_measure_the_light(serve):
     changed = until(page, "probes", lambda t: t["list"] and t["list"][0].get("change", 0) > 0)
     assert changed["list"][0]["luminance"] > probe["luminance"]
     page.edit("probe", x=0.9, y=0.9)
-    assert "nothing here" in page.told("said")["text"]
+    # Before, the page may have been told that the picture of A was not there yet.
+    until(page, "said", lambda t: "nothing here" in t["text"])
     page.edit("clear_probes")
     until(page, "probes", lambda t: t["list"] == [])
 

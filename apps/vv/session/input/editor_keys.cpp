@@ -27,7 +27,7 @@ constexpr MouseInfo table[] = {
     {"Shift+V", "the next drag measures a rectangle"},
     {"B", "keeps the picture and the light of the probes as A"},
     {"\\, W, D", "A in the place of the picture; beside it; what has changed since A"},
-    {".", "goes to where what is selected fills the picture"},
+    {".", "goes to where what is selected fills the picture between the panels"},
     {"Up, Down, Enter", "in a menu: choose an item; Escape: close it"},
     {"Escape", "ends a comparison, then selects nothing, then closes the panels"},
     {"E", "closes the panels"},
