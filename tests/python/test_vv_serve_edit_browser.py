@@ -110,14 +110,7 @@ def drag_sideways(browser, selector, distance):
             "origin": "viewport"
         })
     steps.append({"type": "pointerUp", "button": 0})
-    browser.actions({
-        "type": "pointer",
-        "id": "mouse",
-        "parameters": {
-            "pointerType": "mouse"
-        },
-        "actions": steps
-    })
+    browser.actions(browser.pointer_steps(steps))
 
 
 def test_numbers_are_typed_and_dragged_undone_and_saved(browser, serve, vv):
@@ -276,14 +269,7 @@ def move_pointer(browser, x, y):
     px, py = browser.point(CANVAS, x, y)
     steps = [{"type": "pointerMove", "duration": 40, "x": px + d, "y": py, "origin": "viewport"}
              for d in (3, 0)]  # yapf: disable
-    browser.actions({
-        "type": "pointer",
-        "id": "mouse",
-        "parameters": {
-            "pointerType": "mouse"
-        },
-        "actions": steps
-    })
+    browser.actions(browser.pointer_steps(steps))
 
 
 def test_a_lens_and_a_lamp_are_changed(browser, serve, vv):

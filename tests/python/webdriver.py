@@ -169,6 +169,11 @@ class Browser:
         steps = [move(places[0]), {"type": "pointerDown", "button": button}]
         steps += [move(place) for place in places[1:]]
         steps.append({"type": "pointerUp", "button": button})
+        return self.pointer_steps(steps, kind, name)
+
+    @staticmethod
+    def pointer_steps(steps, kind="mouse", name="mouse"):
+        """Returns the source of actions that does these steps with a mouse or a finger."""
         return {
             "type": "pointer",
             "id": name,
