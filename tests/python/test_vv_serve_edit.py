@@ -247,6 +247,33 @@ def test_two_pages_drag_the_same_field(serve, vv):
         history(page, undo="", redo="Set Material.shininess")
 
 
+def test_two_pages_change_two_elements_of_a_list(serve, vv):
+    world = HEADER + """Shape { geometry IndexedFaceSet { coordIndex [ 0 1 2 -1 ]
+  coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } } }
+"""
+    server = serve(world, "--edit", "--spp", 1)
+    one, two = server.join_editor(), server.join_editor()
+    opened(one, "Shape", "geometry: IndexedFaceSet")
+    number = select_row(one, "coord: C  Coordinate", "C  Coordinate")["node"]
+    other = until(two, "sheet", lambda t: t["title"] == "C  Coordinate")["node"]
+    for i in range(1, 4):  # both at once
+        one.edit("drag", node=number, field="point", value=[i, 1, 1], index=0, size=3)
+        two.edit("drag", node=other, field="point", value=[2, 2, i], index=2, size=3)
+    one.edit("end_drag")
+    two.edit("end_drag")
+    both = [[3, 1, 1], [1, 0, 0], [2, 2, 3]]
+    value(one, "point", both)
+    value(two, "point", both)
+    one.edit("drag", node=number, field="point", value=None, index=1, size=3)
+    one.edit("end_drag")
+    value(two, "point", [both[0], both[2]])
+    two.edit("drag", node=other, field="point", value=[9, 9, 9], index=1, size=3)  # of the old list
+    until(two, "said", lambda t: t["error"] and "2 elements now" in t["text"])
+    two.edit("drag", node=other, field="point", value=[9, 9, 9], index=2, size=2)
+    two.edit("end_drag")
+    value(one, "point", [both[0], both[2], [9, 9, 9]])
+
+
 def test_the_selection_is_of_all_and_places_are_their_own(serve):
     server = serve(WORLD, "--edit", "--spp", 1)
     one, two = server.join_editor(), server.join_editor()

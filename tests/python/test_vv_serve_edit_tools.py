@@ -50,7 +50,7 @@ def test_a_look_is_chosen_and_its_parameters_are_set(serve, vv):
     sheet = select(page, "THING  Shape")
     assert sheet["look"]["name"] == "Material" and sheet["look"]["places"] == 1
     looks = page.told("looks")["list"]
-    number = next(i for i, one in enumerate(looks) if one["name"] == "Diffuse")
+    number = next(one["number"] for one in looks if one["name"] == "Diffuse")
     page.edit("set_look", number=number, only_here=True)
     sheet = until(page, "sheet", lambda t: t.get("look", {}).get("name") == "Diffuse")
     page.edit("select", node=sheet["look"]["surface"])

@@ -1,5 +1,6 @@
 // editor_journal.cpp: Tests that edits that are not saved are kept beside the file, and are taken
 // over by the next program.
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -270,6 +271,29 @@ TEST_F(EditorJournal, AnEndlessJournalIsRefused) {
   Program program(world);
   EXPECT_FALSE(program.journal().left());
   EXPECT_NE(program.journal().takeMessage().find("larger than the file"), std::string::npos);
+}
+
+TEST_F(EditorJournal, OfSeveralTheNewestIsReadAsAWhole) {
+  leave();
+  std::string flipped = contentOf(journal);
+  flipped[flipped.size() - 3] ^= 1;
+  for (const char* suffix : {"-2", "-3"}) {
+    putContent(journal + suffix, flipped);
+    fs::last_write_time(journal + suffix,
+                        fs::last_write_time(journal) - std::chrono::hours(suffix[1] - '0'));
+  }
+  Program program(world);
+  ASSERT_TRUE(program.journal().left());
+  EXPECT_EQ(program.journal().left()->path, journal);
+  EXPECT_EQ(program.journal().takeMessage().find("damaged"), std::string::npos);
+  // The next one is found where the newest cannot be used.
+  putContent(journal + "-2", contentOf(journal));
+  fs::last_write_time(journal + "-2", fs::last_write_time(journal) - std::chrono::hours(1));
+  putContent(journal, flipped);
+  Program second(world);
+  ASSERT_TRUE(second.journal().left());
+  EXPECT_EQ(second.journal().left()->path, journal + "-2");
+  EXPECT_NE(second.journal().takeMessage().find("damaged"), std::string::npos);
 }
 
 TEST_F(EditorJournal, WhatIsNoJournalIsRefusedWithOneMessage) {

@@ -41,8 +41,19 @@ struct Shown {
 
   // Does an edit as the server does.
   void perform(const edit::NodeCommand& command) {
-    vv::server::perform(command, world.editor, model, numbers, front());
+    vv::server::perform(command, world.editor, model, numbers, front(), findLook);
     update();
+  }
+  static const vv::Look& findLook(uint64_t) { throw xvrml::EditError("there is no such look"); }
+  // Sets one element of a list, as the server does. Returns why it is refused; "": it is not.
+  std::string setElement(const char* name, const char* field, edit::Element element, Json value) {
+    const xvrml::NodeRef node = world.node(name);
+    try {
+      const xvrml::FieldInfo& info = valueField(*node, field);
+      const edit::Drag drag{number(name), field, std::move(value), element};
+      world.editor.editor().set(*node, field, draggedValue(drag, *node, info, node->get(info)));
+      return "";
+    } catch (const std::runtime_error& error) { return error.what(); }
   }
   uint64_t number(const char* name) { return numbers.of(world.node(name)); }
 
@@ -108,9 +119,15 @@ TEST(EditorPageTexts, ALookIsAMaterialOrAShader) {
   EXPECT_EQ(look["name"], "Material");
   EXPECT_EQ(look["places"], 2);
   EXPECT_TRUE(look["surface"].is_number());
-  const Json looks = Json::parse(edit::looksText(shown.model.looks()));
-  EXPECT_EQ(looks["list"][0]["name"], "Material");
-  EXPECT_EQ(looks["list"][0]["shader"], false);
+  const vv::Look material = shown.model.looks().front(), own{"wood", "", "of a file", "wood.wrl"};
+  const Json list =
+      Json::parse(edit::looksText({{7, &own, "images/1.png"}, {2, &material, ""}}))["list"];
+  EXPECT_EQ(list[0]["number"], 7);
+  EXPECT_EQ(list[0]["own"], true);
+  EXPECT_EQ(list[0]["image"], "images/1.png");
+  EXPECT_EQ(list[1]["name"], "Material");
+  EXPECT_EQ(list[1]["shader"], false);
+  EXPECT_FALSE(list[1].contains("image"));
   EXPECT_FALSE(shown.sheetOf("L").contains("look"));
 }
 
@@ -146,6 +163,30 @@ TEST(EditorPageTexts, ProblemsAreABoundedList) {
   ASSERT_EQ(problems["rows"].size(), size_t(maxProblemsShown));
   EXPECT_GE(problems["dropped"], 200);
   EXPECT_NE(problems["rows"][0]["text"].get<std::string>().find("line 2"), std::string::npos);
+}
+
+TEST(EditorPageTexts, AnElementOfAListIsSetAddedAndRemoved) {
+  Shown shown("DEF C Coordinate { point [ 0 0 0, 1 0 0 ] } DEF L PointLight { }");
+  const auto points = [&] {
+    return xvrml::nodeCast<xvrml::nodes::Coordinate>(shown.world.node("C"))->point;
+  };
+  EXPECT_EQ(shown.setElement("C", "point", {1, 2}, {2, 3, 4}), "");
+  EXPECT_EQ(points(), (xvrml::MFVec3f{{0, 0, 0}, {2, 3, 4}}));
+  EXPECT_EQ(shown.setElement("C", "point", {2, 2}, {5, 6, 7}), "");
+  EXPECT_EQ(points(), (xvrml::MFVec3f{{0, 0, 0}, {2, 3, 4}, {5, 6, 7}}));
+  EXPECT_EQ(shown.setElement("C", "point", {0, 3}, nullptr), "");
+  EXPECT_EQ(points(), (xvrml::MFVec3f{{2, 3, 4}, {5, 6, 7}}));
+  // The page was sent another list.
+  EXPECT_NE(shown.setElement("C", "point", {0, 3}, {9, 9, 9}).find("2 elements now"),
+            std::string::npos);
+  for (const auto& [element, value] :
+       std::vector<std::pair<edit::Element, Json>>{{{3, 2}, {1, 1, 1}},
+                                                   {{2, 2}, nullptr},
+                                                   {{0, 2}, {1, 1}},
+                                                   {{0, 2}, {{1, 1, 1}, {2, 2, 2}}}})
+    EXPECT_NE(shown.setElement("C", "point", element, value), "") << value;
+  EXPECT_NE(shown.setElement("L", "intensity", {0, 1}, 1), "");
+  EXPECT_EQ(points(), (xvrml::MFVec3f{{2, 3, 4}, {5, 6, 7}}));
 }
 
 TEST(EditorPageTexts, NodesAreAddedUsedMovedAndRemoved) {

@@ -128,6 +128,11 @@ TEST(ServerAccess, TheEditTokenOpensThePageAndTheEditor) {
   EXPECT_FALSE(mayEdit({host, "", "", ""}, viewOnly));
 }
 
+Answer answered(const Request& request, Downloads& downloads) {
+  Images none;
+  return answerTo(request, downloads, none, 0);
+}
+
 Answer answerFor(Verdict verdict, std::string_view path, Downloads& downloads) {
   Request request;
   request.method = "GET";
@@ -135,7 +140,7 @@ Answer answerFor(Verdict verdict, std::string_view path, Downloads& downloads) {
   request.verdict = verdict;
   request.token = secret;
   request.cookieName = "vv-token-80";
-  return answerTo(request, downloads, 0);
+  return answered(request, downloads);
 }
 
 TEST(ServerAnswer, OnlyEditorsGetTheEditor) {
@@ -144,9 +149,9 @@ TEST(ServerAnswer, OnlyEditorsGetTheEditor) {
   request.method = "GET";
   request.path = "/";
   request.verdict = Verdict::allowed;
-  EXPECT_EQ(*answerTo(request, downloads, 0).body, pageFiles()[0].content);
+  EXPECT_EQ(*answered(request, downloads).body, pageFiles()[0].content);
   request.mayEdit = true;
-  const std::string page = *answerTo(request, downloads, 0).body;
+  const std::string page = *answered(request, downloads).body;
   EXPECT_NE(page.find("edit.css"), std::string::npos);
   EXPECT_NE(page.find(R"(<script src="edit.js" type="module">)"), std::string::npos);
   EXPECT_EQ(page.find("page.js"), std::string::npos);
@@ -192,13 +197,34 @@ TEST(ServerAnswer, FilesAreFoundByTheirWholeName) {
     EXPECT_EQ(answerFor(Verdict::allowed, path, downloads).status, 404) << path;
 }
 
+TEST(ServerAnswer, ImagesAreForEditorsAndKept) {
+  Downloads downloads;
+  Images images;
+  const std::string path = images.add("png");
+  Request request;
+  request.method = "GET";
+  const std::string address = "/" + path;
+  request.path = address;
+  request.verdict = Verdict::allowed;
+  EXPECT_EQ(answerTo(request, downloads, images, 0).status, 404);
+  request.mayEdit = true;
+  const Answer answer = answerTo(request, downloads, images, 0);
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.type, "image/png");
+  EXPECT_EQ(*answer.body, "png");
+  EXPECT_EQ(headerOf(answer, "cache-control"), "private, max-age=86400");
+  EXPECT_EQ(headerOf(answered(request, downloads), "cache-control"), "no-store");
+  images.remove(path);
+  EXPECT_EQ(answerTo(request, downloads, images, 0).status, 404);
+}
+
 TEST(ServerAnswer, OnlyGetIsUnderstood) {
   Downloads downloads;
   Request request;
   request.method = "POST";
   request.path = "/";
   request.verdict = Verdict::allowed;
-  EXPECT_EQ(answerTo(request, downloads, 0).status, 405);
+  EXPECT_EQ(answered(request, downloads).status, 405);
 }
 
 TEST(ServerAnswer, SavedPicturesAreKeptForAWhile) {

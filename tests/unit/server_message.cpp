@@ -172,6 +172,12 @@ TEST(ServerMessage, ReadsEveryEdit) {
       edited<edit::Drag>(R"("command":"drag","node":1,"field":"point","value":[[0,1,2]])");
   EXPECT_EQ(drag.field, "point");
   EXPECT_EQ(drag.value[0][2], 2);
+  EXPECT_FALSE(drag.element);
+  const auto element = edited<edit::Drag>(
+      R"("command":"drag","node":1,"field":"point","value":[0,1,2],"index":3,"size":4)");
+  ASSERT_TRUE(element.element);
+  EXPECT_EQ(element.element->index, 3u);
+  EXPECT_EQ(element.element->size, 4u);
   edited<edit::EndDrag>(R"("command":"end_drag")");
   EXPECT_EQ(edited<edit::Reset>(R"("command":"reset","node":1,"field":"on")").node, 1u);
   const auto step = edited<json::edits::Step>(
@@ -270,6 +276,9 @@ TEST(ServerMessage, RefusesEditsThatAreNone) {
   has(R"("command":"select","node":1.5)", "the number of a node");
   has(R"("command":"select_at","x":1.01,"y":0)", "from -1 to 1");
   has(R"("command":"drag","node":1,"field":"a")", "\"value\" is missing");
+  has(R"("command":"drag","node":1,"field":"a","value":1,"index":0)", "\"size\" is missing");
+  has(R"("command":"drag","node":1,"field":"a","value":1,"index":-1,"size":1)", "index");
+  has(R"("command":"import","name":"a.stl")", "\"bytes\" is missing");
   has(R"("command":"drag","node":1,"field":"a","value":)" + std::string(9, '[') +
           std::string(9, ']'),
       "lineDepth");

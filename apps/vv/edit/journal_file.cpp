@@ -1,11 +1,13 @@
 #include "edit/journal_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -45,6 +47,10 @@ class Descriptor {
 
 [[noreturn]] void fail(const char* what, const std::string& path, int reason) {
   throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path, std::strerror(reason)));
+}
+
+[[noreturn]] void refuse(const std::string& path, const char* why) {
+  throw std::runtime_error(fmt::format("{} is not used: {}", path, why));
 }
 
 // The file itself is edited, and not a link to it.
@@ -125,17 +131,38 @@ std::string readBytes(int descriptor, size_t bytes, const std::string& path) {
 
 // Opens a regular file of this user. Never waits: a pipe could wait for ever.
 int openOwn(const std::string& path) {
-  const auto refuse = [&path](const char* why) {
-    throw std::runtime_error(fmt::format("{} is not used: {}", path, why));
-  };
   Descriptor file(::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (file.get() < 0 && errno == ELOOP) refuse("it is a symbolic link");
+  if (file.get() < 0 && errno == ELOOP) refuse(path, "it is a symbolic link");
   if (file.get() < 0) fail("read", path, errno);
   struct stat info;
   if (::fstat(file.get(), &info) != 0) fail("read", path, errno);
-  if (!S_ISREG(info.st_mode)) refuse("it is no regular file");
-  if (info.st_uid != ::geteuid()) refuse("it belongs to another user");
+  if (!S_ISREG(info.st_mode)) refuse(path, "it is no regular file");
+  if (info.st_uid != ::geteuid()) refuse(path, "it belongs to another user");
   return file.release();
+}
+
+// Opens a journal that no running program uses, locks it, and reads its head. isBusy: as for
+// JournalFile::open().
+int openJournal(const std::string& path, Head& head, bool* isBusy) {
+  Descriptor file(openOwn(path));
+  // The program that uses it may have replaced it since.
+  if (!lock(file.get()) || !isAt(file.get(), path)) {
+    if (isBusy) *isBusy = true;
+    refuse(path, "a vv that runs uses it");
+  }
+  struct stat info;
+  if (::fstat(file.get(), &info) != 0) fail("read", path, errno);
+  if (!readHead(readBytes(file.get(), longestHead, path), head))
+    refuse(path, "it is damaged, or not a file of vv");
+  if (uint64_t(info.st_size) - head.bytes != head.text.bytes) refuse(path, "it is not complete");
+  constexpr uint64_t mostBytes = uint64_t(4) << 30; // as of a world's file: fileBytes
+  if (head.text.bytes > mostBytes) refuse(path, "it is larger than the file of a world may be");
+  return file.release();
+}
+
+void unlinkJournal(const std::string& path) {
+  ::unlink((path + freshSuffix).c_str());
+  ::unlink(path.c_str());
 }
 
 // Removes a journal that is empty and that no program uses: the vv that made it has been killed, or
@@ -183,27 +210,12 @@ JournalFile JournalFile::make(const std::string& world) {
 }
 
 JournalFile JournalFile::open(const std::string& path, JournalContent& content, bool* isBusy) {
-  const auto refuse = [&path](const char* why) {
-    throw std::runtime_error(fmt::format("{} is not used: {}", path, why));
-  };
-  Descriptor file(openOwn(path));
-  // The program that uses it may have replaced it since.
-  if (!lock(file.get()) || !isAt(file.get(), path)) {
-    if (isBusy) *isBusy = true;
-    refuse("a vv that runs uses it");
-  }
-  struct stat info;
   Head head;
-  if (::fstat(file.get(), &info) != 0) fail("read", path, errno);
-  if (!readHead(readBytes(file.get(), longestHead, path), head))
-    refuse("it is damaged, or not a file of vv");
-  if (uint64_t(info.st_size) - head.bytes != head.text.bytes) refuse("it is not complete");
-  constexpr uint64_t mostBytes = uint64_t(4) << 30; // as of a world's file: fileBytes
-  if (head.text.bytes > mostBytes) refuse("it is larger than the file of a world may be");
+  Descriptor file(openJournal(path, head, isBusy));
   if (::lseek(file.get(), off_t(head.bytes), SEEK_SET) < 0) fail("read", path, errno);
   content.base = head.base;
   content.text = readBytes(file.get(), head.text.bytes, path);
-  if (stampOf(content.text) != head.text) refuse("it is damaged");
+  if (stampOf(content.text) != head.text) refuse(path, "it is damaged");
   return {path, file.release()};
 }
 
@@ -241,17 +253,25 @@ void JournalFile::write(const TextStamp& base, std::string_view text) {
 }
 
 void JournalFile::remove() {
-  if (isInPlace()) {
-    ::unlink((path_ + freshSuffix).c_str());
-    ::unlink(path_.c_str());
-  }
+  if (isInPlace()) unlinkJournal(path_);
   if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
 }
 
 FoundJournal findJournal(const std::string& world, const std::function<std::string()>& readText,
                          std::string& refused) {
-  FoundJournal last;
-  std::optional<std::string> onDisk;
+  std::vector<FoundJournal> usable;
+  std::optional<TextStamp> onDisk;
+  // Calls use() for a journal. What it throws is told of the first one.
+  const auto tryToUse = [&refused](const auto& use) {
+    bool isBusy = false;
+    try {
+      use(isBusy);
+      return true;
+    } catch (const std::exception& error) {
+      if (!isBusy && refused.empty()) refused = error.what();
+      return false;
+    }
+  };
   for (int number = 1; number <= mostJournals; ++number) {
     const std::string path = pathOf(world, number);
     struct stat info;
@@ -263,27 +283,31 @@ FoundJournal findJournal(const std::string& world, const std::function<std::stri
                               path);
       continue;
     }
-    bool isBusy = false;
-    try {
-      JournalContent content;
-      JournalFile file = JournalFile::open(path, content, &isBusy);
-      if (!onDisk) onDisk = readText();
+    tryToUse([&](bool& isBusy) {
+      Head head;
+      const Descriptor file(openJournal(path, head, &isBusy));
+      if (!onDisk) onDisk = stampOf(readText());
       // A program was killed between saving the file and removing the journal.
-      if (content.text == *onDisk) {
-        file.remove();
-        continue;
-      }
-      if (content.base != stampOf(*onDisk))
+      if (head.text == *onDisk) return unlinkJournal(path);
+      if (head.base != *onDisk)
         throw std::runtime_error(
             fmt::format("{} is not used: {} has changed since; the edited text stands in it from "
                         "line 5 on. Remove it when you do not need it",
                         path, world));
-      if (last.path.empty() || info.st_mtime > last.written) last = {path, info.st_mtime};
-    } catch (const std::exception& error) {
-      if (!isBusy && refused.empty()) refused = error.what();
-    }
+      usable.push_back({path, info.st_mtime});
+    });
   }
-  return last;
+  std::stable_sort(usable.begin(), usable.end(), [](const FoundJournal& a, const FoundJournal& b) {
+    return a.written > b.written;
+  });
+  for (const FoundJournal& one : usable) {
+    const auto read = [&one](bool& isBusy) {
+      JournalContent content;
+      JournalFile::open(one.path, content, &isBusy);
+    };
+    if (tryToUse(read)) return one;
+  }
+  return {};
 }
 
 bool isJournalOf(const std::string& world, const std::string& path) {

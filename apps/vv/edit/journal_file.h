@@ -61,7 +61,8 @@ struct FoundJournal {
 // Returns the journal of a world's file that was written last and can be used with its text, which
 // is only read if there are journals. The path is empty if there is none. refused: is set to a
 // message about one that is there and cannot be used. A journal that says what the file says is
-// removed, and so is an empty one, with a message.
+// removed, and so is an empty one, with a message. The heads of all are read, and the text of the
+// one that is returned.
 FoundJournal findJournal(const std::string& world, const std::function<std::string()>& readText,
                          std::string& refused);
 // Tells whether a path is that of a journal of a world's file, whether there is one or not.

@@ -15,7 +15,7 @@ constexpr const char* policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-constexpr std::string_view savedFolder = "saved/";
+constexpr std::string_view savedFolder = "saved/", imageFolder = "images/";
 
 std::string typeOf(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
@@ -29,8 +29,9 @@ Answer withHeaders(Answer answer) {
                                                {"x-content-type-options", "nosniff"},
                                                {"referrer-policy", "no-referrer"},
                                                {"cross-origin-opener-policy", "same-origin"},
-                                               {"cross-origin-resource-policy", "same-origin"},
-                                               {"cache-control", "no-store"}});
+                                               {"cross-origin-resource-policy", "same-origin"}});
+  answer.headers.emplace_back("cache-control",
+                              answer.mayBeKept ? "private, max-age=86400" : "no-store");
   return answer;
 }
 
@@ -65,7 +66,7 @@ std::string withEditor(std::string_view page) {
 }
 
 Answer contentOf(const Request& request, std::string_view name, Downloads& downloads,
-                 double seconds) {
+                 Images& images, double seconds) {
   const bool isPage = name.empty() || name == "page.html";
   if (isPage) name = "page.html";
   if (name.starts_with(savedFolder)) {
@@ -76,6 +77,9 @@ Answer contentOf(const Request& request, std::string_view name, Downloads& downl
             {{"content-disposition", fmt::format("attachment; filename=\"{}\"", file.name)}},
             file.content};
   }
+  if (request.mayEdit && name.starts_with(imageFolder))
+    if (std::shared_ptr<const std::string> image = images.find(name))
+      return {200, "image/png", {}, std::move(image), true};
   for (const PageFile& file : pageFiles())
     if (file.name == name)
       return {200,
@@ -115,7 +119,25 @@ void Downloads::drop(double seconds) {
     files_.pop_front();
 }
 
-Answer answerTo(const Request& request, Downloads& downloads, double seconds) {
+std::string Images::add(std::string png) {
+  std::string path = fmt::format("{}{}.png", imageFolder, newToken());
+  const std::lock_guard lock(mutex_);
+  files_.emplace(path, std::make_shared<const std::string>(std::move(png)));
+  return path;
+}
+
+void Images::remove(const std::string& path) {
+  const std::lock_guard lock(mutex_);
+  files_.erase(path);
+}
+
+std::shared_ptr<const std::string> Images::find(std::string_view path) {
+  const std::lock_guard lock(mutex_);
+  const auto found = files_.find(path);
+  return found == files_.end() ? nullptr : found->second;
+}
+
+Answer answerTo(const Request& request, Downloads& downloads, Images& images, double seconds) {
   if (const std::string_view refusal = textOf(request.verdict); !refusal.empty())
     return withHeaders(textAnswer(403, refusal));
   if (request.method != "GET" && request.method != "HEAD") {
@@ -127,7 +149,7 @@ Answer answerTo(const Request& request, Downloads& downloads, double seconds) {
   if (name.starts_with('/')) name.remove_prefix(1);
   if (request.verdict == Verdict::withQuery && name.empty())
     return withHeaders(cookieAnswer(request));
-  return withHeaders(contentOf(request, name, downloads, seconds));
+  return withHeaders(contentOf(request, name, downloads, images, seconds));
 }
 
 } // namespace vv::server

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <deque>
+#include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -41,11 +43,27 @@ class Downloads {
   std::deque<File> files_; // the oldest first
 };
 
+// Pictures in PNG that the editor's pages show. Each has a path that cannot be guessed. [any
+// thread]
+class Images {
+ public:
+  // Keeps a picture until it is removed. Returns its path, without a slash at its beginning.
+  std::string add(std::string png);
+  void remove(const std::string& path);
+  // Returns null if there is none, or not any more.
+  std::shared_ptr<const std::string> find(std::string_view path);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<const std::string>, std::less<>> files_; // by path
+};
+
 struct Answer {
   int status = 200;
   std::string type;
   std::vector<std::pair<std::string, std::string>> headers; // names in lower case
   std::shared_ptr<const std::string> body;
+  bool mayBeKept = false; // the browser need not ask again: the path always means the same
 };
 
 struct Request {
@@ -57,6 +75,6 @@ struct Request {
   bool secure = false;         // the visitor uses TLS, with a proxy in between
 };
 // seconds: time of the clock of the downloads.
-Answer answerTo(const Request& request, Downloads& downloads, double seconds);
+Answer answerTo(const Request& request, Downloads& downloads, Images& images, double seconds);
 
 } // namespace vv::server

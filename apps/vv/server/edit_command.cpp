@@ -19,6 +19,7 @@ using json::Members;
 namespace {
 
 constexpr size_t mostSearchBytes = 256, mostNameBytes = 200, mostKeyBytes = 16;
+constexpr size_t mostFileNameBytes = 1024;
 constexpr int largestRow = 100'000'000, largestIndex = std::numeric_limits<int>::max();
 constexpr double farthest = 100; // a pointer that drags outside of the picture
 
@@ -57,6 +58,13 @@ Place place(Members& m, const char* x = "x", const char* y = "y", double most = 
   };
   return {read(x), read(y)};
 }
+
+size_t count(Members& m, const char* name) {
+  return size_t(json::wholeNumberOf(m.at(name), m.need(name), 0, largestIndex));
+}
+
+bool isOpen(Members& m) { return json::switchOf(m.at("open"), m.need("open")); }
+
 Place from(Members& m) { return place(m, "x0", "y0"); }
 Place to(Members& m) { return place(m, "x1", "y1"); }
 
@@ -67,7 +75,7 @@ Command readRows(Members& m) {
 
 Command readOpen(Members& m) {
   const uint64_t opened = node(m);
-  return Open{opened, json::switchOf(m.at("open"), m.need("open"))};
+  return Open{opened, isOpen(m)};
 }
 
 Command readSelect(Members& m) {
@@ -86,8 +94,12 @@ Command readSelectAt(Members& m) {
 }
 
 Command readDrag(Members& m) {
-  Drag drag{node(m), m.text("field"), nullptr};
+  Drag drag{node(m), m.text("field"), nullptr, {}};
   drag.value = std::move(m.need("value"));
+  if (m.has("index")) {
+    const size_t index = count(m, "index");
+    drag.element = Element{index, count(m, "size")};
+  }
   return drag;
 }
 
@@ -133,7 +145,7 @@ At readAt(Members& m) {
   if (const Json& parent = m.need("parent"); !parent.is_null())
     at.parent = numberOfNode(m.at("parent"), parent);
   at.field = m.text("field");
-  at.index = size_t(json::wholeNumberOf(m.at("index"), m.need("index"), 0, largestIndex));
+  at.index = count(m, "index");
   return at;
 }
 
@@ -144,8 +156,13 @@ Command readMoveAt(Members& m) {
 }
 
 Command readSetLook(Members& m) {
-  const int number = json::wholeNumberOf(m.at("number"), m.need("number"), 0, largestIndex);
-  return NodeCommand(SetLook{size_t(number), flag(m, "only_here")});
+  const size_t number = count(m, "number");
+  return NodeCommand(SetLook{number, flag(m, "only_here")});
+}
+
+Command readImport(Members& m) {
+  std::string name = text(m, "name", mostFileNameBytes);
+  return FileCommand(Import{std::move(name), count(m, "bytes")});
 }
 
 // --- Tools and light ---
@@ -189,10 +206,8 @@ constexpr Row table[] = {
     {"select_in", readSelectIn},
     {"select_same_look", [](Members&) -> Command { return SelectSameLook{}; }},
     {"choices", readAskChoices},
-    {"problems",
-     [](Members& m) -> Command {
-       return ShowProblems{json::switchOf(m.at("open"), m.need("open"))};
-     }},
+    {"problems", [](Members& m) -> Command { return ShowProblems{isOpen(m)}; }},
+    {"looks", [](Members& m) -> Command { return ShowLooks{isOpen(m)}; }},
     {"hide", [](Members&) -> Command { return Hide{Hide::What::selected}; }},
     {"hide_others", [](Members&) -> Command { return Hide{Hide::What::others}; }},
     {"show_all", [](Members&) -> Command { return Hide{Hide::What::nothing}; }},
@@ -245,6 +260,11 @@ constexpr Row table[] = {
     {"show_sensors", [](Members&) -> Command { return LightCommand(ShowSensors{}); }},
     {"probe_table", [](Members&) -> Command { return LightCommand(ProbeTable{}); }},
     {"report", [](Members&) -> Command { return LightCommand(Report{}); }},
+    {"import", readImport},
+    {"import_part",
+     [](Members& m) -> Command {
+       return FileCommand(ImportPart{text(m, "data", size_t(maxEditBytes))});
+     }},
 };
 
 } // namespace

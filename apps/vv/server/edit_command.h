@@ -49,6 +49,9 @@ struct AskChoices {
 struct ShowProblems {
   bool open = true;
 };
+struct ShowLooks {
+  bool open = true;
+};
 struct Hide {
   enum class What : uint8_t { selected, others, nothing };
   What what = What::selected;
@@ -58,10 +61,15 @@ struct Close {};
 
 // --- Values, history and file ---
 
+// One element of a list that the page shows with so many elements.
+struct Element {
+  size_t index = 0, size = 0; // index == size: one behind the last
+};
 struct Drag {
   uint64_t node = 0;
   std::string field;
-  json::Json value;
+  json::Json value;               // null removes an element
+  std::optional<Element> element; // none: it is the value of the whole field
 };
 struct EndDrag {};
 struct Undo {
@@ -114,7 +122,7 @@ struct SeparateAt {
   At at;
 };
 struct SetLook {
-  size_t number = 0; // in EditModel::looks()
+  uint64_t number = 0; // of one of the looks that the page was sent
   bool onlyHere = true;
 };
 using Step = json::edits::Step;
@@ -169,9 +177,21 @@ struct Report {};
 using LightCommand = std::variant<PutProbe, Measure, KeepProbes, ClearProbes, Compare, PointAt,
                                   KeepInWorld, ShowSensors, ProbeTable, Report>;
 
-using Command = std::variant<ShowRows, Search, Open, Select, SelectAt, SelectIn, SelectSameLook,
-                             AskChoices, ShowProblems, Hide, Frame, Close, Drag, EndDrag, Undo,
-                             Save, Revert, Recover, NodeCommand, ToolCommand, LightCommand>;
+// --- Files that are put into the world ---
+
+struct Import {
+  std::string name;
+  size_t bytes = 0; // which the page will send
+};
+struct ImportPart {
+  std::string data; // in base64
+};
+using FileCommand = std::variant<Import, ImportPart>;
+
+using Command =
+    std::variant<ShowRows, Search, Open, Select, SelectAt, SelectIn, SelectSameLook, AskChoices,
+                 ShowProblems, ShowLooks, Hide, Frame, Close, Drag, EndDrag, Undo, Save, Revert,
+                 Recover, NodeCommand, ToolCommand, LightCommand, FileCommand>;
 
 // Reads a message {"type":"edit","command":...}. Throws json::CommandError.
 Command readCommand(json::Json message);

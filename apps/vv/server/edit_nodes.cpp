@@ -1,16 +1,20 @@
 #include "server/edit_nodes.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "as_json/field_json.h"
 #include "as_json/fields.h"
 #include "as_json/perform_step.h"
 #include "edit/actions.h"
 #include "edit/looks.h"
 #include "edit/node_fields.h"
 #include "server/edit_texts.h"
+#include "xvrml/numbers.h"
 
 namespace vv::server {
 
@@ -35,6 +39,7 @@ struct Performer {
   EditModel& model;
   const json::NodeNumbers& numbers;
   const EditView& view;
+  const FindLook& findLook;
 
   void operator()(const edit::Reset& reset) const {
     const NodeRef node = nodeOf(numbers, reset.node);
@@ -92,8 +97,7 @@ struct Performer {
   }
 
   void operator()(const edit::SetLook& look) const {
-    if (look.number >= model.looks().size()) throw EditError("there is no such look");
-    setLook(editor, model.looks()[look.number], look.onlyHere);
+    setLook(editor, findLook(look.number), look.onlyHere);
   }
 };
 
@@ -113,9 +117,45 @@ const FieldInfo& valueField(const Node& node, const std::string& name) {
   return field;
 }
 
+Value draggedValue(const edit::Drag& drag, const Node& node, const FieldInfo& field,
+                   const Value& now) {
+  if (!drag.element) return json::readValue(drag.value, node, field, {});
+  const auto [index, size] = *drag.element;
+  const std::string what = fmt::format("{}.{}", node.type().name, field.name);
+  const bool isRemoved = drag.value.is_null();
+  if (size > PropertySheet::mostElements || index >= size + (isRemoved ? 0 : 1))
+    throw CommandError("value", fmt::format("{} has no such element", what));
+  Value value = now;
+  std::visit(
+      [&](auto& list) {
+        using List = std::remove_cvref_t<decltype(list)>;
+        if constexpr (isList<List>) {
+          if (list.size() != size)
+            throw EditError(fmt::format("{} has {} elements now: choose again", what, list.size()));
+          const auto at = list.begin() + std::ptrdiff_t(index);
+          if (isRemoved) {
+            list.erase(at);
+            return;
+          }
+          const Value read = json::readValue(json::Json::array({drag.value}), node, field, {});
+          const List& single = std::get<List>(read);
+          if (single.size() != 1)
+            throw CommandError("value", fmt::format("{}: one element was expected", what));
+          if (index == size)
+            list.push_back(single[0]);
+          else
+            list[index] = single[0];
+        } else {
+          throw CommandError("value", fmt::format("{} is no list", what));
+        }
+      },
+      value);
+  return value;
+}
+
 void perform(const edit::NodeCommand& command, WorldEditor& editor, EditModel& model,
-             const json::NodeNumbers& numbers, const EditView& view) {
-  std::visit(Performer{editor, model, numbers, view}, command);
+             const json::NodeNumbers& numbers, const EditView& view, const FindLook& findLook) {
+  std::visit(Performer{editor, model, numbers, view, findLook}, command);
 }
 
 } // namespace vv::server

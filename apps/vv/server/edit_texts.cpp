@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "as_json/field_json.h"
-#include "edit/actions.h"
 #include "server/limits.h"
 #include "xvrml/numbers.h"
 
@@ -139,17 +138,6 @@ std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers&
 
 } // namespace
 
-std::string editorText() {
-  Json kinds = Json::array();
-  for (const NewNode& one : newNodes()) kinds.push_back(one.name);
-  kinds.push_back(viewpointKind);
-  return jsonLine({{"type", "editor"},
-                   {"kinds", kinds},
-                   {"mostBytes", maxEditBytes},
-                   {"mostRows", maxRowsShown},
-                   {"mostElements", PropertySheet::mostElements}});
-}
-
 std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int first, int count) {
   const std::vector<OutlineRow>& all = model.rows();
   Json rows = Json::array();
@@ -196,12 +184,17 @@ std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
   return out + fmt::format(R"(],"hidden":{}}})", sheet.rows.size() - shown);
 }
 
-std::string looksText(const std::vector<Look>& looks) {
+std::string looksText(const std::vector<ShownLook>& looks) {
   Json list = Json::array();
-  for (const Look& one : looks)
-    list.push_back({{"name", shortened(one.name, mostNameBytes)},
-                    {"text", shortened(one.text, mostNoteBytes)},
-                    {"shader", one.isShader()}});
+  for (const ShownLook& one : looks) {
+    Json look = {{"number", one.number},
+                 {"name", shortened(one.look->name, mostNameBytes)},
+                 {"text", shortened(one.look->text, mostNoteBytes)},
+                 {"shader", one.look->isShader()},
+                 {"own", !one.look->file.empty()}};
+    if (!one.image.empty()) look["image"] = one.image;
+    list.push_back(std::move(look));
+  }
   return jsonLine({{"type", "looks"}, {"list", list}});
 }
 
@@ -280,6 +273,10 @@ std::string historyText(WorldEditor& editor, const std::string& readOnly, size_t
 
 std::string saidText(const std::string& text, bool isError) {
   return jsonLine({{"type", "said"}, {"text", shortened(text, mostNoteBytes)}, {"error", isError}});
+}
+
+std::string importText(size_t received, size_t bytes) {
+  return jsonLine({{"type", "import"}, {"received", received}, {"bytes", bytes}});
 }
 
 std::string questionText() {

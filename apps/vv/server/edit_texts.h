@@ -18,15 +18,18 @@ namespace vv::server::edit {
 // The choice of `add` that is no row of newNodes().
 inline constexpr const char* viewpointKind = "Viewpoint from here";
 
-// Tells a page that it may edit, and what it can add.
-std::string editorText();
 // Returns some rows of the outline, and how many there are.
 std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int first, int count);
 // Tells a page to show a row, which others have selected.
 std::string revealText(int row);
 std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers);
-// Returns the looks that the selected Shapes can have.
-std::string looksText(const std::vector<Look>& looks);
+// A look that the selected Shapes can have.
+struct ShownLook {
+  uint64_t number = 0; // by which the page names it
+  const Look* look = nullptr;
+  std::string image; // the path of a picture of a ball with it; "": there is none, or not yet
+};
+std::string looksText(const std::vector<ShownLook>& looks);
 // Returns what may be put into a field of nodes. node: the number of its node.
 std::string choicesText(uint64_t node, const PropertyRow& row, json::NodeNumbers& numbers);
 // Returns the messages about the world; without rows while their list is closed.
@@ -41,6 +44,8 @@ std::string toolText(const std::string& text);
 std::string historyText(WorldEditor& editor, const std::string& readOnly, size_t hidden);
 // Tells the user something. isError: a command was refused.
 std::string saidText(const std::string& text, bool isError);
+// Tells how many bytes of a file have come that the page sends; bytes 0: it sends none.
+std::string importText(size_t received, size_t bytes);
 // Asks whether a file is to be replaced that another program has changed.
 std::string questionText();
 

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "as_json/field_json.h"
 #include "edit/actions.h"
 #include "edit/region.h"
 #include "edit/shader_parameters.h"
 #include "server/edit_nodes.h"
 #include "server/edit_texts.h"
 #include "server/light_texts.h"
+#include "server/texts.h"
 
 namespace vv::server {
 
@@ -28,12 +28,13 @@ bool isEdit(const edit::Command& command) {
          std::holds_alternative<edit::Undo>(command) ||
          std::holds_alternative<edit::Save>(command) ||
          std::holds_alternative<edit::NodeCommand>(command) ||
-         std::holds_alternative<edit::ToolCommand>(command);
+         std::holds_alternative<edit::ToolCommand>(command) ||
+         std::holds_alternative<edit::FileCommand>(command);
 }
 
 } // namespace
 
-void Editing::join(uint64_t page) { host_.sendText(page, "", edit::editorText()); }
+void Editing::join(uint64_t page) { host_.sendText(page, "", editorText()); }
 
 void Editing::leave(uint64_t page) {
   const auto found = faces_.find(page);
@@ -41,6 +42,7 @@ void Editing::leave(uint64_t page) {
   endDrag(page, found->second);
   faces_.erase(found);
   light_.leave(page);
+  looks_.setChoosing(page, false);
 }
 
 void Editing::take(uint64_t page, const edit::Command& command) {
@@ -87,6 +89,8 @@ void Editing::update(double now) {
     const EditView view = viewOf(page);
     const bool changed = face.model.update(session.editor(), view, moves, now);
     face.tool.place(session.editor(), view, face.model.readOnly().empty());
+    if (!face.model.looks().empty()) looks_.update(session, face.model.looks());
+    if (!looks_.text().empty()) tell(page, face, "looks", looks_.text());
     if (std::exchange(face.isStale, false) || changed) show(page, face);
     tell(page, face, "handles", edit::handlesText(face.tool.gizmo()));
     tell(page, face, "tool", edit::toolText(face.tool.text()));
@@ -121,7 +125,7 @@ bool Editing::open(uint64_t page) {
 }
 
 void Editing::say(uint64_t page, const std::string& text, bool isError) {
-  host_.sendText(page, "", edit::saidText(text, isError));
+  host_.sendText(page, "said", edit::saidText(text, isError));
 }
 
 // Sends a message if it differs from the last one of its type.
@@ -140,11 +144,10 @@ void Editing::show(uint64_t page, Face& face) {
   }
   tell(page, face, "rows", edit::rowsText(face.model, face.numbers, face.first, face.count));
   tell(page, face, "sheet", edit::sheetText(face.model.sheet(), face.numbers));
-  tell(page, face, "looks", edit::looksText(face.model.looks()));
   tell(page, face, "problems", edit::problemsText(face.model.problems(), face.numbers));
   tell(page, face, "frames", edit::framesText(face.model));
   if (const int row = face.model.takeScroll(); row >= 0)
-    host_.sendText(page, "", edit::revealText(row));
+    host_.sendText(page, "reveal", edit::revealText(row));
 }
 
 void Editing::showLight(uint64_t page, Face& face) {
@@ -201,6 +204,10 @@ void Editing::perform(uint64_t, Face& face, const edit::ShowProblems& show) {
   face.model.problems().setOpen(show.open);
 }
 
+void Editing::perform(uint64_t page, Face&, const edit::ShowLooks& show) {
+  looks_.setChoosing(page, show.open);
+}
+
 // Nodes are hidden for all pages, also for those that do not edit.
 void Editing::perform(uint64_t, Face&, const edit::Hide& hide) {
   using What = edit::Hide::What;
@@ -230,12 +237,14 @@ void Editing::perform(uint64_t, Face& face, const edit::Drag& drag) {
   const PropertySheet& sheet = face.model.sheet();
   const PropertyRow* const row = sheet.node == node ? sheet.find(drag.field) : nullptr;
   if (row && !row->isDeclared) {
-    Value value = json::readValue(drag.value, *node, *row->field, {});
+    const auto& last = face.parameter;
+    const bool isSame = last && last->shader == node && last->name == drag.field;
+    Value value = draggedValue(drag, *node, *row->field, isSame ? last->value : row->value);
     face.parameter = {node, drag.field, std::move(value)};
     return;
   }
   const FieldInfo& field = valueField(*node, drag.field);
-  Value value = json::readValue(drag.value, *node, field, {});
+  Value value = draggedValue(drag, *node, field, node->get(field));
   endTools(); // their steps can be taken back
   if (!std::exchange(face.isDragging, true))
     editor().editor().begin(fmt::format("Set {}.{}", node->type().name, field.name));
@@ -269,7 +278,8 @@ void Editing::endTools() {
 
 void Editing::perform(uint64_t page, Face& face, const edit::NodeCommand& command) {
   endDrags();
-  server::perform(command, editor(), face.model, face.numbers, viewOf(page));
+  server::perform(command, editor(), face.model, face.numbers, viewOf(page),
+                  [this](uint64_t number) -> const Look& { return looks_.find(number); });
 }
 
 void Editing::perform(uint64_t page, Face& face, const edit::ToolCommand& command) {
@@ -280,6 +290,24 @@ void Editing::perform(uint64_t page, Face& face, const edit::ToolCommand& comman
 void Editing::perform(uint64_t page, Face&, const edit::LightCommand& command) {
   if (std::holds_alternative<edit::KeepInWorld>(command)) endDrags(); // it is an edit
   light_.take(page, viewOf(page), showsLeadersView(page), command);
+}
+
+// A page sends the next parts of a file when it knows which have come.
+void Editing::perform(uint64_t page, Face& face, const edit::FileCommand& command) {
+  const auto tell = [&] {
+    host_.sendText(page, "import", edit::importText(face.upload.received(), face.upload.size()));
+  };
+  try {
+    face.upload.take(command, editor());
+    if (face.upload.isComplete()) {
+      endDrags();
+      say(page, fmt::format("{} has been written", face.upload.finish(editor())), false);
+    }
+  } catch (...) {
+    tell();
+    throw;
+  }
+  tell();
 }
 
 // --- History and file ---
@@ -293,7 +321,7 @@ void Editing::perform(uint64_t page, Face&, const edit::Save& save) {
   endDrags();
   if (!editor().isChanged()) return say(page, "there is nothing to save", false);
   if (!save.overwrite && editor().editor().isChangedOnDisk())
-    return host_.sendText(page, "", edit::questionText());
+    return host_.sendText(page, "question", edit::questionText());
   editor().save("", save.overwrite);
   say(page, "saved", false);
 }

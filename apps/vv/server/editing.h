@@ -17,9 +17,11 @@
 #include "server/edit_light.h"
 #include "server/host.h"
 #include "server/limits.h"
+#include "server/page_looks.h"
 #include "server/page_tool.h"
 #include "server/pages.h"
 #include "server/served_world.h"
+#include "server/upload.h"
 
 namespace vv::server {
 
@@ -27,7 +29,7 @@ class Editing {
  public:
   // arguments: of the command line. All of them must outlive this object.
   Editing(Pages& pages, ServedWorld& world, Host& host, const std::vector<std::string>& arguments)
-      : pages_(pages), world_(world), host_(host), light_(world, host, arguments) {}
+      : pages_(pages), world_(world), host_(host), light_(world, host, arguments), looks_(host) {}
 
   // Tells a page that it may edit.
   void join(uint64_t page);
@@ -47,6 +49,7 @@ class Editing {
   struct Face {
     EditModel model;
     PageTool tool;
+    Upload upload;
     json::NodeNumbers numbers{size_t(maxNodeNumbers)};
     int first = 0, count = 0;                // the rows of the outline that it shows
     std::map<std::string, std::string> told; // the last message of each type
@@ -85,6 +88,7 @@ class Editing {
   void perform(uint64_t page, Face& face, const edit::SelectSameLook& select);
   void perform(uint64_t page, Face& face, const edit::AskChoices& ask);
   void perform(uint64_t page, Face& face, const edit::ShowProblems& show);
+  void perform(uint64_t page, Face& face, const edit::ShowLooks& show);
   void perform(uint64_t page, Face& face, const edit::Hide& hide);
   void perform(uint64_t page, Face& face, const edit::Frame& frame);
   void perform(uint64_t page, Face& face, const edit::Close& close);
@@ -97,6 +101,7 @@ class Editing {
   void perform(uint64_t page, Face& face, const edit::NodeCommand& command);
   void perform(uint64_t page, Face& face, const edit::ToolCommand& command);
   void perform(uint64_t page, Face& face, const edit::LightCommand& command);
+  void perform(uint64_t page, Face& face, const edit::FileCommand& command);
 
   Pages& pages_;
   ServedWorld& world_;
@@ -104,6 +109,7 @@ class Editing {
   std::map<uint64_t, Face> faces_; // by page
   Hiding hiding_;
   EditLight light_;
+  PageLooks looks_;
 };
 
 } // namespace vv::server

@@ -94,6 +94,7 @@ struct Host::Impl {
   int port = 0;
   std::string cookieName;
   Downloads downloads;
+  Images images;
   std::thread thread;
   std::atomic<bool> ending{false};
 
@@ -210,7 +211,7 @@ struct Host::Impl {
     request.method = head                                                      ? "HEAD"
                      : lws_hdr_total_length(connection, WSI_TOKEN_GET_URI) > 0 ? "GET"
                                                                                : "";
-    const Answer given = answerTo(request, downloads, steadySeconds());
+    const Answer given = answerTo(request, downloads, images, steadySeconds());
     unsigned char room[LWS_PRE + headerRoom];
     unsigned char *const start = room + LWS_PRE, *at = start, *const end = room + sizeof room - 1;
     const size_t size = given.body->size();
@@ -485,6 +486,9 @@ std::string Host::offerDownload(std::string name, std::string type, std::string 
   return impl_->downloads.offer(std::move(name), std::move(type), std::move(content),
                                 steadySeconds());
 }
+
+std::string Host::keepImage(std::string png) { return impl_->images.add(std::move(png)); }
+void Host::dropImage(const std::string& path) { impl_->images.remove(path); }
 
 } // namespace vv::server
 

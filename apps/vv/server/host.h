@@ -54,6 +54,10 @@ class Host {
   void close(uint64_t page);
   // Keeps a file for a minute. Returns its path, relative to the page.
   std::string offerDownload(std::string name, std::string type, std::string content);
+  // Keeps a picture for pages that may edit, until it is dropped. Returns its path, relative to the
+  // page.
+  std::string keepImage(std::string png);
+  void dropImage(const std::string& path);
 
  private:
   struct Impl;

@@ -41,6 +41,8 @@ inline constexpr int maxNodeNumbers = 30'000;
 inline constexpr int maxProbes = 50;
 inline constexpr int maxComparedPixels = 2'097'152;
 inline constexpr int maxProblemsShown = 200;
+inline constexpr int maxLooksShown = 300;
+inline constexpr int maxImportBytes = 33'554'432;
 
 inline constexpr Limit limits[] = {
     {"maxViewers", maxViewers, "pages that are connected at a time"},
@@ -75,6 +77,9 @@ inline constexpr Limit limits[] = {
     {"maxProbes", maxProbes, "probes of the light"},
     {"maxComparedPixels", maxComparedPixels, "pixels of a picture whose changes since A are shown"},
     {"maxProblemsShown", maxProblemsShown, "messages about the world that a page gets"},
+    {"maxLooksShown", maxLooksShown,
+     "looks that a page can choose from; the user's own come first"},
+    {"maxImportBytes", maxImportBytes, "bytes of a file that a page puts into the world"},
 };
 
 } // namespace vv::server

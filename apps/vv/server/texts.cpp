@@ -6,9 +6,14 @@
 #include <fmt/format.h>
 
 #include "as_json/json_line.h"
+#include "edit/actions.h"
+#include "edit/properties.h"
 #include "lower_case.h"
 #include "options/names.h"
 #include "report/describe.h"
+#include "server/edit_texts.h"
+#include "server/limits.h"
+#include "session/input/editor_keys.h"
 #include "session/input/keys.h"
 
 namespace vv::server {
@@ -38,6 +43,20 @@ std::string helloText() {
       keys.push_back({key.keys, key.text});
   for (const MouseInfo& one : mouseTable()) mouse.push_back({one.what, one.text});
   return jsonLine({{"type", "hello"}, {"version", version()}, {"keys", keys}, {"mouse", mouse}});
+}
+
+std::string editorText() {
+  Json kinds = Json::array(), keys = Json::array();
+  for (const NewNode& one : newNodes()) kinds.push_back(one.name);
+  kinds.push_back(edit::viewpointKind);
+  for (const MouseInfo& one : editorTable()) keys.push_back({one.what, one.text});
+  return jsonLine({{"type", "editor"},
+                   {"kinds", kinds},
+                   {"keys", keys},
+                   {"mostBytes", maxEditBytes},
+                   {"mostRows", maxRowsShown},
+                   {"mostElements", PropertySheet::mostElements},
+                   {"mostFileBytes", maxImportBytes}});
 }
 
 std::string stateText(const PageState& state) {

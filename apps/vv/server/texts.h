@@ -27,6 +27,8 @@ struct PageState {
 };
 
 std::string helloText();
+// Tells a page that it may edit, what it can add, and what keys and mouse do in the editor.
+std::string editorText();
 std::string stateText(const PageState& state);
 std::string viewpointsText(const std::vector<xvrml::ViewpointName>& viewpoints);
 std::string commandText(const std::string& line);

@@ -23,15 +23,18 @@ export class Chooser {
     this.dialog.addEventListener("pointerdown", (event) => {
       if (event.target === this.dialog && !this.isInside(event)) this.dialog.close();
     });
+    this.dialog.addEventListener("close", () => this.ended());
     this.list.addEventListener("click", (event) => {
       const item = event.target.closest("li");
       if (item) this.choose(Number(item.dataset.number));
     });
   }
 
-  // items: objects with label, text (what it is, may be empty), and action. anchor: the element
-  // beside which the list opens. extra: elements above the list.
+  // items: objects with label, action, and perhaps text (what it is), note (a word about it) and
+  // image (the path of a picture). anchor: the element beside which the list opens. extra: elements
+  // above the list.
   open(title, items, anchor, ...extra) {
+    this.ended();
     this.items = items;
     this.filter.value = "";
     this.filter.placeholder = title;
@@ -42,6 +45,25 @@ export class Chooser {
     if (!this.dialog.open) this.dialog.showModal();
     this.placeAt(anchor);
     this.filter.focus();
+  }
+
+  // The items are others now, or have other pictures. What the user has typed and marked stays.
+  refresh(items) {
+    const marked = this.items[this.list.children[this.place]?.dataset.number]?.label;
+    const scrolled = this.list.scrollTop;
+    this.items = items;
+    this.show();
+    const rows = [...this.list.children];
+    const place = rows.findIndex((row) => items[row.dataset.number].label === marked);
+    this.mark(place);
+    this.list.scrollTop = scrolled;
+  }
+
+  // The list closes, or shows something else. onClose is called once.
+  ended() {
+    const { onClose } = this;
+    this.onClose = null;
+    onClose?.();
   }
 
   // Opens below an element, or above it where there is no room.
@@ -66,7 +88,10 @@ export class Chooser {
     const shown = found.filter(({ item }) => item.label.toLowerCase().includes(part));
     this.list.replaceChildren(
       ...shown.slice(0, mostShown).map(({ item, number }) => {
-        const row = make("li", { textContent: item.label, title: item.text ?? "" });
+        const row = make("li", { title: item.text ?? "" });
+        if ("image" in item) row.append(this.pictureOf(item));
+        row.append(make("span", { textContent: item.label }));
+        if (item.note) row.append(make("small", { textContent: item.note }));
         row.id = `choice-${number}`;
         row.dataset.number = number;
         row.setAttribute("role", "option");
@@ -74,6 +99,12 @@ export class Chooser {
       }),
     );
     this.mark(0);
+  }
+
+  // Returns the picture of an item, or its place while there is none.
+  pictureOf(item) {
+    if (!item.image) return make("span", { className: "ball" });
+    return make("img", { className: "ball", src: item.image, alt: "" }); // the label says it
   }
 
   // Marks the row that Enter chooses.

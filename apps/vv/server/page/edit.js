@@ -8,6 +8,7 @@ import "./page.js";
 import { Chooser } from "./chooser.js";
 import { EditorKeys } from "./edit_keys.js";
 import { Fields, make } from "./fields.js";
+import { Importer } from "./importer.js";
 import { Light } from "./light.js";
 import { Nodes } from "./nodes.js";
 import { Outline } from "./outline.js";
@@ -41,15 +42,14 @@ class Editor {
     this.nodes = new Nodes(this.chooser, edit);
     this.outline = new Outline($("rows"), edit, (row, item) => this.openRow(row, item));
     this.fields = new Fields($("fields"), {
-      drag: (node, field, value, ends) => this.dragTo({ node, field, value }, ends),
+      drag: (drag, ends) => this.dragTo(drag, ends),
       reset: (node, field) => this.edit("reset", { node, field }),
       nodes: (node, facts) => this.nodes.widget(node, facts),
     });
-    this.tools = new Tools($("stage"), page.picture, {
-      edit,
-      say: (text, isError) => this.say(text, isError),
-      isOpen: () => this.isOpen() && this.mayEdit,
-    });
+    const say = (text, isError) => this.say(text, isError);
+    const isOpen = () => this.isOpen() && this.mayEdit;
+    this.tools = new Tools($("stage"), page.picture, { edit, say, isOpen });
+    this.importer = new Importer(edit, say, isOpen);
     this.light = new Light($("stage"), $("probes"), page.picture, edit);
     this.problems = new Problems($("problems"), $("show-problems"), edit);
     this.keys = new EditorKeys(this);
@@ -67,6 +67,7 @@ class Editor {
     page.on_comparison = (message) => this.light.onComparison(message);
     page.on_cover = (message) => this.light.onCover(message);
     page.on_problems = (message) => this.problems.onProblems(message);
+    page.on_import = (message) => this.importer.onImport(message);
     page.on_progress = (message) => this.onProgress(message);
     page.on_report = (message) => page.showPanel(reportPanel(message));
     page.showHelp = () => this.keys.showHelp();
@@ -111,6 +112,9 @@ class Editor {
       make("select", { id: "kinds", label: "Node to add" }),
       button("add", "Add", "Add it to the selected group, or behind the selected node", () =>
         this.edit("add", { kind: $("kinds").value }),
+      ),
+      button("import", "Import", "Put files into the world: worlds or meshes, as Inlines", () =>
+        this.importer.choose(),
       ),
       button("copy", "Copy", "Duplicate what is selected (Shift+D)", () => this.edit("duplicate")),
       button("group", "Group", "Put a Transform around what is selected (Ctrl+G)", () =>
@@ -167,8 +171,9 @@ class Editor {
       make("div", { id: "fields" }),
     );
     work.append(outline, stage, sheet);
-    for (const id of ["progress", "tool", "said"]) stage.append(make("p", { id }));
-    $("said").setAttribute("role", "status");
+    $("facts").after(make("p", { id: "said" }), make("div", { id: "legend", hidden: true }));
+    $("hint").before(make("p", { id: "tool" }), make("p", { id: "progress" }));
+    for (const id of ["said", "tool", "progress"]) $(id).setAttribute("role", "status");
     const toggle = (id, text, panel) => {
       const one = button(id, text, `Show or hide: ${text}`, () => this.toggle(panel));
       one.setAttribute("aria-controls", panel);
@@ -201,13 +206,25 @@ class Editor {
   toggle(panel) {
     const wasOpen = this.isOpen();
     $(panel).hidden = !$(panel).hidden;
+    this.follow(wasOpen);
+  }
+
+  setOpen(isOpen) {
+    const wasOpen = this.isOpen();
+    if (!isOpen && $("work").contains(document.activeElement)) $("picture").focus();
+    $("outline").hidden = !isOpen;
+    $("sheet").hidden = !isOpen || window.innerWidth < narrow;
+    this.follow(wasOpen);
+  }
+
+  // The panels have been shown or hidden.
+  follow(wasOpen) {
     this.showToggles(true);
     if (this.isOpen() && !wasOpen) this.begin();
-    if (!this.isOpen()) {
-      this.tools.clear();
-      this.light.clear();
-      this.edit("close");
-    }
+    if (this.isOpen() || !wasOpen) return;
+    this.tools.clear();
+    this.light.clear();
+    this.edit("close");
   }
 
   listen() {
@@ -248,6 +265,7 @@ class Editor {
     this.drag = null;
     this.tools.clear();
     this.light.clear();
+    this.importer.clear();
     this.setAllowed(false);
   }
 
@@ -279,6 +297,16 @@ class Editor {
     ];
   }
 
+  // The menu of what can be added, as the list in the panel.
+  openKinds() {
+    const items = [...$("kinds").options].map(({ value: kind }) => ({
+      label: kind,
+      action: () => this.edit("add", { kind }),
+    }));
+    const files = { label: "Files ...", action: () => this.importer.choose() };
+    this.chooser.open("Add", [...items, files], $("add"));
+  }
+
   openRow(row, item) {
     const { node, parent = null, field = "", index } = row;
     const at = { node, parent, field, index };
@@ -291,13 +319,13 @@ class Editor {
     this.mostBytes = message.mostBytes;
     this.outline.most = message.mostRows;
     this.fields.most = message.mostElements;
+    this.importer.begin(message);
+    this.keys.rows = message.keys;
     $("kinds").replaceChildren(...message.kinds.map((kind) => new Option(kind, kind)));
     this.setAllowed(true);
-    if (!this.hasBegun) {
-      $("outline").hidden = false;
-      $("sheet").hidden = window.innerWidth < narrow;
-    }
+    const isFirst = !this.hasBegun;
     this.hasBegun = true;
+    if (isFirst) return this.setOpen(true);
     this.showToggles(true);
     if (this.isOpen()) this.begin();
   }
@@ -359,7 +387,7 @@ class Editor {
     $("redo").disabled = !message.redo;
     $("redo").title = `Do again: ${message.redo} (Ctrl+Y)`;
     for (const id of ["save", "revert"]) $(id).disabled = !message.unsaved;
-    $("add").disabled = !isEditable;
+    for (const id of ["add", "import"]) $(id).disabled = !isEditable;
     for (const id of ["copy", "group", "remove"])
       $(id).disabled = !isEditable || message.selected === 0;
     $("rename").disabled = !isEditable;

@@ -1,5 +1,5 @@
-// edit_keys.js: The keys of the editor, which are those of the window's editor. They work while a
-// panel of the editor is shown, before the page's own keys.
+// edit_keys.js: The keys of the editor. They work while a panel of the editor is shown, before the
+// page's own keys.
 "use strict";
 
 import { make } from "./fields.js";
@@ -10,55 +10,72 @@ export class EditorKeys {
   constructor(editor) {
     this.editor = editor;
     this.keys = this.table();
+    this.rows = []; // what vv says of keys and mouse
     for (const kind of ["keydown", "keyup"])
       window.addEventListener(kind, (event) => this[kind](event), { capture: true });
   }
 
-  // The keys of the editor, as in the window: keys, what they do for the help, and the action.
+  // The keys of the editor, which are those of the window's: vv sends what each does, for the help.
   // Those with Ctrl also count where text is typed, the others belong to the text there.
   table() {
     const edit = (command, members) => () => this.editor.edit(command, members);
     const place = () => this.editor.pointer ?? { x: 0.5, y: 0 };
     const tool = (kind) => () => this.editor.tools.begin(kind, place());
     return [
-      ["Ctrl+Z", "undo", edit("undo")],
-      ["Ctrl+Y Ctrl+Shift+Z", "redo", edit("redo")],
-      ["Ctrl+S", "save the file in place", edit("save")],
-      ["G", "move what is selected; then X Y Z, numbers, Ctrl, Enter, Escape", tool("move")],
-      ["R", "turn it", tool("turn")],
-      ["S", "scale it", tool("scale")],
-      ["T", "handles that move, turn, scale, or none", edit("handles")],
-      ["Shift+D", "duplicate what is selected", edit("duplicate")],
-      ["Ctrl+G", "put a Transform around what is selected", edit("wrap")],
-      ["X Delete", "remove what is selected", edit("remove")],
-      [".", "go to what is selected", edit("frame")],
-      ["V", "probe of luminance at the pointer", () => this.putProbe(false)],
-      ["U", "probe of illuminance at the pointer", () => this.putProbe(true)],
-      ["Shift+V", "measure a rectangle", () => this.editor.tools.measure()],
-      ["B", "keep the picture and the light as A", edit("keep_probes")],
-      ["\\", "A in the place of the picture", edit("compare", { what: "a" })],
-      ["W", "A beside the picture", edit("compare", { what: "wiper" })],
-      ["D", "what has changed since A", edit("compare", { what: "difference" })],
-      ["F1", "this help", () => this.showHelp()],
-      ["Escape", "give up a report, end a comparison, select nothing", () => this.escape()],
-    ].map(([keys, text, action]) => ({ keys: keys.split(" "), text, action }));
+      ["Ctrl+Z", edit("undo")],
+      ["Ctrl+Y Ctrl+Shift+Z", edit("redo")],
+      ["Ctrl+S", edit("save")],
+      ["G", tool("move")],
+      ["R", tool("turn")],
+      ["S", tool("scale")],
+      ["T", edit("handles")],
+      ["Shift+A", () => this.editor.openKinds()],
+      ["Shift+D", edit("duplicate")],
+      ["Ctrl+G", edit("wrap")],
+      ["X Delete", edit("remove")],
+      [".", edit("frame")],
+      ["V", () => this.putProbe(false)],
+      ["U", () => this.putProbe(true)],
+      ["Shift+V", () => this.editor.tools.measure()],
+      ["B", edit("keep_probes")],
+      ["\\", edit("compare", { what: "a" })],
+      ["W", edit("compare", { what: "wiper" })],
+      ["D", edit("compare", { what: "difference" })],
+      ["F1 ?", () => this.showHelp()],
+      ["E", () => this.editor.setOpen(false)],
+      ["Escape", () => this.escape()],
+    ].map(([keys, action]) => ({ keys: keys.split(" "), action }));
   }
 
+  // Shift belongs to the name of letters and of keys that type nothing: "?" is "?" with whatever
+  // keys it is typed.
   nameOf(event) {
-    if (event.key === "\\") return event.key; // it needs other keys on some keyboards
-    const key = event.key.length === 1 ? event.key.toUpperCase() : event.key;
-    return `${event.ctrlKey ? "Ctrl+" : ""}${event.shiftKey ? "Shift+" : ""}${key}`;
+    const isCharacter = event.key.length === 1;
+    const hasShift = event.shiftKey && (!isCharacter || /[a-z]/i.test(event.key));
+    const key = isCharacter ? event.key.toUpperCase() : event.key;
+    return `${event.ctrlKey ? "Ctrl+" : ""}${hasShift ? "Shift+" : ""}${key}`;
+  }
+
+  // With closed panels E opens them, where the world does not get what is typed.
+  opens(event) {
+    const mayOpen = this.editor.mayEdit && !this.editor.isOpen() && !window.page.state.keys;
+    return mayOpen && this.nameOf(event) === "E" && !event.altKey && !event.metaKey;
   }
 
   keydown(event) {
-    if (!this.editor.isOpen() || document.querySelector("dialog[open]") || event.metaKey) return;
+    if (document.querySelector("dialog[open]")) return;
+    if (this.opens(event)) {
+      this.consume(event);
+      return this.editor.setOpen(true);
+    }
+    if (!this.editor.isOpen() || event.metaKey) return;
     if (this.editor.tools.takeKey(event)) return this.consume(event);
     if (event.altKey && event.key !== "\\") return;
     const isTyped = /^(INPUT|TEXTAREA|SELECT)$/.test(event.target.tagName ?? "");
     const name = this.nameOf(event);
     const found = this.keys.find(({ keys }) => keys.includes(name));
     if (!found || (isTyped && (!name.startsWith("Ctrl+") || name === "Ctrl+G"))) return;
-    if (name === "Escape" && this.endsNothing()) return; // the page's own Escape
+    if (name === "Escape" && this.endsNothing()) return this.editor.setOpen(false); // page.js, too
     this.consume(event);
     if (isTyped) event.target.blur(); // what was typed counts before
     if (!event.repeat || name === "Ctrl+Z" || name === "Ctrl+Y") found.action();
@@ -99,9 +116,9 @@ export class EditorKeys {
     Object.getPrototypeOf(window.page).showHelp.call(window.page);
     if (!this.editor.isOpen()) return;
     const table = make("table");
-    for (const { keys, text } of this.keys) {
+    for (const [what, text] of this.rows) {
       const row = table.insertRow();
-      row.insertCell().textContent = keys.join(", ");
+      row.insertCell().textContent = what;
       row.insertCell().textContent = text;
     }
     $("content").prepend(make("h2", { textContent: "Editor" }), table);

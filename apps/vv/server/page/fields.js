@@ -1,6 +1,7 @@
 // fields.js: The fields of the selected node as widgets. A widget has an element, shows a value by
 // set(), tells by isActive() whether its user is in the middle of something, and calls
-// change(value, ends) for a new value; `ends` is false while it is dragged.
+// change(value, ends) for a new value; `ends` is false while it is dragged. A list calls it for one
+// of its elements: change(value, ends, { index, size }), where null removes the element.
 "use strict";
 
 const counts = { Float: 1, Double: 1, Time: 1, Int32: 1, Color: 3, ColorRGBA: 4, Rotation: 4 };
@@ -198,33 +199,41 @@ function elementWidget(type, facts, label, change) {
 
 const emptyElements = { Bool: false, String: "", Rotation: [0, 0, 1, 0] };
 
-// A table of the elements of a list.
+// A table of the elements of a list. Only the element that is changed is sent, so that others stay as
+// other pages have set them meanwhile.
 function listWidget(type, facts, most, change) {
   const table = make("table");
   const add = make("button", { type: "button", textContent: "+", title: "Add an element" });
   let value = [];
   let widgets = [];
-  const replace = (fresh) => change((value = fresh), true);
+  const send = (element, ends, index) => change(element, ends, { index, size: value.length });
   add.addEventListener("click", () => {
     const zeros = countOf(type) === 1 ? 0 : Array(countOf(type)).fill(0);
-    replace([...value, value.at(-1) ?? emptyElements[type] ?? zeros]);
+    const element = value.at(-1) ?? emptyElements[type] ?? zeros;
+    send(element, true, value.length);
+    value = [...value, element];
   });
+  const remove = (index) => {
+    send(null, true, index);
+    value = value.filter((_, i) => i !== index);
+  };
   const rebuild = () => {
     table.replaceChildren();
     widgets = value.map((_, i) => {
       const label = `${facts.field} ${i + 1}`;
       const one = elementWidget(type, facts, label, (v, ends) => {
-        change((value = replaced(value, i, v)), ends);
+        send(v, ends, i);
+        value = replaced(value, i, v);
       });
-      const remove = make("button", {
+      const button = make("button", {
         type: "button",
         textContent: "\u00d7",
         label: `Remove ${label}`,
       });
-      remove.addEventListener("click", () => replace(value.filter((_, k) => k !== i)));
+      button.addEventListener("click", () => remove(i));
       const row = table.insertRow();
       row.insertCell().append(one.element);
-      row.insertCell().append(remove);
+      row.insertCell().append(button);
       return one;
     });
   };
@@ -243,8 +252,8 @@ function listWidget(type, facts, most, change) {
 // --- The sheet ---
 
 export class Fields {
-  // actions: drag(node, field, value, ends), reset(node, field), and nodes(node, facts), which
-  // returns a widget for a field of nodes.
+  // actions: drag(drag, ends), where `drag` has node, field, value and perhaps the place of an
+  // element; reset(node, field); and nodes(node, facts), which returns a widget for a field of nodes.
   constructor(element, actions) {
     this.element = element;
     this.actions = actions;
@@ -325,7 +334,8 @@ export class Fields {
     const type = facts.type.slice(2);
     const isList = facts.type.startsWith("MF");
     const node = this.node;
-    const change = (value, ends) => this.actions.drag(node, facts.field, value, ends);
+    const change = (value, ends, element) =>
+      this.actions.drag({ node, field: facts.field, value, ...element }, ends);
     if (!facts.long && isList) row.widget = listWidget(type, facts, this.most, change);
     else if (!facts.long) row.widget = elementWidget(type, facts, facts.field, change);
     if (row.widget) return row.widget.element;

@@ -107,9 +107,9 @@ export class Light {
       event.stopPropagation();
       this.wipe(this.part + steps[event.key]);
     });
-    this.legend = make("div", { id: "legend", hidden: true });
+    this.legend = document.getElementById("legend");
     this.picture.canvas.after(this.cover); // below the handles
-    this.stage.append(this.wiper, this.legend);
+    this.stage.append(this.wiper);
   }
 
   wipe(part) {

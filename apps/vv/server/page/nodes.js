@@ -114,6 +114,7 @@ export class Nodes {
 
   onLooks(message) {
     this.looks = message.list;
+    this.refreshLooks?.();
   }
 
   // look: undefined for other nodes than Shapes.
@@ -142,11 +143,21 @@ export class Nodes {
     box.addEventListener("change", () => (this.isOnlyHere = box.checked));
     const note = `Change it only here: the appearance stands in ${look.places} places`;
     const only = make("label", {}, box, note);
-    const items = this.looks.map((one, number) => ({
-      label: one.name,
-      text: one.text,
-      action: () => this.edit("set_look", { number, only_here: this.isOnlyHere }),
-    }));
-    this.chooser.open("Materials and shaders", items, anchor, ...(look.places > 1 ? [only] : []));
+    const items = () =>
+      this.looks.map(({ number, name, text: about, image, own }) => ({
+        label: name,
+        text: about,
+        image,
+        note: own ? "yours" : "",
+        action: () => this.edit("set_look", { number, only_here: this.isOnlyHere }),
+      }));
+    const more = look.places > 1 ? [only] : [];
+    this.chooser.open("Materials and shaders", items(), anchor, ...more);
+    this.edit("looks", { open: true }); // their balls are drawn now
+    this.refreshLooks = () => this.chooser.refresh(items());
+    this.chooser.onClose = () => {
+      this.refreshLooks = null;
+      this.edit("looks", { open: false });
+    };
   }
 }

@@ -140,6 +140,14 @@ export class Outline {
     this.ask();
   }
 
+  // The parent's row may not have come: then the key does nothing.
+  goToParent() {
+    const depth = this.row(this.cursor)?.depth ?? 0;
+    const before = this.rows.slice(0, Math.max(0, this.cursor - this.first));
+    const place = before.findLastIndex((one) => one.depth < depth);
+    if (place >= 0) this.goTo(this.first + place);
+  }
+
   open(row, open) {
     if (row && "open" in row && row.open !== open) this.edit("open", { node: row.node, open });
   }
@@ -181,7 +189,7 @@ export class Outline {
       Home: () => this.goTo(0),
       End: () => this.goTo(Math.max(0, this.total - 1)),
       ArrowRight: () => this.open(row, true),
-      ArrowLeft: () => this.open(row, false),
+      ArrowLeft: () => (row?.open ? this.open(row, false) : this.goToParent()),
       Enter: () => this.select(row, add),
       " ": () => this.select(row, add),
     };
