@@ -267,7 +267,7 @@ def test_two_pages_change_two_elements_of_a_list(serve, vv):
     one.edit("drag", node=number, field="point", value=None, index=1, size=3)
     one.edit("end_drag")
     value(two, "point", [both[0], both[2]])
-    two.edit("drag", node=other, field="point", value=[9, 9, 9], index=1, size=3)  # of the old list
+    two.edit("drag", node=other, field="point", value=[9, 9, 9], index=1, size=3)
     until(two, "said", lambda t: t["error"] and "2 elements now" in t["text"])
     two.edit("drag", node=other, field="point", value=[9, 9, 9], index=2, size=2)
     two.edit("end_drag")

@@ -225,7 +225,7 @@ TEST(ServerMessage, ReadsEditsOfNodes) {
   EXPECT_FALSE(edited<edit::SetLook>(R"("command":"set_look","number":3)").onlyHere);
   edited<edit::SelectSameLook>(R"("command":"select_same_look")");
   EXPECT_EQ(edited<edit::AskChoices>(R"("command":"choices","node":1,"field":"a")").field, "a");
-  EXPECT_TRUE(edited<edit::ShowProblems>(R"("command":"problems","open":true)").open);
+  EXPECT_TRUE(edited<edit::ShowList>(R"("command":"problems","open":true)").open);
   EXPECT_EQ(edited<edit::Hide>(R"("command":"hide_others")").what, edit::Hide::What::others);
   EXPECT_EQ(edited<edit::Hide>(R"("command":"show_all")").what, edit::Hide::What::nothing);
   edited<edit::Frame>(R"("command":"frame")");

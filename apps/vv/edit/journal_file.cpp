@@ -261,7 +261,7 @@ FoundJournal findJournal(const std::string& world, const std::function<std::stri
                          std::string& refused) {
   std::vector<FoundJournal> usable;
   std::optional<TextStamp> onDisk;
-  // Calls use() for a journal. What it throws is told of the first one.
+  // Calls use() for a journal, and keeps the text of what it throws first.
   const auto tryToUse = [&refused](const auto& use) {
     bool isBusy = false;
     try {

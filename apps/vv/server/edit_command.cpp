@@ -206,8 +206,14 @@ constexpr Row table[] = {
     {"select_in", readSelectIn},
     {"select_same_look", [](Members&) -> Command { return SelectSameLook{}; }},
     {"choices", readAskChoices},
-    {"problems", [](Members& m) -> Command { return ShowProblems{isOpen(m)}; }},
-    {"looks", [](Members& m) -> Command { return ShowLooks{isOpen(m)}; }},
+    {"problems",
+     [](Members& m) -> Command {
+       return ShowList{ShowList::What::problems, isOpen(m)};
+     }},
+    {"looks",
+     [](Members& m) -> Command {
+       return ShowList{ShowList::What::looks, isOpen(m)};
+     }},
     {"hide", [](Members&) -> Command { return Hide{Hide::What::selected}; }},
     {"hide_others", [](Members&) -> Command { return Hide{Hide::What::others}; }},
     {"show_all", [](Members&) -> Command { return Hide{Hide::What::nothing}; }},

@@ -46,10 +46,9 @@ struct AskChoices {
   uint64_t node = 0;
   std::string field;
 };
-struct ShowProblems {
-  bool open = true;
-};
-struct ShowLooks {
+struct ShowList {
+  enum class What : uint8_t { problems, looks };
+  What what = What::problems;
   bool open = true;
 };
 struct Hide {
@@ -122,7 +121,7 @@ struct SeparateAt {
   At at;
 };
 struct SetLook {
-  uint64_t number = 0; // of one of the looks that the page was sent
+  uint64_t number = 0; // that of a look which the page was sent
   bool onlyHere = true;
 };
 using Step = json::edits::Step;
@@ -188,10 +187,9 @@ struct ImportPart {
 };
 using FileCommand = std::variant<Import, ImportPart>;
 
-using Command =
-    std::variant<ShowRows, Search, Open, Select, SelectAt, SelectIn, SelectSameLook, AskChoices,
-                 ShowProblems, ShowLooks, Hide, Frame, Close, Drag, EndDrag, Undo, Save, Revert,
-                 Recover, NodeCommand, ToolCommand, LightCommand, FileCommand>;
+using Command = std::variant<ShowRows, Search, Open, Select, SelectAt, SelectIn, SelectSameLook,
+                             AskChoices, ShowList, Hide, Frame, Close, Drag, EndDrag, Undo, Save,
+                             Revert, Recover, NodeCommand, ToolCommand, LightCommand, FileCommand>;
 
 // Reads a message {"type":"edit","command":...}. Throws json::CommandError.
 Command readCommand(json::Json message);

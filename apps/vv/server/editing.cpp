@@ -200,12 +200,11 @@ void Editing::perform(uint64_t page, Face& face, const edit::AskChoices& ask) {
   host_.sendText(page, "choices", edit::choicesText(ask.node, *row, face.numbers));
 }
 
-void Editing::perform(uint64_t, Face& face, const edit::ShowProblems& show) {
-  face.model.problems().setOpen(show.open);
-}
-
-void Editing::perform(uint64_t page, Face&, const edit::ShowLooks& show) {
-  looks_.setChoosing(page, show.open);
+void Editing::perform(uint64_t page, Face& face, const edit::ShowList& show) {
+  if (show.what == edit::ShowList::What::problems)
+    face.model.problems().setOpen(show.open);
+  else
+    looks_.setChoosing(page, show.open);
 }
 
 // Nodes are hidden for all pages, also for those that do not edit.

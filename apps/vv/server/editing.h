@@ -87,8 +87,7 @@ class Editing {
   void perform(uint64_t page, Face& face, const edit::SelectIn& select);
   void perform(uint64_t page, Face& face, const edit::SelectSameLook& select);
   void perform(uint64_t page, Face& face, const edit::AskChoices& ask);
-  void perform(uint64_t page, Face& face, const edit::ShowProblems& show);
-  void perform(uint64_t page, Face& face, const edit::ShowLooks& show);
+  void perform(uint64_t page, Face& face, const edit::ShowList& show);
   void perform(uint64_t page, Face& face, const edit::Hide& hide);
   void perform(uint64_t page, Face& face, const edit::Frame& frame);
   void perform(uint64_t page, Face& face, const edit::Close& close);

@@ -5,8 +5,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <variant>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -26,8 +29,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr size_t longestName = 64; // of a file, without a number
-constexpr int mostNumber = 99;     // of files with the same name
+constexpr size_t longestName = 64; // without suffixes and a number
+constexpr int mostNumber = 99;     // files that have the same name, but for their numbers
 
 // Tells whether a name, in lower case, ends as those of worlds or meshes do.
 bool isNameOfWorld(std::string_view name) {
