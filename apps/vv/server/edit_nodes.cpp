@@ -120,7 +120,7 @@ const FieldInfo& valueField(const Node& node, const std::string& name) {
 Value draggedValue(const edit::Drag& drag, const Node& node, const FieldInfo& field,
                    const Value& now) {
   if (!drag.element) return json::readValue(drag.value, node, field, {});
-  const auto [index, size] = *drag.element;
+  const size_t index = drag.element->index, size = drag.element->size;
   const std::string what = fmt::format("{}.{}", node.type().name, field.name);
   const bool isRemoved = drag.value.is_null();
   if (size > PropertySheet::mostElements || index >= size + (isRemoved ? 0 : 1))
