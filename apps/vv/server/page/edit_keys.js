@@ -50,6 +50,7 @@ export class EditorKeys {
   // Shift belongs to the name of letters and of keys that type nothing: "?" is "?" with whatever
   // keys it is typed.
   nameOf(event) {
+    if (event.key === "\\") return event.key; // it needs Ctrl and Alt on some keyboards
     const isCharacter = event.key.length === 1;
     const hasShift = event.shiftKey && (!isCharacter || /[a-z]/i.test(event.key));
     const key = isCharacter ? event.key.toUpperCase() : event.key;
@@ -59,7 +60,8 @@ export class EditorKeys {
   // With closed panels E opens them, where the world does not get what is typed.
   opens(event) {
     const mayOpen = this.editor.mayEdit && !this.editor.isOpen() && !window.page.state.keys;
-    return mayOpen && this.nameOf(event) === "E" && !event.altKey && !event.metaKey;
+    const isTyped = event.target instanceof HTMLSelectElement;
+    return mayOpen && !isTyped && this.nameOf(event) === "E" && !event.altKey && !event.metaKey;
   }
 
   keydown(event) {
