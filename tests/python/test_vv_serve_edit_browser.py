@@ -11,7 +11,7 @@ from test_vv_serve_browser import (  # noqa: F401
 from window_driver import SENSORS, blue, green, red
 
 ARROW_DOWN, ARROW_RIGHT, ARROW_LEFT = "\ue015", "\ue014", "\ue012"
-ESCAPE, ENTER, TAB, CONTROL = "\ue00c", "\ue007", "\ue004", "\ue009"
+ESCAPE, ENTER, TAB, CONTROL, SHIFT = "\ue00c", "\ue007", "\ue004", "\ue009", "\ue008"
 
 
 def open_editor(browser, server):
@@ -71,26 +71,20 @@ def shown(browser, selector):
     return browser.script("return document.querySelector(arguments[0]).value", selector)
 
 
-def press_with_control(browser, key):
+def press_with(browser, modifier, key):
+    steps = [("keyDown", modifier), ("keyDown", key), ("keyUp", key), ("keyUp", modifier)]
     browser.actions({
-        "type":
-            "key",
-        "id":
-            "keys",
+        "type": "key",
+        "id": "keys",
         "actions": [{
-            "type": "keyDown",
-            "value": CONTROL
-        }, {
-            "type": "keyDown",
-            "value": key
-        }, {
-            "type": "keyUp",
-            "value": key
-        }, {
-            "type": "keyUp",
-            "value": CONTROL
-        }]
+            "type": kind,
+            "value": value
+        } for kind, value in steps]
     })
+
+
+def press_with_control(browser, key):
+    press_with(browser, CONTROL, key)
 
 
 def drag_sideways(browser, selector, distance):

@@ -6,8 +6,9 @@ import pytest
 from page_client import serve  # noqa: F401
 from serve_edit_tools import WORLD
 from test_vv_serve_browser import browser, errors, keep  # noqa: F401
-from test_vv_serve_edit_browser import (ARROW_DOWN, ARROW_LEFT, ARROW_RIGHT, ENTER, ESCAPE, labels,
-                                        open_editor, until_row, until_script, until_title)
+from test_vv_serve_edit_browser import (ARROW_DOWN, ARROW_LEFT, ARROW_RIGHT, ENTER, ESCAPE, SHIFT,
+                                        labels, open_editor, press_with, until_row, until_script,
+                                        until_title)
 
 # Everything that may be said at once, as vv would say it.
 MESSAGES = """
@@ -88,7 +89,7 @@ def test_the_panels_and_the_menu_are_worked_by_keys(browser, serve):
     browser.keys(ARROW_LEFT, ENTER)  # the parent
     until_title(browser, "LIGHTS  Group")
     browser.script("document.querySelector('#rows').focus()")
-    browser.keys("A")  # with Shift
+    press_with(browser, SHIFT, "a")
     until_script(browser, "document.querySelector('.chooser').open")
     browser.keys(*"spot", ENTER)
     until_title(browser, "SpotLight")
