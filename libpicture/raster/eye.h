@@ -22,7 +22,7 @@ class Eye {
   // replaces the matrix of the camera.
   Eye(const xvrml::CameraSettings& camera, const double* toWorld, int width, int height);
   // Returns false if the matrix of the camera is unusable: nothing can be drawn.
-  bool isGood() const { return fromWorld_.has_value() && std::isfinite(1 / scale_); }
+  bool isGood() const { return fromWorld_.has_value() && std::isfinite(scale_) && scale_ > 0; }
   Corner project(const Vec& point) const;
   struct Ray {
     Vec origin, direction; // the direction is not normalised
