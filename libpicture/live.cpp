@@ -138,7 +138,7 @@ struct LiveRenderer::Impl {
   // Ended frames that look() has not returned yet; at most as many as may be in flight.
   std::deque<std::shared_ptr<const EndedFrame>> unpolled;
   std::string failure;
-  std::optional<Picture> fastView; // of the frame in flight; look() has not returned it yet
+  std::optional<Picture> fastView; // the fast view that look() has not returned yet
   std::vector<uint32_t> left;      // viewers whose accumulated frames are to be freed
   bool released = false;           // those of all viewers are
 

@@ -29,7 +29,7 @@ class Eye {
   };
   // x and y are in pixels.
   Ray ray(double x, double y) const;
-  // What is nearer than this depth stands behind the eye.
+  // Returns the depth of the eye: points with a greater one are behind it.
   double nearest() const { return isParallel_ ? 0 : 1e30; }
 
  private:

@@ -21,7 +21,8 @@ struct PixelBox {
 // floats are exact in double, so that triangles that share an edge get exactly opposite numbers.
 struct Edge {
   double a = 0, b = 0, c = 0;
-  // Of the two triangles at an edge one owns the pixels whose centres lie on it.
+  // Returns whether the pixels whose centres lie on the edge belong to this triangle. They belong
+  // to one of the two at the edge.
   bool owns() const { return a > 0 || (a == 0 && b > 0); }
   bool holds(double value) const { return value > 0 || (value == 0 && owns()); }
 };

@@ -11,7 +11,7 @@ namespace picture::raster {
 
 // The light of one lamp at a point.
 struct Incident {
-  Vec toLight; // of length 1
+  Vec toLight; // a unit vector
   xvrml::Color direct, ambient;
 };
 

@@ -26,7 +26,7 @@ struct RasterView {
   int threads = 0;             // 0: as many as the process may use
 };
 
-// What files of such a picture say.
+// Files of such a picture say this.
 inline constexpr const char* rasterNote =
     "fast view: a z-buffer picture without shadows, reflections and refractions";
 

@@ -53,7 +53,7 @@ float threshold(uint32_t x, uint32_t y) {
 struct Shading::Point {
   std::array<uint32_t, 3> corners;
   std::array<double, 3> weights;
-  Vec place, toEye, normal; // of length 1 but for `place`; the normal is that of the seen side
+  Vec place, toEye, normal; // two unit vectors; the normal is that of the side that is seen
   Textures::Sample picture; // white where there is none
 };
 

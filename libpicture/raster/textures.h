@@ -33,7 +33,7 @@ class Textures : public PictureSource {
   Sample texel(const xvrml::Image& image, int x, int y) const;
 
   const xvrml::World& world_;
-  std::array<float, 256> values_{}; // of bytes
+  std::array<float, 256> values_{}; // by byte
   std::vector<Stored> images_;
   std::unordered_map<const xvrml::Node*, std::optional<size_t>> nodes_;
   std::map<std::string, size_t> paths_; // places of pictures from files and data: URLs
