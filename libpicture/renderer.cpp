@@ -200,6 +200,7 @@ struct Renderer::Impl {
     rebuild(frame, result);
     result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
     stage.describe(frame.settings, result);
+    if (frame.settings.raster) result.stats.scene.triangles = result.map.triangles;
     return result;
   }
 

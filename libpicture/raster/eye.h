@@ -24,6 +24,7 @@ class Eye {
   // Returns false if the matrix of the camera is unusable: nothing can be drawn.
   bool isGood() const { return fromWorld_.has_value() && std::isfinite(scale_) && scale_ > 0; }
   Corner project(const Vec& point) const;
+  const Vec& position() const { return toWorld_.origin; }
   struct Ray {
     Vec origin, direction; // the direction is not normalised
   };

@@ -70,6 +70,8 @@ std::optional<Lamp> Lamp::of(const Node& node, const RenderState& state, bool li
     lamp.beam_ = std::min(spot->beamWidth, spot->cutOffAngle);
     on = spot->on;
     global = spot->global;
+  } else {
+    return {};
   }
   lamp.toWorld_ = affineOf(state.matrix);
   const std::optional<Affine> inverse = lamp.toWorld_.inverse();

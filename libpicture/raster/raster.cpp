@@ -28,9 +28,12 @@ class Surroundings : public xvrml::Renderer {
       if (std::optional<Lamp> lamp = Lamp::of(node, state, view_.linear))
         lamps.push_back(std::move(*lamp));
     const xvrml::BoundNodes bound = view_.bound.value_or(xvrml::BoundNodes());
-    if (!sky && isBound(node, bound.background, state))
-      sky = Sky::of(node, state.matrix, view_.linear);
-    if (!haze && isBound(node, bound.fog, state)) haze = Haze::of(node, view_.linear);
+    if (std::optional<Sky> found = Sky::of(node, state.matrix, view_.linear);
+        found && !sky && isBound(node, bound.background, state))
+      sky = std::move(found);
+    if (const std::optional<Haze> found = Haze::of(node, view_.linear);
+        found && !haze && isBound(node, bound.fog, state))
+      haze = found;
     const auto* navigation = xvrml::nodeCast<xvrml::nodes::NavigationInfo>(&node);
     if (navigation && !headlight && isBound(node, bound.navigationInfo, state))
       headlight = navigation->headlight;

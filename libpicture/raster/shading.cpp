@@ -107,7 +107,7 @@ bool Shading::coversPixel(const Mesh& mesh, size_t triangle, int x, int y) const
 }
 
 Color Shading::seen(const Color& color, const Vec& point) const {
-  return haze_ ? haze_->over(color, length(point + eye_.ray(0, 0).origin * -1.0)) : color;
+  return haze_ ? haze_->over(color, length(point + eye_.position() * -1.0)) : color;
 }
 
 Color Shading::lit(const Mesh& mesh, const Point& point, const Color& diffuse) const {
