@@ -281,7 +281,7 @@ TEST(Raster, HostileWorldsEndInNumbers) {
            "Shape { " + faces + "1e-40 0 -1e-40, 0 1e-40 -1e-40, 0 0 -1e-40 ] } } }",
            "Transform { scale 1e30 1e30 1e30 children Shape { " + faces +
                "-1 -1 -1, 1 -1 -1, 0 1 -1 ] } } } }",
-           "Transform { scale 0 1 1 children Shape { geometry Box { } } }",
+           std::string("Transform { scale 0 1 1 children Shape { geometry Box { } } }"),
            std::string("Shape { geometry Sphere { radius 10 } }"), // the eye is within
            std::string("PointLight { location 0 0 -2 attenuation 0 0 0 radius 1e30 } "
                        "Transform { translation 0 0 -2 children Shape { appearance Appearance { "
