@@ -13,7 +13,7 @@ PYTEST = PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) -m pytest -q -p no:cacheprov
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-debian-12 test-often campaign fuzz-targets test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-debian-12 test-often campaign fuzz-targets test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board bench-fast-view
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -213,6 +213,10 @@ bench-parts: build
 ##                   needs flip-evaluator on PYTHONPATH and an idle machine
 bench-board: build
 	@$(PYTHON) tools/bench_board.py --vv $(R)/bin/vv --out build/bench/board
+
+## make bench-fast-view  seconds to the first picture of a world, by the z-buffer and by rays
+bench-fast-view: build
+	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/bench_fast_view.py
 
 ## make bench-rays     ray queries from numpy beside raw Embree, Open3D and embreex
 bench-rays: build

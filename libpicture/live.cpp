@@ -47,6 +47,9 @@ double secondsSince(Clock::time_point start) { return between(start, Clock::now(
 constexpr double minPollInterval = 0.008, pausePerPoll = 8;
 constexpr uint32_t shownChannels = RT_RGBA | RT_SAMPLES;
 constexpr size_t maxOverlapping = 2;
+// Worlds with more triangles are shown by the z-buffer before they are prepared for rays, which
+// takes longer (docs/benchmarks.md, "The fast view").
+constexpr uint64_t fewTriangles = 200'000;
 // Poll interval for ended frames while another frame may still be started. The render thread cannot
 // block on a frame then.
 constexpr std::chrono::milliseconds patience(1);
@@ -135,8 +138,9 @@ struct LiveRenderer::Impl {
   // Ended frames that look() has not returned yet; at most as many as may be in flight.
   std::deque<std::shared_ptr<const EndedFrame>> unpolled;
   std::string failure;
-  std::vector<uint32_t> left; // viewers whose accumulated frames are to be freed
-  bool released = false;      // those of all viewers are
+  std::optional<Picture> fastView; // the fast view that look() has not returned yet
+  std::vector<uint32_t> left;      // viewers whose accumulated frames are to be freed
+  bool released = false;           // those of all viewers are
 
   // Used by the render thread only.
   std::deque<FrameInFlight> inFlight; // frames in flight, oldest first
@@ -199,6 +203,9 @@ struct LiveRenderer::Impl {
   // Reads sensors.
   std::vector<Measurement> read(MeasureRequest request);
 
+  // Draws the world by the z-buffer for look(). The picture is left out if it fails.
+  void drawFastView(const FrameRequest& frame);
+
   // Maps the world for a frame. All references to nodes are released when this returns, because the
   // browser uses the nodes from then on.
   void map(FrameRequest frame);
@@ -227,6 +234,7 @@ struct LiveRenderer::Impl {
 
   void show(const Picture& picture, const live::ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
+  bool takeFastView(LivePicture& out);
   bool look(LivePicture& out);
   bool recolour(uint64_t number, std::optional<double> falseColour);
 
@@ -337,8 +345,22 @@ void LiveRenderer::Impl::apply(WorldChanges worldChanges) {
   stage.apply(worldChanges);
 }
 
+void LiveRenderer::Impl::drawFastView(const FrameRequest& frame) {
+  const std::string wrong = failureOf([&] {
+    stage.place(frame.view);
+    Picture picture;
+    stage.rasterize(picture);
+    const std::lock_guard lock(mutex);
+    fastView = std::move(picture);
+  });
+  if (!wrong.empty()) stage.warn("the fast view cannot be drawn: " + wrong);
+}
+
 void LiveRenderer::Impl::map(FrameRequest frame) {
+  const bool otherWorld = !stage.context() || frame.worldChanges.otherWorld;
   apply(std::move(frame.worldChanges));
+  if (otherWorld && !frame.facts.falseColour && stage.mapper()->stats().triangles > fewTriangles)
+    drawFastView(frame);
   const uint64_t moved = stage.mapper()->stats().instancesMoved;
   stage.prepare(frame.view);
   // Billboards follow the camera, without a change of the world's.
@@ -461,6 +483,7 @@ uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
     const std::lock_guard lock(mutex);
     failure.clear();
     requested = std::move(next);
+    fastView.reset();
     framesInFlight++;
     state = State::mapping;
   }
@@ -528,8 +551,27 @@ void LiveRenderer::Impl::show(const Picture& picture, const live::ShownFrame& fr
   display.show(picture, frame, whole, seconds, out);
 }
 
+bool LiveRenderer::Impl::takeFastView(LivePicture& out) {
+  std::optional<Picture> picture;
+  {
+    const std::lock_guard lock(mutex);
+    picture = std::exchange(fastView, {});
+  }
+  if (!picture) return false;
+  out = {};
+  out.width = out.shownWidth = picture->width;
+  out.height = out.shownHeight = picture->height;
+  out.rgb = displayBytes(*picture);
+  out.number = current.number;
+  out.purpose = current.purpose;
+  out.seconds = secondsSince(started);
+  out.preview = out.raster = true;
+  return true;
+}
+
 bool LiveRenderer::Impl::look(LivePicture& out) {
   if (now() != State::mapping) stage.reportMessages(); // the mapper adds messages, too
+  if (takeFastView(out)) return true;
   std::shared_ptr<const EndedFrame> finished = nextUnpolled();
   if (!finished && std::exchange(again, false)) finished = still();
   if (!finished) return alone() && pollInFlight(out);

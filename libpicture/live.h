@@ -66,6 +66,9 @@ struct LivePicture {
   bool finished = false; // all samples are taken
   // Rebuilt from few samples, or mixed with such a picture: biased, and to be called a preview.
   bool preview = false;
+  // Drawn by the z-buffer (raster/raster.h) while a large world is prepared for rays: a first
+  // picture to be shown until there is another. It has no samples and is part of no other picture.
+  bool raster = false;
   // Finished or cancelled; no more updates follow. overhead, map and stats are valid.
   bool ended = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.

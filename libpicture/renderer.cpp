@@ -161,7 +161,10 @@ struct Renderer::Impl {
   // Maps the world for a view and sets up its frame. Returns what is known before the frame begins.
   FrameInFlight setUp(const View& view) {
     const auto begin = Clock::now();
-    stage.prepare(view);
+    if (stage.settings.raster)
+      stage.place(view);
+    else
+      stage.prepare(view);
     FrameInFlight frame;
     RenderResult& result = frame.result;
     // meshes are built once, with the first picture
@@ -177,6 +180,7 @@ struct Renderer::Impl {
     // The guides of a preview have names, too, but nobody asks for their nodes.
     if (hasNames(frame.settings.channels)) result.picture.names = stage.mapper()->names();
     if (hasNames(stage.settings.channels)) result.nodes = stage.mapper()->nodes();
+    if (frame.settings.raster) return frame;
     stage.setUpFrame(frame.settings);
     if (inFlight.empty()) lastEnd = Clock::now();
     if (const Sums sums = std::exchange(continueFrom, Sums())) rtContinueFrom(sums.get());
@@ -192,10 +196,11 @@ struct Renderer::Impl {
     lastEnd = Clock::now();
     stage.reportMessages(); // safe here: the browser's thread is waiting
     result.interrupted = cancelled;
-    stage.readChannels(frame.settings, result.picture);
+    if (!frame.settings.raster) stage.readChannels(frame.settings, result.picture);
     rebuild(frame, result);
     result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
     stage.describe(frame.settings, result);
+    if (frame.settings.raster) result.stats.scene.triangles = result.map.triangles;
     return result;
   }
 
@@ -216,18 +221,31 @@ struct Renderer::Impl {
     lastEnd = Clock::now();
   }
 
+  // Draws a frame by the z-buffer.
+  void rasterize(FrameInFlight& frame) {
+    lastEnd = Clock::now();
+    stage.rasterize(frame.result.picture);
+  }
+
   RenderResult render(const View& view) {
     FrameInFlight frame = setUp(view);
-    rtRender();
+    if (frame.settings.raster)
+      rasterize(frame);
+    else
+      rtRender();
     return complete(std::move(frame));
   }
 
   void start(const View& view) {
     doing = "mapping";
     FrameInFlight frame = setUp(view);
-    rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
-    doing = "building";
-    rtSwapBuffers();
+    if (frame.settings.raster) {
+      rasterize(frame);
+    } else {
+      rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
+      doing = "building";
+      rtSwapBuffers();
+    }
     doing = "";
     throwOnError("rendering");
     inFlight.push_back(std::move(frame));
@@ -236,7 +254,7 @@ struct Renderer::Impl {
   RenderResult finish() {
     FrameInFlight frame = std::move(inFlight.front());
     inFlight.pop_front();
-    rtFinishFrame();
+    if (!frame.settings.raster) rtFinishFrame();
     return complete(std::move(frame));
   }
 

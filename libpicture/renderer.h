@@ -70,6 +70,9 @@ struct RenderSettings {
   // A picture that was interrupted has its samples as they are, and no note. For pictures of one
   // sequence and one view at each moment, in the order of their time.
   bool preview = false;
+  // Pictures are drawn by a z-buffer (raster/raster.h) instead of rays, and Picture::note says so.
+  // They have the channel rgba alone, and no samples.
+  bool raster = false;
   bool keepSums = false; // Renderer::sums() returns the sums of frames
   Denoiser denoiser = Denoiser::own;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none

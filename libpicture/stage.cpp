@@ -5,6 +5,7 @@
 #include <new>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "libpicture/cluster.h"
 #include "libpicture/environment_map.h"
 #include "libpicture/files/radiance.h"
+#include "libpicture/raster/raster.h"
 #include "openrt/sums.h"
 
 namespace picture {
@@ -141,8 +143,9 @@ void Stage::open(const std::function<bool()>& stop) {
     borrowed_ = true;
     context_ = lent;
   } else {
-    context_ = newContext("backend=" + settings.backend + contextConfiguration(settings) +
-                          (lightSamples ? "" : " lightsamples=off"));
+    context_ =
+        newContext("backend=" + (settings.raster ? "null" : settings.backend) +
+                   contextConfiguration(settings) + (lightSamples ? "" : " lightsamples=off"));
     rtLogCallback(listen, this);
   }
   rtErrorCallback(note, this);
@@ -214,6 +217,7 @@ void Stage::apply(const WorldChanges& worldChanges) {
   else
     mapper_->update(worldChanges.changes);
   mapper_->bind(worldChanges.bound);
+  bound_ = worldChanges.bound;
   viewer_.reset();
   if (worldChanges.bound.viewpoint) viewer_ = worldChanges.camera;
 }
@@ -228,27 +232,34 @@ bool Stage::leavesViewpointOut(const View& view) const {
   return picture::leavesViewpointOut(*mapper_, view, aspectOf(settings));
 }
 
+// Returns whether the world's Background is shown. Otherwise alpha is the coverage by shapes.
+bool Stage::showsBackground() const {
+  return (settings.background.kind == Background::Kind::world ||
+          settings.background.kind == Background::Kind::backdrop) &&
+         !settings.studio.on;
+}
+
+void Stage::place(const View& view) {
+  readBackground();
+  shown_ = cameraOf(view);
+  pinhole_ = view.pinhole;
+  if (!view.intrinsics) return;
+  pinhole_ = pinholeOf(*view.intrinsics, shown_.matrix, settings.width, settings.height);
+  shown_.fovy = pinhole_->fovy;
+}
+
 void Stage::prepare(const View& view) {
   using Headlight = xvrml::MapOptions::Headlight;
   const bool studio = settings.studio.on;
   mapper_->setHeadlight(studio && settings.headlight == Headlight::automatic ? Headlight::off
                                                                              : settings.headlight);
   mapper_->setModelLight(settings.environment.empty() && !studio);
-  // otherwise alpha is the coverage by shapes
-  mapper_->setBackground((settings.background.kind == Background::Kind::world ||
-                          settings.background.kind == Background::Kind::backdrop) &&
-                         !studio);
-  readBackground();
-  shown_ = cameraOf(view);
-  std::optional<View::Pinhole> pinhole = view.pinhole;
-  if (view.intrinsics) {
-    pinhole = pinholeOf(*view.intrinsics, shown_.matrix, settings.width, settings.height);
-    shown_.fovy = pinhole->fovy;
-  }
+  mapper_->setBackground(showsBackground());
+  place(view);
   mapper_->map(shown_);
-  if (pinhole) {
-    rtLoadMatrixd(pinhole->sheared);
-    rtPerspective(pinhole->fovy * 180 / std::numbers::pi);
+  if (pinhole_) {
+    rtLoadMatrixd(pinhole_->sheared);
+    rtPerspective(pinhole_->fovy * 180 / std::numbers::pi);
   }
   useEnvironment();
   if (studio) {
@@ -257,6 +268,30 @@ void Stage::prepare(const View& view) {
     throwOnError("studio");
   }
   if (memoryExhausted_) throw std::bad_alloc();
+}
+
+void Stage::rasterize(Picture& picture) const {
+  RasterView view;
+  view.camera = shown_;
+  if (pinhole_) view.toWorld = pinhole_->sheared;
+  view.width = settings.width;
+  view.height = settings.height;
+  view.linear = settings.linear;
+  view.headlight = settings.headlight;
+  view.bound = bound_;
+  view.showsBackground = showsBackground();
+  view.shaderPath = settings.shaderPath;
+  view.threads = settings.threads;
+  setFacts(settings, picture);
+  picture.note = rasterNote;
+  try {
+    picture.planes[RT_RGBA] = picture::rasterize(*world_, view);
+  } catch (const std::length_error& error) { throw RenderError(error.what()); }
+  const BackgroundLayer backdrop({Background::Kind::colour, settings.studio.backdrop, {}},
+                                 settings.linear); // stands for the studio
+  const BackgroundLayer& behind = settings.studio.on ? backdrop : backgroundLayer_;
+  behind.compositeOver(picture.planes[RT_RGBA], settings.width, settings.height);
+  keepCrop(settings, picture);
 }
 
 void Stage::readBackground() {

@@ -60,8 +60,12 @@ class Stage {
   xvrml::CameraSettings cameraOf(const View& view) const;
   // Returns whether the view leaves out the first Viewpoint (camera.h).
   bool leavesViewpointOut(const View& view) const;
-  // Maps the world for a view.
+  // Places the camera of a view.
+  void place(const View& view);
+  // Does this, and maps the world for the view.
   void prepare(const View& view);
+  // Draws the world as the camera has been placed, by the z-buffer. Throws RenderError.
+  void rasterize(Picture& picture) const;
   // Maps the world for sensors, as it is for a view.
   void prepareSensors(const View& view);
   // Returns the sensors of the world. Throws SensorError. [after prepareSensors]
@@ -90,6 +94,7 @@ class Stage {
 
  private:
   void makeMapper();
+  bool showsBackground() const;
   void useEnvironment();
   void readBackground();
   Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame);
@@ -107,9 +112,11 @@ class Stage {
   BackgroundLayer backgroundLayer_{{}, true}; // drawn behind the frames, as `background_` says
   Background background_;
   xvrml::CameraSettings shown_{};
-  bool borrowed_ = false; // the context belongs to the cluster
+  std::optional<View::Pinhole> pinhole_; // replaces the matrix and the angle of shown_
+  bool borrowed_ = false;                // the context belongs to the cluster
   // viewer of a running world, if a Viewpoint is bound
   std::optional<xvrml::CameraSettings> viewer_;
+  std::optional<xvrml::BoundNodes> bound_; // the bound nodes of a running world
   uint64_t generation_ = 0; // generation of the browser's world that the mapper shows
   std::mutex messagesMutex_;
   std::vector<std::string> messages_;

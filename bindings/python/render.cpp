@@ -382,7 +382,8 @@ void defineRender(py::object worldClass) {
       parameterList(parameter("exposure", &A::exposure), parameter("view", &A::view),
                     parameter("crop", &A::crop), qualityParameter<std::string>(RT_DEPTH_ALONG),
                     parameter("preset", &A::preset), parameter("studio", &A::studio),
-                    parameter("from_", &A::from), parameter("ortho", &A::ortho)),
+                    parameter("from_", &A::from), parameter("ortho", &A::ortho),
+                    parameter("raster", &A::raster)),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
       "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "
@@ -402,6 +403,8 @@ void defineRender(py::object worldClass) {
       "gives to shapes stay. studio: light of a studio before a backdrop of this colour. from_: "
       "'three-quarter', 'front', 'top' ..., as --from. A model without light, viewpoint and "
       "background is shown before a grey backdrop; studio=False or background='black' leaves it. "
+      "raster: draws by a z-buffer instead of rays, for a first look at a large world, as "
+      "--preview-raster of vv; the picture has the channel rgba alone. "
       "progress: True for a bar, or a function that is called with the fraction done. Ctrl-C "
       "raises KeyboardInterrupt, whose attribute image is the picture so far.");
 }

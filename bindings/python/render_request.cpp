@@ -225,6 +225,20 @@ void setChannels(const char*, const Given& given, RenderRequest& request) {
   request.settings.channels = request.channels;
 }
 
+// Pictures of the z-buffer have rgba alone, and no samples.
+void setRaster(const char* name, const Given& given, RenderRequest& request) {
+  Settings& settings = request.settings;
+  if (!given.raster) return;
+  const bool asksForMore = !given.channels.is_none() && request.channels != RT_RGBA;
+  if (given.spp || settings.error > 0 || settings.timeLimit > 0 || asksForMore ||
+      !given.cluster.is_none())
+    throw py::value_error(fmt::format("{}: it draws without rays: not with spp, error, "
+                                      "time_limit, channels other than rgba, or cluster",
+                                      name));
+  settings.raster = true;
+  settings.channels = request.channels = RT_RGBA;
+}
+
 void checkViewpoint(const char*, const Given& given, RenderRequest&) {
   if (!given.viewpoint.is_none() && (!given.camera.is_none() || given.fit))
     throw py::value_error("viewpoint: not with camera or fit, which look from elsewhere");
@@ -330,6 +344,7 @@ constexpr Rule rules[] = {
     {"headlight", setHeadlight},
     {"spp", setSamples},
     {"channels", setChannels},
+    {"raster", setRaster},
     {"crop", setCrop},
     {"viewpoint", checkViewpoint},
     {"fit", setFit},

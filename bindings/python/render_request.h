@@ -26,7 +26,7 @@ struct RenderArguments {
   py::object channels = py::none();
   py::object cluster = py::none();
   py::object progress = py::none();
-  bool multiplyTextures = false, exactShapes = false;
+  bool multiplyTextures = false, exactShapes = false, raster = false;
   std::optional<std::string> up;
   py::object background = py::none();
   std::string isa = "auto";

@@ -196,10 +196,13 @@ py::object Viewer::look() {
                  picture->alone, picture->overhead, picture->samples, picture->rebuilding);
     light_ = picture::lightOf(picture->stats, true);
   }
-  // The gaps may show the picture of another view.
-  if (viewers_->filling != this && picture->covered < 1) return py::none();
-  viewers_->filling = this;
-  last_ = withoutShader(shownCamera());
+  // The world may still be read while the fast view is shown.
+  if (!picture->raster) {
+    // The gaps may show the picture of another view.
+    if (viewers_->filling != this && picture->covered < 1) return py::none();
+    viewers_->filling = this;
+    last_ = withoutShader(shownCamera());
+  }
   py::dict facts;
   facts["moving"] = moving_;
   facts["preview"] = picture->preview;

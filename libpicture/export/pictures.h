@@ -3,29 +3,30 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "libpicture/export/picture_source.h"
 #include "libpicture/export/remarks.h"
-#include "xvrml/renderer.h"
 
 namespace picture {
 
 struct PictureFile {
   std::string bytes; // a PNG or JPEG file
   bool isPng = true;
-  int components = 3;       // 1 grey, 2 grey and alpha, 3 colours, 4 colours and alpha
-  bool transparent = false; // a pixel has an alpha below 1
+  int components = 3;       // as in PictureSource::Traits
+  bool transparent = false; // as in PictureSource::Traits
 };
 
-class Pictures {
+class Pictures : public PictureSource {
  public:
   Pictures(const xvrml::World& world, Remarks& remarks) : world_(world), remarks_(remarks) {}
-  // Returns the place in files() of the picture of a texture node; none for null and for a node
-  // without a picture, which is counted in the remarks.
-  std::optional<size_t> of(const xvrml::Node* texture);
+  // Returns places in files(). A node without a picture is counted in the remarks.
+  std::optional<size_t> of(const xvrml::Node* texture) override;
+  Traits traitsOf(size_t place) const override {
+    return {files_[place].components, files_[place].transparent};
+  }
   const std::vector<PictureFile>& files() const { return files_; }
   // Returns the files that pictures were read from.
   std::vector<std::string> inputs() const;

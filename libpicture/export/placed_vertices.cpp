@@ -1,5 +1,6 @@
 #include "libpicture/export/placed_vertices.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -19,11 +20,13 @@ Vec vecOf(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
 } // namespace
 
-PlacedVertices::PlacedVertices(const xvrml::DrawnShape& shape, Remarks& remarks)
-    : vertices_(shape.mesh()), matrix_(shape.matrix()) {
+PlacedVertices::PlacedVertices(const xvrml::GeometryArrays& arrays, const double matrix[16],
+                               Remarks& remarks)
+    : vertices_(arrays) {
+  std::copy_n(matrix, 16, matrix_.begin());
   if (vertices_.leftOut() > 0)
     remarks.change("triangles, lines or points with numbers that are not finite are left out");
-  const double* m = matrix_;
+  const double* m = matrix;
   const Vec x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
   // The inverse transposed matrix, times the determinant.
   normals_[0] = cross(y, z);
@@ -34,12 +37,17 @@ PlacedVertices::PlacedVertices(const xvrml::DrawnShape& shape, Remarks& remarks)
     for (Vec& column : normals_) column = column * -1.0;
 }
 
-Vec3f PlacedVertices::point(size_t i) const {
+Vec PlacedVertices::place(size_t i) const {
   const Vec3f p = vertices_.point(i);
-  const double* m = matrix_;
-  return {float(m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12]),
-          float(m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13]),
-          float(m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14])};
+  const auto& m = matrix_;
+  return {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
+          m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
+          m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
+}
+
+Vec3f PlacedVertices::point(size_t i) const {
+  const Vec p = place(i);
+  return {float(p.x), float(p.y), float(p.z)};
 }
 
 Vec3f PlacedVertices::normal(size_t i) const {

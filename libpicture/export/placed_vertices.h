@@ -1,5 +1,5 @@
 // placed_vertices.h: The vertices of a drawn shape in the coordinates of the world, for formats
-// without a hierarchy. [the thread that owns the world]
+// without a hierarchy and for the z-buffer renderer. [the thread that owns the world]
 #pragma once
 
 #include <array>
@@ -14,10 +14,14 @@ namespace picture {
 class PlacedVertices {
  public:
   // Counts in the remarks what is left out because its numbers are not finite.
-  PlacedVertices(const xvrml::DrawnShape& shape, Remarks& remarks);
+  PlacedVertices(const xvrml::DrawnShape& shape, Remarks& remarks)
+      : PlacedVertices(shape.mesh(), shape.matrix(), remarks) {}
+  // arrays: must outlive the object. matrix: from them to the world, column by column.
+  PlacedVertices(const xvrml::GeometryArrays& arrays, const double matrix[16], Remarks& remarks);
   const Vertices& local() const { return vertices_; }
   size_t size() const { return vertices_.size(); }
-  xvrml::Vec3f point(size_t i) const;
+  Vec place(size_t i) const;          // where a vertex is
+  xvrml::Vec3f point(size_t i) const; // the same in floats
   // Returns a vector of length 1. Without normals of the shape there is none.
   xvrml::Vec3f normal(size_t i) const;
   // Returns the corners of triangle t, counter-clockwise as seen from the front, also where the
@@ -30,7 +34,7 @@ class PlacedVertices {
 
  private:
   Vertices vertices_;
-  const double* matrix_;
+  std::array<double, 16> matrix_;
   Vec normals_[3]; // columns of the matrix for normals
   bool mirrors_ = false;
 };

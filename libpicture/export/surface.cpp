@@ -110,7 +110,7 @@ void Surfaces::setColorPicture(const AppearanceParts& parts, const MaterialValue
                                Surface& surface) {
   surface.picture = pictureOf(parts, xvrml::colorTexture(parts));
   if (!surface.picture) return;
-  const PictureFile& file = pictures_.files()[surface.picture->file];
+  const PictureSource::Traits file = pictures_.traitsOf(surface.picture->file);
   const bool physical = values.model == Model::physical || values.model == Model::unlit;
   if (file.components >= 3 && !physical && !parts.texturesMultiply()) {
     surface.color = {1, 1, 1};
@@ -142,7 +142,7 @@ void Surfaces::setMaterial(const AppearanceParts& parts, Surface& surface) {
   }
   const bool transparent =
       surface.opacity < 1 ||
-      (surface.picture && pictures_.files()[surface.picture->file].transparent);
+      (surface.picture && pictures_.traitsOf(surface.picture->file).transparent);
   setAlpha(parts.plain, transparent, surface);
   remarkLost(parts, values);
 }
@@ -308,7 +308,7 @@ void Surfaces::setShader(const AppearanceParts& parts, Surface& surface) {
   made.name = surface.name;
   made.showsVertexColors = known && row->showsVertexColors;
   if (values->has("texture")) made.picture = ownPicture(parts, *values, surface.picture);
-  const bool transparent = made.picture && pictures_.files()[made.picture->file].transparent;
+  const bool transparent = made.picture && pictures_.traitsOf(made.picture->file).transparent;
   if (transparent) made.alpha = Surface::Alpha::blend;
   if (known) {
     row->apply(*values, made, remarks_);

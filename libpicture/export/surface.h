@@ -1,12 +1,13 @@
 // surface.h: The look of a shape by the terms of physically based materials, whatever node or
-// shader it comes from. All formats take it from here. [the thread that owns the world]
+// shader it comes from. All formats of exports take it from here, and the z-buffer renderer does.
+// [the thread that owns the world]
 #pragma once
 
 #include <array>
 #include <optional>
 #include <string>
 
-#include "libpicture/export/pictures.h"
+#include "libpicture/export/picture_source.h"
 #include "libpicture/export/remarks.h"
 #include "libpicture/export/shader_values.h"
 #include "xvrml/renderer.h"
@@ -16,7 +17,7 @@ namespace picture {
 // A picture of a surface.
 struct SurfacePicture {
   const xvrml::Node* node = nullptr; // the texture node, for its repetition
-  size_t file = 0;                   // place in Pictures::files()
+  size_t file = 0;                   // place in the PictureSource
   // Texture coordinates s t of the geometry become (a s + c t + e, b s + d t + f).
   std::array<float, 6> transform{1, 0, 0, 1, 0, 0}; // a b c d e f
 };
@@ -65,7 +66,7 @@ float reflectanceOf(float n, float k);
 // Makes surfaces of appearances.
 class Surfaces {
  public:
-  Surfaces(Pictures& pictures, const std::string& shaderPath, Remarks& remarks)
+  Surfaces(PictureSource& pictures, const std::string& shaderPath, Remarks& remarks)
       : pictures_(pictures), remarks_(remarks), shaders_(shaderPath) {}
   // lines: the geometry consists of lines or points, which are neither lit nor textured (ISO/IEC
   // 14772-1 6.24, 6.36).
@@ -83,7 +84,7 @@ class Surfaces {
                                            const std::optional<SurfacePicture>& other);
   void remarkLost(const xvrml::AppearanceParts& parts, const xvrml::MaterialValues& values);
 
-  Pictures& pictures_;
+  PictureSource& pictures_;
   Remarks& remarks_;
   ShaderTables shaders_;
 };

@@ -324,6 +324,15 @@ const OptionInfo table[] = {
      with(repeatable,
           needs("--denoise",
                 "--raw needs {}: without it, -o writes the picture as it was rendered"))},
+    {"--preview-raster", "", "Picture",
+     "Draw the pictures of -o by a z-buffer instead of rays, for a first look at a large world: "
+     "without shadows, reflections, refractions and samples. Files say so.",
+     [](Options& o, const std::string&) { o.render.raster = true; },
+     with(needs("-o"),
+          excludes("--spp,--error,--time-limit,--channels,--transport,--resume,--sums,--seed,"
+                   "--audit,--compare,--measure,--stats,--false-colour,--denoise,--preview,"
+                   "--record,--environment,--studio,--camera-shader,--workers,--listen-workers",
+                   "--preview-raster draws without rays: it cannot be used with {}"))},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint, given by DEF name, description or number from 0 (default: the "
      "first). all makes a picture from each viewpoint; its name replaces {viewpoint} in the file "

@@ -216,6 +216,15 @@ void checkCrop(const Options& o) {
     throw UsageError("--crop: " + why);
 }
 
+// Refuses files that could not say what their picture is. what: what an option makes.
+void checkNotes(const Options& o, const char* option, const char* what) {
+  for (const Output& output : o.outputs)
+    if (!output.raw && output.film == picture::FilmKind::none && !output.format->keepsNote)
+      throw UsageError(fmt::format(
+          "{}: {} files cannot say that they are {}; {} files and films can", option,
+          output.format->name, what, picture::formatsWith(&picture::Format::keepsNote)));
+}
+
 // Refuses what a preview cannot be, or could not say of itself.
 void checkPreview(const Options& o) {
   if (!o.render.preview) return;
@@ -228,11 +237,7 @@ void checkPreview(const Options& o) {
                                      "--channels"}};
   for (const auto& [isBroken, message] : refused)
     if (isBroken) throw UsageError(message);
-  for (const Output& output : o.outputs)
-    if (output.film == picture::FilmKind::none && !output.format->keepsNote)
-      throw UsageError(fmt::format(
-          "--preview: {} files cannot say that they are previews; {} files and films can",
-          output.format->name, picture::formatsWith(&picture::Format::keepsNote)));
+  checkNotes(o, "--preview", "previews");
 }
 
 // Refuses what needs values without bias, and what could not say that it is denoised.
@@ -250,11 +255,7 @@ void checkDenoise(const Options& o) {
        "--raw FILE.exr keeps them"}};
   for (const auto& [isBroken, message] : refused)
     if (isBroken) throw UsageError(message);
-  for (const Output& output : o.outputs)
-    if (!output.raw && output.film == picture::FilmKind::none && !output.format->keepsNote)
-      throw UsageError(fmt::format(
-          "--denoise: {} files cannot say that they are denoised; {} files and films can",
-          output.format->name, picture::formatsWith(&picture::Format::keepsNote)));
+  checkNotes(o, "--denoise", "denoised");
 }
 
 } // namespace
@@ -268,6 +269,7 @@ void checkTogether(const Options& options) {
   for (const Rule& rule : rules)
     if (rule.broken(options)) throw UsageError(rule.message);
   checkPreview(options);
+  if (options.render.raster) checkNotes(options, "--preview-raster", "fast views");
   checkDenoise(options);
   checkCrop(options);
 }

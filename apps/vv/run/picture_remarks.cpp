@@ -60,7 +60,9 @@ void PictureRemarks::sayLook(const picture::RenderResult& result, bool falseColo
   const picture::Picture& made = result.picture;
   if (!made.note.empty() && !std::exchange(biasSaid_, true) && !options_.quiet)
     say(fmt::format("vv: {}; without {}, pictures are unbiased", made.note,
-                    options_.denoise ? "--denoise" : "--preview"));
+                    options_.denoise         ? "--denoise"
+                    : options_.render.raster ? "--preview-raster"
+                                             : "--preview"));
   const bool shown =
       std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
         return output.film != picture::FilmKind::none || output.format->appliesCurve;
@@ -88,6 +90,7 @@ void PictureRemarks::sayTimes(const PictureRequest& request, const picture::Rend
 
 void PictureRemarks::sayHint(const PictureRequest& request, const picture::RenderResult& result,
                              bool last, bool idle, picture::Renderer& renderer) {
+  if (options_.render.raster) return; // hints are found by rays
   // Nothing in the studio is seen before its backdrop.
   const bool studioAlone =
       options_.render.studio.on && (result.map.shapes == 0 || (idle && renderer.bounds().empty));

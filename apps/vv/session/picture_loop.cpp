@@ -271,6 +271,7 @@ bool PictureLoop::lookForStill() {
 }
 
 bool PictureLoop::note(const picture::LivePicture& picture) {
+  if (picture.raster) return !hasShown(); // the first picture of the frame is still to come
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
   shown_ = Shown::something;

@@ -843,6 +843,7 @@ class World:
         studio: Union[None, bool, str, Sequence[float]] = ...,
         from_: Optional[str] = ...,
         ortho: Optional[float] = ...,
+        raster: bool = ...,
     ) -> Picture:
         ...
 

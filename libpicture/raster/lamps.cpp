@@ -1,0 +1,106 @@
+#include "libpicture/raster/lamps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libpicture/export/surface.h"
+
+namespace picture::raster {
+
+using xvrml::Color;
+using xvrml::Node;
+using xvrml::RenderState;
+
+namespace {
+
+Vec vecOf(const xvrml::Vec3f& v) { return {v.x, v.y, v.z}; }
+
+Color scaled(const Color& c, double factor) {
+  return {float(c.r * factor), float(c.g * factor), float(c.b * factor)};
+}
+
+double notNegative(double v) { return v > 0 ? v : 0; }
+
+// Returns how many nodes of a path lead to the group that a light shines on. A light that is not
+// global shines on its parent group, any other on the Inline that it is in.
+size_t scopeOf(const RenderState& light, bool global) {
+  size_t count = light.path.size() - 1;
+  if (global) {
+    while (count > 0 && !xvrml::inlineScope(*light.path[count - 1])) --count;
+    return count;
+  }
+  while (count > 0 && xvrml::nodeCast<xvrml::ProtoInstance>(light.path[count - 1])) --count;
+  return count;
+}
+
+} // namespace
+
+template <class T> void Lamp::setLight(const T& light, bool linear) {
+  const Color color = linear ? linearOf(light.color) : light.color;
+  direct_ = scaled(color, notNegative(light.intensity));
+  ambient_ = scaled(color, notNegative(light.ambientIntensity));
+}
+
+template <class T> void Lamp::setPlaced(const T& light, bool linear) {
+  setLight(light, linear);
+  location_ = vecOf(light.location);
+  attenuation_ = {notNegative(light.attenuation.x), notNegative(light.attenuation.y),
+                  notNegative(light.attenuation.z)};
+  radius_ = light.radius;
+}
+
+std::optional<Lamp> Lamp::of(const Node& node, const RenderState& state, bool linear) {
+  Lamp lamp;
+  bool on = false, global = true;
+  if (const auto* parallel = xvrml::nodeCast<xvrml::nodes::DirectionalLight>(&node)) {
+    lamp.kind_ = Kind::directional;
+    lamp.setLight(*parallel, linear);
+    lamp.axis_ = vecOf(parallel->direction);
+    on = parallel->on;
+    global = parallel->global;
+  } else if (const auto* point = xvrml::nodeCast<xvrml::nodes::PointLight>(&node)) {
+    lamp.setPlaced(*point, linear);
+    on = point->on;
+    global = point->global;
+  } else if (const auto* spot = xvrml::nodeCast<xvrml::nodes::SpotLight>(&node)) {
+    lamp.kind_ = Kind::spot;
+    lamp.setPlaced(*spot, linear);
+    lamp.axis_ = unit(vecOf(spot->direction));
+    lamp.cut_ = spot->cutOffAngle;
+    lamp.beam_ = std::min(spot->beamWidth, spot->cutOffAngle);
+    on = spot->on;
+    global = spot->global;
+  } else {
+    return {};
+  }
+  lamp.toWorld_ = affineOf(state.matrix);
+  const std::optional<Affine> inverse = lamp.toWorld_.inverse();
+  if (!on || !inverse) return {};
+  lamp.fromWorld_ = *inverse;
+  const auto path = state.path.first(scopeOf(state, global));
+  lamp.scope_.assign(path.begin(), path.end());
+  return lamp;
+}
+
+bool Lamp::reaches(const RenderState& shape) const {
+  return shape.path.size() >= scope_.size() &&
+         std::equal(scope_.begin(), scope_.end(), shape.path.begin());
+}
+
+Incident Lamp::at(const Vec& point) const {
+  if (kind_ == Kind::directional) return {unit(toWorld_.vector(axis_)) * -1.0, direct_, ambient_};
+  const Vec local = fromWorld_.point(point), toLight = location_ + local * -1.0;
+  const double distance = length(toLight);
+  double factor = 0;
+  if (distance <= radius_)
+    factor =
+        1 / std::max(attenuation_.x + distance * (attenuation_.y + distance * attenuation_.z), 1.0);
+  if (kind_ == Kind::spot) {
+    const double angle = std::acos(std::clamp(-dot(unit(toLight), axis_), -1.0, 1.0));
+    const double width = cut_ - beam_;
+    factor *= width > 0 ? std::clamp((cut_ - angle) / width, 0.0, 1.0) : angle < cut_ ? 1.0 : 0.0;
+  }
+  return {unit(toWorld_.vector(toLight)), scaled(direct_, factor), scaled(ambient_, factor)};
+}
+
+} // namespace picture::raster

@@ -1,0 +1,47 @@
+// lamps.h: The lights of a world by the equations of ISO/IEC 14772-1 (4.6.6, 4.14.4), without
+// shadows. [lists: the thread that owns the world; lit(): any thread]
+#pragma once
+
+#include <vector>
+
+#include "libpicture/raster/affine.h"
+#include "xvrml/renderer.h"
+
+namespace picture::raster {
+
+// The light of one lamp at a point.
+struct Incident {
+  Vec toLight; // a unit vector
+  xvrml::Color direct, ambient;
+};
+
+class Lamp {
+ public:
+  // A parallel light from the eye, without ambient light.
+  explicit Lamp(const Vec& direction) : kind_(Kind::directional), axis_(direction) {}
+  // Returns nothing for nodes that are no lamps, that are off, and whose place is unusable.
+  static std::optional<Lamp> of(const xvrml::Node& node, const xvrml::RenderState& state,
+                                bool linear);
+  // Returns whether a shape is within the group that the lamp shines on.
+  bool reaches(const xvrml::RenderState& shape) const;
+  Incident at(const Vec& point) const;
+
+ private:
+  enum class Kind : uint8_t { directional, point, spot };
+  Lamp() = default;
+  template <class T> void setLight(const T& light, bool linear);
+  template <class T> void setPlaced(const T& light, bool linear);
+
+  Kind kind_ = Kind::point;
+  xvrml::Color direct_{1, 1, 1}, ambient_;
+  Affine toWorld_, fromWorld_; // from the lamp's coordinates, in which distances are measured
+  Vec location_, axis_;        // axis_: where the light travels to
+  Vec attenuation_{1, 0, 0};
+  double radius_ = 0, beam_ = 0, cut_ = 0;
+  std::vector<const xvrml::Node*> scope_; // path to the group that is lit; empty: everything
+};
+
+// More lamps than this light nothing, so that a hostile world ends.
+inline constexpr size_t maximumLamps = 32;
+
+} // namespace picture::raster
