@@ -32,9 +32,9 @@ double raysOf(const RayCounters& counters) {
   return double(counters.camera + counters.secondary + counters.shadow);
 }
 
+// The variance and the rays of one camera path: the mean over the pixels, colours summed.
 struct CameraTrial {
-  double variance = 0; // of one path, colours summed, as the mean over the pixels
-  double rays = 0;     // of one path
+  double variance = 0, rays = 0;
 };
 
 CameraTrial tryCameraPaths(RenderScene& scene, const std::atomic<bool>& stop) {

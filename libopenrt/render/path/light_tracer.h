@@ -10,8 +10,8 @@
 //
 // The camera paths of the same frame leave out exactly these paths (PathFlags::pathClass,
 // PathClass::caustic): the surface seen by the camera is non-specular, and the vertex next to the
-// light is specular. They keep the light of the sky beside its sun (unsampled_lights.h). What they
-// share with the paths by way of glossy lobes is weighted (lights/light_path_weights.h).
+// light is specular. They keep the light of the sky beside its sun (unsampled_lights.h). Light
+// by way of glossy lobes is divided between both by weights (lights/light_path_weights.h).
 #pragma once
 
 #include <atomic>
@@ -27,8 +27,8 @@
 
 namespace openrt {
 
-// What light paths by way of glossy surfaces are worth: the second moments of the radiance that
-// they and one camera path of each pixel find, summed over the colours, as the mean over the
+// Tells what light paths by way of glossy surfaces are worth: the second moments of the radiance
+// that they and one camera path of each pixel find, summed over the colours, as the mean over the
 // pixels.
 struct GlossyGain {
   double without = 0, with = 0; // camera paths alone; both, with their weights
@@ -79,7 +79,7 @@ class LightTracer {
   void addCrossings(const Wave& wave);
 
   const RenderScene& scene_;
-  const LightSources* sources_ = nullptr; // of the paths in flight
+  const LightSources* sources_ = nullptr; // where the paths in flight have started
   uint32_t seed_ = 0;
   uint32_t level_ = 0; // depth of the current wave
   // scale_: contribution of one path to the picture. cameraArea_: factor from areas in

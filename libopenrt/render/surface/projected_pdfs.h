@@ -8,8 +8,9 @@ namespace openrt {
 
 // For pairs of a hit and a direction, by pair.
 struct ProjectedPdfs {
-  float* ahead; // of the direction, for a path that arrives along the hit's ray
-  float* back;  // of the direction to the ray's origin, for a path that arrives from `direction`
+  // ahead: pdf of the direction, for a path that arrives along the hit's ray. back: pdf of the
+  // direction to the ray's origin, for a path that arrives from `direction`.
+  float *ahead, *back;
 };
 
 // Computes the pdfs of a non-specular lobe for n pairs, in which no hit occurs twice. pdf: of the
