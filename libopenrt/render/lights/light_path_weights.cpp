@@ -5,6 +5,7 @@
 #include "render/lights/emitted.h"
 #include "render/lights/light_sources.h"
 #include "render/surface/projected_pdfs.h"
+#include "render/wave/nearest_hits.h"
 
 namespace openrt {
 
@@ -20,6 +21,21 @@ float lightPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& plac
   return float(scene.glossySources->startPdf(shape, place) * double(surfaces)) *
          (glossyPdf / (glossyPdf + lightPdf));
 }
+
+namespace {
+
+// Returns which of n rays meet a face; null in scenes where none of these is a culled back.
+const uint8_t* findOneWay(const RtsBatch& batch, const Rays& rays, const uint32_t* ray,
+                          uint32_t n) {
+  const Intersector& kernel = *batch.scene.kernel;
+  if (!kernel.cullsBacks()) return nullptr;
+  auto* blocked = batch.arena.take<uint8_t>(padded(n));
+  batch.counters.shadow += n;
+  kernel.occluded(copyRays(rays, ray, n, batch.arena), maskAll, Coherence::incoherent, blocked);
+  return blocked;
+}
+
+} // namespace
 
 const float* cameraPathShares(const RtsBatch& batch, const RtsLobe& lobe, const float* pdf,
                               const LightSamples& samples) {
@@ -46,12 +62,13 @@ const float* cameraPathShares(const RtsBatch& batch, const RtsLobe& lobe, const 
     store(load(rays.dir, r), direction, n++);
   }
   if (n == 0) return nullptr;
+  const uint8_t* oneWay = findOneWay(batch, rays, ray, n);
   const ProjectedPdfs pdfs = projectedPdfs(batch, lobe, n, hit, direction, ahead);
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t r = ray[j], i = hit[j];
     const Vec3f towards = load(rays.dir, r);
     const float cosine = std::fabs(dot(load(lobe.normal, i), towards));
-    if (!(pdfs.ahead[j] > 0)) continue;
+    if (!(pdfs.ahead[j] > 0) || (oneWay && oneWay[j])) continue;
     share[r] = cameraPathShare(lightPathRatio(
         batch.scene, samples.shape[r],
         lightSampleContext(*batch.points, i, false).position + samples.distance[r] * towards,

@@ -17,6 +17,7 @@
 // Weights may be any function of the path that both sides compute alike, so what only one of them
 // knows is left out: Russian roulette, selection among lobes, the cosine at the emitter and the
 // place on the lens. Specular surfaces and straight passages between the two have the factor 1.
+// A path that skips a culled back face has the ratio 0, because it cannot be run the other way.
 #pragma once
 
 #include <cmath>

@@ -20,12 +20,15 @@ constexpr uint32_t trialSeed = 0x676c6f74u;
 // The weights of light paths make a camera path cost about so much more.
 constexpr double costOfWeights = 1.1;
 
+// Worlds with culled backs and clear things have no such paths: clear sheets of one side pass other
+// light in one direction than in the other.
 bool canTrace(const RenderScene& scene) {
   const edit::FrameSettingsT& frame = scene.frame;
   const RtsClass* camera = scene.camera.shader.shaderClass;
   return tracesLamps(frame.transport) && !showsNoLight(frame) && frame.samples >= fewestSamples &&
          frame.measure == RT_MEASURE_NOTHING && lightStrideOf(frame) == 1 && camera &&
-         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass;
+         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass &&
+         !(scene.kernel->cullsBacks() && scene.transparentShadows);
 }
 
 double raysOf(const RayCounters& counters) {
