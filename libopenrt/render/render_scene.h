@@ -70,6 +70,9 @@ struct RenderScene {
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
       lightSources; // light tracing; null if there is nothing to trace
+  // Light paths that a glossy surface scatters first (lights/light_path_weights.h); null: camera
+  // paths make all of these.
+  std::shared_ptr<const LightSources> glossySources;
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
   // scene fills space (fillsSpace()).
   std::vector<MediumLights> mediumLights;

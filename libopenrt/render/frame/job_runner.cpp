@@ -19,8 +19,9 @@ namespace {} // namespace
 
 FrameFacts factsOf(const RenderScene& scene) {
   return {.camera = scene.camera.shader.shaderClass != nullptr,
-          .lamps = scene.lightSources != nullptr,
-          .guide = scene.photonGuide || scene.lightPathFlux > 0 ? photonsOf(scene.frame) : 0};
+          .lamps = scene.lightSources || scene.glossySources,
+          .guide = (scene.photonGuide || scene.lightPathFlux > 0 ? photonsOf(scene.frame) : 0) |
+                   (scene.glossySources ? FrameFacts::glossyPaths : 0)};
 }
 
 struct JobRunner::Impl {
@@ -95,7 +96,7 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
 }
 
 bool JobRunner::Impl::light(const Job& job, const std::atomic<bool>& stop, JobResult& result) {
-  if (!lamps) lamps.emplace(*scene, *scene->lightSources);
+  if (!lamps) lamps.emplace(*scene);
   lamps->picture().swap(result.light);
   const bool done = lamps->trace(job.count, job.replicates.seed, stop);
   lamps->picture().swap(result.light);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "render/lights/environment.h"
+#include "render/lights/light_path_weights.h"
 #include "render/lights/sampled_points.h"
 #include "render/lights/shadows.h"
 #include "render/surface/surface_shader.h"
@@ -39,6 +40,20 @@ bool isLeftToLightTracing(const RtsBatch& batch, uint32_t i) {
          startsLightPaths(batch, i);
 }
 
+// Returns the ratio of pdfs of the path that has found the emission of hit i
+// (light_path_weights.h). lightPdf: of light sampling at its last surface.
+float lightPathRatioAt(const RtsBatch& batch, uint32_t i, uint32_t shape, float lightPdf) {
+  const PathStates& states = *batch.states;
+  const uint32_t lane = batch.order[i];
+  if (!(states.glossyPdf[lane] > 0) || !startsLightPaths(batch, i)) return 0;
+  const RtsHits& hits = batch.points->hits;
+  // A curved shape starts paths on both sides if both emit.
+  const EmissiveShapes::Shape& s = (*batch.scene.emitters->shapes())[shape];
+  if (s.curved() && !(s.sides & (hits.flags[i] & RTS_HIT_BACK ? 2 : 1))) return 0;
+  return lightPathRatio(batch.scene, shape, load(hits.position, i), states.lightPathRatio[lane],
+                        states.glossyPdf[lane], lightPdf);
+}
+
 // Returns the MIS weights of the emission that rays have found at some hits.
 float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, const uint32_t* hit,
                           uint32_t n) {
@@ -54,7 +69,9 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
     weight[j] = boundaries.visibleAt(i) && !isLeftToLightTracing(batch, i) ? 1 : 0;
     if (states.flagsOf(lane).specularSinceDiffuse() && startsLightPaths(batch, i))
       weight[j] *= states.unguidedWeight[lane];
-    if (weight[j] == 0 || !(states.pdf[lane] > 0) || shape == EmissiveShapes::none) continue;
+    if (weight[j] == 0 || !(states.pdf[lane] > 0 || states.glossyPdf[lane] > 0) ||
+        shape == EmissiveShapes::none)
+      continue;
     const uint32_t f = found.count++;
     const LightSampleContext from = states.previousOf(lane);
     store(from.position, found.position, f);
@@ -65,8 +82,12 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
     place[f] = j;
   }
   batch.scene.emitters->pdf(found, lightPdf);
-  for (uint32_t f = 0; f < found.count; f++)
-    weight[place[f]] = std::isfinite(lightPdf[f]) ? bsdfPdf[f] / (bsdfPdf[f] + lightPdf[f]) : 0.0f;
+  for (uint32_t f = 0; f < found.count; f++) {
+    float& w = weight[place[f]];
+    if (bsdfPdf[f] > 0)
+      w = std::isfinite(lightPdf[f]) ? bsdfPdf[f] / (bsdfPdf[f] + lightPdf[f]) : 0.0f;
+    w *= cameraPathShare(lightPathRatioAt(batch, hit[place[f]], found.shape[f], lightPdf[f]));
+  }
   return weight;
 }
 
@@ -157,7 +178,8 @@ void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling,
     const float* followed = sampling.selectionProbability[l];
     if (!followed) continue;
     values.evaluate(batch.lobes[l], batch.points->hits, rays.count, samples.hit, rays.dir);
-    weightByLobe(batch.lobes[l], followed, values, more, samples);
+    weightByLobe(batch.lobes[l], followed, values, more, samples,
+                 cameraPathShares(batch, batch.lobes[l], values.pdf, samples));
     more = true;
   }
   removeUseless(samples);

@@ -60,7 +60,7 @@ void startShadowRays(const LightPoints& points, const SampledLights& sampled, Li
 }
 
 void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& values, bool more,
-                  const LightSamples& samples) {
+                  const LightSamples& samples, const float* cameraShare) {
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   const LaneVec none{zero, zero, zero};
   const uint32_t n = samples.rays.count;
@@ -71,7 +71,8 @@ void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& 
     const LaneVec weight = checked(gather(lobe.weight, hit));
     const Mask lit = hn::And(share > zero, largest(weight) > zero);
     const Lanes scale = one / (load(samples.pdf + r) + share * load(values.pdf + r));
-    const LaneVec response = select(lit, weight * load(values.value, r) * scale, none);
+    LaneVec response = select(lit, weight * load(values.value, r) * scale, none);
+    if (cameraShare) response = response * load(cameraShare + r);
     store(more ? load(samples.response, r) + response : response, samples.response, r);
     if (coated) store(load(samples.coated, r) + response, samples.coated, r);
   }
@@ -156,8 +157,8 @@ void startShadowRays(const LightPoints& points, const SampledLights& sampled, Li
   HWY_DYNAMIC_DISPATCH(startShadowRays)(points, sampled, out);
 }
 void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& values, bool more,
-                  const LightSamples& samples) {
-  HWY_DYNAMIC_DISPATCH(weightByLobe)(lobe, followed, values, more, samples);
+                  const LightSamples& samples, const float* share) {
+  HWY_DYNAMIC_DISPATCH(weightByLobe)(lobe, followed, values, more, samples, share);
 }
 void removeUseless(LightSamples& samples) { HWY_DYNAMIC_DISPATCH(removeUseless)(samples); }
 uint32_t addOneRadiance(const ShapeArrays& shapes, const LightSamples& samples,

@@ -36,9 +36,9 @@ void startShadowRays(const LightPoints& points, const SampledLights& sampled, Li
 
 // Writes the response of a lobe to the light samples, or adds it if `more`: the MIS weight is that
 // of light sampling (balance heuristic). That of a coat is added to `coated`, too. followed: by
-// hit, LobeSampling::selectionProbability.
+// hit, LobeSampling::selectionProbability. share: by ray, cameraPathShares().
 void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& values, bool more,
-                  const LightSamples& samples);
+                  const LightSamples& samples, const float* share = nullptr);
 
 // Removes the samples with response 0.
 void removeUseless(LightSamples& samples);

@@ -43,7 +43,15 @@ bool sameSpecularSurfaces(const RenderScene& a, const RenderScene& b) {
 
 } // namespace
 
-void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
+// Lines and points are no targets of glossy paths, because boundTargets() does not bound them.
+bool LightSources::isTarget(const RenderScene& scene, const Record& record, Kind kind) {
+  const uint32_t traits = (*scene.shaders)[record.shader].traits;
+  if (kind != Kind::glossy) return traits & RTS_SPECULAR;
+  return (traits & RTS_GLOSSY) && record.primitive != edit::Primitive::Lines &&
+         record.primitive != edit::Primitive::Points;
+}
+
+void LightSources::boundTargets(const RenderScene& scene) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Vec3d low{infinite, infinite, infinite}, high = -low;
   const auto add = [&](const Vec3f& p) {
@@ -51,7 +59,7 @@ void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
     high = max(high, Vec3d(p));
   };
   for (const Record& r : scene.records) {
-    if (!((*scene.shaders)[r.shader].traits & RTS_SPECULAR)) continue;
+    if (!isTarget(scene, r, kind_)) continue;
     if (r.primitive == edit::Primitive::Sphere) {
       const Affine& m = r.toRender;
       const Vec3f half{length(m.row(0)), length(m.row(1)), length(m.row(2))};
@@ -80,15 +88,21 @@ void LightSources::measureSceneExtent(const RenderScene& scene) {
   far_ = float(length(Vec3d(vectorOf(high)) - Vec3d(vectorOf(low)))) + radius_;
 }
 
-LightSources::LightSources(const RenderScene& scene, const RenderScene* before, Kind kind) {
-  if (before && before->lightSources && sameSpecularSurfaces(scene, *before)) {
+LightSources::LightSources(const RenderScene& scene, const RenderScene* before, Kind kind)
+    : kind_(kind) {
+  if (kind != Kind::glossy && before && before->lightSources &&
+      sameSpecularSurfaces(scene, *before)) {
     center_ = before->lightSources->center_;
     radius_ = before->lightSources->radius_;
   } else
-    boundSpecularSurfaces(scene);
+    boundTargets(scene);
   if (!(radius_ > 0)) return;
   measureSceneExtent(scene);
   if (!std::isfinite(far_)) return;
+  if (kind == Kind::glossy) {
+    addGlossySources(scene);
+    return;
+  }
   double total = 0;
   const auto add = [&](const Source& source, double power) {
     if (!(power > 0)) return;
@@ -110,9 +124,36 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before, 
   }
 }
 
-// Returns the cosine of the half angle of the cone about the specular surfaces as seen from a
-// point; -1 from inside their bounding sphere.
-double LightSources::coneToSpecular(const Vec3f& from, Vec3f& axis) const {
+// Adds the emissive shapes that surely are where light samples find them.
+void LightSources::addGlossySources(const RenderScene& scene) {
+  const EmissiveShapes* shapes = scene.emitters->shapes();
+  if (!shapes) return;
+  placePdf_.assign(shapes->size(), 0);
+  oneSided_.assign(shapes->size(), false);
+  double total = 0;
+  for (uint32_t i = 0; i < shapes->size(); i++) {
+    const EmissiveShapes::Shape& shape = (*shapes)[i];
+    if (!(shape.power > 0) || shape.uncertain) continue;
+    const double area = shapes->place(scene, i, .5f, .5f).area;
+    if (!(area > 0) || !std::isfinite(area)) continue;
+    sources_.push_back({none, i, {}});
+    cumulative_.push_back(total += double(shape.power));
+    placePdf_[i] = double(shape.power) / area;
+    oneSided_[i] = shape.sides != 3;
+  }
+  for (double& pdf : placePdf_) pdf /= total;
+}
+
+double LightSources::startPdf(uint32_t shape, const Vec3f& place) const {
+  Vec3f axis;
+  const double cosine = coneToTargets(place, axis),
+               half = cosine == -1 && oneSided_[shape] ? .5 : 1;
+  return placePdf_[shape] / (2 * M_PI * (1 - cosine) * half);
+}
+
+// Returns the cosine of the half angle of the cone about the targets as seen from a point; -1 from
+// inside their bounding sphere.
+double LightSources::coneToTargets(const Vec3f& from, Vec3f& axis) const {
   const double distance = length(Vec3d(center_) - Vec3d(from));
   axis = distance > 0 ? Vec3f(Vec3d(center_ - from) / distance) : Vec3f{0, 0, 1};
   const double sine = radius_ / distance;
@@ -148,7 +189,7 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
     start.endless = !std::isfinite(e.radius);
     if (!start.parallel) {
       start.origin = vectorOf(e.position);
-      const double cosine = coneToSpecular(start.origin, axis);
+      const double cosine = coneToTargets(start.origin, axis);
       start.direction = sampleCone(axis, cosine, direction[0], direction[1]);
       start.weight = 2 * M_PI * (1 - cosine) / probability;
       return start;
@@ -171,10 +212,19 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
   start.place = shapes.place(scene, source.shape, place[0], place[1]);
   const Vec3f position = start.place.position, normal = start.place.normal;
   start.origin = position;
-  const double cosine = coneToSpecular(position, axis), solidAngle = 2 * M_PI * (1 - cosine);
+  const double cosine = coneToTargets(position, axis);
+  double solidAngle = 2 * M_PI * (1 - cosine);
   start.direction = sampleCone(axis, cosine, direction[0], direction[1]);
-  const float towards = dot(normal, start.direction);
-  if (!(shapes[source.shape].sides & (towards > 0 ? 1 : 2)) || towards == 0) return start;
+  float towards = dot(normal, start.direction);
+  const auto emits = [&] { return shapes[source.shape].sides & (towards > 0 ? 1 : 2); };
+  if (kind_ == Kind::glossy && cosine == -1 && oneSided_[source.shape]) {
+    solidAngle /= 2; // all directions are wanted: those of the side that emits
+    if (!emits()) {
+      start.direction = -start.direction;
+      towards = -towards;
+    }
+  }
+  if (!emits() || towards == 0) return start;
   start.weight = start.place.area * std::fabs(towards) * solidAngle / probability;
   // Offsets the origin off the surface, to the side that the direction leads to. The position is a
   // sum of about three products, each rounded.

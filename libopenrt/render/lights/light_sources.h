@@ -1,7 +1,7 @@
 // light_sources.h: samples the first rays of light paths. They start on emissive shapes, in the sun
 // of the sky (SkySampler::hasSun) and at lights whose class declares its extent. Only paths that
-// hit a specular surface first are wanted, so directions are aimed at the bounding sphere of all
-// specular surfaces. Built between frames, read by all render threads.
+// hit a specular surface first are wanted, or a glossy one (Kind::glossy), so directions are aimed
+// at the bounding sphere of all such surfaces. Built between frames, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,16 @@ namespace openrt {
 
 class LightSources {
  public:
-  enum class Kind : uint8_t { all, emitters }; // emitters: no lights without extent
-  // Stays empty if nothing emits, or if nothing mirrors or refracts. before: a snapshot with
+  // emitters: no lights without extent. glossy: emissive shapes alone, which aim at glossy
+  // surfaces.
+  enum class Kind : uint8_t { all, emitters, glossy };
+  // Stays empty if nothing emits, or if there is nothing to aim at. before: a snapshot with
   // everything in the same places, or null.
   LightSources(const RenderScene& scene, const RenderScene* before, Kind kind = Kind::all);
   bool empty() const { return cumulative_.empty(); }
+  Kind kind() const { return kind_; }
+  // Returns whether light paths of a kind aim at a record.
+  static bool isTarget(const RenderScene& scene, const Record& record, Kind kind);
 
   struct LightRay {
     Vec3f origin, direction;
@@ -36,18 +41,27 @@ class LightSources {
   LightRay sampleRay(const RenderScene& scene, double pick, const float place[2],
                      const float direction[2]) const;
 
+  // For Kind::glossy: returns about the pdf with which a path starts at a point of a shape and in
+  // the direction of a glossy surface, by area and solid angle.
+  double startPdf(uint32_t shape, const Vec3f& place) const;
+
  private:
   struct Source { // the sun of the sky, if it is neither a light nor a shape
     uint32_t light, shape;
     RtsExtent extent; // extent of the light in render space
   };
-  void boundSpecularSurfaces(const RenderScene& scene);
+  void boundTargets(const RenderScene& scene);
+  void addGlossySources(const RenderScene& scene);
   void measureSceneExtent(const RenderScene& scene);
-  double coneToSpecular(const Vec3f& from, Vec3f& axis) const;
+  double coneToTargets(const Vec3f& from, Vec3f& axis) const;
   Vec3f startOfParallel(const Vec3f& towards, const float place[2]) const;
+  Kind kind_;
   std::vector<Source> sources_;
   std::vector<double> cumulative_; // cumulative power of the sources
-  Vec3f center_;                   // center_, radius_: bounding sphere of all specular surfaces
+  // Kind::glossy: by shape, pdf of a place by area; and whether one side alone emits.
+  std::vector<double> placePdf_;
+  std::vector<bool> oneSided_;
+  Vec3f center_; // center_, radius_: bounding sphere of all targets
   float radius_ = 0;
   float far_ = 0; // distance at which light from afar starts: the whole scene lies in front of it
 };

@@ -1,9 +1,11 @@
 #include "render/path/camera_connections.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "render/lights/shadows.h"
+#include "render/path/light_path_ratios.h"
 #include "render/surface/adjoint.h"
 #include "render/surface/lobes.h"
 #include "shading/running.h"
@@ -54,24 +56,49 @@ CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, ui
   return to;
 }
 
+double cameraArea(const RenderScene& scene) {
+  const double determinant = determinantOf(scene.camera.toLocal);
+  return std::cbrt(determinant * determinant);
+}
+
+const float* coveredPixels(const RtsBatch& batch, const uint32_t* hit, uint32_t n) {
+  Arena& arena = batch.arena;
+  auto* pixels = arena.take<float>(padded(n));
+  ArenaScope scope(arena);
+  auto* middle = arena.take<float>(batch.points->hits.count);
+  std::fill_n(middle, batch.points->hits.count, 0.5f);
+  const float* const lens[2] = {middle, middle};
+  const CameraConnections to = projectToCamera(batch, hit, n, lens);
+  const double area = cameraArea(batch.scene);
+  for (uint32_t i = 0; i < n; i++) {
+    const Vec3f normal = load(batch.points->hits.geometric, hit[i]);
+    pixels[i] = float(area * double(to.weight[i] * std::fabs(dot(normal, load(to.direction, i)))));
+  }
+  return pixels;
+}
+
 // Rough boundaries scale radiance by eta squared. Flux is not scaled, because the camera is outside
 // of all media.
-void scatterToCamera(const RtsBatch& batch, const CameraConnections& to,
+void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const float* ratio,
                      float* const scattered[3]) {
   const RtsHits& hits = batch.points->hits;
   for (int k = 0; k < 3; k++) std::fill_n(scattered[k], to.count, 0.0f);
   LobeValues lobeValues(batch.arena, to.count, &batch);
+  auto* share = batch.arena.take<float>(to.count);
+  std::fill_n(share, to.count, 1.0f);
   for (uint32_t l = 0; l < batch.lobes.size(); l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (!nonSpecularFunctions(lobe)) continue;
     lobeValues.evaluate(lobe, hits, to.count, to.hit, to.direction);
+    if (ratio)
+      firstSurfaceShares(batch, lobe, to.count, to.hit, to.direction, lobeValues.pdf, ratio, share);
     for (uint32_t i = 0; i < to.count; i++) {
       const uint32_t h = to.hit[i];
       const Vec3f out = load(to.direction, i);
       const bool front = dot(load(hits.geometric, h), out) > 0;
       Vec3f w;
       if (!weightAt(lobe, h, w) || (!nonSpecularFunctions(lobe)->transmits && !front)) continue;
-      const float factor = adjointCorrection(lobe, hits, h, out) * to.weight[i];
+      const float factor = adjointCorrection(lobe, hits, h, out) * to.weight[i] * share[i];
       store(load(scattered, i) + w * load(lobeValues.value, i) * factor, scattered, i);
     }
   }

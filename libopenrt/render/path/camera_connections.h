@@ -22,9 +22,16 @@ struct CameraConnections {
 // Projects n hits through the camera. lens: points of the unit square, by hit of the batch.
 CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, uint32_t n,
                                   const float* const lens[2]);
+// Returns the pixels that a unit of area covers at n hits, as seen from the middle of the lens.
+const float* coveredPixels(const RtsBatch& batch, const uint32_t* hit, uint32_t n);
+// Returns the factor from areas in the camera's space to areas in render space.
+double cameraArea(const RenderScene& scene);
 // Writes what the hits scatter to the camera for a throughput of 1, by colour and connection: the
-// BSDF times the weight, with the correction for shading normals.
-void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, float* const scattered[3]);
+// BSDF times the weight, with the correction for shading normals. ratio: by connection, the ratio
+// of pdfs of the path without the factor `ahead` of the hit (lights/light_path_weights.h), which
+// tells the share of light paths; null: it is 1.
+void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const float* ratio,
+                     float* const scattered[3]);
 // Multiplies colours by the transmittance between the hits and the camera.
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]);
 

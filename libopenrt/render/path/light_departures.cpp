@@ -18,7 +18,8 @@ Vec3f checked(const Vec3f& flux) {
 
 } // namespace
 
-void LightDepartures::start(const PathSamples& samples, uint32_t n, RayQueue& queue) {
+void LightDepartures::start(const LightSources& sources, const PathSamples& samples, uint32_t n,
+                            RayQueue& queue) {
   ArenaScope scope(context_.arena);
   rays_.clear();
   departures_.assign(n, {});
@@ -30,10 +31,10 @@ void LightDepartures::start(const PathSamples& samples, uint32_t n, RayQueue& qu
   for (uint32_t i = 0; i < n; i++) {
     const float at[2] = {place[0][i], place[1][i]}, aim[2] = {direction[0][i], direction[1][i]};
     rays_.push_back(
-        sources_.sampleRay(context_.scene, source[0][i] + source[1][i] * 0x1p-24, at, aim));
+        sources.sampleRay(context_.scene, source[0][i] + source[1][i] * 0x1p-24, at, aim));
     const LightSources::LightRay& ray = rays_.back();
     if (ray.weight > 0 && std::isfinite(ray.weight))
-      queue.push(ray.origin, ray.direction, RayState{.path = i});
+      queue.push(ray.origin, ray.direction, RayState{.path = i, .lightPathRatio = 1});
   }
   evaluateSun();
 }

@@ -17,10 +17,11 @@ enum class LightPair : uint32_t { source, place, direction, count };
 // The light sources of the light paths of a wave, by path.
 class LightDepartures {
  public:
-  LightDepartures(const StageContext& context, const LightSources& sources)
-      : context_(context), sources_(sources) {}
+  explicit LightDepartures(const StageContext& context) : context_(context) {}
   // Samples the first rays of n paths and queues those that carry flux.
-  void start(const PathSamples& samples, uint32_t n, RayQueue& queue);
+  void start(const LightSources& sources, const PathSamples& samples, uint32_t n, RayQueue& queue);
+  // Returns the ray that a path has started with.
+  const LightSources::LightRay& ray(uint32_t path) const { return rays_[path]; }
   // Adds the length of the ray that has reached the next surface.
   void travel(uint32_t path, float length) { departures_[path].pathLength += double(length); }
   // Returns the length of the path so far. The sun is so far away that its direction is the same
@@ -58,7 +59,6 @@ class LightDepartures {
   void evaluateSun();
 
   const StageContext context_;
-  const LightSources& sources_;
   std::vector<LightSources::LightRay> rays_;
   std::vector<Departure> departures_;
 };

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/light_path_weights.h"
 #include "render/lights/luminance.h"
 #include "render/medium/containing_media.h"
 #include "render/path/camera_connections.h"
+#include "render/path/light_path_ratios.h"
 #include "render/surface/adjoint.h"
 #include "render/surface/continue_paths.h"
 #include "render/surface/surface_shader.h"
@@ -15,19 +17,34 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
+// Keeps the paths by way of glossy surfaces apart from the others.
+constexpr uint32_t glossySeed = 0x676c6f73u;
 
 } // namespace
 
-LightTracer::LightTracer(const RenderScene& scene, const LightSources& sources)
-    : scene_(scene), departures_(context_, sources),
+LightTracer::LightTracer(const RenderScene& scene)
+    : scene_(scene), cameraArea_(cameraArea(scene)), departures_(context_),
       sensors_(scene.frame.measure == RT_MEASURE_ILLUMINANCE ? SensorPlane::of(scene)
-                                                             : std::nullopt) {
-  const double determinant = determinantOf(scene.camera.toLocal);
-  cameraArea_ = std::cbrt(determinant * determinant);
-}
+                                                             : std::nullopt) {}
 
 bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
   picture_.assign(size_t(scene_.frame.width) * scene_.frame.height * 3, 0.0f);
+  return (!scene_.lightSources || traceFrom(*scene_.lightSources, paths, seed, stop)) &&
+         (!scene_.glossySources ||
+          traceFrom(*scene_.glossySources, paths, hash(seed, glossySeed), stop));
+}
+
+GlossyGain LightTracer::tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
+  GlossyGain gain;
+  gain_ = &gain;
+  traceFrom(*scene_.glossySources, paths, seed, stop);
+  gain_ = nullptr;
+  return gain;
+}
+
+bool LightTracer::traceFrom(const LightSources& sources, uint32_t paths, uint32_t seed,
+                            const std::atomic<bool>& stop) {
+  sources_ = &sources;
   seed_ = seed;
   scale_ = 1.0 / paths;
   probes_ = 0;
@@ -39,9 +56,10 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
   return true;
 }
 
-std::vector<Photon> LightTracer::tracePhotons(uint32_t paths, uint32_t seed,
-                                              const std::atomic<bool>& stop) {
+std::vector<Photon> LightTracer::tracePhotons(const LightSources& sources, uint32_t paths,
+                                              uint32_t seed, const std::atomic<bool>& stop) {
   std::vector<Photon> photons;
+  sources_ = &sources;
   photons_ = &photons;
   seed_ = seed;
   probes_ = 0;
@@ -57,7 +75,7 @@ void LightTracer::tracePaths(uint32_t first, uint32_t n) {
   samples_.allocate(arena_, n);
   for (uint32_t i = 0; i < n; i++) samples_.set(i, ~0u, seed_, first + i);
   queue_.clear();
-  departures_.start(samples_, n, queue_);
+  departures_.start(*sources_, samples_, n, queue_);
   Wave wave;
   wave.rays.allocate(arena_, n);
   double ended = 0; // flux, of which nobody knows where it would have gone
@@ -88,14 +106,15 @@ void LightTracer::traceWave(Wave& wave) {
   });
 }
 
-// Ends the paths that hit a surface first that can neither mirror nor refract. Adds up the lengths
-// of the others.
+// Ends the paths that hit a surface first at which the sources do not aim. Adds up the lengths of
+// the others.
 void LightTracer::selectMet(Wave& wave) {
   size_t n = 0;
   for (const uint32_t lane : wave.met) {
-    const uint32_t traits = (*scene_.shaders)[scene_.records[wave.hits.record[lane]].shader].traits;
+    const Record& record = scene_.records[wave.hits.record[lane]];
     if (wave.states.flagsOf(lane).pathClass() == PathClass::undeflected &&
-        !(traits & (RTS_SPECULAR | RTS_TRANSPARENT)))
+        !((*scene_.shaders)[record.shader].traits & RTS_TRANSPARENT) &&
+        !LightSources::isTarget(scene_, record, sources_->kind()))
       continue;
     departures_.travel(wave.states.path[lane], wave.hits.t[lane]);
     wave.met[n++] = lane;
@@ -155,6 +174,8 @@ void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass
   runSurfaceShader(batch, shaderClass);
   const Boundaries boundaries = crossBoundaries(batch, shaderClass);
   if (boundaries.crossing) countNeverEntered(points, wave.rays, boundaries, shaderClass);
+  const bool glossy = sources_->kind() == LightSources::Kind::glossy;
+  if (glossy) dropLobes(batch);
   const RandomNumbers random = randomNumbersAt(
       samples_, states, points.order, n, pairAtLevel(uint32_t(LightPair::count), level_), arena_);
   bool scatters = false;
@@ -166,17 +187,30 @@ void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass
     if (states.flagsOf(points.order[i]).pathClass() != PathClass::undeflected)
       deflected[count++] = i;
   LobeSampling sampling = drawChoices(batch, random);
-  if (count && scatters) {
+  if ((count || glossy) && scatters) {
     for (uint32_t c = 0; c < count; c++)
       departures_.updateAttenuation(states.path[points.order[deflected[c]]]);
     if (photons_) {
       leavePhotons(points, states, deflected, count);
     } else {
-      if (!sensors_) connect(batch, random, deflected, count);
+      if (!sensors_ && count) connect(batch, random, deflected, count);
       sampleLobes(batch, sampling);
     }
   }
   spawnRays(batch, sampling, boundaries);
+}
+
+// Leaves only those lobes of first surfaces that scatter paths by way of glossy surfaces, and those
+// that let them pass straight.
+void LightTracer::dropLobes(const RtsBatch& batch) const {
+  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
+    if (batch.states->flagsOf(batch.order[i]).pathClass() != PathClass::undeflected) continue;
+    const bool aimed = isAimedAt(batch, i);
+    for (const RtsLobe& lobe : batch.lobes)
+      if (lobe.kind != RTS_LOBE_TRANSPARENT &&
+          !(aimed && nonSpecularFunctions(lobe) && isGlossy(lobe)))
+        store(Vec3f(), lobe.weight, i);
+  }
 }
 
 void LightTracer::leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
@@ -194,23 +228,33 @@ void LightTracer::leavePhotons(const Points& points, const PathStates& states, c
 
 // Spawns one ray from each hit. Its sample is selected without the flux of the path, which is not
 // known before the first surface has been shaded. At the first surface only specular reflection and
-// refraction count.
+// refraction count, or what dropLobes() has left.
 void LightTracer::spawnRays(const RtsBatch& batch, const LobeSampling& sampling,
                             const Boundaries& boundaries) {
   const Points& points = *batch.points;
   const PathStates& states = *batch.states;
   const uint32_t n = points.hits.count;
+  const bool glossy = sources_->kind() == LightSources::Kind::glossy;
   auto* first = arena_.takeZero<uint32_t>(padded(n));
-  for (uint32_t i = 0; i < n; i++)
+  auto* start = arena_.take<const LightSources::LightRay*>(n);
+  for (uint32_t i = 0; i < n; i++) {
     first[i] = states.flagsOf(points.order[i]).pathClass() == PathClass::undeflected;
-  const BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::importance);
+    start[i] = first[i] ? &departures_.ray(states.path[points.order[i]]) : nullptr;
+  }
+  BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::importance);
   Selection selection{.points = &points,
                       .choice = sampling.choices[0],
                       .survival = level_ >= rouletteFrom ? sampling.choices[1] : nullptr,
                       .throughput = nullptr,
-                      .onlySpecular = first};
+                      .onlySpecular = glossy ? nullptr : first};
   selection.allocate(arena_);
   selectSamples(selection, samples);
+  uint32_t number = 0;
+  for (SampleArrays& sample : samples) {
+    if (glossy && sample.pdf)
+      sample.lightPathRatio = countLightPaths(batch, sample, selection.number, number, start);
+    number++;
+  }
   for (uint32_t i = 0; i < n; i++) {
     if (!boundaries.visibleAt(i)) {
       RayState passed = states[points.order[i]];
@@ -241,6 +285,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays
   const float correction =
       sample.deflected ? adjointCorrection(lobe, points.hits, i, direction) : 1.0f;
   state.throughput *= Vec3f(Vec3d(weight * correction) / kept);
+  if (sample.lightPathRatio) state.lightPathRatio *= sample.lightPathRatio[i];
   if (sample.colour) state.flags.setChannel(uint8_t(sample.colour));
   state.media = mediaTowards(points, i, direction, boundaries, state.media);
   if (!sample.deflected) state.flags.addPassage();
@@ -259,6 +304,18 @@ void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
     queueRay(points, i, direction, state, next_);
 }
 
+// Returns the ratios of pdfs for scatterToCamera(); null for paths that only light tracing makes.
+const float* LightTracer::ratiosToCamera(const RtsBatch& batch, const CameraConnections& to) {
+  if (sources_->kind() != LightSources::Kind::glossy) return nullptr;
+  auto* ratio = arena_.takeZero<float>(padded(to.count));
+  ArenaScope scope(arena_);
+  const float first = firstRatio(scene_), *pixels = coveredPixels(batch, to.hit, to.count);
+  for (uint32_t i = 0; i < to.count; i++)
+    if (pixels[i] > 0)
+      ratio[i] = batch.states->lightPathRatio[batch.order[to.hit[i]]] * first / pixels[i];
+  return ratio;
+}
+
 // Connects the hits with the camera and adds their light to the picture.
 void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                           uint32_t n) {
@@ -267,13 +324,13 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
   random.draw(Decision::lens, arena_, lens);
   for (auto& a : scattered) a = arena_.take<float>(padded(n));
   const CameraConnections to = projectToCamera(batch, hits, n, lens);
-  scatterToCamera(batch, to, scattered);
+  if (gain_) return addGain(batch, to);
+  scatterToCamera(batch, to, ratiosToCamera(batch, to), scattered);
   traceToCamera(batch, to, scattered);
-  const uint32_t width = scene_.frame.width, height = scene_.frame.height;
+  const uint32_t width = scene_.frame.width;
   for (uint32_t i = 0; i < n; i++) {
     const float x = to.xy[0][i], y = to.xy[1][i];
-    if (!(to.weight[i] > 0) || !(x >= 0 && y >= 0 && x < float(width) && y < float(height)))
-      continue;
+    if (!isInPicture(to, i)) continue;
     const RayState state = (*batch.states)[batch.order[hits[i]]];
     const Vec3f& attenuation = departures_.attenuation(state.path);
     float* pixel = &picture_[3 * (size_t(y) * width + size_t(x))];
@@ -282,6 +339,38 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
           double(state.throughput[k]) * attenuation[k] * scattered[k][i] * cameraArea_ * scale_;
       if (std::isfinite(light)) pixel[k] += float(light);
     }
+  }
+}
+
+bool LightTracer::isInPicture(const CameraConnections& to, uint32_t i) const {
+  const float x = to.xy[0][i], y = to.xy[1][i];
+  return to.weight[i] > 0 && x >= 0 && y >= 0 && x < float(scene_.frame.width) &&
+         y < float(scene_.frame.height);
+}
+
+// Adds to the gain what connections bring. A light path that finds the radiance x with the density
+// p tells that camera paths of the density p / ratio have the second moment x^2 ratio there.
+void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
+  constexpr double mostRatio = 1e4;
+  float *whole[3], *weighted[3], *seen[3];
+  for (auto* group : {whole, weighted, seen})
+    for (int k = 0; k < 3; k++) group[k] = arena_.take<float>(padded(to.count));
+  scatterToCamera(batch, to, nullptr, whole);
+  scatterToCamera(batch, to, ratiosToCamera(batch, to), weighted);
+  for (int k = 0; k < 3; k++) std::copy_n(whole[k], to.count, seen[k]);
+  traceToCamera(batch, to, seen);
+  const double pixels = double(firstRatio(scene_));
+  for (uint32_t i = 0; i < to.count; i++) {
+    const Vec3f all = load(whole, i), shared = load(weighted, i);
+    const double share = double(shared.x + shared.y + shared.z) / double(all.x + all.y + all.z),
+                 ratio = std::min(mostRatio, std::sqrt(share / (1 - share)));
+    const Vec3d radiance =
+        Vec3d(load(batch.states->throughput, batch.order[to.hit[i]]) * load(seen, i)) *
+        (cameraArea_ / pixels);
+    const double square = dot(radiance, radiance) * scale_;
+    if (!isInPicture(to, i) || !std::isfinite(square * ratio)) continue;
+    gain_->without += square * ratio;
+    gain_->with += square * (ratio * (1 - share) * (1 - share) + share * share);
   }
 }
 

@@ -1,6 +1,7 @@
 // light_tracer.h: light tracing for caustics. Follows paths from light sources whose first hit is
 // specular (a mirror or a smooth boundary). Path tracing from the camera finds these paths with low
-// probability, or never if the light has no extent. Each non-specular vertex of a light path is
+// probability, or never if the light has no extent. Where it pays (glossy_trial.h), it also follows
+// paths that a glossy lobe scatters first. Each non-specular vertex of a light path is
 // connected to the camera: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 // 1997, chapter 10, with a camera subpath of one vertex. One instance per render thread.
 //
@@ -9,13 +10,15 @@
 //
 // The camera paths of the same frame leave out exactly these paths (PathFlags::pathClass,
 // PathClass::caustic): the surface seen by the camera is non-specular, and the vertex next to the
-// light is specular. They keep the light of the sky beside its sun (unsampled_lights.h).
+// light is specular. They keep the light of the sky beside its sun (unsampled_lights.h). Light
+// by way of glossy lobes is divided between both by weights (lights/light_path_weights.h).
 #pragma once
 
 #include <atomic>
 #include <vector>
 
 #include "render/lights/photon_guide.h"
+#include "render/path/camera_connections.h"
 #include "render/path/light_departures.h"
 #include "render/path/sensor_plane.h"
 #include "render/surface/sample_arrays.h"
@@ -24,22 +27,35 @@
 
 namespace openrt {
 
+// Tells what light paths by way of glossy surfaces are worth: the second moments of the radiance
+// that they and one camera path of each pixel find, summed over the colours, as the mean over the
+// pixels.
+struct GlossyGain {
+  double without = 0, with = 0; // camera paths alone; both, with their weights
+};
+
 class LightTracer {
  public:
-  LightTracer(const RenderScene& scene, const LightSources& sources);
-  // Traces light paths to their first non-specular surfaces and returns what they leave there; less
-  // if `stop` was set.
-  std::vector<Photon> tracePhotons(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
+  explicit LightTracer(const RenderScene& scene);
+  // Traces light paths from sources to their first non-specular surfaces and returns what they
+  // leave there; less if `stop` was set.
+  std::vector<Photon> tracePhotons(const LightSources& sources, uint32_t paths, uint32_t seed,
+                                   const std::atomic<bool>& stop);
   // Returns the largest flux that a light path had after the first surface, summed over the
   // colours.
   double largestFlux() const { return largestFlux_; }
-  // Traces `paths` light paths into picture() (rgb by pixel). Each part of a frame needs its own
-  // seed. Returns false if `stop` was set; it is checked every few thousand paths.
+  // Traces `paths` light paths of each kind that the scene has into picture() (rgb by pixel). Each
+  // part of a frame needs its own seed. Returns false if `stop` was set; it is checked every few
+  // thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
+  // Traces paths by way of glossy surfaces and returns what they are worth.
+  GlossyGain tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
   std::vector<float>& picture() { return picture_; }
   RayCounters& counters() { return counters_; } // ray counts since the counters were last reset
 
  private:
+  bool traceFrom(const LightSources& sources, uint32_t paths, uint32_t seed,
+                 const std::atomic<bool>& stop);
   void tracePaths(uint32_t first, uint32_t n);
   void traceWave(Wave& wave);
   void selectMet(Wave& wave);
@@ -47,8 +63,12 @@ class LightTracer {
   void scatter(const Points& points, const Wave& wave, const RtsClass& shaderClass);
   void countNeverEntered(const Points& points, const Rays& rays, const Boundaries& boundaries,
                          const RtsClass& shaderClass);
+  void dropLobes(const RtsBatch& batch) const;
   void leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
                     uint32_t n);
+  bool isInPicture(const CameraConnections& to, uint32_t i) const;
+  void addGain(const RtsBatch& batch, const CameraConnections& to);
+  const float* ratiosToCamera(const RtsBatch& batch, const CameraConnections& to);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
   void spawnRays(const RtsBatch& batch, const LobeSampling& sampling, const Boundaries& boundaries);
@@ -59,11 +79,13 @@ class LightTracer {
   void addCrossings(const Wave& wave);
 
   const RenderScene& scene_;
+  const LightSources* sources_ = nullptr; // where the paths in flight have started
   uint32_t seed_ = 0;
   uint32_t level_ = 0; // depth of the current wave
   // scale_: contribution of one path to the picture. cameraArea_: factor from areas in
   // camera space to areas in render space.
-  double scale_ = 0, cameraArea_ = 1;
+  double scale_ = 0;
+  const double cameraArea_;
   double largestFlux_ = 0;
   Arena arena_;
   RayCounters counters_;
@@ -84,6 +106,7 @@ class LightTracer {
   bool probedInside_ = false;
   uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
+  GlossyGain* gain_ = nullptr;             // gets the gain; null: picture_ gets the light
   PathSamples samples_{};                  // samples of the paths in flight
   RayQueue queue_, next_;                  // rays of the current wave, and of the next one
 };

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <vector>
 
 #include "render/film/error.h"
 #include "render/lights/light_sources.h"
 #include "render/path/light_tracer.h"
 #include "render/path/tile.h"
+#include "render/path/trial_blocks.h"
 #include "render/wave/sampler.h"
 #include "scene/quality.h"
 #include "scene/transports.h"
@@ -21,7 +21,7 @@ constexpr uint32_t fewestSamples = 16;
 constexpr uint64_t cameraPaths = 8, fewestPaths = 1u << 13, mostPaths = 1u << 16;
 // One path of the trial for so many camera paths, within bounds. Blocks of pixels are tried.
 constexpr uint64_t trialShare = 32, fewestBlocks = 4, mostBlocks = 32;
-constexpr uint32_t blockEdge = 4, trialSamples = 16;
+constexpr uint32_t trialSamples = 16;
 // Keep the light paths and the trial apart from those of the picture.
 constexpr uint32_t photonSeed = 0x70686f74u, trialSeed = 0x74726961u;
 
@@ -34,28 +34,15 @@ uint64_t pathsOf(const edit::FrameSettingsT& frame) {
 }
 
 uint64_t blocksOf(const edit::FrameSettingsT& frame) {
-  return std::clamp(cameraPathsOf(frame) / (trialShare * blockEdge * blockEdge * trialSamples),
+  return std::clamp(cameraPathsOf(frame) /
+                        (trialShare * trialBlockEdge * trialBlockEdge * trialSamples),
                     fewestBlocks, mostBlocks);
-}
-
-// Returns block i of a low-discrepancy sequence over the picture (M. Roberts, "The Unreasonable
-// Effectiveness of Quasirandom Sequences", 2018).
-Tile trialBlock(const edit::FrameSettingsT& frame, uint32_t i) {
-  const auto place = [i](double step, uint32_t size) {
-    const double at = .5 + i * step;
-    return uint32_t((at - std::floor(at)) * ((size + blockEdge - 1) / blockEdge)) * blockEdge;
-  };
-  const uint32_t x = place(0.7548776662466927, frame.width),
-                 y = place(0.5698402909980532, frame.height);
-  return {x, y, std::min(x + blockEdge, frame.width), std::min(y + blockEdge, frame.height)};
 }
 
 // Returns the shares of the cells.
 std::vector<float> tryGuide(RenderScene& scene, const std::atomic<bool>& stop) {
   const edit::FrameSettingsT settings = scene.frame;
-  scene.frame.channels |= RT_VARIANCE;
-  scene.frame.lightStride = 1;
-  scene.frame.clamp = 0; // clipped samples would hide what photons are worth
+  prepareTrial(scene.frame);
   GuideTrial trial(scene.photonGuide->cells());
   TileRenderer renderer(scene);
   renderer.observe(&trial);
@@ -89,9 +76,9 @@ bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
   const LightSources sources(scene, &scene, LightSources::Kind::emitters);
   if (sources.empty()) return true;
   const uint64_t paths = pathsOf(frame);
-  LightTracer tracer(scene, sources);
+  LightTracer tracer(scene);
   std::vector<Photon> photons =
-      tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed), stop);
+      tracer.tracePhotons(sources, uint32_t(paths), hash(frame.seed, photonSeed), stop);
   if (stop) return false;
   // With error bars every cell sends guided rays, so that the picture lacks none of the light that
   // light paths have found.

@@ -1,10 +1,12 @@
 #include "render/path/spawn_rays.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/lights/emitters.h"
 #include "render/lights/shadows.h"
 #include "render/path/guided_rays.h"
+#include "render/path/light_path_ratios.h"
 #include "render/surface/continue_paths.h"
 #include "render/wave/wave.h"
 #include "scene/transports.h"
@@ -58,7 +60,7 @@ const uint32_t* findUnsampled(const RtsBatch& batch) {
 
 // Spawns the rays of the BSDF samples: those of one sample of all hits, then those of the next.
 void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
-                   const Boundaries& boundaries, const BsdfSampleArrays& samples) {
+                   const Boundaries& boundaries, BsdfSampleArrays& samples) {
   const RtsBatch& batch = paths.batch;
   Arena& arena = batch.arena;
   const uint32_t n = batch.points->hits.count;
@@ -78,12 +80,13 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
       .count = arena.take<uint32_t>(padded(n)),
       .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);
+  if (batch.scene.glossySources) countCameraPaths(batch, samples);
   if (path)
     markRandom(paths, samples, boundaries, from.random);
   else
     countCut(paths, samples);
   auto* hitOf = arena.take<uint32_t>(padded(n) + lanes);
-  for (const SampleArrays& sample : samples) {
+  for (const SampleArrays& sample : std::as_const(samples)) {
     const size_t begin = paths.next.size();
     continuePaths(from, sample, hitOf, paths.next);
     if (!sample.pdf && (sample.deflected || from.unsampled)) countUnsampled(paths, begin);
@@ -126,8 +129,8 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
   const RtsBatch& batch = paths.batch;
   ArenaScope scope(batch.arena);
   weightUnguided(batch, boundaries);
-  const BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::radiance,
-                                 !followsImages(batch.scene.frame.transport));
+  BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::radiance,
+                           !followsImages(batch.scene.frame.transport));
   if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);
   if (!boundaries.crossing) return;
   for (uint32_t i = 0; i < batch.points->hits.count; i++)

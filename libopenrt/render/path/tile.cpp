@@ -9,6 +9,7 @@
 #include "render/lights/environment.h"
 #include "render/medium/containing_media.h"
 #include "render/path/camera_rays.h"
+#include "render/path/light_path_ratios.h"
 #include "render/path/measure.h"
 #include "render/path/transport_shader.h"
 
@@ -106,7 +107,8 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   Wave wave;
   wave.rays.allocate(arena, n);
   wave.states.allocate(arena, n);
-  for (uint32_t i = 0; i < n; i++) wave.states.set(i, RayState{.path = i});
+  const float ratio = firstRatio(scene_);
+  for (uint32_t i = 0; i < n; i++) wave.states.set(i, RayState{.path = i, .lightPathRatio = ratio});
   float* xy[2];
   sampleFilm(film, paths, arena, xy);
   makeCameraRays(tracer_.context(), xy, wave.rays);

@@ -30,6 +30,7 @@ LaneVec weightAt(const SampleArrays& sample, uint32_t i) {
   return {component(0), component(1), component(2)};
 }
 Lanes loadOrOne(const float* from, uint32_t i) { return from ? load(from + i) : lanesOf(1); }
+Lanes loadOrZero(const float* from, uint32_t i) { return from ? load(from + i) : lanesOf(0); }
 
 Bits splitsOf(Bits flags) {
   return hn::And(hn::ShiftRight<PathFlags::splitsShift>(flags), bitsOf(PathFlags::mostSplits));
@@ -262,8 +263,12 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
       append(gather(states.previousPosition, lane), to.previousPosition);
       append(gather(states.previousNormal, lane), to.previousNormal);
       append(gather(states.unguidedWeight, lane), to.unguidedWeight);
+      append(gather(states.lightPathRatio, lane), to.lightPathRatio);
+      append(sample.deflected ? zero : gather(states.glossyPdf, lane), to.glossyPdf);
     } else {
       append(one, to.unguidedWeight);
+      append(loadOrZero(sample.lightPathRatio, i), to.lightPathRatio);
+      append(loadOrZero(sample.glossyPdf, i), to.glossyPdf);
       append(offsetPoint(position, g, error), to.previousPosition);
       append(paths.twoSided ? select(loadMask(paths.twoSided + i), none, g) : g, to.previousNormal);
     }

@@ -25,6 +25,9 @@ struct SampleArrays {
   uint32_t colour = 0;        // 1 + index of the only colour that is carried; 0: all colours
   bool deflected = true;      // the direction differs from the incoming ray's
   bool transmits = false;     // the direction may lead behind the surface
+  // By hit: RayState::lightPathRatio and glossyPdf of a ray that follows a non-specular sample;
+  // null: 0. For light paths: the factor of lightPathRatio; null: 1.
+  const float *lightPathRatio = nullptr, *glossyPdf = nullptr;
   // By hit: gets the probability that the sample is followed if it survives. Null: nobody asks.
   float* selectionProbability = nullptr;
 
@@ -57,6 +60,8 @@ class BsdfSampleArrays {
   // onlyStraight: leaves out everything but straight transmission.
   BsdfSampleArrays(const RtsBatch& batch, const LobeSampling& sampling,
                    const Boundaries& boundaries, TransportMode mode, bool onlyStraight = false);
+  SampleArrays* begin() { return list_; }
+  SampleArrays* end() { return list_ + count_; }
   const SampleArrays* begin() const { return list_; }
   const SampleArrays* end() const { return list_ + count_; }
   const SampleArrays& operator[](uint32_t number) const { return list_[number]; }

@@ -20,13 +20,14 @@ Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& are
 }
 
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
-                     const Rays& rays, RayHits& hits) {
+                     const Rays& rays, RayHits& hits, uint8_t* skipped) {
   ArenaScope scope(arena);
   auto* lanes = arena.take<uint32_t>(rays.count);
   uint32_t n = 0;
   for (uint32_t i = 0; i < rays.count; i++)
     if (hits.record[i] != noHit && isCulledHit(scene, rays, hits, i)) lanes[n++] = i;
   if (n == 0) return;
+  for (uint32_t i = 0; skipped && i < n; i++) skipped[lanes[i]] = 1;
   const Rays again = copyRays(rays, lanes, n, arena);
   RayHits found;
   found.allocate(arena, n);
@@ -44,12 +45,12 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
 }
 
 RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence,
-                    const uint8_t* aimed) {
+                    const uint8_t* aimed, uint8_t* skipped) {
   RayHits hits;
   hits.allocate(context.arena, rays.count);
   context.scene.kernel->intersect(rays, maskAll, coherence, hits);
   if (aimed) context.scene.kernel->findLost(rays, aimed, hits);
-  skipCulledBacks(context.scene, context.arena, context.counters, rays, hits);
+  skipCulledBacks(context.scene, context.arena, context.counters, rays, hits, skipped);
   return hits;
 }
 

@@ -104,6 +104,10 @@ struct RayState {
   // MIS weight of BSDF sampling for light that the ray finds by way of specular surfaces only:
   // photons may have guided another ray there (photon_guide.h).
   float unguidedWeight = 1;
+  // How often light paths make the path so far, over how often camera paths do; and the solid-angle
+  // pdf of the ray's direction if a glossy lobe has scattered the path there, else 0
+  // (render/lights/light_path_weights.h).
+  float lightPathRatio = 0, glossyPdf = 0;
   MediaStack media = {}; // the media that contain the ray
   PathFlags flags;
 };
@@ -113,7 +117,7 @@ struct PathStates {
   float* throughput[3];
   float* travelled;
   uint32_t *path, *branch;
-  float *pdf, *unguidedWeight;
+  float *pdf, *unguidedWeight, *lightPathRatio, *glossyPdf;
   float *previousPosition[3], *previousNormal[3];
   MediaStack* media;
   uint32_t* flags;
@@ -124,8 +128,9 @@ struct PathStates {
         [&](auto*& array) { array = arena.take<std::remove_reference_t<decltype(*array)>>(n); });
   }
   RayState operator[](size_t i) const {
-    return {load(throughput, i), travelled[i],      path[i],  branch[i], pdf[i],
-            previousOf(i),       unguidedWeight[i], media[i], flagsOf(i)};
+    return {load(throughput, i), travelled[i],      path[i],           branch[i],    pdf[i],
+            previousOf(i),       unguidedWeight[i], lightPathRatio[i], glossyPdf[i], media[i],
+            flagsOf(i)};
   }
   void set(size_t i, const RayState& state) const {
     store(state.throughput, throughput, i);
@@ -136,6 +141,8 @@ struct PathStates {
     branch[i] = state.branch;
     pdf[i] = state.pdf;
     unguidedWeight[i] = state.unguidedWeight;
+    lightPathRatio[i] = state.lightPathRatio;
+    glossyPdf[i] = state.glossyPdf;
     media[i] = state.media;
     flags[i] = state.flags.bits;
   }
@@ -152,6 +159,8 @@ struct PathStates {
     f(branch);
     f(pdf);
     f(unguidedWeight);
+    f(lightPathRatio);
+    f(glossyPdf);
     f(media);
     f(flags);
   }

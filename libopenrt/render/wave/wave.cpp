@@ -35,11 +35,18 @@ static const uint8_t* findAimed(const StageContext& context, WaveSource source, 
 }
 
 void intersectWave(const StageContext& context, WaveSource source, Wave& wave) {
+  const uint32_t n = wave.rays.count;
+  // A culled back face that a ray skips is a front face for the ray the other way.
+  uint8_t* oneWay = context.scene.glossySources && context.scene.kernel->cullsBacks()
+                        ? context.arena.takeZero<uint8_t>(n)
+                        : nullptr;
   if (source == WaveSource::camera)
-    wave.hits = findNearest(context, wave.rays, Coherence::coherent);
+    wave.hits = findNearest(context, wave.rays, Coherence::coherent, nullptr, oneWay);
   else
-    wave.hits =
-        findNearest(context, wave.rays, Coherence::incoherent, findAimed(context, source, wave));
+    wave.hits = findNearest(context, wave.rays, Coherence::incoherent,
+                            findAimed(context, source, wave), oneWay);
+  for (uint32_t i = 0; oneWay && i < n; i++)
+    if (oneWay[i]) wave.states.lightPathRatio[i] = 0;
   absorbAlongRays(context.scene, wave.rays, wave.hits, wave.states);
   splitByHit(context.arena, wave);
 }

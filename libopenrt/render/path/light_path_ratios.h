@@ -1,0 +1,31 @@
+// light_path_ratios.h: keeps account, surface by surface, of how often light paths make what a path
+// has passed, over how often camera paths do (lights/light_path_weights.h). Camera paths begin at
+// the first surface, light paths at the last one. [render]
+#pragma once
+
+#include "render/lights/light_sources.h"
+#include "render/surface/sample_arrays.h"
+
+namespace openrt {
+
+// Returns the ratio that a path has before it has reached the first surface: the pixels of the
+// picture, if light paths take a part of the frame's light; else 0.
+float firstRatio(const RenderScene& scene);
+
+// Computes the ratios of the rays that camera paths spawn, sample by sample, after chooseSamples().
+void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples);
+
+// Returns by hit the factor of the ratio of a light path that follows the sample, for the hits
+// whose number[] is `selected`. start: by hit, the ray with which a path has started that has not
+// been scattered yet; null: it has been.
+const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
+                             const uint32_t* number, uint32_t selected,
+                             const LightSources::LightRay* const* start);
+
+// Computes the shares of light paths (lightPathShare) for hits that are the first surface that the
+// camera sees. pdf: of the lobe, by pair of a hit and a direction to the camera.
+void firstSurfaceShares(const RtsBatch& batch, const RtsLobe& lobe, uint32_t n, const uint32_t* hit,
+                        const float* const direction[3], const float* pdf, const float* ratio,
+                        float* share);
+
+} // namespace openrt
