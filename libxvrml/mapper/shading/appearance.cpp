@@ -209,6 +209,7 @@ void Surfaces::makeSurface(Entry& entry) {
   else
     setup.emplace(shaderClass, entry.own, sets_);
   ShaderSetup& shader = *setup;
+  shader.leaveOutDefaults();
   entry.surface.shader = shader.id();
   (entry.shared ? entry.shared->shader : entry.own) = shader.id();
   const auto* material = nodeCast<nodes::Material>(parts.material);
