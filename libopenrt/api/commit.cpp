@@ -116,7 +116,7 @@ class CommitBuilder {
         e.shaderClass = state.shaderClass;
         add(e);
       }
-      for (const auto& [index, parameter] : state.parameters) add(edit::ParameterT(parameter));
+      for (const ParameterValue& value : state.parameters) add(editOf(id, value));
     });
   }
 

@@ -32,10 +32,8 @@ void useStockCamera(Context& c, const char* className, RTid& cached, const char*
   if (index == table.paramCount || table.params[index].type != RTS_FLOAT)
     fail(RT_PLUGIN_ERROR,
          std::string("the stock class ") + className + " has no float parameter " + parameterName);
-  edit::ParameterT e;
-  e.index = index;
-  e.floats = {static_cast<float>(value)};
-  c.scene.setParameter(shader, std::move(e));
+  const float number = static_cast<float>(value);
+  c.scene.setParameter(shader, {.index = index, .floats = {&number, 1}});
   c.scene.setRole(c.scene.camera, shader, c.matrices.top());
 }
 

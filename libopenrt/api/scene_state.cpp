@@ -201,17 +201,15 @@ void SceneState::shadersReloaded(
   generationDirty = true;
 }
 
-void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
+void SceneState::setParameter(RTid id, const ParameterValue& value) {
   ShaderState& state = shader(id);
   shaders.markDirty(id, state);
-  parameter.shader = id;
   constexpr size_t largestType = 16; // a matrix
   // Values are kept only for surface shaders, because only geometry can vary a parameter.
-  const size_t floats = parameter.floats.size();
+  const size_t floats = value.floats.size();
   if (floats > 0 && floats <= largestType && classOf(state).kind == RTS_SURFACE)
-    state.values[parameter.index] = parameter.floats;
-  const uint32_t index = parameter.index;
-  state.parameters.insert_or_assign(index, std::move(parameter));
+    state.values.set(value);
+  state.parameters.set(value);
 }
 
 } // namespace openrt

@@ -17,7 +17,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,6 +28,7 @@
 #include "scene/commit.h"
 #include "scene/id_table.h"
 #include "scene/matrix.h"
+#include "scene/parameter_values.h"
 
 namespace openrt {
 
@@ -59,9 +59,9 @@ struct ShaderClassState {
 
 struct ShaderState {
   RTid shaderClass = 0;
-  std::map<uint32_t, edit::ParameterT> parameters; // set since the last commit, by index
-  // All numeric values ever set, by index: the initial values where geometry varies a parameter.
-  std::map<uint32_t, std::vector<float>> values;
+  ParameterValues parameters; // set since the last commit
+  // All numbers ever set: the initial values where geometry varies a parameter.
+  ParameterValues values;
   bool dirty = false, committed = false;
 };
 
@@ -144,7 +144,7 @@ class SceneState {
   void setRole(RoleState& role, RTid shader, const Matrix4d& matrix) {
     role = {shader, matrix, true};
   }
-  void setParameter(RTid shader, edit::ParameterT parameter);
+  void setParameter(RTid shader, const ParameterValue& value);
   // Looks up every class again after libraries were reloaded. The next commit tells the backend.
   void shadersReloaded(const std::function<const RtsClass*(const std::string& name,
                                                            const std::string& library)>& find);

@@ -45,20 +45,12 @@ void throwIfInvalid(const std::string& problem) {
   if (!problem.empty()) fail(RT_INVALID_VALUE, problem);
 }
 
-edit::ParameterT edited(int handle) {
-  edit::ParameterT e;
-  e.index = static_cast<uint32_t>(handle);
-  return e;
-}
-
 void setFloats(Context& c, int handle, std::initializer_list<RtsType> types,
                std::span<const float> values) {
   if (setVaryingValue(c, handle, types, values)) return;
   const RtsParam& param = parameter(c, handle, types);
   throwIfInvalid(valueProblem(param, values));
-  edit::ParameterT e = edited(handle);
-  e.floats.assign(values.begin(), values.end());
-  c.scene.setParameter(c.boundShader, std::move(e));
+  c.scene.setParameter(c.boundShader, {.index = uint32_t(handle), .floats = values});
 }
 
 int parameterHandle(Context& c, const char* name) {
@@ -115,9 +107,7 @@ int rtParameterHandle(const char* name) {
 void rtParameter1i(int handle, int value) {
   guarded("rtParameter1i", [&](Context& c) {
     throwIfInvalid(valueProblem(parameter(c, handle, {RTS_INT}), value));
-    edit::ParameterT e = edited(handle);
-    e.integer = value;
-    c.scene.setParameter(c.boundShader, std::move(e));
+    c.scene.setParameter(c.boundShader, {.index = uint32_t(handle), .integer = value});
   });
 }
 
@@ -159,11 +149,9 @@ void rtParameterString(int handle, const char* utf8) {
   guarded("rtParameterString", [&](Context& c) {
     parameter(c, handle, {RTS_STRING});
     require(utf8 != nullptr, RT_INVALID_VALUE, "the text is NULL");
-    edit::ParameterT e = edited(handle);
-    e.text = utf8;
-    require(e.text.size() <= maxStringLength, RT_INVALID_VALUE,
-            "the text has more than 2^24 bytes");
-    c.scene.setParameter(c.boundShader, std::move(e));
+    const std::string_view text = utf8;
+    require(text.size() <= maxStringLength, RT_INVALID_VALUE, "the text has more than 2^24 bytes");
+    c.scene.setParameter(c.boundShader, {.index = uint32_t(handle), .text = text});
   });
 }
 
@@ -171,9 +159,7 @@ void rtParameterTexture(int handle, RTid texture) {
   guarded("rtParameterTexture", [&](Context& c) {
     parameter(c, handle, {RTS_TEXTURE});
     if (texture != 0) c.scene.texture(texture);
-    edit::ParameterT e = edited(handle);
-    e.texture = texture;
-    c.scene.setParameter(c.boundShader, std::move(e));
+    c.scene.setParameter(c.boundShader, {.index = uint32_t(handle), .texture = texture});
   });
 }
 

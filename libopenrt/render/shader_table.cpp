@@ -56,7 +56,7 @@ ShaderTable::ShaderTable(const Scene& scene, const ShaderRegistry& registry,
   for (const auto& [id, values] : scene.shaders) {
     const auto name = scene.classes.find(values.shaderClass);
     if (name == scene.classes.end()) continue;
-    slots->emplace_hint(slots->end(), id, slot);
+    slots->try_emplace(id, slot);
     make(slot++, registry.find(name->second.name, name->second.library), &values, textureIndex,
          host);
   }
@@ -100,12 +100,13 @@ bool ShaderTable::extends(const ShaderTable& other) const {
   };
   if (slotOf_ == other.slotOf_)
     return std::equal(slots_.begin(), slots_.end(), other.slots_.begin(), same);
-  return same(slots_[0], other.slots_[0]) &&
-         std::all_of(other.slotOf_->begin(), other.slotOf_->end(), [&](const auto& entry) {
-           const auto found = slotOf_->find(entry.first);
-           return found != slotOf_->end() && found->second == entry.second &&
-                  same(slots_[entry.second], other.slots_[entry.second]);
-         });
+  if (!same(slots_[0], other.slots_[0])) return false;
+  for (const auto& [id, slot] : *other.slotOf_) {
+    const auto found = slotOf_->find(id);
+    if (found == slotOf_->end() || found->second != slot || !same(slots_[slot], other.slots_[slot]))
+      return false;
+  }
+  return true;
 }
 
 // Makes the parameter block of a slot. Returns false if the class refuses the values: the default
@@ -118,10 +119,7 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
   for (uint32_t i = 0; i < shaderClass.paramCount; i++) {
     const RtsParam& param = shaderClass.params[i];
     std::byte* at = block.bytes.get() + param.offset;
-    const edit::ParameterT* value = nullptr;
-    if (values)
-      if (auto found = values->parameters.find(i); found != values->parameters.end())
-        value = &found->second;
+    const std::optional<ParameterValue> value = values ? values->parameters.find(i) : std::nullopt;
     if (const size_t n = parameterFloats(param.type)) {
       float numbers[16];
       std::memcpy(numbers, param.defaultValue, sizeof numbers);
@@ -132,11 +130,13 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
       const int32_t number = value ? value->integer : int32_t(param.defaultValue[0]);
       std::memcpy(at, &number, sizeof number);
     } else if (param.type == RTS_FLOATS) {
-      block.lists.push_back(value ? value->floats : std::vector<float>());
+      block.lists.emplace_back();
+      if (value) block.lists.back().assign(value->floats.begin(), value->floats.end());
       const RtsFloats list{block.lists.back().data(), uint32_t(block.lists.back().size())};
       std::memcpy(at, &list, sizeof list);
     } else if (param.type == RTS_STRING) {
-      block.strings.push_back(std::make_unique<std::string>(value ? value->text : std::string()));
+      block.strings.push_back(
+          std::make_unique<std::string>(value ? value->text : std::string_view()));
       const char* text = block.strings.back()->c_str();
       std::memcpy(at, &text, sizeof text);
     } else if (param.type == RTS_TEXTURE) {

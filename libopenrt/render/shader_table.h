@@ -57,7 +57,7 @@ class ShaderTable {
     Block& operator=(const Block&) = delete;
     ~Block();
   };
-  using Slots = std::map<uint32_t, uint32_t>; // slot by shader id
+  using Slots = IdTable<uint32_t>; // slot by shader id
   bool make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   void setMedium(ShaderSlot& slot, const RtsHost& host);

@@ -8,6 +8,10 @@
 namespace openrt {
 namespace {
 
+bool isBefore(const std::pair<ArrayId, std::weak_ptr<const Array>>& entry, ArrayId id) {
+  return entry.first < id;
+}
+
 Matrix4d toMatrix(const edit::Matrix* matrix) {
   Matrix4d result;
   if (matrix)
@@ -44,9 +48,10 @@ size_t Geometry::primitives() const {
 
 ArrayPtr Scene::array(ArrayId id) const {
   if (id == 0) return nullptr;
-  if (auto found = commitArrays_.find(id); found != commitArrays_.end()) return found->second;
-  auto known = arrays_.find(id);
-  return known == arrays_.end() ? nullptr : known->second.lock();
+  if (const auto found = commit_->arrays.find(id); found != commit_->arrays.end())
+    return found->second;
+  const auto known = std::lower_bound(arrays_.begin(), arrays_.end(), id, isBefore);
+  return known == arrays_.end() || known->first != id ? nullptr : known->second.lock();
 }
 
 std::map<ArrayId, ArrayPtr> Scene::arrays() const {
@@ -56,23 +61,38 @@ std::map<ArrayId, ArrayPtr> Scene::arrays() const {
   return alive;
 }
 
-SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
-  if (history) history->begin(commit);
-  history_ = history && history->records() ? history : nullptr;
+// Adds the arrays of a commit. Their numbers are larger than those before, except in a commit that
+// sends arrays again.
+void Scene::noteArrays(const Commit& commit) {
   // Only now and then, so that a commit costs what it changes.
   if (arrays_.size() > 2 * arraysSwept_ + 64) {
     std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });
     arraysSwept_ = arrays_.size();
   }
+  const auto byNumber = [](const auto& a, const auto& b) { return a.first < b.first; };
+  const auto known = ptrdiff_t(arrays_.size());
   for (const auto& [id, data] : commit.arrays) {
-    commitArrays_[id] = data;
-    arrays_[id] = data;
+    const auto found = std::lower_bound(arrays_.begin(), arrays_.begin() + known, id, isBefore);
+    if (found != arrays_.begin() + known && found->first == id)
+      found->second = data;
+    else
+      arrays_.emplace_back(id, data);
   }
+  std::sort(arrays_.begin() + known, arrays_.end(), byNumber);
+  if (!std::is_sorted(arrays_.begin() + std::max<ptrdiff_t>(known - 1, 0), arrays_.end(), byNumber))
+    std::inplace_merge(arrays_.begin(), arrays_.begin() + known, arrays_.end(), byNumber);
+}
+
+SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
+  if (history) history->begin(commit);
+  history_ = history && history->records() ? history : nullptr;
+  noteArrays(commit);
+  commit_ = &commit;
   SceneChanges changes;
   for (const auto& edit : commit.edits.edits)
     if (edit) applyEdit(edit->any, changes);
   sortChildren();
-  commitArrays_.clear();
+  commit_ = nullptr;
   history_ = nullptr;
   if (history) history->finish(*this, commit);
   return changes;
@@ -105,7 +125,7 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
   case Any::Parameter: {
     const auto& p = *any.AsParameter();
     if (auto found = shaders.find(p.shader); found != shaders.end())
-      found->second.parameters[p.index] = p;
+      found->second.parameters.set(valueOf(p));
     if (changes.parameters.empty() || changes.parameters.back() != p.shader)
       changes.parameters.push_back(p.shader);
     break;

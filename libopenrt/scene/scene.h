@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/analytic.h"
 #include "scene/commit.h"
 #include "scene/id_table.h"
 #include "scene/matrix.h"
+#include "scene/parameter_values.h"
 
 namespace openrt {
 
@@ -66,8 +68,7 @@ struct Role { // camera or environment
 
 struct ShaderValues {
   uint32_t shaderClass = 0;
-  // Parameters that were set, by index in the class's table.
-  std::map<uint32_t, edit::ParameterT> parameters;
+  ParameterValues parameters; // those that were set
 };
 
 struct TextureImage {
@@ -106,7 +107,7 @@ class Scene {
 
   std::map<uint32_t, TextureImage> textures;
   std::map<uint32_t, ShaderClassName> classes;
-  std::map<uint32_t, ShaderValues> shaders;
+  IdTable<ShaderValues> shaders;
   std::map<uint32_t, Object> objects;
   IdTable<Instance> instances;
   std::map<uint32_t, Light> lights;
@@ -121,6 +122,7 @@ class Scene {
 
  private:
   ArrayPtr array(ArrayId id) const;
+  void noteArrays(const Commit& commit);
   void applyEdit(const edit::AnyUnion& any, SceneChanges& changes);
   void replaceObject(const edit::ObjectT& object, SceneChanges& changes);
   void placeInstance(const edit::InstanceT& edit, SceneChanges& changes);
@@ -129,12 +131,12 @@ class Scene {
   void dropChildren(uint32_t object);
   void sortChildren();
   void eraseInstance(uint32_t id);
-  // Weak: an array lives as long as the scene uses it.
-  std::map<ArrayId, std::weak_ptr<const Array>> arrays_;
+  // By number, ascending. Weak: an array lives as long as the scene uses it.
+  std::vector<std::pair<ArrayId, std::weak_ptr<const Array>>> arrays_;
   size_t arraysSwept_ = 0; // size of arrays_ after the last sweep
   uint64_t version_ = 0;
-  std::map<ArrayId, ArrayPtr> commitArrays_; // arrays of the commit being applied
-  SceneHistory* history_ = nullptr;          // set while a commit is applied that is to be watched
+  const Commit* commit_ = nullptr;  // the commit being applied
+  SceneHistory* history_ = nullptr; // set while a commit is applied that is to be watched
   std::map<uint32_t, std::vector<uint32_t>> children_;
   std::vector<uint32_t> unsorted_; // objects whose child lists are out of date
 };

@@ -70,7 +70,7 @@ class Writer {
       e.id = id;
       e.shaderClass = values.shaderClass;
       add(std::move(e));
-      for (const auto& [index, parameter] : values.parameters) add(edit::ParameterT(parameter));
+      for (const ParameterValue& value : values.parameters) add(editOf(id, value));
     }
   }
 

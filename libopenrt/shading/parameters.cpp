@@ -7,10 +7,10 @@ namespace openrt {
 namespace {
 
 std::string problem(const RtsParam& param, double value) {
+  const bool ranged = param.minimum != 0 || param.maximum != 0, finite = std::isfinite(value);
+  if (finite && (!ranged || (value >= param.minimum && value <= param.maximum))) return {};
   const std::string what = std::string("parameter ") + param.name + ": ";
-  if (!std::isfinite(value)) return what + "not finite";
-  if (param.minimum == 0 && param.maximum == 0) return {}; // the parameter has no range
-  if (value >= param.minimum && value <= param.maximum) return {};
+  if (!finite) return what + "not finite";
   return what + std::to_string(value) + " is outside " + std::to_string(param.minimum) + " .. " +
          std::to_string(param.maximum);
 }

@@ -171,8 +171,7 @@ class Export {
     Json parameters = Json::object();
     for (uint32_t i = 0; i < c.paramCount; i++) {
       const auto set = values.parameters.find(i);
-      parameters[c.params[i].name] =
-          value(c.params[i], set == values.parameters.end() ? nullptr : &set->second);
+      parameters[c.params[i].name] = value(c.params[i], set ? &*set : nullptr);
     }
     return {{"class", name.name},
             {"library", name.library},
@@ -180,7 +179,7 @@ class Export {
             {"parameters", std::move(parameters)}};
   }
 
-  static Json value(const RtsParam& p, const edit::ParameterT* set) {
+  static Json value(const RtsParam& p, const ParameterValue* set) {
     switch (p.type) {
     case RTS_STRING: return set ? set->text : "";
     case RTS_TEXTURE: return set ? set->texture : 0u;
@@ -189,7 +188,8 @@ class Export {
     default: break;
     }
     std::vector<float> floats(p.defaultValue, p.defaultValue + floatsOf(p.type));
-    if (set && set->floats.size() == floats.size()) floats = set->floats;
+    if (set && set->floats.size() == floats.size())
+      floats.assign(set->floats.begin(), set->floats.end());
     return floats.size() == 1 ? Json(floats[0]) : Json(floats);
   }
 

@@ -1,8 +1,10 @@
 #include "mapper/outermost.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace xvrml::mapper {
 
@@ -29,9 +31,44 @@ Outermost::Outermost(const Directions& directions) {
   most_.fill(-infinity);
 }
 
-// Most points lie within what is known, so the loop that finds this has no branches.
 void Outermost::add(const Vector& point) {
   if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return;
+  block_[inBlock_++] = point;
+  if (inBlock_ == blockSize) addBlock();
+}
+
+void Outermost::addBlock() {
+  const size_t end = std::exchange(inBlock_, 0);
+  if (end == 0) return;
+  Vector low = block_[0], high = block_[0];
+  for (size_t p = 1; p < end; ++p)
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], block_[p][k]);
+      high[k] = std::max(high[k], block_[p][k]);
+    }
+  if (!mayBeOutside(low, high)) return;
+  for (size_t p = 0; p < end; ++p) compare(block_[p]);
+}
+
+// Returns whether a point of a box may lie farther out than those that are known, in any direction.
+bool Outermost::mayBeOutside(const Vector& low, const Vector& high) const {
+  const Vector center = low / 2 + high / 2;
+  Vector half = high / 2 - low / 2;
+  double size = 0;
+  for (int k = 0; k < 3; ++k) size += std::abs(center[k]) + half[k];
+  half += Vector(1e-12 * size); // for the rounding of sums
+  int inside = 1;
+  for (size_t i = 0; i < count; ++i) {
+    const double along = x_[i] * center.x + y_[i] * center.y + z_[i] * center.z,
+                 reach =
+                     std::abs(x_[i]) * half.x + std::abs(y_[i]) * half.y + std::abs(z_[i]) * half.z;
+    inside &= int(along - reach >= least_[i]) & int(along + reach <= most_[i]);
+  }
+  return !inside; // also for sums that are not finite
+}
+
+// Most points lie within what is known, so the loop that finds this has no branches.
+void Outermost::compare(const Vector& point) {
   std::array<double, count> along;
   int outside = 0;
   for (size_t i = 0; i < count; ++i) {
@@ -67,7 +104,8 @@ void Outermost::addSphere(const Matrix& matrix, double radius) {
   }
 }
 
-std::vector<Vector> Outermost::points() const {
+std::vector<Vector> Outermost::points() {
+  addBlock();
   std::vector<Vector> all;
   if (most_[0] < least_[0]) return all;
   all.reserve(2 * count);

@@ -25,9 +25,18 @@ class Outermost {
   void addSphere(const Matrix& matrix, double radius);
   // Returns the points that lie farthest out; empty if nothing was added. With even directions,
   // parts outside of their hull reach at most a few hundredths of its size beyond it.
-  std::vector<Vector> points() const;
+  std::vector<Vector> points();
 
  private:
+  void addBlock();
+  bool mayBeOutside(const Vector& low, const Vector& high) const;
+  void compare(const Vector& point);
+
+  // The points that were added last. They are only looked at if their box reaches beyond what is
+  // known: worlds have millions of points, and few of them lie far out.
+  static constexpr size_t blockSize = 32;
+  std::array<Vector, blockSize> block_;
+  size_t inBlock_ = 0;
   std::array<double, count> x_, y_, z_; // the directions
   std::array<double, count> least_, most_;
   std::array<Vector, count> first_, last_; // the points there

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace xvrml::mapper {
 
@@ -58,10 +59,23 @@ void write(const RTparameterInfo& parameter, int handle, std::span<const float> 
 }
 } // namespace
 
+void ShaderSetup::integer(const char* name, int v) {
+  const int at = handle(name);
+  if (leavesOutDefaults_) {
+    RTparameterInfo parameter{};
+    rtGetParameterInfo(class_, at, &parameter);
+    if (parameter.defaultValue[0] == float(v)) return;
+  }
+  rtParameter1i(at, v);
+}
+
 void ShaderSetup::set(const char* name, std::span<const float> values) {
   const int at = handle(name);
   RTparameterInfo parameter{};
   rtGetParameterInfo(class_, at, &parameter);
+  if (leavesOutDefaults_ && parameter.type != RT_PARAM_FLOATS &&
+      std::memcmp(values.data(), parameter.defaultValue, values.size_bytes()) == 0)
+    return;
   if (!fresh() && !takes(parameter, values)) {
     const size_t count = parameter.type == RT_PARAM_FLOATS ? 0 : values.size();
     write(parameter, at, {parameter.defaultValue, count});

@@ -63,7 +63,11 @@ class ShaderSetup {
   RTid id() const { return shader_; }
   bool fresh() const { return !sets_; }
 
-  void integer(const char* name, int v) { rtParameter1i(handle(name), v); }
+  // A new shader gets no values that are its class's defaults: worlds have millions of shaders, and
+  // most values are. Only for stock classes, whose defaults stay when libraries are reloaded.
+  void leaveOutDefaults() { leavesOutDefaults_ = fresh(); }
+
+  void integer(const char* name, int v);
   void number(const char* name, float v) { set(name, {&v, 1}); }
   // Clamps to the field's range. Parsers have warned about values outside it.
   void number(const char* name, float v, float low,
@@ -93,6 +97,7 @@ class ShaderSetup {
 
   RTid class_, shader_;
   uint64_t* sets_ = nullptr;
+  bool leavesOutDefaults_ = false;
 };
 
 } // namespace xvrml::mapper

@@ -33,8 +33,11 @@ template <class Table, class T> std::string bytes(const T& table) {
   builder.Finish(Table::Pack(builder, &table));
   return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
 }
-bool same(const edit::ParameterT& a, const edit::ParameterT& b) {
-  return bytes<edit::Parameter>(a) == bytes<edit::Parameter>(b);
+bool same(const ParameterValues& a, const ParameterValues& b) {
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [](const ParameterValue& x, const ParameterValue& y) {
+        return bytes<edit::Parameter>(editOf(0, x)) == bytes<edit::Parameter>(editOf(0, y));
+      });
 }
 bool same(const TextureImage& a, const TextureImage& b) {
   return bytes<edit::Texture>(a.description) == bytes<edit::Texture>(b.description) &&
@@ -45,7 +48,6 @@ bool same(const Instance& a, const Instance& b) {
          a.visible == b.visible && a.userData == b.userData && a.name == b.name &&
          a.dynamic == b.dynamic && same(a.matrix, b.matrix);
 }
-template <class T> bool same(const std::map<uint32_t, T>& a, const std::map<uint32_t, T>& b);
 bool same(const ShaderValues& a, const ShaderValues& b) {
   return a.shaderClass == b.shaderClass && same(a.parameters, b.parameters);
 }
@@ -54,10 +56,10 @@ template <class T> bool same(const std::map<uint32_t, T>& a, const std::map<uint
     return x.first == y.first && same(x.second, y.second);
   });
 }
-bool same(const IdTable<Instance>& a, const IdTable<Instance>& b) {
+template <class T> bool same(const IdTable<T>& a, const IdTable<T>& b) {
   if (a.size() != b.size()) return false;
-  for (const auto& [id, instance] : a)
-    if (!b.contains(id) || !same(instance, b.at(id))) return false;
+  for (const auto& [id, value] : a)
+    if (!b.contains(id) || !same(value, b.at(id))) return false;
   return true;
 }
 

@@ -67,7 +67,7 @@ bool setVaryingValue(Context& c, int handle, std::initializer_list<RtsType> type
   if (const std::string problem = valueProblem(param, values); !problem.empty())
     fail(RT_INVALID_VALUE, problem);
   const auto set = state.values.find(index);
-  const float* before = set != state.values.end() ? set->second.data() : param.defaultValue;
+  const float* before = set ? set->floats.data() : param.defaultValue;
   c.definition->builder.parameter(own, values, {before, own.floats});
   return true;
 }

@@ -42,7 +42,7 @@ void unusedShaders(const RuleContext& f, const Report& report) {
 
 void missingTextures(const RuleContext& f, const Report& report) {
   for (const auto& [id, values] : f.scene.shaders)
-    for (const auto& [index, parameter] : values.parameters)
+    for (const ParameterValue& parameter : values.parameters)
       if (parameter.texture != 0 && !f.scene.textures.contains(parameter.texture))
         report(id, nameOfShader(f, id) + " has " + nameOf("texture", parameter.texture) +
                        ", which has no image and counts as white: bind it and call rtTexImage2D");
@@ -51,10 +51,11 @@ void missingTextures(const RuleContext& f, const Report& report) {
 void removedParameters(const RuleContext& f, const Report& report) {
   for (const auto& [id, values] : f.scene.shaders) {
     const RtsClass* table = f.classOf(id);
-    for (const auto& [index, parameter] : values.parameters)
-      if (table && index < table->paramCount && !*table->params[index].name)
+    for (const ParameterValue& parameter : values.parameters)
+      if (table && parameter.index < table->paramCount && !*table->params[parameter.index].name)
         report(id,
-               nameOfShader(f, id) + " has a value for parameter " + std::to_string(index) +
+               nameOfShader(f, id) + " has a value for parameter " +
+                   std::to_string(parameter.index) +
                    ", which its library lost when it was reloaded: call rtParameterHandle again");
   }
 }
@@ -67,7 +68,7 @@ void unmappedTextures(const RuleContext& f, const Report& report) {
         continue;
       const auto values = f.scene.shaders.find(g.shader);
       if (values == f.scene.shaders.end()) continue;
-      for (const auto& [index, parameter] : values->second.parameters)
+      for (const ParameterValue& parameter : values->second.parameters)
         if (parameter.texture != 0 && f.scene.textures.contains(parameter.texture))
           report(id,
                  nameOfShader(f, g.shader) + " has a texture, but geometry of " +
@@ -148,11 +149,9 @@ bool valueOf(const RuleContext& f, uint32_t shader, const char* name, RtsType ty
   for (uint32_t i = 0; table && i < table->paramCount; i++) {
     const RtsParam& param = table->params[i];
     if (std::strcmp(param.name, name) != 0 || param.type != type) continue;
-    const auto& set = f.scene.shaders.at(shader).parameters;
-    const auto found = set.find(i);
+    const auto set = f.scene.shaders.at(shader).parameters.find(i);
     for (size_t k = 0; k < parameterFloats(type); k++)
-      out[k] = found != set.end() && k < found->second.floats.size() ? found->second.floats[k]
-                                                                     : param.defaultValue[k];
+      out[k] = set && k < set->floats.size() ? set->floats[k] : param.defaultValue[k];
     return true;
   }
   return false;

@@ -2,9 +2,12 @@
 // class VRML97.
 #include "mapper/shading/appearance.h"
 
+#include <array>
 #include <cstring>
 #include <optional>
 #include <utility>
+
+#include <xxhash.h>
 
 #include "mapper/shading/layers.h"
 #include "mapper/shading/line_properties.h"
@@ -47,28 +50,29 @@ constexpr uint64_t bytesOfShader = bytesOfSurface - bytesOfSharedSurface;
 // change of parameters. The first change of a shared shader rewrites the shapes of one appearance.
 constexpr size_t smallWorld = 256;
 
-// Returns the bytes of all values that decide how a surface looks.
-std::string keyOf(const AppearanceParts& parts, RTid texture, bool linear, bool multiply,
-                  bool vertexAlpha) {
-  std::string key;
-  key.reserve(64); // a material takes 60 bytes
-  const auto add = [&key](const auto& value) {
-    key.append(reinterpret_cast<const char*>(&value), sizeof value);
+} // namespace
+
+Surfaces::Key Surfaces::keyOf(const AppearanceParts& parts, RTid texture, bool multiply,
+                              bool vertexAlpha) const {
+  std::array<std::byte, 256> bytes; // those of all values take less
+  size_t size = 0;
+  const auto add = [&](const auto& value) {
+    std::memcpy(bytes.data() + size, &value, sizeof value);
+    size += sizeof value;
   };
   add(texture);
   add(multiply);
   add(vertexAlpha);
   if (const auto* m = nodeCast<nodes::Material>(parts.material)) {
     for (const Color& color : {m->diffuseColor, m->emissiveColor, m->specularColor})
-      add(convert(color, linear));
+      add(convert(color, linear_));
     for (const float number : {m->ambientIntensity, m->shininess, m->transparency}) add(number);
   }
   if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform); t && texture != 0)
     add(textureMatrix(t->center, t->rotation, t->scale, t->translation));
-  return key;
+  const XXH128_hash_t digest = XXH3_128bits(bytes.data(), size);
+  return {digest.low64, digest.high64};
 }
-
-} // namespace
 
 // Returns whether the appearance may share the shader of an equal one: the world has many
 // appearances, and no events reach this one.
@@ -92,9 +96,9 @@ bool Surfaces::take(const Entry& entry, uint64_t bytes) {
 
 // Gives the entry the shared shader of these values. Returns false if there is none yet: then the
 // entry is its first user, and the caller makes the shader.
-bool Surfaces::share(Entry& entry, const std::string& key) {
+bool Surfaces::share(Entry& entry, const Key& key) {
   const auto [it, fresh] = shared_.try_emplace(key);
-  it->second.key = &it->first;
+  it->second.key = key;
   entry.shared = &it->second;
   ++entry.shared->users;
   entry.surface.shader = entry.shared->shader;
@@ -106,7 +110,7 @@ void Surfaces::leaveShared(Entry& entry) {
   Shared& shared = *std::exchange(entry.shared, nullptr);
   if (--shared.users > 0) return;
   entry.own = shared.shader;
-  shared_.erase(*shared.key);
+  shared_.erase(Key(shared.key));
 }
 
 Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
@@ -185,8 +189,8 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool multiplied = multiplies(entry);
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
-    const std::string key = keyOf(parts, texture, linear_, multiplied, entry.use.vertexAlpha);
-    if (entry.shared && *entry.shared->key == key) {
+    const Key key = keyOf(parts, texture, multiplied, entry.use.vertexAlpha);
+    if (entry.shared && entry.shared->key == key) {
       entry.surface.shader = entry.shared->shader;
       return;
     }
@@ -205,13 +209,17 @@ void Surfaces::makeSurface(Entry& entry) {
   else
     setup.emplace(shaderClass, entry.own, sets_);
   ShaderSetup& shader = *setup;
+  shader.leaveOutDefaults();
   entry.surface.shader = shader.id();
   (entry.shared ? entry.shared->shader : entry.own) = shader.id();
-  const nodes::Material standard(*findNodeType("Material"));
-  // The custom shader is unavailable, so the surface is shaded as a default Material.
-  const bool fallback = parts.shader != nullptr;
   const auto* material = nodeCast<nodes::Material>(parts.material);
-  setMaterial(shader, material ? material : fallback ? &standard : nullptr, linear_);
+  // If the custom shader is unavailable, the surface is shaded as a default Material.
+  if (!material && parts.shader) {
+    const nodes::Material standard(*findNodeType("Material"));
+    setMaterial(shader, &standard, linear_);
+  } else {
+    setMaterial(shader, material, linear_);
+  }
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (entry.use.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);

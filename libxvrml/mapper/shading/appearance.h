@@ -69,11 +69,20 @@ class Surfaces {
   bool multiplyTextures = false; // OpenRTMapper::setMultiplyTextures
 
  private:
-  // A shader of the class VRML97 for all appearances whose values are `key`.
+  // The hash of all values that decide how a surface looks. It stands for them, because no two
+  // different ones among millions have the same 128 bits.
+  struct Key {
+    uint64_t low = 0, high = 0;
+    bool operator==(const Key&) const = default;
+  };
+  struct HashOfKey {
+    size_t operator()(const Key& key) const { return key.low; }
+  };
+  // A shader of the class VRML97 for all appearances whose values have the hash `key`.
   struct Shared {
     RTid shader = 0;
     uint32_t users = 0;
-    const std::string* key = nullptr; // in shared_
+    Key key;
   };
   struct Entry {
     NodeRef appearance;
@@ -99,7 +108,8 @@ class Surfaces {
   void makeX3d(Entry& entry);
   bool multiplies(const Entry& entry) const;
   bool mayShare(const Entry& entry) const;
-  bool share(Entry& entry, const std::string& key);
+  Key keyOf(const AppearanceParts& parts, RTid texture, bool multiply, bool vertexAlpha) const;
+  bool share(Entry& entry, const Key& key);
   void leaveShared(Entry& entry);
   bool take(const Entry& entry, uint64_t bytes);
   RTid customSurface(Node& appearance, nodes::ORTShader& shader);
@@ -112,8 +122,8 @@ class Surfaces {
   CubeMaps& cubes_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries entries_[8];                             // by placeOf()
-  std::unordered_map<std::string, Shared> shared_; // by the values, see keyOf()
+  Entries entries_[8]; // by placeOf()
+  std::unordered_map<Key, Shared, HashOfKey> shared_;
   uint64_t sets_ = 0;
 };
 

@@ -44,9 +44,9 @@ uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
 // Returns whether the parameter values of a geometry are valid for the shader it is drawn with: the
 // classes must be the same, and the arrays long enough.
 bool AccelBuilder::carriesParameters(const Geometry& g, uint32_t slot) const {
+  if (g.parameters.empty()) return false;
   const uint32_t own = input_->shaders.slotOf(g.shader);
-  if (g.parameters.empty() || own == 0 ||
-      input_->shaders[own].shaderClass != input_->shaders[slot].shaderClass)
+  if (own == 0 || input_->shaders[own].shaderClass != input_->shaders[slot].shaderClass)
     return false;
   const RtsClass& table = *input_->shaders[own].shaderClass;
   return std::all_of(g.parameters.begin(), g.parameters.end(), [&](const GeometryParameter& p) {
@@ -99,6 +99,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
     const auto& geometries = input_->scene.objects.at(item.object).geometries;
     const Inherited path = input_->flat.inherit(cluster.path, item.path);
     const Matrix4d itemToRender = partToRender * item.matrix;
+    const Affine toObject = Affine::from(inverse(itemToRender));
     bool rejected = !itemToRender.usable();
     const auto setPlace = [&](Record& r, const Matrix4d& kernelToRender) {
       setInstance(r, kernelToRender);
@@ -114,7 +115,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
       const bool sphere = g.primitive == edit::Primitive::Sphere;
       const Matrix4d unit = sphere ? toRender * uniformScale(g.width) : toRender;
       Record r = recordOf(path, g, toRender);
-      r.toObject = Affine::from(inverse(itemToRender));
+      r.toObject = toObject;
       switch (info.drawn[entry]) {
       case DrawnAs::baked:
         if (!root)
