@@ -49,3 +49,12 @@ template <class Range, class F> void parallelFor(const Range& range, const F& f)
   tbb::parallel_for(range, f);
 #endif
 }
+
+// Calls f(begin, end) for ranges of numbers that make up 0 to count, on several threads if there
+// are many.
+template <class F> void forRanges(std::size_t count, const F& f) {
+  constexpr std::size_t grain = 16384;
+  if (count <= grain) return f(std::size_t(0), count); // there are millions of small arrays
+  parallelFor(tbb::blocked_range<std::size_t>(0, count, grain),
+              [&](const auto& range) { f(range.begin(), range.end()); });
+}

@@ -10,7 +10,9 @@
 
 #include <xxhash.h>
 
+#include "api/geometry/deforming.h"
 #include "api/scene_state.h"
+#include "scene/scene.h"
 
 namespace openrt {
 namespace {
@@ -68,11 +70,20 @@ class CommitBuilder {
   // list that several geometries share, or the corners of equal boxes.
   ArrayId addArray(const ArrayPtr& array) {
     if (!array) return 0;
-    auto& [recent, recentId] =
-        recent_[std::hash<const Array*>()(array.get()) / 64 % recent_.size()];
+    auto& [recent, recentId] = recentPlace(array);
     if (recent == array.get()) return recentId;
     recent = array.get();
     return recentId = addNewArray(array);
+  }
+
+  // Adds an array that an earlier commit has given a number. It keeps the number.
+  void addKnownArray(const ArrayPtr& array, ArrayId id) {
+    commit_->arrays.emplace(id, array);
+    recentPlace(array) = {array.get(), id};
+  }
+
+  std::pair<const Array*, ArrayId>& recentPlace(const ArrayPtr& array) {
+    return recent_[std::hash<const Array*>()(array.get()) / 64 % recent_.size()];
   }
 
   ArrayId addNewArray(const ArrayPtr& array) {
@@ -151,10 +162,45 @@ class CommitBuilder {
       edit::ObjectT e;
       e.id = id;
       e.dynamic = state.dynamic;
+      const bool refitted = isRefitted(state);
+      const bool keptTree = refitted && keepsTree(id, state.geometries[0]);
       for (const BuiltGeometry& built : state.geometries)
         e.geometries.push_back(toEditGeometry(built));
+      if (refitted) noteTree(id, state.geometries[0], keptTree, *e.geometries[0]);
       add(std::move(e));
     });
+  }
+
+  // Returns whether backends refit the tree of an object (Geometry::rest).
+  static bool isRefitted(const ObjectState& state) {
+    if (!state.dynamic || state.geometries.size() != 1) return false;
+    const BuiltGeometry& built = state.geometries[0];
+    return built.primitive == edit::Primitive::Triangles &&
+           built.indices->count<uint32_t>() / 3 >= refittedTriangles;
+  }
+
+  // Returns whether the tree of an object serves its new points. Indices that have not changed stay
+  // the same array.
+  bool keepsTree(RTid id, BuiltGeometry& built) {
+    const auto found = scene_.resting_.find(id);
+    if (found == scene_.resting_.end()) return false;
+    const RestingMesh& rest = found->second;
+    if (rest.points->size() != built.points->size() || !sameBytes(rest.indices, built.indices))
+      return false;
+    built.indices = rest.indices;
+    addKnownArray(rest.indices, rest.indicesId);
+    return !hasDeformedMuch(*rest.points, *built.points);
+  }
+
+  // Writes what the tree of an object is built of, and remembers it if it is new.
+  void noteTree(RTid id, const BuiltGeometry& built, bool keptTree, edit::GeometryT& e) {
+    RestingMesh& rest = scene_.resting_[id];
+    if (!keptTree) {
+      rest = {built.points, built.indices, e.points, e.indices};
+    } else if (e.points != rest.pointsId) {
+      e.rest = rest.pointsId;
+      commit_->arrays.emplace(rest.pointsId, rest.points);
+    }
   }
 
   void addInstances() {
@@ -220,6 +266,10 @@ class CommitBuilder {
   }
 
   void markCommitted() noexcept {
+    for (const RTid id : scene_.objects.deleted) scene_.resting_.erase(id);
+    for (const RTid id : scene_.objects.dirty)
+      if (const ObjectState* state = scene_.objects.find(id); state && !isRefitted(*state))
+        scene_.resting_.erase(id);
     markTableCommitted(scene_.objects,
                        [](ObjectState& s) { std::vector<BuiltGeometry>().swap(s.geometries); });
     markTableCommitted(scene_.instances, [](InstanceState&) {});

@@ -20,6 +20,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "api/errors.h"
@@ -104,6 +105,12 @@ template <class State> struct Table {
   }
 };
 
+// The mesh that the tree of a deforming object is built of (api/geometry/deforming.h).
+struct RestingMesh {
+  ArrayPtr points, indices;
+  ArrayId pointsId = 0, indicesId = 0;
+};
+
 class SceneState {
  public:
   SceneState();
@@ -166,6 +173,7 @@ class SceneState {
 
  private:
   friend class CommitBuilder;
+  std::unordered_map<RTid, RestingMesh> resting_; // by deforming object
   RTid nextId_ = 1;
   ArrayId nextArray_ = 1;
 };

@@ -23,4 +23,9 @@ Array::Array(size_t bytes) : data_(nullptr), size_(bytes) {
 
 Array::~Array() { std::free(data_); }
 
+bool sameBytes(const ArrayPtr& a, const ArrayPtr& b) {
+  if (a == b) return true;
+  return a && b && a->size() == b->size() && std::memcmp(a->data(), b->data(), a->size()) == 0;
+}
+
 } // namespace openrt

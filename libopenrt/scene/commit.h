@@ -34,6 +34,8 @@ class Array {
 };
 
 using ArrayPtr = std::shared_ptr<const Array>;
+// Returns whether two arrays have the same bytes; also if both are null.
+bool sameBytes(const ArrayPtr& a, const ArrayPtr& b);
 // 0: none. The front end numbers arrays; a number is never reused within a context.
 using ArrayId = uint64_t;
 

@@ -46,6 +46,12 @@ size_t Geometry::primitives() const {
   return 0;
 }
 
+bool isRefitted(const Object& object) {
+  return object.dynamic && object.geometries.size() == 1 &&
+         object.geometries[0].primitive == edit::Primitive::Triangles &&
+         object.geometries[0].primitives() >= refittedTriangles;
+}
+
 ArrayPtr Scene::array(ArrayId id) const {
   if (id == 0) return nullptr;
   if (const auto found = commit_->arrays.find(id); found != commit_->arrays.end())
@@ -258,7 +264,8 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
                                  array(g->texCoords),
                                  array(g->colors),
                                  {},
-                                 AnalyticSurface::make(g->primitive, g->surface)});
+                                 AnalyticSurface::make(g->primitive, g->surface),
+                                 array(g->rest)});
     for (const auto& p : g->parameters)
       if (p)
         target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});

@@ -37,6 +37,9 @@ struct Geometry {
   ArrayPtr points, indices, normals, texCoords, colors;
   std::vector<GeometryParameter> parameters;
   std::shared_ptr<const AnalyticSurface> surface; // null: no quadric or asphere
+  // For a mesh that deforms: the points that its tree is built of, before it is refitted to
+  // `points`. Null: `points`.
+  ArrayPtr rest;
 
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };
@@ -46,6 +49,11 @@ struct Object {
   bool dynamic = false;
   std::vector<Geometry> geometries;
 };
+
+// A dynamic object that is one mesh with so many triangles or more has a tree of its own, which is
+// refitted when the mesh deforms. isRefitted() tells whether an object is one.
+inline constexpr size_t refittedTriangles = 50'000;
+bool isRefitted(const Object& object);
 
 struct Instance {
   uint32_t parent = 0, object = 0, shader = 0;

@@ -6,15 +6,9 @@
 
 #include <algorithm>
 #include <compare>
-#include <cstring>
 
 namespace openrt {
 namespace {
-
-bool sameBytes(const ArrayPtr& a, const ArrayPtr& b) {
-  if (a == b) return true;
-  return a && b && a->size() == b->size() && std::memcmp(a->data(), b->data(), a->size()) == 0;
-}
 
 // Returns whether a hit's primitive and its barycentric coordinates mean the same point of both.
 bool sameTopology(const Geometry& a, const Geometry& b) {

@@ -88,6 +88,7 @@ class Writer {
     e->normals = number(g.normals);
     e->texCoords = number(g.texCoords);
     e->colors = number(g.colors);
+    e->rest = number(g.rest);
     if (g.surface) e->surface = g.surface->numbers();
     for (const GeometryParameter& own : g.parameters) {
       if (e->shader == 0) break; // parameters belong to the shader's class

@@ -54,26 +54,32 @@ template <class Interpolator> void evaluate(Events& events, Interpolator& node, 
 }
 
 // For interpolators of lists: perKey consecutive values for each key.
-template <class Interpolator, class T>
-void evaluateLists(Events& events, Interpolator& node, float fraction,
-                   T (*blendOne)(const T&, const T&, float)) {
+template <class Interpolator, class Blend>
+void evaluateLists(Events& events, Interpolator& node, float fraction, const Blend& blendOne) {
   const Shape shape = shapeOf(events, node, true);
   if (shape.keys == 0) return;
   const KeyPosition place = locate(node.key.data(), shape.keys, fraction);
-  const T* left = node.keyValue.data() + place.left * shape.perKey;
-  std::vector<T> result(left, left + shape.perKey);
-  if (place.t != 0)
+  using List = decltype(node.keyValue);
+  const auto* left = node.keyValue.data() + place.left * shape.perKey;
+  List result;
+  if (place.t == 0) {
+    result.assign(left, left + shape.perKey);
+  } else {
+    result.resize(shape.perKey);
     for (size_t i = 0; i < shape.perKey; ++i)
       result[i] = blendOne(left[i], left[i + shape.perKey], place.t);
+  }
   static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
   events.send(node, out, std::move(result));
 }
 
 void evaluate(Events& events, nodes::CoordinateInterpolator& node, float fraction) {
-  evaluateLists<nodes::CoordinateInterpolator, Vec3f>(events, node, fraction, blend);
+  evaluateLists(events, node, fraction,
+                [](const Vec3f& a, const Vec3f& b, float t) { return blend(a, b, t); });
 }
 void evaluate(Events& events, nodes::CoordinateInterpolator2D& node, float fraction) {
-  evaluateLists<nodes::CoordinateInterpolator2D, Vec2f>(events, node, fraction, blend);
+  evaluateLists(events, node, fraction,
+                [](const Vec2f& a, const Vec2f& b, float t) { return blend(a, b, t); });
 }
 void evaluate(Events& events, nodes::NormalInterpolator& node, float fraction) {
   evaluateLists(events, node, fraction, blendNormals);

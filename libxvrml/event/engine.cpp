@@ -26,6 +26,14 @@ void Engine::send(Node& from, const FieldInfo& out, Value value) {
     state.last = std::move(value);
 }
 
+// Returns whether a route, a listener or the field of a prototype instance hears of an output.
+bool Engine::isHeard(Node& node, const FieldInfo& out) {
+  const Participant& sender = part(node);
+  return !sender.listeners.empty() ||
+         std::any_of(sender.links.begin(), sender.links.end(),
+                     [&](const Link& link) { return link.out == &out && link.isOutgoing(); });
+}
+
 void Engine::preset(Node& from, const FieldInfo& out, Value value) {
   if (value.index() != size_t(out.type) || out.access != Access::eventOut) return;
   Participant::Out& state = part(from).out(out);
@@ -164,7 +172,10 @@ void Engine::deliverToStatic(Node& node, const FieldInfo& in, const Value& value
   if (in.access == Access::exposedField) {
     if (behaviour && behaviour->accept && !behaviour->accept(*this, node, in, value)) return;
     if (!store(node, in, value)) return;
-    send(node, in, holdsNodes(in) || hasNormalizedAxes(in) ? node.get(in) : value);
+    if (isHeard(node, in)) // values may be large, so they are copied only for somebody
+      send(node, in, holdsNodes(in) || hasNormalizedAxes(in) ? node.get(in) : value);
+    else
+      part(node).out(in).cascade = cascade_;
   } else if (const FieldInfo* field = node.type().fieldSetBy(in)) {
     store(node, *field, value);
   }

@@ -176,6 +176,7 @@ class Engine final : public Events {
   void deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value,
                          FileName urlBase);
   void deliverToScript(ScriptNode& script, const FieldInfo& in, const Value& value);
+  bool isHeard(Node& node, const FieldInfo& out);
   void deliverToStatic(Node& node, const FieldInfo& in, const Value& value);
   void sendFromInstance(ProtoInstance& instance, const FieldInfo& out, const Value& value,
                         bool keeps);

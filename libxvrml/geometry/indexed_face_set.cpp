@@ -165,6 +165,15 @@ bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> point
   return true;
 }
 
+// Returns whether the triangles of the mesh before are valid ones of these points, too.
+bool remain(const MeshTopology* former, std::span<const Vec3f> points) {
+  if (!former || former->indices.empty() || former->points != points.size()) return false;
+  const auto& index = former->indices;
+  for (size_t i = 0; i < index.size(); i += 3)
+    if (!hasArea(points[index[i]], points[index[i + 1]], points[index[i + 2]])) return false;
+  return true;
+}
+
 // Uses the node's points directly, for flat triangles without colours or texture coordinates of
 // their own.
 bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> points,
@@ -172,11 +181,15 @@ bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> poin
   if (node.coordIndex.size() / 4 + 1 > triangleLimit(options) ||
       points.size() / 4 > node.coordIndex.size())
     return false;
-  if (!allFinite(points) || !plainTriangles(node.coordIndex, points, mesh.ownIndices)) {
+  if (!allFinite(points)) return false;
+  if (remain(options.former, points)) {
+    mesh.ownIndices = std::move(options.former->indices);
+  } else if (!plainTriangles(node.coordIndex, points, mesh.ownIndices)) {
     mesh.ownIndices.clear();
     return false;
   }
   mesh.kind = Mesh::Kind::triangles;
+  mesh.plain = true;
   mesh.points = points;
   mesh.indices = mesh.ownIndices;
   mesh.solid = node.solid;

@@ -44,7 +44,8 @@ struct Mesh {
   std::span<const float> alphas; // opacity, 0 to 1, of the colours of a ColorRGBA
   bool solid = true;             // back faces are culled
   bool ccw = true;
-  float radius = 0; // radius of a sphere
+  float radius = 0;   // radius of a sphere
+  bool plain = false; // points are the node's, and triangles its faces in their order
   // If not empty, what the ray tracer draws in place of the triangles.
   std::vector<ExactSurface> exact;
 
@@ -61,6 +62,12 @@ struct Mesh {
   Mesh(const Mesh&) = delete;
 };
 
+// The triangles of a plain mesh.
+struct MeshTopology {
+  std::vector<uint32_t> indices;
+  size_t points = 0; // number of points
+};
+
 struct MeshOptions {
   // The shape has a texture: make default texture coordinates if the node has none.
   bool needTexCoords = false;
@@ -70,6 +77,9 @@ struct MeshOptions {
   std::string_view limitName = {};
   // Cylinders and cones get exact surfaces beside their triangles.
   bool exactShapes = false;
+  // If not null, those of the mesh that was built of this node before; only the node's points have
+  // changed since. A mesh that is still built of them takes them.
+  MeshTopology* former = nullptr;
 };
 
 // Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if

@@ -40,6 +40,13 @@ uint64_t ownBytes(const Mesh& m) {
          m.ownTexCoords.capacity() * sizeof(Vec2f) + m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
+// Takes the triangles out of a large mesh that is about to be released, if they are the faces of
+// its node.
+std::unique_ptr<MeshTopology> topologyOf(Mesh& m) {
+  if (!m.plain || m.ownIndices.size() < (1 << 14)) return nullptr;
+  return std::make_unique<MeshTopology>(MeshTopology{std::move(m.ownIndices), m.points.size()});
+}
+
 template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
   return a.size() == b.size() &&
          (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -115,10 +122,11 @@ void Meshes::setExactShapes(bool exact) {
     if (entries_[mesh].geometry) changed(int32_t(mesh));
 }
 
-void Meshes::changed(int32_t mesh) {
+void Meshes::changed(int32_t mesh, bool pointsOnly) {
   leave(mesh);
   forgetCorners();
   Entry& entry = entries_[size_t(mesh)];
+  if (!pointsOnly) entry.topology.reset();
   entry.mesh.reset();
   entry.known = false;
 }
@@ -144,8 +152,8 @@ const Mesh& Meshes::get(int32_t mesh) {
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
-  MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name,
-                      exactShapes_};
+  MeshOptions options{entry.textured, &limits,      entry.said ? &silent : &world_.diagnostics,
+                      name,           exactShapes_, entry.topology.get()};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
@@ -235,7 +243,11 @@ Meshes::Extent Meshes::extent(int32_t mesh) {
 }
 
 void Meshes::release() {
-  for (const int32_t mesh : built_) entries_[size_t(mesh)].mesh.reset();
+  for (const int32_t mesh : built_) {
+    Entry& entry = entries_[size_t(mesh)];
+    if (entry.dynamic && entry.mesh) entry.topology = topologyOf(*entry.mesh);
+    entry.mesh.reset();
+  }
   built_.clear();
   forgetCorners();
   quota_.clear();

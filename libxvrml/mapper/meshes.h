@@ -41,8 +41,9 @@ class Meshes {
     return entry.known && (entry.extent.alpha != hasVertexAlpha(*entry.geometry) ||
                            entry.extent.byNormal != looksUpByNormal(*entry.geometry));
   }
-  // Invalidates the mesh because fields of the node have changed.
-  void changed(int32_t mesh);
+  // Invalidates the mesh because fields of the node have changed, or only the points of its
+  // Coordinate.
+  void changed(int32_t mesh, bool pointsOnly = false);
   // Sets whether events reach the geometry. A dynamic mesh is never grouped with equal ones.
   void setDynamic(int32_t mesh, bool dynamic);
   bool dynamic(int32_t mesh) const { return entries_[size_t(mesh)].dynamic; }
@@ -77,6 +78,8 @@ class Meshes {
   struct Entry {
     NodeRef geometry;
     std::unique_ptr<Mesh> mesh; // null: not built, or released
+    // The triangles of a released mesh that events change; null: they are read again.
+    std::unique_ptr<MeshTopology> topology;
     Extent extent;
     uint64_t triangles = 0; // limit, set from the budget left when the mesh was first built
     uint32_t users = 0;

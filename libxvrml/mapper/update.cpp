@@ -118,7 +118,7 @@ void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
     const bool otherSurface = graph.meshes.switchedSurface(mesh);
-    graph.meshes.changed(mesh);
+    graph.meshes.changed(mesh, first.type().index == nodes::Coordinate::typeIndex);
     work.meshes.push_back(mesh);
     boundsStale = countsStale = true;
     forEachShape(graph, node, [&](ItemId shape) {

@@ -1,10 +1,12 @@
 // draw.cpp: builds the geometry of rtDrawArrays and rtDrawElements. Attributes are copied directly
 // into the arrays that are sent to the backend; everything is checked before anything is stored.
 // Runs on the application's thread.
+#include <atomic>
 #include <cstring>
 
 #include "api/geometry/object_builder.h"
 #include "api/geometry/transform.h"
+#include "parallel_for.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -27,8 +29,12 @@ bool allFinite(const float* values, size_t count) {
 
 void checkIndices(const DrawCall& call) {
   if (!call.indices) return;
-  uint32_t largest = 0;
-  for (size_t i = 0; i < call.count; i++) largest = std::max(largest, call.indices[i]);
+  std::atomic<uint32_t> largest{0};
+  forRanges(call.count, [&](size_t begin, size_t end) {
+    uint32_t most = 0;
+    for (size_t i = begin; i < end; i++) most = std::max(most, call.indices[i]);
+    for (uint32_t known = largest; known < most && !largest.compare_exchange_weak(known, most);) {}
+  });
   if (call.count > 0 && largest >= call.vertexCount)
     fail(RT_INVALID_VALUE, "index " + std::to_string(largest) + " is beyond the " +
                                std::to_string(call.vertexCount) + " vertices");
@@ -59,17 +65,25 @@ void clearUnused(const DrawCall& call, float* values, size_t components, const c
   }
 }
 
-// Copies `count` elements into elements of `to` floats; missing components become 1 (alpha).
-void copyElements(const AttributeSource& source, size_t count, size_t to, float* out) {
+// Copies elements into elements of `to` floats; missing components become 1 (alpha). Returns
+// whether all numbers are finite.
+bool copyElements(const AttributeSource& source, size_t count, size_t to, float* out) {
   const size_t from = static_cast<size_t>(source.components);
-  if (from == to && source.stride == to * sizeof(float)) {
-    std::memcpy(out, source.data, count * to * sizeof(float));
-    return;
-  }
-  for (size_t i = 0; i < count; i++, out += to) {
-    std::memcpy(out, source.data + i * source.stride, from * sizeof(float));
-    for (size_t k = from; k < to; k++) out[k] = 1;
-  }
+  std::atomic<bool> finite{true};
+  forRanges(count, [&](size_t begin, size_t end) {
+    float* const first = out + begin * to;
+    if (from == to && source.stride == to * sizeof(float)) {
+      std::memcpy(first, source.data + begin * source.stride, (end - begin) * source.stride);
+    } else {
+      float* at = first;
+      for (size_t i = begin; i < end; i++, at += to) {
+        std::memcpy(at, source.data + i * source.stride, from * sizeof(float));
+        for (size_t k = from; k < to; k++) at[k] = 1;
+      }
+    }
+    if (!allFinite(first, (end - begin) * to)) finite = false;
+  });
+  return finite;
 }
 
 ArrayPtr attribute(const DrawCall& call, const AttributeSource& source, size_t components, bool set,
@@ -78,8 +92,7 @@ ArrayPtr attribute(const DrawCall& call, const AttributeSource& source, size_t c
   auto array = std::make_shared<Array>(call.vertexCount * components * sizeof(float));
   float* out = reinterpret_cast<float*>(array->data());
   if (source.data) {
-    copyElements(source, call.vertexCount, components, out);
-    if (!allFinite(out, call.vertexCount * components))
+    if (!copyElements(source, call.vertexCount, components, out))
       clearUnused(call, out, components, complaint);
   } else {
     for (size_t i = 0; i < call.vertexCount; i++)
@@ -118,6 +131,21 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   return array;
 }
 
+// Returns whether the vertices are triangles as they stand, none of which is degenerate.
+bool areTriangles(const DrawCall& call, const float* points) {
+  if (call.mode != RT_TRIANGLES || !call.indices || call.count % 3 != 0) return false;
+  std::atomic<bool> good{true};
+  forRanges(call.count / 3, [&](size_t begin, size_t end) {
+    const auto point = [&](size_t corner) { return points + 3 * size_t(call.indices[corner]); };
+    for (size_t t = begin; t < end; t++)
+      if (degenerateTriangle(point(3 * t), point(3 * t + 1), point(3 * t + 2))) {
+        good = false;
+        return;
+      }
+  });
+  return good;
+}
+
 // Returns the indices of the primitives that are not degenerate. ordinals: receives, if not null,
 // the number of each of them among all primitives of the call.
 ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate,
@@ -125,6 +153,12 @@ ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& deg
   const size_t room = indexCount(call.mode, call.count);
   auto array = std::make_shared<Array>(room * sizeof(uint32_t));
   uint32_t* out = reinterpret_cast<uint32_t*>(array->data());
+  if (!ordinals && areTriangles(call, points)) {
+    forRanges(room, [&](size_t begin, size_t end) {
+      std::copy(call.indices + begin, call.indices + end, out + begin);
+    });
+    return array;
+  }
   const uint32_t* end = nullptr;
   const auto kept = [ordinals](size_t ordinal) {
     if (ordinals) ordinals->push_back(static_cast<uint32_t>(ordinal));

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "parallel_for.h"
 #include "scene/matrix.h"
 
 namespace openrt {
@@ -51,23 +52,6 @@ class Edges {
       id[k] = ids_.try_emplace(VertexKey(at(indices_[3 * triangle + k])), uint32_t(ids_.size()))
                   .first->second;
     for (size_t k = 0; k < 3; k++) edges_.insert(key(id[k], id[(k + 1) % 3]));
-    known_.clear();
-  }
-  // Returns whether the edge from corner k of a triangle to the next corner is in the set.
-  bool has(size_t triangle, size_t k) {
-    const uint32_t p = idOf(indices_[3 * triangle + k]),
-                   q = idOf(indices_[3 * triangle + (k + 1) % 3]);
-    return p != none && q != none && edges_.contains(key(p, q));
-  }
-
- private:
-  const float* at(uint32_t index) const { return vertices_.data() + 3 * size_t(index); }
-  static uint64_t key(uint32_t p, uint32_t q) {
-    return uint64_t(std::min(p, q)) << 32 | std::max(p, q);
-  }
-  uint32_t idOf(uint32_t index) {
-    if (known_.empty()) lookUpVertices();
-    return known_[index];
   }
   // Looks up the number of every vertex, after all triangles are added. A table of bits, as in a
   // Bloom filter, rejects most vertices without a look-up.
@@ -76,11 +60,29 @@ class Edges {
     std::vector<bool> some(std::bit_ceil(16 * ids_.size() + 1));
     const size_t mask = some.size() - 1;
     for (const auto& [place, id] : ids_) some[VertexKeyHash()(place) & mask] = true;
-    for (uint32_t i = 0; i < known_.size(); i++) {
-      const VertexKey place(at(i));
-      if (!some[VertexKeyHash()(place) & mask]) continue;
-      if (const auto found = ids_.find(place); found != ids_.end()) known_[i] = found->second;
-    }
+    forRanges(known_.size(), [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; i++) {
+        const VertexKey place(at(uint32_t(i)));
+        if (!some[VertexKeyHash()(place) & mask]) continue;
+        if (const auto found = ids_.find(place); found != ids_.end()) known_[i] = found->second;
+      }
+    });
+  }
+  // Returns whether the edge from corner k of a triangle to the next corner is in the set. The
+  // vertices must have been looked up.
+  bool has(size_t triangle, size_t k) const {
+    const uint32_t p = known_[indices_[3 * triangle + k]],
+                   q = known_[indices_[3 * triangle + (k + 1) % 3]];
+    return p != none && q != none && edges_.contains(key(p, q));
+  }
+  bool hasAny(size_t triangle) const {
+    return has(triangle, 0) || has(triangle, 1) || has(triangle, 2);
+  }
+
+ private:
+  const float* at(uint32_t index) const { return vertices_.data() + 3 * size_t(index); }
+  static uint64_t key(uint32_t p, uint32_t q) {
+    return uint64_t(std::min(p, q)) << 32 | std::max(p, q);
   }
   const std::vector<float>& vertices_;
   const uint32_t* indices_;
@@ -108,18 +110,30 @@ std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint
     for (size_t t = 0; t < shapes.size(); t++)
       if (shapes[t] == shape) f(t);
   };
+  // Returns by triangle whether it is a good one that has an edge of the set.
+  const auto touching = [&](const Edges& edges) {
+    std::vector<uint8_t> touches(shapes.size());
+    forRanges(shapes.size(), [&](size_t begin, size_t end) {
+      for (size_t t = begin; t < end; t++)
+        touches[t] = shapes[t] == TriangleShape::good && edges.hasAny(t);
+    });
+    return touches;
+  };
   {
     Edges edges(vertices, indices);
     each(TriangleShape::sliver, [&](size_t t) { edges.add(t); });
-    each(TriangleShape::good, [&](size_t t) {
-      if (edges.has(t, 0) || edges.has(t, 1) || edges.has(t, 2)) shapes[t] = TriangleShape::sliver;
-    });
+    edges.lookUpVertices();
+    const std::vector<uint8_t> touches = touching(edges);
+    for (size_t t = 0; t < shapes.size(); t++)
+      if (touches[t]) shapes[t] = TriangleShape::sliver;
   }
   Edges good(vertices, indices), slivers(vertices, indices);
   each(TriangleShape::sliver, [&](size_t t) { slivers.add(t); });
-  each(TriangleShape::good, [&](size_t t) {
-    if (slivers.has(t, 0) || slivers.has(t, 1) || slivers.has(t, 2)) good.add(t);
-  });
+  slivers.lookUpVertices();
+  const std::vector<uint8_t> touches = touching(slivers);
+  for (size_t t = 0; t < shapes.size(); t++)
+    if (touches[t]) good.add(t);
+  good.lookUpVertices();
   std::vector<uint8_t> open;
   each(TriangleShape::sliver, [&](size_t t) { // in ray_triangle.h the edges are ac, ba, cb
     open.push_back(

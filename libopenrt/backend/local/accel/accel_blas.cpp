@@ -46,15 +46,15 @@ uint32_t AccelBuilder::maskOf(const Item& item, const Geometry& g, uint32_t over
   return override ? override : maskOf(item.path.shader ? item.path.shader : g.shader);
 }
 
-// Returns the cached Blas of a key, or makes it if its signature changed. The signature is computed
-// once per build or update.
+// Returns the cached Blas of a key, or makes it if its signature changed; `make` gets the former
+// one, or null. The signature is computed once per build or update.
 template <class Sign, class Make> std::shared_ptr<const Blas>
 AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
   Cached& entry = blases_[key];
   if (entry.checked == buildNumber_ && entry.blas) return entry.blas;
   entry.checked = buildNumber_;
   if (const Signature signature = sign(); !entry.blas || entry.signature != signature) {
-    entry.blas = make();
+    entry.blas = make(entry.blas.get());
     entry.signature = signature;
     objectBuilds++;
   }
@@ -84,7 +84,7 @@ std::shared_ptr<const Blas> AccelBuilder::objectBlas(uint32_t object, uint32_t o
     for (const Geometry& g : source.geometries) hash << maskOf(item, g, override);
     return hash.digest<Signature>();
   };
-  return cached({object, false, override}, sign, [&] {
+  return cached({object, false, override}, sign, [&](Blas*) {
     const Box& box = survey.object(object).bounds;
     const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
     BlasBuilder builder(*device_, spheres_, source.geometries.size());
@@ -125,15 +125,25 @@ std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t overr
     });
     return hash.digest<Signature>();
   };
-  return cached({source.object, true, override}, sign, [&] {
-    Box box;
-    forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) {
-      box.add(boundsOf(g), item.matrix);
-    });
+  return cached({source.object, true, override}, sign, [&](Blas* former) {
+    const bool deforms =
+        info.entries() == 1 && isRefitted(input_->scene.objects.at(source.items[0].object));
+    Box box = info.bounds;
+    if (!deforms) {
+      box = {};
+      forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) {
+        box.add(boundsOf(g), item.matrix);
+      });
+    }
     const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
     BlasBuilder builder(*device_, spheres_, info.entries());
     forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t entry) {
-      builder.add(g, toKernel * item.matrix * g.matrix, entry, maskOf(item, g, override));
+      const Matrix4d matrix = toKernel * item.matrix * g.matrix;
+      const uint32_t mask = maskOf(item, g, override);
+      if (deforms)
+        builder.addDeforming(g, matrix, entry, mask, former);
+      else
+        builder.add(g, matrix, entry, mask);
     });
     const std::shared_ptr<Blas> blas = builder.finish();
     blas->fromKernel = fromKernel;

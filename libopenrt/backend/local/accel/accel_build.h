@@ -55,7 +55,7 @@ class AccelBuilder {
   };
   struct Cached {
     Signature signature;
-    std::shared_ptr<const Blas> blas;
+    std::shared_ptr<Blas> blas;
     uint64_t checked = 0; // number of the build or update that last used it
   };
   struct Key {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include "backend/local/sliver_edges.h"
 #include "parallel_for.h"
@@ -12,12 +13,21 @@
 namespace openrt {
 namespace {
 
-// Calls f(begin, end) for ranges that make up 0 to count, in parallel if there is more than one.
-template <class F> void forRanges(size_t count, const F& f) {
-  constexpr size_t grain = 16384;
-  if (count <= grain) return f(0, count); // worlds have millions of small geometries
-  parallelFor(tbb::blocked_range<size_t>(0, count, grain),
-              [&](const auto& range) { f(range.begin(), range.end()); });
+// Returns the bounds of points (stride 3).
+Box boundsOf(const float* points, size_t count) {
+  Box box;
+  std::mutex mutex;
+  forRanges(count, [&](size_t begin, size_t end) {
+    Vec3f low{INFINITY, INFINITY, INFINITY}, high = -low;
+    for (size_t i = begin; i < end; i++) {
+      low = min(low, vectorOf(points + 3 * i));
+      high = max(high, vectorOf(points + 3 * i));
+    }
+    const std::lock_guard lock(mutex);
+    box.add(Vec3d(low));
+    box.add(Vec3d(high));
+  });
+  return box;
 }
 
 } // namespace
@@ -44,17 +54,8 @@ Box boundsOf(const Geometry& geometry) {
     local.add(geometry.surface->low());
     local.add(geometry.surface->high());
   } else if (geometry.points) {
-    const float* p = geometry.points->as<float>();
     const size_t n = geometry.points->count<float>() / 3;
-    Vec3f low{INFINITY, INFINITY, INFINITY}, high = -low;
-    for (size_t i = 0; i < n; i++) {
-      low = min(low, vectorOf(p + 3 * i));
-      high = max(high, vectorOf(p + 3 * i));
-    }
-    if (n) {
-      local.add(Vec3d(low));
-      local.add(Vec3d(high));
-    }
+    if (n) local = boundsOf(geometry.points->as<float>(), n);
   }
   result.add(local, geometry.matrix);
   return result;
@@ -71,9 +72,13 @@ bool consistent(const Geometry& g) {
     return false;
   const uint32_t* index = g.indices->as<uint32_t>();
   const size_t count = g.indices->count<uint32_t>();
-  uint32_t largest = 0;
-  for (size_t i = 0; i < count; i++) largest = std::max(largest, index[i]);
-  return count > 0 && largest < n;
+  std::atomic<bool> inRange{true};
+  forRanges(count, [&](size_t begin, size_t end) {
+    uint32_t largest = 0;
+    for (size_t i = begin; i < end; i++) largest = std::max(largest, index[i]);
+    if (largest >= n) inRange = false;
+  });
+  return count > 0 && inRange;
 }
 
 std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& m) {
@@ -107,7 +112,9 @@ BakedTriangles bakeTriangles(const Geometry& geometry, const Matrix4d& toKernel)
   });
   if (clean) return out;
   std::vector<TriangleShape> shapes(count);
-  for (size_t t = 0; t < count; t++) shapes[t] = shape(t);
+  forRanges(count, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; t++) shapes[t] = shape(t);
+  });
   if (std::find(shapes.begin(), shapes.end(), TriangleShape::sliver) != shapes.end())
     out.openEdges = widenSlivers(out.vertices, index, shapes);
   for (size_t t = 0; t < count; t++) {

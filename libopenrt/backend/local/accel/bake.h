@@ -18,6 +18,7 @@ struct BakedTriangles {
   std::vector<uint32_t> slivers;  // original numbers of triangles for double precision
   std::vector<uint8_t> openEdges; // for each sliver (sliver_edges.h)
   uint64_t degenerate = 0;        // number of degenerate triangles, which were dropped
+  bool whole() const { return indices.empty() && slivers.empty() && degenerate == 0; }
 };
 
 // toKernel: from the geometry's local frame to the kernel's frame.

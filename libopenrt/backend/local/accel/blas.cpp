@@ -22,6 +22,27 @@ constexpr size_t mostPieces = 1 << 18;     // slivers beyond this number of piec
 // as fast. Smaller scenes stay as they are, so that their pictures keep their bytes.
 constexpr size_t compactTriangles = 1'000'000;
 
+// Makes the part of a geometry that has an Embree geometry of its own, without its vertices.
+std::unique_ptr<Part> partOf(const Geometry& g, BakedTriangles& baked, uint32_t entry) {
+  auto part = std::make_unique<Part>();
+  if (baked.whole()) {
+    part->primitives.add(entry, 0, uint32_t(g.primitives()));
+    part->sharedIndices = g.indices;
+  } else {
+    for (const uint32_t t : baked.kept) part->primitives.add(entry, t);
+    part->indices = std::move(baked.indices);
+  }
+  return part;
+}
+
+// Returns points in a frame of their own, in which their size is near 1.
+std::vector<float> verticesAtRest(const ArrayPtr& points) {
+  Geometry resting;
+  resting.points = points;
+  const Box box = boundsOf(resting);
+  return bakePoints(resting, inverse(kernelFrame(box.low, box.high)));
+}
+
 } // namespace
 
 std::shared_ptr<const Blas> UnitSpheres::get(uint32_t mask) {
@@ -46,7 +67,8 @@ BlasBuilder::BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_
 
 void BlasBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entry, uint32_t mask) {
   if (!consistent(g) || !toKernel.usable()) return;
-  if (g.primitive == edit::Primitive::Triangles) addTriangles(g, toKernel, entry, mask);
+  if (g.primitive == edit::Primitive::Triangles)
+    addTriangles(g, bakeTriangles(g, toKernel), entry, mask);
   if (g.primitive == edit::Primitive::Sphere) addSphere(g, toKernel, entry, mask);
   if (g.surface) addAnalytic(g, toKernel, entry, mask);
 }
@@ -59,11 +81,10 @@ void BlasBuilder::addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& 
   attachInstance(*blas_, device_, std::move(blas), entry, toKernel);
 }
 
-void BlasBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+void BlasBuilder::addTriangles(const Geometry& g, BakedTriangles baked, uint32_t entry,
                                uint32_t mask) {
-  BakedTriangles baked = bakeTriangles(g, toKernel);
   blas_->degenerate += baked.degenerate;
-  const bool whole = baked.indices.empty() && baked.slivers.empty() && baked.degenerate == 0;
+  const bool whole = baked.whole();
   const size_t kept = whole ? g.primitives() : baked.kept.size();
   const uint32_t* index = g.indices->as<uint32_t>();
   if (!baked.slivers.empty()) mergeSlivers(baked, index, entry, mask);
@@ -71,18 +92,53 @@ void BlasBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
     if (kept) merge(baked.vertices, index, whole ? nullptr : &baked.kept, kept, entry, mask);
     return;
   }
-  auto part = std::make_unique<Part>();
+  std::unique_ptr<Part> part = partOf(g, baked, entry);
   part->vertices = std::move(baked.vertices);
-  if (whole) {
-    part->primitives.add(entry, 0, uint32_t(kept));
-    part->sharedIndices = g.indices;
-  } else {
-    for (const uint32_t t : baked.kept) part->primitives.add(entry, t);
-    part->indices = std::move(baked.indices);
-  }
   triangles_ += kept;
   vertexOf_.push_back({entry, part.get(), 0});
   attachTriangles(*blas_, device_, std::move(part), mask, false);
+}
+
+bool Blas::Tree::operator==(const Tree& other) const {
+  return mask == other.mask && slivers == other.slivers && kept == other.kept &&
+         sameBytes(indices, other.indices) && sameBytes(rest, other.rest);
+}
+
+void BlasBuilder::addDeforming(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+                               uint32_t mask, Blas* former) {
+  if (!consistent(g) || !toKernel.usable()) return;
+  BakedTriangles baked = bakeTriangles(g, toKernel);
+  const size_t kept = baked.whole() ? g.primitives() : baked.kept.size();
+  if (kept < mergeBelow) return addTriangles(g, std::move(baked), entry, mask);
+  blas_->degenerate += baked.degenerate;
+  blas_->tree = {g.rest ? g.rest : g.points, g.indices, baked.kept, mask, !baked.slivers.empty()};
+  triangles_ += kept;
+  if (!baked.slivers.empty()) mergeSlivers(baked, g.indices->as<uint32_t>(), entry, mask);
+  if (former && former->tree == blas_->tree) {
+    takeOver(*former, std::move(baked.vertices));
+  } else {
+    std::unique_ptr<Part> part = partOf(g, baked, entry);
+    part->vertices = verticesAtRest(blas_->tree->rest);
+    setDeforming(blas_->scene);
+    attachTriangles(*blas_, device_, std::move(part), mask, false, true);
+    deformed_ = std::move(baked.vertices);
+  }
+  vertexOf_.push_back({entry, blas_->parts[0].part.get(), 0});
+}
+
+// Takes the scene and the tree of a former state of the same mesh. The vertices of then stay with
+// it, because queries may know them by their address.
+void BlasBuilder::takeOver(Blas& former, std::vector<float> vertices) {
+  std::swap(blas_->scene, former.scene);
+  former.tree.reset();
+  auto part = std::make_unique<Part>();
+  Part& before = *former.parts[0].part;
+  part->primitives = std::move(before.primitives);
+  part->indices = std::move(before.indices);
+  part->sharedIndices = std::move(before.sharedIndices);
+  for (uint32_t slot = 1; slot < former.parts.size(); slot++) rtcDetachGeometry(blas_->scene, slot);
+  blas_->parts.emplace_back().part = std::move(part);
+  setVertices(*blas_, 0, std::move(vertices));
 }
 
 // Appends the vertices of an entry to the merged geometry of a kind. base: the number that their
@@ -165,8 +221,8 @@ void BlasBuilder::addAnalytic(const Geometry& g, const Matrix4d& toKernel, uint3
   part->primitives.add(entry, 0);
 }
 
-// Attaches all parts that are still open and commits the scene. From here on the vertices keep
-// their addresses.
+// Attaches all parts that are still open and commits the scene. At the end the vertices have the
+// addresses that they keep.
 std::shared_ptr<Blas> BlasBuilder::finish() {
   for (auto& [key, part] : merged_)
     if (part) attachTriangles(*blas_, device_, std::move(part), key.first, key.second);
@@ -176,9 +232,13 @@ std::shared_ptr<Blas> BlasBuilder::finish() {
     if (part) attachHugeSpheres(*blas_, device_, std::move(part), mask);
   for (auto& [mask, part] : analytic_)
     if (part) attachAnalytic(*blas_, device_, std::move(part), mask);
-  for (const VertexOf& v : vertexOf_) blas_->vertices[v.entry] = v.part->vertices.data() + v.offset;
   if (triangles_ >= compactTriangles) setCompact(blas_->scene);
   rtcCommitScene(blas_->scene);
+  if (!deformed_.empty()) {
+    setVertices(*blas_, 0, std::move(deformed_));
+    rtcCommitScene(blas_->scene);
+  }
+  for (const VertexOf& v : vertexOf_) blas_->vertices[v.entry] = v.part->vertices.data() + v.offset;
   return std::move(blas_);
 }
 

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "backend/local/accel/embree_parts.h"
@@ -21,6 +22,15 @@ struct Blas : PartScene {
   uint64_t degenerate = 0;            // number of dropped triangles
   bool instances = false;             // contains instances, so it cannot be instanced itself
   int8_t enlargement = 0;             // largest one of these (embree_parts.h)
+  // For a mesh that deforms, which is part 0: what the tree was built of.
+  struct Tree {
+    ArrayPtr rest, indices;
+    std::vector<uint32_t> kept; // numbers of the triangles; empty: all
+    uint32_t mask = 0;
+    bool slivers = false; // they are in part 1
+    bool operator==(const Tree& other) const;
+  };
+  std::optional<Tree> tree;
 };
 
 // The unit sphere for each mask; ellipsoids are instances of it.
@@ -41,13 +51,18 @@ class BlasBuilder {
   // Adds a geometry (triangles, a sphere or an analytic surface) as entry number `entry`. toKernel:
   // from its local frame to the Embree scene's.
   void add(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
+  // Adds a mesh that deforms and is alone in its scene. Its tree is built of the points at rest and
+  // refitted to those of now, so it does not depend on what was between. former: a scene of the
+  // same entry, whose tree is taken over if it is the right one; or null.
+  void addDeforming(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
+                    uint32_t mask, Blas* former);
   // Adds an instance of another Blas; its entries are numbered from `entry` on.
   void addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel, uint32_t entry);
   std::shared_ptr<Blas> finish();
 
  private:
-  void addTriangles(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
-                    uint32_t mask);
+  void addTriangles(const Geometry& geometry, BakedTriangles baked, uint32_t entry, uint32_t mask);
+  void takeOver(Blas& former, std::vector<float> vertices);
   void addSphere(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
   void addAnalytic(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
                    uint32_t mask);
@@ -72,6 +87,8 @@ class BlasBuilder {
   };
   std::vector<VertexOf> vertexOf_;
   size_t triangles_ = 0;
+  // For a mesh that deforms and gets a new tree: its vertices now.
+  std::vector<float> deformed_;
 };
 
 // Returns the map to the frame of the bounds from a frame in which they are centred and have a size

@@ -64,11 +64,17 @@ RTCScene newScene(const EmbreeDevice& device) {
 }
 
 void setCompact(RTCScene scene) {
-  rtcSetSceneFlags(scene, RTCSceneFlags(sceneFlags | RTC_SCENE_FLAG_COMPACT));
+  rtcSetSceneFlags(scene, RTCSceneFlags(rtcGetSceneFlags(scene) | RTC_SCENE_FLAG_COMPACT));
+}
+
+// The low quality is that of the tree over the trees of the geometries, of which there is one.
+void setDeforming(RTCScene scene) {
+  rtcSetSceneFlags(scene, RTCSceneFlags(rtcGetSceneFlags(scene) | RTC_SCENE_FLAG_DYNAMIC));
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);
 }
 
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
-                     uint32_t mask, bool slivers) {
+                     uint32_t mask, bool slivers, bool refitted) {
   if (slivers) {
     RTCGeometry geometry = newSlivers(device, *part);
     attach(to, geometry, {std::move(part)}, mask);
@@ -86,7 +92,19 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
                              part->vertices.data(), 0, 12, points);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12,
                              corners / 3);
+  if (refitted) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
   attach(to, geometry, {std::move(part)}, mask);
+}
+
+void setVertices(PartScene& in, uint32_t slot, std::vector<float> vertices) {
+  const size_t points = vertices.size() / 3;
+  vertices.resize(vertices.size() + 4); // padding: the kernels read past the end
+  RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
+  in.parts[slot].part->vertices = std::move(vertices);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             in.parts[slot].part->vertices.data(), 0, 12, points);
+  rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(geometry);
 }
 
 void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,

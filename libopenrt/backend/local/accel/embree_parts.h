@@ -76,9 +76,14 @@ inline constexpr uint32_t nextSlot = ~0u; // the first id after the existing par
 
 RTCScene newScene(const EmbreeDevice& device); // Creates an empty scene in robust mode.
 void setCompact(RTCScene scene); // makes a scene that is not yet committed take less memory
+// Lets a scene that is not yet committed keep its trees from commit to commit.
+void setDeforming(RTCScene scene);
 // Attaches triangles; if `slivers`, as a user geometry that intersects in double precision.
+// refitted: commits after setVertices() keep the tree, in a scene after setDeforming().
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
-                     uint32_t mask, bool slivers);
+                     uint32_t mask, bool slivers, bool refitted = false);
+// Replaces the vertices of the triangles in a slot, whose number stays.
+void setVertices(PartScene& in, uint32_t slot, std::vector<float> vertices);
 // Creates the user geometry of slivers without attaching it. The part must keep its address.
 RTCGeometry newSlivers(const EmbreeDevice& device, Part& part);
 // Attaches huge spheres and ellipsoids (render/huge_spheres.h) from part.spheres, intersected in
