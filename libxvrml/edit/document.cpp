@@ -9,6 +9,7 @@
 
 #include "graph/field_access.h"
 #include "parse/loader.h"
+#include "parse/parser.h"
 
 namespace xvrml {
 
@@ -24,6 +25,7 @@ Document::Document(std::string text, const std::string& path, const LoadOptions&
   byName_.emplace(path, &made);
   index(made);
   for (const NodeRef& root : scope().roots) standing_.add(root.get());
+  nesting_.measure(scope());
 }
 
 Document::~Document() = default;
@@ -40,6 +42,24 @@ const DocumentText& Document::read(const std::string& text, const std::string& n
   byName_.emplace(name, &made);
   index(made);
   return made;
+}
+
+void Document::forgetLastText() {
+  const DocumentText& last = texts_.back();
+  for (const NodeText& place : last.layout.nodes) {
+    const Node* const node = place.node.get();
+    known_.erase(node);
+    renamed_.erase(node);
+    originals_.erase(node);
+    putIn_.erase(node);
+    takenOut_.erase(node);
+  }
+  std::erase_if(byName_, [&last](const auto& one) { return one.second == &last; });
+  texts_.pop_back();
+}
+
+uint64_t Document::mostNested() const {
+  return std::min(options_.limits.nesting, Parser::maximumNesting);
 }
 
 // Notes which places of a list the world has taken. Returns whether these give all of the list.
@@ -166,6 +186,7 @@ void Document::insert(Node* parent, const FieldInfo* field, size_t index, const 
   MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
   putIn_.insert(node.get());
+  nesting_.note(*node);
   if (!parent || stands(*parent)) standing_.add(node.get());
 }
 
@@ -185,6 +206,7 @@ void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   const bool stands = this->stands(parent);
   const NodeRef before = std::exchange(place, std::move(child));
   putIn_.insert(place.get());
+  if (place) nesting_.note(*place);
   takenOut_.insert(before.get());
   if (!stands) return;
   standing_.add(place.get());

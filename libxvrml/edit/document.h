@@ -13,6 +13,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "edit/nesting.h"
 #include "edit/standing.h"
 #include "parse/text_layout.h"
 
@@ -44,6 +45,8 @@ class Document {
   // Reads nodes from a text in the encoding of the file, without a header. name: for the places of
   // its nodes, different from all others. Throws LoadError.
   const DocumentText& read(const std::string& text, const std::string& name);
+  // Forgets the text that was read last, because none of its nodes is put in.
+  void forgetLastText();
   // Returns the node that stands at a place in the file or in one of these texts; null if there is
   // none, or it is part of a prototype.
   Node* find(const SourcePosition& place) const;
@@ -77,6 +80,13 @@ class Document {
   template <class Visit> void forEachChanged(const Visit& visit) const {
     for (const auto& [node, originals] : originals_) visit(*node, originals);
   }
+  // Returns whether a node can be put into a parent (null: the roots), so that nodes do not stand in
+  // more of each other than mostNested().
+  bool admits(const Node* parent, Node& node) {
+    return nesting_.admits(scope(), parent, node, mostNested());
+  }
+  // The limit `nesting`, as far as readers allow it.
+  uint64_t mostNested() const;
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
   void insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node);
@@ -119,6 +129,7 @@ class Document {
   std::unordered_map<const Node*, std::map<std::string, std::optional<Value>, std::less<>>>
       originals_;
   Standing standing_;
+  Nesting nesting_;
   std::unordered_set<const Node*> putIn_, takenOut_;
 };
 

@@ -47,6 +47,12 @@ class EditedFile {
   bool isPreparing() const;
   // Throws EditError if the file cannot be edited, or another world has taken its place.
   Document& document();
+  // Returns the document that has been read, for edits that have begun: another world may take the
+  // place of the edited one meanwhile. The document then still takes them, and gives them up as a
+  // whole if their step is cancelled.
+  Document& opened() { return *document_; }
+  // Returns the scope of the world that is edited; null if another world has taken its place.
+  Scope* liveScope() { return live_->isReplaced() ? nullptr : &world().scope; }
   // Returns the node with its counterpart in the document. Throws EditError if it has none.
   Twin twinOf(Node& node);
   // Does the same for a node that stands in the file now. Throws EditError if it was removed.
