@@ -100,6 +100,8 @@ class Document {
                         const std::set<std::string, std::less<>>& taken = {});
   // Returns whether a node stands anywhere in the file.
   bool stands(const Node& node) const { return standing_.contains(node, scope()); }
+  // Returns in how many places it does.
+  size_t countPlaces(const Node& node) const { return stands(node) ? standing_.countOf(node) : 0; }
   // Tell whether the name, or a field or the name of a node has been changed since its text was
   // read, also if it is as before now.
   bool isRenamed(const Node& node) const { return renamed_.contains(&node); }

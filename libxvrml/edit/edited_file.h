@@ -58,7 +58,7 @@ class EditedFile {
   // Does the same for a node that stands in the file now. Throws EditError if it was removed.
   Twin standingTwinOf(Node& node);
   // See Editor.
-  bool stands(const Node& node) const;
+  size_t countPlaces(const Node& node) const;
   // Throws EditError if a node does not stand in the file now; null: the roots.
   void checkStands(Node* node);
   // holds: there must be a node at the place.
@@ -102,6 +102,7 @@ class EditedFile {
   std::unique_ptr<Document> document_; // read at the first edit
   std::future<Opened> prepared_;       // what preparation() reads
   std::optional<std::string> adopted_; // is read instead of the text of the file
+  std::string refusal_;                // why the file cannot be edited, once it has been read
   bool packed_ = false, marked_ = false;
   FileStamp read_, onDisk_; // the file when it was read, and when it was read or saved
 };

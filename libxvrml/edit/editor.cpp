@@ -101,7 +101,8 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
   return places;
 }
 
-bool Editor::stands(const Node& node) const { return impl_->file.stands(node); }
+bool Editor::stands(const Node& node) const { return countPlaces(node) > 0; }
+size_t Editor::countPlaces(const Node& node) const { return impl_->file.countPlaces(node); }
 
 std::vector<NodeRef> Editor::nodesAt(std::span<const SourcePosition> places) {
   return impl_->file.nodesAt(places);

@@ -16,6 +16,11 @@ class Standing {
   void remove(Node* node);
   // scope: that of the file.
   bool contains(const Node& node, const Scope& scope) const;
+  // Returns in how many places a node stands that the file contains.
+  size_t countOf(const Node& node) const {
+    const uint32_t* const count = places_.find(&node);
+    return count ? *count : 0;
+  }
   // To be called when nodes come in that hold themselves, as Scripts and instances may. Counts do
   // not show then when the last place outside of such a loop is gone, so the file is walked.
   void expectLoops() { loops_ = true; }

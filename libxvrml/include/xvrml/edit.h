@@ -100,6 +100,8 @@ class Editor {
   // Returns whether a node stands anywhere in the file as it is edited; false before the first
   // edit. Unlike placesOf() it does not look through the world.
   bool stands(const Node& node) const;
+  // Returns in how many places of the file it does.
+  size_t countPlaces(const Node& node) const;
 
   // Returns for each place in the world's file, as it was read, the innermost node whose text holds
   // it, as the messages about the file have places; null if there is none, or it is not in the
