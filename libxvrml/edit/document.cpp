@@ -24,8 +24,7 @@ Document::Document(std::string text, const std::string& path, const LoadOptions&
   made.world = loadWithLayout(made.text, path, options_, made.layout);
   byName_.emplace(path, &made);
   index(made);
-  for (const NodeRef& root : scope().roots) standing_.add(root.get());
-  nesting_.measure(scope());
+  for (const NodeRef& root : scope().roots) standing_.add(root.get(), nullptr);
 }
 
 Document::~Document() = default;
@@ -186,8 +185,7 @@ void Document::insert(Node* parent, const FieldInfo* field, size_t index, const 
   MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
   putIn_.insert(node.get());
-  nesting_.note(*node);
-  if (!parent || stands(*parent)) standing_.add(node.get());
+  if (!parent || stands(*parent)) standing_.add(node.get(), parent);
 }
 
 void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
@@ -206,10 +204,9 @@ void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   const bool stands = this->stands(parent);
   const NodeRef before = std::exchange(place, std::move(child));
   putIn_.insert(place.get());
-  if (place) nesting_.note(*place);
   takenOut_.insert(before.get());
   if (!stands) return;
-  standing_.add(place.get());
+  standing_.add(place.get(), &parent);
   standing_.remove(before.get());
 }
 

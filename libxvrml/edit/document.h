@@ -13,7 +13,6 @@
 #include <unordered_set>
 #include <vector>
 
-#include "edit/nesting.h"
 #include "edit/standing.h"
 #include "parse/text_layout.h"
 
@@ -80,10 +79,10 @@ class Document {
   template <class Visit> void forEachChanged(const Visit& visit) const {
     for (const auto& [node, originals] : originals_) visit(*node, originals);
   }
-  // Returns whether a node can be put into a parent (null: the roots), so that nodes do not stand in
-  // more of each other than mostNested().
-  bool admits(const Node* parent, Node& node) {
-    return nesting_.admits(scope(), parent, node, mostNested());
+  // Returns whether a node can be put into a parent (null: the roots), so that no node stands in
+  // more than mostNested() nodes, itself included.
+  bool admits(const Node* parent, Node& node) const {
+    return (parent ? standing_.depthOf(*parent) : 0) + heightOf(node) <= mostNested();
   }
   // The limit `nesting`, as far as readers allow it.
   uint64_t mostNested() const;
@@ -131,7 +130,6 @@ class Document {
   std::unordered_map<const Node*, std::map<std::string, std::optional<Value>, std::less<>>>
       originals_;
   Standing standing_;
-  Nesting nesting_;
   std::unordered_set<const Node*> putIn_, takenOut_;
 };
 
