@@ -49,6 +49,22 @@ LightSet lightsOf(const Lighting& lighting) {
   return set;
 }
 
+// Begins a primitive as a list has it.
+void resume(State& s, const Chunk& begun) {
+  s.begin(begun.mode);
+  for (size_t i = 0; i < begun.vertices.size(); i++) {
+    const Vertex& v = begun.vertices[i];
+    if (i >= begun.inheritsColor) s.setColor(v.color);
+    if (i >= begun.inheritsNormal) s.setNormal(v.normal[0], v.normal[1], v.normal[2]);
+    if (i >= begun.inheritsTexCoord) s.setTexCoord(v.texCoord[0], v.texCoord[1]);
+    s.vertex(v.position[0], v.position[1], v.position[2]);
+  }
+  const Current& last = begun.after;
+  if (begun.setsColor) s.setColor(last.color);
+  if (begun.setsNormal) s.setNormal(last.normal[0], last.normal[1], last.normal[2]);
+  if (begun.setsTexCoord) s.setTexCoord(last.texCoord[0], last.texCoord[1]);
+}
+
 } // namespace
 
 void State::begin(GLenum mode) {
@@ -65,24 +81,8 @@ void State::unroll() {
   if (!records() || !open() || isUnrolled_) return;
   const auto begun = std::make_shared<Chunk>(*chunk_);
   begun->after = recording_;
-  add([begun](State& s) { s.resume(*begun); });
+  add([begun](State& s) { resume(s, *begun); });
   isUnrolled_ = true;
-}
-
-// Begins a primitive as a list has it.
-void State::resume(const Chunk& begun) {
-  begin(begun.mode);
-  for (size_t i = 0; i < begun.vertices.size(); i++) {
-    const Vertex& v = begun.vertices[i];
-    if (i >= begun.inheritsColor) setColor(v.color);
-    if (i >= begun.inheritsNormal) setNormal(v.normal[0], v.normal[1], v.normal[2]);
-    if (i >= begun.inheritsTexCoord) setTexCoord(v.texCoord[0], v.texCoord[1]);
-    vertex(v.position[0], v.position[1], v.position[2]);
-  }
-  const Current& last = begun.after;
-  if (begun.setsColor) setColor(last.color);
-  if (begun.setsNormal) setNormal(last.normal[0], last.normal[1], last.normal[2]);
-  if (begun.setsTexCoord) setTexCoord(last.texCoord[0], last.texCoord[1]);
 }
 
 void State::vertex(float x, float y, float z) {

@@ -39,6 +39,7 @@ struct PixelStore {
   GLint alignment = 4, rowLength = 0, skipRows = 0, skipPixels = 0;
 };
 
+// Wide because OpenGL is one state, which nearly every call changes.
 class State {
  public:
   explicit State(RTcontext context) : context_(context) {}
@@ -113,7 +114,6 @@ class State {
   bool records() const { return compiles() && listDepth_ == 0; }
   // Tells whether a vertex, or what is current for it, is a command of its own.
   bool recordsAlone() const { return records() && (!open() || isUnrolled_); }
-  void resume(const Chunk& begun);
   Part partOf(const ChunkPtr& chunk);
   Material material(bool colored, const Color& color) const;
   void beginFrame();
@@ -136,7 +136,7 @@ class State {
   GLuint listName_ = 0;
   GLenum listMode_ = GL_COMPILE;
   int listDepth_ = 0;
-  size_t nestedCommands_ = 0; // of the lists that the outermost one has called
+  size_t nestedCommands_ = 0; // commands of lists that the outermost one has called
 
   std::vector<Matrix> modelview_{identity}, projection_{identity}, texture_{identity};
   struct Saved { // by glPushAttrib

@@ -18,9 +18,9 @@ template <class Body> bool guarded(const char* function, Body&& body) noexcept {
     return true;
   } catch (const std::bad_alloc&) {
     complain(function, "not enough memory");
-  } catch (const std::exception& error) {
-    complain(function, error.what());
-  } catch (...) { complain(function, "an exception without a text"); }
+  } catch (const std::exception& error) { complain(function, error.what()); } catch (...) {
+    complain(function, "an exception without a text");
+  }
   return false;
 }
 

@@ -26,6 +26,7 @@ struct DocumentText {
   std::vector<std::pair<uint64_t, Node*>> byPlace; // sorted by line and column
 };
 
+// Wide because the writers, the edits and the facts about the file each ask questions of their own.
 class Document {
  public:
   // path: the file's name. text: its text without compression and byte-order mark. Throws

@@ -155,9 +155,10 @@ void Editor::set(Node& node, std::string_view field, Value value) {
   impl_->file.checkReadable(*twin.document, own);
   const auto put = [this, twin, &own](const Value& live, const Value& inFile) {
     if (!impl_->file.live().set(*twin.live, own.name, live))
-      throw EditError(fmt::format("the running world keeps its {}.{}: as it is now, it does not take "
-                                  "another value",
-                                  twin.live->type().name, own.name));
+      throw EditError(
+          fmt::format("the running world keeps its {}.{}: as it is now, it does not take "
+                      "another value",
+                      twin.live->type().name, own.name));
     impl_->file.opened().set(*twin.document, own, inFile);
   };
   const Value live = node.get(*info), inFile = twin.document->get(own);
@@ -182,9 +183,8 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
     Document& file;
     const MFNode& roots;
     ~Reading() {
-      if (std::none_of(roots.begin(), roots.end(), [this](const NodeRef& root) {
-            return root && file.stands(*root);
-          }))
+      if (std::none_of(roots.begin(), roots.end(),
+                       [this](const NodeRef& root) { return root && file.stands(*root); }))
         file.forgetLastText();
     }
   } const reading{file, read->world->scope.roots};

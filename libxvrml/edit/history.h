@@ -84,7 +84,7 @@ class History {
 
   std::function<void()> forgotten_;
   std::deque<Step> steps_; // those that have been done first, then those that have been undone
-  uint64_t bytes_ = 0, mostBytes_ = defaultUndoBytes; // of the steps
+  uint64_t bytes_ = 0, mostBytes_ = defaultUndoBytes; // memory of all steps
   size_t done_ = 0;
   // Edits, undos and redos so far, and those of them that were not about values alone.
   uint64_t changes_ = 0, nodeChanges_ = 0;

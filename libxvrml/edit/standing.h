@@ -37,7 +37,7 @@ class Standing {
   struct Places {
     uint32_t count = 0, depth = 0;
   };
-  NodeMap<Places> places_; // of each node that stands in the file
+  NodeMap<Places> places_; // the nodes that stand in the file
   bool loops_ = false;
   mutable std::optional<SeenNodes> walked_; // with loops: empty after each change
 };

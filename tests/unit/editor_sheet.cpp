@@ -447,9 +447,7 @@ TEST_F(Sheet, HidingIsNoEdit) {
 TEST_F(Sheet, ANodeThatAnEditHidesStaysHidden) {
   select({"A"});
   model.hideSelected();
-  model.edit([&](WorldEditor& editor) {
-    editor.editor().set(*world.node("A"), "visible", false);
-  });
+  model.edit([&](WorldEditor& editor) { editor.editor().set(*world.node("A"), "visible", false); });
   model.showAll();
   update();
   EXPECT_FALSE(std::get<bool>(world.browser.get(*world.node("A"), "visible")));

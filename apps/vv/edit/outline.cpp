@@ -146,26 +146,25 @@ std::vector<OutlineRow> Outline::find(const World& world, std::string_view text,
 // Returns whether a node is in a field of another.
 static bool holds(const Node& parent, const Node& searched) {
   const auto is = [&searched](const NodeRef& one) { return one.get() == &searched; };
-  return std::any_of(
-      parent.type().fields.begin(), parent.type().fields.end(), [&](const FieldInfo& field) {
-        if (!holdsValue(field)) return false;
-        if (field.type == FieldType::SFNode)
-          return is(*static_cast<const SFNode*>(parent.storage(field)));
-        if (field.type != FieldType::MFNode) return false;
-        const MFNode& list = *static_cast<const MFNode*>(parent.storage(field));
-        return std::any_of(list.begin(), list.end(), is);
-      });
+  return std::any_of(parent.type().fields.begin(), parent.type().fields.end(),
+                     [&](const FieldInfo& field) {
+                       if (!holdsValue(field)) return false;
+                       if (field.type == FieldType::SFNode)
+                         return is(*static_cast<const SFNode*>(parent.storage(field)));
+                       if (field.type != FieldType::MFNode) return false;
+                       const MFNode& list = *static_cast<const MFNode*>(parent.storage(field));
+                       return std::any_of(list.begin(), list.end(), is);
+                     });
 }
 
 MFNode nodesOfFile(const World& world, const std::vector<PickHit::Step>& path) {
   MFNode nodes;
   const MFNode& roots = world.scope.roots;
   for (const PickHit::Step& step : path) {
-    const bool stands = nodes.empty()
-                            ? std::find(roots.begin(), roots.end(), step.node) != roots.end()
-                            : std::any_of(nodes.rbegin(), nodes.rend(), [&](const NodeRef& one) {
-                                return holds(*one, *step.node);
-                              });
+    const bool stands =
+        nodes.empty() ? std::find(roots.begin(), roots.end(), step.node) != roots.end()
+                      : std::any_of(nodes.rbegin(), nodes.rend(),
+                                    [&](const NodeRef& one) { return holds(*one, *step.node); });
     if (stands) nodes.push_back(step.node);
   }
   return nodes;

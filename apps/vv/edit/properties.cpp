@@ -105,8 +105,7 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
 // one is as good as any other, and nobody waits for it.
 size_t placesOf(WorldEditor& editor, const NodeRef& node) {
   if (!node) return 0;
-  const bool isEditable =
-      !editor.editor().isPreparing() && editor.editor().whyReadOnly().empty();
+  const bool isEditable = !editor.editor().isPreparing() && editor.editor().whyReadOnly().empty();
   return isEditable ? editor.editor().countPlaces(*node) : 1;
 }
 

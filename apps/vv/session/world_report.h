@@ -42,7 +42,7 @@ class WorldReport {
   static void finish(Work& work);
 
   std::shared_ptr<Work> work_;                 // the callback of the picture has it, too
-  std::vector<std::shared_ptr<Work>> earlier_; // of other sessions, whose files are being written
+  std::vector<std::shared_ptr<Work>> earlier_; // other sessions, whose files are being written
 };
 
 } // namespace vv

@@ -230,14 +230,14 @@ void Editing::measure(EditorAction action) {
     measures_ = true;
     return show("drag a rectangle over what is to be measured (Escape: none)");
   }
-  model_->request([this, action, view = view_, at = pointer_,
-                   inside = isOverPicture_](WorldEditor& editor) {
-    needPicture(inside);
-    if (action == EditorAction::probe)
-      light_.addProbe(editor, view, at.x, at.y);
-    else
-      light_.addSensor(editor, view, at.x, at.y);
-  });
+  model_->request(
+      [this, action, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
+        needPicture(inside);
+        if (action == EditorAction::probe)
+          light_.addProbe(editor, view, at.x, at.y);
+        else
+          light_.addSensor(editor, view, at.x, at.y);
+      });
 }
 
 void Editing::toggle(Comparison::Shown shown) {
