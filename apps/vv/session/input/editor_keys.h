@@ -38,8 +38,8 @@ enum class EditorAction : uint8_t {
 struct EditorKeyInfo {
   const char* what; // keys, separated by ", ", or what is done with the mouse
   const char* text;
-  // The actions of the keys, in their order. Rows without actions are explained only: the mouse, keys of a
-  // tool that is in use, of menus and of the window.
+  // The actions of the keys, in their order. Rows without actions are explained only: the mouse,
+  // keys of a tool that is in use, of menus and of the window.
   std::array<EditorAction, 3> actions{};
 };
 std::span<const EditorKeyInfo> editorTable();
