@@ -149,10 +149,12 @@ void rtglEndList(void) {
   guarded("glEndList", [](State& s) { s.endList(); });
 }
 void rtglCallList(GLuint list) {
+  guarded("glCallList", [](State& s) { s.unroll(); });
   listed("glCallList", [list](State& s) { s.callList(list); });
 }
 void rtglCallLists(GLsizei n, GLenum type, const GLvoid* lists) {
-  guarded("glCallLists", [&](State&) {
+  guarded("glCallLists", [&](State& state) {
+    state.unroll();
     if (n < 0) fail(GL_INVALID_VALUE, "the number is below 0");
     std::vector<GLuint> names;
     for (size_t i = 0; i < static_cast<size_t>(n); i++) names.push_back(nameAt(type, lists, i));

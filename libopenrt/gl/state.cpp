@@ -11,6 +11,7 @@ namespace rtgl {
 namespace {
 
 constexpr int maxListDepth = 64; // OpenGL 1.1, table 6.24
+constexpr size_t maxNestedCommands = 10'000'000;
 constexpr size_t maxAttributes = 16;
 
 // Applies glColorMaterial: the current colour replaces properties of the material.
@@ -48,6 +49,22 @@ LightSet lightsOf(const Lighting& lighting) {
   return set;
 }
 
+// Begins a primitive as a list has it.
+void resume(State& s, const Chunk& begun) {
+  s.begin(begun.mode);
+  for (size_t i = 0; i < begun.vertices.size(); i++) {
+    const Vertex& v = begun.vertices[i];
+    if (i >= begun.inheritsColor) s.setColor(v.color);
+    if (i >= begun.inheritsNormal) s.setNormal(v.normal[0], v.normal[1], v.normal[2]);
+    if (i >= begun.inheritsTexCoord) s.setTexCoord(v.texCoord[0], v.texCoord[1]);
+    s.vertex(v.position[0], v.position[1], v.position[2]);
+  }
+  const Current& last = begun.after;
+  if (begun.setsColor) s.setColor(last.color);
+  if (begun.setsNormal) s.setNormal(last.normal[0], last.normal[1], last.normal[2]);
+  if (begun.setsTexCoord) s.setTexCoord(last.texCoord[0], last.texCoord[1]);
+}
+
 } // namespace
 
 void State::begin(GLenum mode) {
@@ -55,30 +72,40 @@ void State::begin(GLenum mode) {
   if (mode > GL_POLYGON) fail(GL_INVALID_ENUM, "no such primitive");
   chunk_ = std::make_shared<Chunk>();
   chunk_->mode = mode;
-  recording_ = compiles() ? Current() : now.current;
+  inherits_ = records();
+  isUnrolled_ = false;
+  recording_ = inherits_ ? Current() : now.current;
+}
+
+void State::unroll() {
+  if (!records() || !open() || isUnrolled_) return;
+  const auto begun = std::make_shared<Chunk>(*chunk_);
+  begun->after = recording_;
+  add([begun](State& s) { resume(s, *begun); });
+  isUnrolled_ = true;
 }
 
 void State::vertex(float x, float y, float z) {
+  if (recordsAlone()) add([=](State& s) { s.vertex(x, y, z); });
   if (!open()) return; // undefined in OpenGL
   Chunk& chunk = *chunk_;
   if (chunk.vertices.size() > maxVertices) return; // end() says so
   chunk.vertices.push_back({{x, y, z}, recording_.normal, recording_.texCoord, recording_.color});
-  if (!compiles()) return;
+  if (!inherits_) return;
   if (!chunk.setsColor) chunk.inheritsColor = chunk.vertices.size();
   if (!chunk.setsNormal) chunk.inheritsNormal = chunk.vertices.size();
   if (!chunk.setsTexCoord) chunk.inheritsTexCoord = chunk.vertices.size();
 }
 
 void State::setColor(const Color& color) {
-  if (!open()) {
-    listed("glColor", [color](State& s) {
-      s.now.current.color = color;
-      s.trackColor();
-    });
-    return;
+  if (recordsAlone()) add([color](State& s) { s.setColor(color); });
+  if (open()) {
+    recording_.color = color;
+    chunk_->setsColor = true;
+  } else if (executes()) {
+    now.current.color = color;
+    trackColor();
   }
-  recording_.color = color;
-  chunk_->setsColor = true;
 }
 
 void State::trackColor() {
@@ -87,30 +114,38 @@ void State::trackColor() {
 }
 
 void State::setNormal(float x, float y, float z) {
-  if (!open()) {
-    listed("glNormal", [=](State& s) { s.now.current.normal = {x, y, z}; });
-    return;
+  if (recordsAlone()) add([=](State& s) { s.setNormal(x, y, z); });
+  if (open()) {
+    recording_.normal = {x, y, z};
+    chunk_->setsNormal = true;
+  } else if (executes()) {
+    now.current.normal = {x, y, z};
   }
-  recording_.normal = {x, y, z};
-  chunk_->setsNormal = true;
 }
 
 void State::setTexCoord(float s, float t) {
-  if (!open()) {
-    listed("glTexCoord", [=](State& state) { state.now.current.texCoord = {s, t}; });
-    return;
+  if (recordsAlone()) add([=](State& state) { state.setTexCoord(s, t); });
+  if (open()) {
+    recording_.texCoord = {s, t};
+    chunk_->setsTexCoord = true;
+  } else if (executes()) {
+    now.current.texCoord = {s, t};
   }
-  recording_.texCoord = {s, t};
-  chunk_->setsTexCoord = true;
 }
 
 void State::end() {
   if (!open()) fail(GL_INVALID_OPERATION, "glBegin is missing");
+  const bool single = recordsAlone();
   const std::shared_ptr<Chunk> chunk = std::exchange(chunk_, nullptr);
+  if (single) add([](State& s) { s.end(); });
   if (chunk->vertices.size() > maxVertices) failForVertices();
   chunk->after = recording_;
   chunk->finish();
-  if (compiles()) add([chunk](State& s) { s.draw(chunk); });
+  if (records() && !single)
+    add([chunk](State& s) {
+      if (s.open()) fail(GL_INVALID_OPERATION, "a primitive stands between glBegin and glEnd");
+      s.draw(chunk);
+    });
   if (executes()) draw(chunk);
 }
 
@@ -295,11 +330,17 @@ void State::callList(GLuint name) {
     explicit Level(int& d) : depth(d) { depth++; }
     ~Level() { depth--; } // also if memory has run out
   } level(listDepth_);
+  const bool isNested = listDepth_ > 1;
+  if (!isNested) nestedCommands_ = 0;
   for (const Command& command : list->commands) {
+    if (isNested && ++nestedCommands_ > maxNestedCommands) return;
     try {
       command(*this);
     } catch (const Failure& failure) { record(failure.code, "glCallList: " + failure.text); }
   }
+  if (!isNested && nestedCommands_ > maxNestedCommands)
+    record(GL_OUT_OF_MEMORY, "glCallList: lists within lists have more than " +
+                                 std::to_string(maxNestedCommands) + " commands");
 }
 
 std::vector<Matrix>& State::stack() {

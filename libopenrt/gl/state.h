@@ -39,6 +39,7 @@ struct PixelStore {
   GLint alignment = 4, rowLength = 0, skipRows = 0, skipPixels = 0;
 };
 
+// Wide because OpenGL is one state, which nearly every call changes.
 class State {
  public:
   explicit State(RTcontext context) : context_(context) {}
@@ -69,6 +70,9 @@ class State {
   void trackColor();
   void setNormal(float x, float y, float z);
   void setTexCoord(float s, float t);
+  // Lets the list that is being compiled have the open primitive as single commands, because what
+  // is called next may be a part of it.
+  void unroll();
   // Draws a chunk under what is current.
   void draw(const ChunkPtr& chunk);
 
@@ -78,6 +82,8 @@ class State {
   bool compiles() const { return list_ != nullptr; }
   bool executes() const { return !list_ || listMode_ == GL_COMPILE_AND_EXECUTE; }
   void add(Command command) { list_->commands.push_back(std::move(command)); }
+  // The commands of lists that lists call are bounded, because their number may grow with a power
+  // of the depth.
   void callList(GLuint name);
   GLuint listName() const { return listName_; }
 
@@ -104,6 +110,10 @@ class State {
   bool endFrame();
 
  private:
+  // Tells whether calls are compiled; commands of a list that is executed are not.
+  bool records() const { return compiles() && listDepth_ == 0; }
+  // Tells whether a vertex, or what is current for it, is a command of its own.
+  bool recordsAlone() const { return records() && (!open() || isUnrolled_); }
   Part partOf(const ChunkPtr& chunk);
   Material material(bool colored, const Color& color) const;
   void beginFrame();
@@ -119,11 +129,14 @@ class State {
   void* user_ = nullptr;
 
   std::shared_ptr<Chunk> chunk_;
-  Current recording_; // what is current for the next vertex
+  Current recording_;       // what is current for the next vertex
+  bool inherits_ = false;   // its first vertices inherit what is current when it is drawn
+  bool isUnrolled_ = false; // the list has its vertices as single commands
   std::shared_ptr<List> list_;
   GLuint listName_ = 0;
   GLenum listMode_ = GL_COMPILE;
   int listDepth_ = 0;
+  size_t nestedCommands_ = 0; // commands of lists that the outermost one has called
 
   std::vector<Matrix> modelview_{identity}, projection_{identity}, texture_{identity};
   struct Saved { // by glPushAttrib

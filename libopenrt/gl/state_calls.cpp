@@ -209,7 +209,7 @@ void rtglGetIntegerv(GLenum name, GLint* out) {
   get("glGetIntegerv", name, out, [=](double v) { return toInteger(v * scale); });
 }
 GLenum rtglGetError(void) {
-  GLenum error = GL_NO_ERROR;
+  GLenum error = GL_INVALID_OPERATION; // no context can be made
   guarded("glGetError", [&](State& s) { error = s.takeError(); });
   return error;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openrt/rtut.h"
+#include "rtut/messages.h"
 
 namespace {
 
@@ -104,13 +105,17 @@ void dodecahedron(GLenum mode) {
   for (const Place& direction : inThreePlanes(1, golden)) drawFace(points, direction, mode);
 }
 
+void draw(void (*solid)(GLenum mode), GLenum mode) {
+  rtut::guarded("a polyhedron", [=] { solid(mode); });
+}
+
 } // namespace
 
-void rtutSolidTetrahedron(void) { tetrahedron(GL_POLYGON); }
-void rtutWireTetrahedron(void) { tetrahedron(GL_LINE_LOOP); }
-void rtutSolidOctahedron(void) { octahedron(GL_POLYGON); }
-void rtutWireOctahedron(void) { octahedron(GL_LINE_LOOP); }
-void rtutSolidDodecahedron(void) { dodecahedron(GL_POLYGON); }
-void rtutWireDodecahedron(void) { dodecahedron(GL_LINE_LOOP); }
-void rtutSolidIcosahedron(void) { icosahedron(GL_POLYGON); }
-void rtutWireIcosahedron(void) { icosahedron(GL_LINE_LOOP); }
+void rtutSolidTetrahedron(void) { draw(tetrahedron, GL_POLYGON); }
+void rtutWireTetrahedron(void) { draw(tetrahedron, GL_LINE_LOOP); }
+void rtutSolidOctahedron(void) { draw(octahedron, GL_POLYGON); }
+void rtutWireOctahedron(void) { draw(octahedron, GL_LINE_LOOP); }
+void rtutSolidDodecahedron(void) { draw(dodecahedron, GL_POLYGON); }
+void rtutWireDodecahedron(void) { draw(dodecahedron, GL_LINE_LOOP); }
+void rtutSolidIcosahedron(void) { draw(icosahedron, GL_POLYGON); }
+void rtutWireIcosahedron(void) { draw(icosahedron, GL_LINE_LOOP); }

@@ -18,11 +18,17 @@
 #include "rtut/messages.h"
 #include "rtut/window.h"
 
-void rtut::complain(const std::string& text) { std::fprintf(stderr, "rtut: %s\n", text.c_str()); }
+void rtut::complain(std::string_view text) noexcept {
+  std::fprintf(stderr, "rtut: %.*s\n", static_cast<int>(text.size()), text.data());
+}
+void rtut::complain(const char* function, const char* text) noexcept {
+  std::fprintf(stderr, "rtut: %s: %s\n", function, text);
+}
 
 namespace {
 
 using rtut::complain;
+using rtut::guarded;
 
 constexpr int frameMilliseconds = 40; // from one frame in a file to the next
 constexpr int bestSamples = 256;      // at most, of a picture that nobody redraws
@@ -215,16 +221,19 @@ void useFrames(Program& p, std::string_view text) {
 } // namespace
 
 void rtutInit(int* argc, char** argv) {
-  Program& p = program();
-  if (!rtGetCurrent()) rtInit(argc, argv);
-  if (!rtGetCurrent())
-    return complain(rtGetError() != RT_NO_ERROR ? rtGetErrorMessage() : "no context");
-  rtErrorCallback(printError, nullptr);
-  rtLogCallback(printMessage, nullptr);
-  rtglErrorCallback(printError, nullptr);
-  rtglSamples(1);
-  if (const char* frames = std::getenv("OPENRT_UT_FRAMES"); frames && *frames) useFrames(p, frames);
-  p.start = std::chrono::steady_clock::now();
+  guarded("rtutInit", [&] {
+    Program& p = program();
+    if (!rtGetCurrent()) rtInit(argc, argv);
+    if (!rtGetCurrent())
+      return complain(rtGetError() != RT_NO_ERROR ? rtGetErrorMessage() : "no context");
+    rtErrorCallback(printError, nullptr);
+    rtLogCallback(printMessage, nullptr);
+    rtglErrorCallback(printError, nullptr);
+    rtglSamples(1);
+    if (const char* frames = std::getenv("OPENRT_UT_FRAMES"); frames && *frames)
+      useFrames(p, frames);
+    p.start = std::chrono::steady_clock::now();
+  });
 }
 
 void rtutInitDisplayMode(unsigned int mode) { program().single = !(mode & RTUT_DOUBLE); }
@@ -238,38 +247,41 @@ void rtutInitWindowPosition(int x, int y) {
 }
 
 int rtutCreateWindow(const char* title) {
-  Program& p = program();
-  if (p.window) {
-    complain("there is one window: rtutCreateWindow makes no second one");
-    return 0;
-  }
-  if (!p.frames) {
-    try {
-      p.window = std::make_unique<rtut::Window>(title ? title : "", p.x, p.y, p.width, p.height);
-      p.window->size(p.width, p.height);
-    } catch (const std::exception& error) {
-      complain(std::string("there is no window: ") + error.what() +
-               ". OPENRT_UT_FRAMES=1 renders a picture into a file.");
-      return 0;
+  return guarded("rtutCreateWindow", [title] {
+    Program& p = program();
+    if (p.window) throw std::runtime_error("there is one window, and no second one is made");
+    if (!p.frames) {
+      try {
+        p.window = std::make_unique<rtut::Window>(title ? title : "", p.x, p.y, p.width, p.height);
+        p.window->size(p.width, p.height);
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error(std::string("there is no window: ") + error.what() +
+                                 ". OPENRT_UT_FRAMES=1 renders a picture into a file.");
+      }
     }
-  }
-  rtglSingleBuffer(p.single);
-  rtglViewport(0, 0, p.width, p.height);
-  return 1;
+    rtglSingleBuffer(p.single);
+    rtglViewport(0, 0, p.width, p.height);
+  });
 }
 void rtutDestroyWindow(int) { program().leave = true; }
 void rtutSetWindowTitle(const char* title) {
-  if (program().window) program().window->setTitle(title ? title : "");
+  guarded("rtutSetWindowTitle", [title] {
+    if (program().window) program().window->setTitle(title ? title : "");
+  });
 }
 void rtutReshapeWindow(int width, int height) {
-  Program& p = program();
-  if (p.window)
-    p.window->resize(width, height);
-  else
-    reshape(p, width, height);
+  guarded("rtutReshapeWindow", [width, height] {
+    Program& p = program();
+    if (p.window)
+      p.window->resize(width, height);
+    else
+      reshape(p, width, height);
+  });
 }
 void rtutFullScreen(void) {
-  if (program().window) program().window->fullScreen();
+  guarded("rtutFullScreen", [] {
+    if (program().window) program().window->fullScreen();
+  });
 }
 
 void rtutDisplayFunc(void (*call)(void)) { program().display = call; }
@@ -280,23 +292,29 @@ void rtutKeyboardUpFunc(void (*call)(unsigned char, int, int)) { program().keybo
 void rtutSpecialFunc(void (*call)(int, int, int)) { program().special = call; }
 void rtutSpecialUpFunc(void (*call)(int, int, int)) { program().specialUp = call; }
 void rtutIgnoreKeyRepeat(int ignore) {
-  if (program().window) program().window->ignoreRepeats(ignore != 0);
+  guarded("rtutIgnoreKeyRepeat", [ignore] {
+    if (program().window) program().window->ignoreRepeats(ignore != 0);
+  });
 }
 void rtutMouseFunc(void (*call)(int, int, int, int)) { program().mouse = call; }
 void rtutMotionFunc(void (*call)(int, int)) { program().motion = call; }
 void rtutPassiveMotionFunc(void (*call)(int, int)) { program().passiveMotion = call; }
 void rtutVisibilityFunc(void (*call)(int)) { program().visibility = call; }
 void rtutTimerFunc(unsigned int milliseconds, void (*timer)(int), int value) {
-  Program& p = program();
-  if (timer) p.timers.push_back({now(p) + long(milliseconds), timer, value});
+  guarded("rtutTimerFunc", [=] {
+    Program& p = program();
+    if (timer) p.timers.push_back({now(p) + long(milliseconds), timer, value});
+  });
 }
 
 void rtutPostRedisplay(void) { program().redisplay = true; }
 void rtutSwapBuffers(void) {
-  Program& p = program();
-  p.swapped = true;
-  rtglEndFrame();
-  present(p);
+  guarded("rtutSwapBuffers", [] {
+    Program& p = program();
+    p.swapped = true;
+    rtglEndFrame();
+    present(p);
+  });
 }
 
 int rtutMainLoop(void) {
@@ -305,21 +323,25 @@ int rtutMainLoop(void) {
     complain("there is no window");
     return 1;
   }
-  if (!p.reshaped) reshape(p, p.width, p.height);
-  if (p.visibility) p.visibility(RTUT_VISIBLE);
-  p.window ? runWindow(p) : runFrames(p);
+  const bool isWhole = guarded("rtutMainLoop", [&p] {
+    if (!p.reshaped) reshape(p, p.width, p.height);
+    if (p.visibility) p.visibility(RTUT_VISIBLE);
+    p.window ? runWindow(p) : runFrames(p);
+  });
   p.leave = false;
   p.window.reset();
-  return p.failed ? 2 : 0;
+  return p.failed || !isWhole ? 2 : 0;
 }
 void rtutLeaveMainLoop(void) { program().leave = true; }
 
 void rtutFrames(int count, const char* pattern) {
-  Program& p = program();
-  p.frames = std::max(count, 0);
-  rtglSamples(4); // nothing refines these pictures
-  p.frame = 0;
-  if (pattern) p.pattern = pattern;
+  guarded("rtutFrames", [=] {
+    Program& p = program();
+    p.frames = std::max(count, 0);
+    rtglSamples(4); // nothing refines these pictures
+    p.frame = 0;
+    if (pattern) p.pattern = pattern;
+  });
 }
 
 int rtutGet(GLenum what) {

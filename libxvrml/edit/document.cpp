@@ -9,6 +9,7 @@
 
 #include "graph/field_access.h"
 #include "parse/loader.h"
+#include "parse/parser.h"
 
 namespace xvrml {
 
@@ -23,7 +24,7 @@ Document::Document(std::string text, const std::string& path, const LoadOptions&
   made.world = loadWithLayout(made.text, path, options_, made.layout);
   byName_.emplace(path, &made);
   index(made);
-  for (const NodeRef& root : scope().roots) standing_.add(root.get());
+  for (const NodeRef& root : scope().roots) standing_.add(root.get(), nullptr);
 }
 
 Document::~Document() = default;
@@ -40,6 +41,24 @@ const DocumentText& Document::read(const std::string& text, const std::string& n
   byName_.emplace(name, &made);
   index(made);
   return made;
+}
+
+void Document::forgetLastText() {
+  const DocumentText& last = texts_.back();
+  for (const NodeText& place : last.layout.nodes) {
+    const Node* const node = place.node.get();
+    known_.erase(node);
+    renamed_.erase(node);
+    originals_.erase(node);
+    putIn_.erase(node);
+    takenOut_.erase(node);
+  }
+  std::erase_if(byName_, [&last](const auto& one) { return one.second == &last; });
+  texts_.pop_back();
+}
+
+uint64_t Document::mostNested() const {
+  return std::min(options_.limits.nesting, Parser::maximumNesting);
 }
 
 // Notes which places of a list the world has taken. Returns whether these give all of the list.
@@ -166,7 +185,7 @@ void Document::insert(Node* parent, const FieldInfo* field, size_t index, const 
   MFNode& list = listToChange(parent, field);
   list.insert(list.begin() + std::ptrdiff_t(std::min(index, list.size())), node);
   putIn_.insert(node.get());
-  if (!parent || stands(*parent)) standing_.add(node.get());
+  if (!parent || stands(*parent)) standing_.add(node.get(), parent);
 }
 
 void Document::erase(Node* parent, const FieldInfo* field, size_t index) {
@@ -187,7 +206,7 @@ void Document::setNode(Node& parent, const FieldInfo& field, NodeRef child) {
   putIn_.insert(place.get());
   takenOut_.insert(before.get());
   if (!stands) return;
-  standing_.add(place.get());
+  standing_.add(place.get(), &parent);
   standing_.remove(before.get());
 }
 

@@ -26,6 +26,7 @@ struct DocumentText {
   std::vector<std::pair<uint64_t, Node*>> byPlace; // sorted by line and column
 };
 
+// Wide because the writers, the edits and the facts about the file each ask questions of their own.
 class Document {
  public:
   // path: the file's name. text: its text without compression and byte-order mark. Throws
@@ -44,6 +45,8 @@ class Document {
   // Reads nodes from a text in the encoding of the file, without a header. name: for the places of
   // its nodes, different from all others. Throws LoadError.
   const DocumentText& read(const std::string& text, const std::string& name);
+  // Forgets the text that was read last, because none of its nodes is put in.
+  void forgetLastText();
   // Returns the node that stands at a place in the file or in one of these texts; null if there is
   // none, or it is part of a prototype.
   Node* find(const SourcePosition& place) const;
@@ -77,6 +80,13 @@ class Document {
   template <class Visit> void forEachChanged(const Visit& visit) const {
     for (const auto& [node, originals] : originals_) visit(*node, originals);
   }
+  // Returns whether a node can be put into a parent (null: the roots), so that no node stands in
+  // more than mostNested() nodes, itself included.
+  bool admits(const Node* parent, Node& node) const {
+    return (parent ? standing_.depthOf(*parent) : 0) + heightOf(node) <= mostNested();
+  }
+  // The limit `nesting`, as far as readers allow it.
+  uint64_t mostNested() const;
   // Returns the list that a place is in: an MFNode, or the roots for null.
   const MFNode& listOf(const Node* parent, const FieldInfo* field) const;
   void insert(Node* parent, const FieldInfo* field, size_t index, const NodeRef& node);
@@ -90,6 +100,8 @@ class Document {
                         const std::set<std::string, std::less<>>& taken = {});
   // Returns whether a node stands anywhere in the file.
   bool stands(const Node& node) const { return standing_.contains(node, scope()); }
+  // Returns in how many places it does.
+  size_t countPlaces(const Node& node) const { return stands(node) ? standing_.countOf(node) : 0; }
   // Tell whether the name, or a field or the name of a node has been changed since its text was
   // read, also if it is as before now.
   bool isRenamed(const Node& node) const { return renamed_.contains(&node); }

@@ -53,9 +53,10 @@ EditedFile::Opened EditedFile::open(const std::string& path, const LoadOptions& 
 
 std::string EditedFile::whyNot() {
   if (document_) return "";
+  if (!refusal_.empty()) return refusal_;
   if (std::string reason = whyNotKind(); !reason.empty()) return reason;
   Opened opened = takePrepared();
-  if (!opened.whyNot.empty()) return opened.whyNot;
+  if (!opened.whyNot.empty()) return refusal_ = opened.whyNot;
   document_ = std::move(opened.document);
   packed_ = opened.isPacked;
   marked_ = opened.isMarked;
@@ -123,9 +124,9 @@ Twin EditedFile::standingTwinOf(Node& node) {
   return twin;
 }
 
-bool EditedFile::stands(const Node& node) const {
+size_t EditedFile::countPlaces(const Node& node) const {
   const Node* const found = document_ ? document_->find(node.source) : nullptr;
-  return found && found->type().name == node.type().name && document_->stands(*found);
+  return found && found->type().name == node.type().name ? document_->countPlaces(*found) : 0;
 }
 
 void EditedFile::checkStands(Node* node) {
@@ -261,6 +262,7 @@ std::string EditedFile::textOnDisk() {
 void EditedFile::adopt(std::string text) {
   if (document_) throw EditError("the file has been read for editing already");
   prepared_ = {};
+  refusal_.clear();
   adopted_ = std::move(text);
   const std::string reason = whyNot();
   adopted_.reset();

@@ -47,12 +47,18 @@ class EditedFile {
   bool isPreparing() const;
   // Throws EditError if the file cannot be edited, or another world has taken its place.
   Document& document();
+  // Returns the document that has been read, for edits that have begun: another world may take the
+  // place of the edited one meanwhile. The document then still takes them, and gives them up as a
+  // whole if their step is cancelled.
+  Document& opened() { return *document_; }
+  // Returns the scope of the world that is edited; null if another world has taken its place.
+  Scope* liveScope() { return live_->isReplaced() ? nullptr : &world().scope; }
   // Returns the node with its counterpart in the document. Throws EditError if it has none.
   Twin twinOf(Node& node);
   // Does the same for a node that stands in the file now. Throws EditError if it was removed.
   Twin standingTwinOf(Node& node);
   // See Editor.
-  bool stands(const Node& node) const;
+  size_t countPlaces(const Node& node) const;
   // Throws EditError if a node does not stand in the file now; null: the roots.
   void checkStands(Node* node);
   // holds: there must be a node at the place.
@@ -96,6 +102,7 @@ class EditedFile {
   std::unique_ptr<Document> document_; // read at the first edit
   std::future<Opened> prepared_;       // what preparation() reads
   std::optional<std::string> adopted_; // is read instead of the text of the file
+  std::string refusal_;                // why the file cannot be edited, once it has been read
   bool packed_ = false, marked_ = false;
   FileStamp read_, onDisk_; // the file when it was read, and when it was read or saved
 };

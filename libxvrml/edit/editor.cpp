@@ -49,8 +49,8 @@ bool hasZeroByte(const Value& value) {
   return list && std::any_of(list->begin(), list->end(), has);
 }
 
-// Returns whether a file may have a name behind DEF (Annex A.3).
-bool isNodeName(const std::string& name) {
+// Returns whether a file may have a name for a node or a field (Annex A.3).
+bool isName(const std::string& name) {
   constexpr std::string_view keywords[] = {"DEF",     "EXTERNPROTO", "FALSE", "IS",          "NULL",
                                            "PROTO",   "ROUTE",       "TO",    "TRUE",        "USE",
                                            "eventIn", "eventOut",    "field", "exposedField"};
@@ -64,7 +64,11 @@ struct Editor::Impl {
   explicit Impl(std::unique_ptr<LiveWorld> live) : file(std::move(live)) {}
 
   EditedFile file;
-  History history;
+  History history{[this] {
+    file.world().diagnostics.warn(
+        {}, fmt::format("undo takes more than {} MB of memory: its oldest steps are forgotten",
+                        history.mostBytes() >> 20));
+  }};
   NodeEdits nodes{file, history};
   size_t texts = 0; // number of texts that have been inserted
 };
@@ -97,13 +101,15 @@ std::vector<NodeSlot> Editor::placesOf(const Node& node) {
   return places;
 }
 
-bool Editor::stands(const Node& node) const { return impl_->file.stands(node); }
+bool Editor::stands(const Node& node) const { return countPlaces(node) > 0; }
+size_t Editor::countPlaces(const Node& node) const { return impl_->file.countPlaces(node); }
 
 std::vector<NodeRef> Editor::nodesAt(std::span<const SourcePosition> places) {
   return impl_->file.nodesAt(places);
 }
 std::vector<ChangedField> Editor::changedFields() const { return impl_->file.changedFields(); }
 
+void Editor::setUndoBytes(uint64_t bytes) { impl_->history.setMostBytes(bytes); }
 void Editor::begin(std::string name) { impl_->history.begin(std::move(name)); }
 void Editor::end() { impl_->history.end(); }
 void Editor::cancel() { impl_->history.cancel(); }
@@ -148,14 +154,18 @@ void Editor::set(Node& node, std::string_view field, Value value) {
   const FieldInfo& own = *twin.document->type().find(field);
   impl_->file.checkReadable(*twin.document, own);
   const auto put = [this, twin, &own](const Value& live, const Value& inFile) {
-    impl_->file.live().set(*twin.live, own.name, live);
-    impl_->file.document().set(*twin.document, own, inFile);
+    if (!impl_->file.live().set(*twin.live, own.name, live))
+      throw EditError(
+          fmt::format("the running world keeps its {}.{}: as it is now, it does not take "
+                      "another value",
+                      twin.live->type().name, own.name));
+    impl_->file.opened().set(*twin.document, own, inFile);
   };
+  const Value live = node.get(*info), inFile = twin.document->get(own);
   OpenStep step(impl_->history, fmt::format("Set {}", what));
-  impl_->history.perform(
-      {[put, value] { put(value, value); },
-       [put, live = node.get(*info), inFile = twin.document->get(own)] { put(live, inFile); },
-       &node, std::string(field)});
+  impl_->history.perform({[put, value] { put(value, value); },
+                          [put, live, inFile] { put(live, inFile); }, &node, std::string(field),
+                          2 * bytesOf(value) + bytesOf(live) + bytesOf(inFile)});
   step.close();
 }
 
@@ -168,6 +178,16 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
   try {
     read = &file.read(std::string(text), impl_->file.live().placeName(name));
   } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
+  // A text whose nodes do not get their place is not kept.
+  struct Reading {
+    Document& file;
+    const MFNode& roots;
+    ~Reading() {
+      if (std::none_of(roots.begin(), roots.end(),
+                       [this](const NodeRef& root) { return root && file.stands(*root); }))
+        file.forgetLastText();
+    }
+  } const reading{file, read->world->scope.roots};
   if (const std::string& reason = read->layout.whyNot; !reason.empty())
     throw EditError("the text " + reason);
   const Scope& scope = read->world->scope;
@@ -275,7 +295,7 @@ NodeRef Editor::wrap(const NodeSlot& given, std::string_view type) {
 void Editor::rename(Node& node, const std::string& name) {
   const Twin twin = impl_->file.twinOf(node);
   Scope& scope = impl_->file.document().scope();
-  if (!isNodeName(name)) throw EditError(fmt::format("'{}' is no name for a node", name));
+  if (!isName(name)) throw EditError(fmt::format("'{}' is no name for a node", name));
   if (name == node.defName) return;
   impl_->file.checkStands(&node);
   if (scope.names.contains(name)) throw EditError(fmt::format("another node is named {}", name));
@@ -302,6 +322,8 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
   const std::string what = fmt::format("{}.{}", node.type().name, field);
   if (!dynamic_cast<const DeclaringNode*>(&node))
     throw EditError(fmt::format("{} has no fields of its own", node.type().name));
+  if (!isName(std::string(field)))
+    throw EditError(fmt::format("'{}' is no name for a field", field));
   if (node.type().find(field)) throw EditError(fmt::format("there is a field {} already", what));
   if (document.world().head.version.encoding == Encoding::x3dJson)
     throw EditError(

@@ -8,6 +8,7 @@
 #include "edit/nodes_at.h"
 #include "graph/field_access.h"
 #include "write/value_writer.h"
+#include "xvrml/numbers.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
@@ -19,8 +20,15 @@ std::string countText(size_t nodes) {
   return fmt::format("{} node{}", nodes, nodes == 1 ? "" : "s");
 }
 
+// Shortens a list to more elements than are shown, so that a long one is not written as a whole.
+template <class T> void shorten(T& value) {
+  if constexpr (isList<T>)
+    if (value.size() > longestValue) value.resize(longestValue);
+}
+
 // Returns a value as VRML97 writes it, if it is not too long.
 std::string textOf(FieldType type, Value value) {
+  std::visit([](auto& one) { shorten(one); }, value);
   std::string text;
   writeValue(text, type, std::visit([](auto& v) -> void* { return &v; }, value), 0);
   std::replace(text.begin(), text.end(), '\n', ' ');

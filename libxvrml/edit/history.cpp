@@ -1,9 +1,48 @@
 #include "edit/history.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
+#include "xvrml/numbers.h"
+
 namespace xvrml {
+namespace {
+
+// Functions that an edit consists of, with nodes and places.
+constexpr uint64_t bytesOfEdit = 500;
+
+template <class T> uint64_t bytesElsewhere(const T& value) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    return value.size();
+  } else if constexpr (std::is_same_v<T, Image>) {
+    return value.pixels.size();
+  } else if constexpr (isList<T>) {
+    uint64_t bytes = value.size() * sizeof(typename T::value_type);
+    if constexpr (std::is_same_v<T, MFString> || std::is_same_v<T, MFImage>)
+      for (const auto& one : value) bytes += bytesElsewhere(one);
+    return bytes;
+  } else {
+    return 0;
+  }
+}
+
+} // namespace
+
+uint64_t bytesOf(const Value& value) {
+  return std::visit([](const auto& one) { return bytesElsewhere(one); }, value);
+}
+
+uint64_t History::Step::bytes() const {
+  uint64_t sum = sizeof(Step) + name.size();
+  for (const Edit& edit : edits) sum += bytesOfEdit + edit.bytes;
+  return sum;
+}
+
+void History::setMostBytes(uint64_t bytes) {
+  mostBytes_ = bytes;
+  forgetOldest();
+}
 
 void History::begin(std::string name) {
   if (begun_.empty()) open_ = {name.empty() ? "Edit" : std::move(name), {}};
@@ -17,9 +56,22 @@ void History::end() {
   if (!begun_.empty()) return joinLast(first);
   if (open_.edits.empty()) return;
   if (savedAt_ > done_) savedAt_ = ~size_t(0);
-  steps_.resize(done_);
+  for (; steps_.size() > done_; steps_.pop_back()) bytes_ -= steps_.back().bytes();
+  bytes_ += open_.bytes();
   steps_.push_back(std::exchange(open_, {}));
   ++done_;
+  forgetOldest();
+}
+
+void History::forgetOldest() {
+  if (bytes_ <= mostBytes_) return;
+  const size_t before = done_;
+  for (; bytes_ > mostBytes_ && done_ > 1; --done_) {
+    bytes_ -= steps_.front().bytes();
+    steps_.pop_front();
+    if (savedAt_ != ~size_t(0)) savedAt_ = savedAt_ == 0 ? ~size_t(0) : savedAt_ - 1;
+  }
+  if (done_ < before && forgotten_) std::exchange(forgotten_, nullptr)();
 }
 
 // Lets one edit that has been done alone since `first` take the place of the one before if that set
@@ -30,6 +82,8 @@ void History::joinLast(size_t first) {
   Edit &before = edits[first - 1], &last = edits[first];
   if (!last.node || before.node != last.node || before.field != last.field) return;
   before.redo = std::move(last.redo);
+  before.bytes = std::max(before.bytes, last.bytes);
+  countField(last, -1);
   edits.pop_back();
 }
 
@@ -55,6 +109,7 @@ void History::rollBack(size_t edits) {
   count(open_.edits, edits);
   while (open_.edits.size() > edits) {
     open_.edits.back().undo();
+    countField(open_.edits.back(), -1);
     open_.edits.pop_back();
   }
 }
@@ -62,6 +117,7 @@ void History::rollBack(size_t edits) {
 void History::perform(Edit edit) {
   edit.redo();
   open_.edits.push_back(std::move(edit));
+  countField(open_.edits.back(), 1);
   count(open_.edits, open_.edits.size() - 1);
 }
 
@@ -76,6 +132,7 @@ bool History::undo() {
     for (; left < edits.size(); ++left) edits[left].redo();
     throw;
   }
+  for (const Edit& edit : edits) countField(edit, -1);
   --done_;
   return true;
 }
@@ -91,19 +148,23 @@ bool History::redo() {
     while (done > 0) edits[--done].undo();
     throw;
   }
+  for (const Edit& edit : edits) countField(edit, 1);
   ++done_;
   return true;
 }
 
+void History::countField(const Edit& edit, int by) {
+  if (!edit.node) return;
+  FieldEdits& known = fieldEdits_[edit.node];
+  known.node = NodeRef(edit.node);
+  known.counts[edit.field] += uint64_t(std::int64_t(by));
+}
+
 uint64_t History::editsOf(const Node& node, std::string_view field) const {
-  const auto count = [&](const std::vector<Edit>& edits) {
-    return uint64_t(std::count_if(edits.begin(), edits.end(), [&](const Edit& edit) {
-      return edit.node == &node && edit.field == field;
-    }));
-  };
-  uint64_t all = count(open_.edits);
-  for (size_t i = 0; i < done_; ++i) all += count(steps_[i].edits);
-  return all;
+  const auto known = fieldEdits_.find(&node);
+  if (known == fieldEdits_.end()) return 0;
+  const auto count = known->second.counts.find(field);
+  return count == known->second.counts.end() ? 0 : count->second;
 }
 
 std::string History::undoName() const { return done_ > 0 ? steps_[done_ - 1].name : ""; }

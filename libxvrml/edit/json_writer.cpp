@@ -61,16 +61,27 @@ JsonStyle styleIn(const DocumentText& text, const NodeText& place) {
   return {text.text, isEmpty ? place.whole.begin : place.body.begin};
 }
 
-// Returns where the name of a USE stands, with its quotes, in the object that begins at a byte.
+// Returns where the name of a USE stands, with its quotes, in the object that begins at a byte:
+// {"Type": {"@USE": "name"}}. Members of nodes within it are passed over.
 size_t useIn(std::string_view text, size_t begin) {
-  for (constexpr std::string_view name = "\"@USE\"";;) {
-    begin = text.find(name, begin) + name.size();
-    size_t at = begin;
-    while (isSpace(text[at])) ++at;
-    if (text[at++] != ':') continue; // the name is a value
-    while (isSpace(text[at])) ++at;
-    return at;
+  int depth = 0;
+  for (size_t at = begin; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '{' || c == '[') ++depth;
+    if (c == '}' || c == ']') --depth;
+    if (c != '"') continue;
+    const size_t end = endOfString(text, at);
+    const bool isUse = depth == 2 && text.substr(at, end - at) == "\"@USE\"";
+    at = end;
+    while (at < text.size() && isSpace(text[at])) ++at;
+    if (isUse && at < text.size() && text[at] == ':') {
+      do ++at;
+      while (at < text.size() && isSpace(text[at]));
+      return at;
+    }
+    --at;
   }
+  return text.size();
 }
 
 // Returns whether a list, or no list, has nothing in it.

@@ -27,28 +27,36 @@ class RunningWorld : public LiveWorld {
   explicit RunningWorld(Browser& browser) : browser_(browser) {}
   World& world() override { return browser_.world(); }
   bool set(Node& node, std::string_view field, Value value) override {
-    return browser_.set(node, field, std::move(value));
+    if (isReplaced()) return true;
+    // An event that a node ignores counts as sent.
+    const FieldInfo& info = *node.type().find(field);
+    const Value before = node.get(info);
+    const bool changes = before != value;
+    return browser_.set(node, field, std::move(value)) && (!changes || node.get(info) != before);
   }
   MFNode read(const std::string& text, const std::string& name) override {
     return browser_.createVrmlFromString(text, name);
   }
   void addRoot(const NodeRef& node, size_t index) override {
+    if (isReplaced()) return;
     MFNode& roots = world().scope.roots;
     if (std::find(roots.begin(), roots.end(), node) == roots.end()) {
       browser_.addRoot(node); // appends it
+      if (isReplaced()) return;
       std::erase(roots, node);
     }
     insertRoot(roots, node, index);
   }
   void removeRoot(Node& node, size_t index) override {
+    if (isReplaced()) return;
     if (!removeOneOf(world().scope.roots, NodeRef(&node), index)) browser_.removeRoot(node);
   }
   bool isReplaced() const override { return browser_.generation() != generation_; }
   bool addRoute(Node& from, const std::string& out, Node& to, const std::string& in) override {
-    return browser_.addRoute(from, out, to, in);
+    return isReplaced() || browser_.addRoute(from, out, to, in);
   }
   void removeRoute(Node& from, const std::string& out, Node& to, const std::string& in) override {
-    browser_.deleteRoute(from, out, to, in);
+    if (!isReplaced()) browser_.deleteRoute(from, out, to, in);
   }
   std::string placeName(const std::string& name) const override {
     return name + " (createVrmlFromString)";

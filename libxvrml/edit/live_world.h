@@ -10,11 +10,13 @@
 
 namespace xvrml {
 
+// Once another world has taken its place (isReplaced), edits of it do nothing.
 class LiveWorld {
  public:
   virtual ~LiveWorld() = default;
   virtual World& world() = 0;
-  // Sets a field as if the file had the value. Returns false for a value that the node refuses.
+  // Sets a field as if the file had the value. Returns false for a value that the node refuses: it
+  // keeps another one, as a TimeSensor that runs keeps its startTime.
   virtual bool set(Node& node, std::string_view field, Value value) = 0;
   // Makes nodes from a text without a header, as part of the world. name: for their places.
   virtual MFNode read(const std::string& text, const std::string& name) = 0;

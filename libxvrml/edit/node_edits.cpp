@@ -1,6 +1,7 @@
 #include "edit/node_edits.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -28,7 +29,7 @@ void refuseLoop(const Node& node, const Node& parent) {
 // Sets the nodes of a field of the live world.
 void setLive(LiveWorld& live, const Slot& slot, Value value) {
   if (!live.set(*slot.parent.live, slot.field->name, std::move(value)))
-    throw EditError(fmt::format("the world does not take the nodes of {}.{}",
+    throw EditError(fmt::format("the running world does not take the nodes of {}.{}",
                                 slot.parent.live->type().name, slot.field->name));
 }
 
@@ -53,14 +54,17 @@ void eraseLive(LiveWorld& live, const Slot& slot, const NodeRef& node) {
 
 } // namespace
 
-// Returns the nodes with names in a node that stands in the file, itself included.
-std::vector<Twin> NodeEdits::namedIn(const Twin& root) {
-  std::vector<Twin> named;
+NodeEdits::Named NodeEdits::namedIn(const Twin& root) {
+  constexpr uint64_t bytesOfNode = 500;
+  Named named;
   walk(std::vector<Node*>{root.live.get()}, [&](Node& node, std::vector<Node*>& open) {
     appendChildren(node, open);
+    named.bytes += bytesOfNode;
     if (node.defName.empty()) return;
-    if (Node* const own = file_.document().find(node.source))
-      named.push_back({NodeRef(&node), NodeRef(own)});
+    if (Node* const own = file_.document().find(node.source)) {
+      named.twins.push_back({NodeRef(&node), NodeRef(own)});
+      named.bytes += 2 * sizeof(Twin); // in both functions of the edit
+    }
   });
   return named;
 }
@@ -71,7 +75,7 @@ void NodeEdits::giveToLast(Scope& scope, const std::string& name) {
   std::reverse(roots.begin(), roots.end()); // the walk begins with the last one
   Node* last = nullptr;
   walk(std::move(roots), [&](Node& node, std::vector<Node*>& open) {
-    if (node.defName == name && file_.document().find(node.source)) last = &node;
+    if (node.defName == name && file_.opened().find(node.source)) last = &node;
     const auto own = std::ptrdiff_t(open.size());
     appendChildren(node, open);
     std::reverse(open.begin() + own, open.end());
@@ -89,13 +93,16 @@ void NodeEdits::updateNames(const std::vector<Twin>& named) {
     else if (!stands && known != scope.names.end() && known->second == node)
       scope.names.erase(known);
   };
+  Document& document = file_.opened();
+  Scope* const live = file_.liveScope();
   for (const Twin& one : named) {
-    const bool stands = file_.document().stands(*one.document);
-    update(file_.world().scope, one.live, stands);
-    update(file_.document().scope(), one.document, stands);
-    if (!file_.document().isRepeated(one.live->defName)) continue;
-    giveToLast(file_.world().scope, one.live->defName);
-    giveToLast(file_.document().scope(), one.live->defName);
+    const std::string& name = one.document->defName;
+    const bool stands = document.stands(*one.document);
+    if (live) update(*live, one.live, stands);
+    update(document.scope(), one.document, stands);
+    if (!document.isRepeated(name)) continue;
+    if (live) giveToLast(*live, name);
+    giveToLast(document.scope(), name);
   }
 }
 
@@ -103,41 +110,50 @@ void NodeEdits::setSingle(const Slot& slot, const Twin& node) {
   const FieldInfo& own = *slot.parent.document->type().find(slot.field->name);
   const Twin before{*static_cast<const NodeRef*>(slot.parent.live->storage(*slot.field)),
                     *static_cast<const NodeRef*>(slot.parent.document->storage(own))};
-  std::vector<Twin> named = namedIn(node);
-  for (Twin& one : namedIn(before)) named.push_back(std::move(one));
-  const auto put = [this, slot, &own, named](const Twin& twin) {
+  Named named = namedIn(node);
+  Named gone = namedIn(before);
+  std::move(gone.twins.begin(), gone.twins.end(), std::back_inserter(named.twins));
+  const auto put = [this, slot, &own, named = std::move(named.twins)](const Twin& twin) {
     if (twin.live) refuseLoop(*twin.live, *slot.parent.live);
     setLive(file_.live(), slot, twin.live);
-    file_.document().setNode(*slot.parent.document, own, twin.document);
+    file_.opened().setNode(*slot.parent.document, own, twin.document);
     updateNames(named);
   };
-  history_.perform({[put, node] { put(node); }, [put, before] { put(before); }});
+  history_.perform(
+      {[put, node] { put(node); }, [put, before] { put(before); }, nullptr, "", gone.bytes});
 }
 
-// Returns a function that puts a node into a list (true) or takes it out (false), in both worlds.
-std::function<void(bool)> NodeEdits::listChange(const Slot& slot, const Twin& node) {
-  return [this, slot, node, named = namedIn(node)](bool inserts) {
+// Puts a node into a list, or takes it out, in both worlds.
+void NodeEdits::changeList(const Slot& slot, const Twin& node, bool inserts) {
+  Named named = namedIn(node);
+  const auto change = [this, slot, node, named = std::move(named.twins)](bool puts) {
     Node* const parent = slot.parent.document.get();
-    if (inserts) {
+    if (puts) {
       insertLive(file_.live(), slot, node.live);
-      file_.document().insert(parent, slot.field, slot.index, node.document);
+      file_.opened().insert(parent, slot.field, slot.index, node.document);
     } else {
       eraseLive(file_.live(), slot, node.live);
-      file_.document().erase(parent, slot.field, slot.index);
+      file_.opened().erase(parent, slot.field, slot.index);
     }
     updateNames(named);
   };
+  history_.perform({[change, inserts] { change(inserts); }, [change, inserts] { change(!inserts); },
+                    nullptr, "", named.bytes});
 }
 
 void NodeEdits::place(const Slot& slot, const Twin& node) {
+  if (Document& document = file_.document();
+      !document.admits(slot.parent.document.get(), *node.document))
+    throw EditError(fmt::format("{} cannot stand there: nodes would be nested deeper than limit "
+                                "nesting={}",
+                                node.live->type().name, document.mostNested()));
   if (slot.isSingle()) {
     const bool replaces = file_.nodeAt(slot) != nullptr;
     setSingle(slot, node);
     if (replaces) dropRoutes();
     return;
   }
-  const auto change = listChange(slot, node);
-  history_.perform({[change] { change(true); }, [change] { change(false); }});
+  changeList(slot, node, true);
 }
 
 Twin NodeEdits::take(const Slot& slot) {
@@ -146,8 +162,7 @@ Twin NodeEdits::take(const Slot& slot) {
     setSingle(slot, {});
     return node;
   }
-  const auto change = listChange(slot, node);
-  history_.perform({[change] { change(false); }, [change] { change(true); }});
+  changeList(slot, node, false);
   return node;
 }
 
@@ -169,7 +184,7 @@ void NodeEdits::checkPlace(const Slot& slot, const Twin& twin) {
 }
 
 void NodeEdits::nameFreshly(const Twin& root) {
-  const std::vector<Twin> named = namedIn(root);
+  const std::vector<Twin> named = namedIn(root).twins;
   Document& document = file_.document();
   std::set<std::string, std::less<>> taken;
   for (const Twin& one : named) taken.insert(one.live->defName);
@@ -183,11 +198,13 @@ void NodeEdits::nameFreshly(const Twin& root) {
 
 void NodeEdits::rename(const Twin& node, const std::string& name) {
   const auto give = [this, node](const std::string& from, const std::string& to) {
-    auto& names = file_.world().scope.names;
+    file_.opened().rename(*node.document, to);
+    Scope* const live = file_.liveScope();
+    if (!live) return;
+    auto& names = live->names;
     if (const auto found = names.find(from); found != names.end() && found->second == node.live)
       names.erase(found);
     node.live->defName = to;
-    file_.document().rename(*node.document, to);
     if (!to.empty()) names[to] = node.live;
   };
   history_.perform({[give, before = node.live->defName, name] { give(before, name); },
@@ -213,7 +230,8 @@ void NodeEdits::dropRoutes() {
                     [&routes, gone] {
                       for (const auto& [index, route] : gone)
                         routes.insert(routes.begin() + std::ptrdiff_t(index), route);
-                    }});
+                    },
+                    nullptr, "", 2 * sizeof(gone[0]) * gone.size()});
 }
 
 } // namespace xvrml

@@ -17,6 +17,7 @@ class NodeEdits {
   NodeEdits(EditedFile& file, History& history) : file_(file), history_(history) {}
 
   // Puts a node at a place. In an SFNode, the routes of the node that stood there go with it.
+  // Throws EditError if nodes would stand too deep in each other.
   void place(const Slot& slot, const Twin& node);
   // Takes the node at a place out, and returns it.
   Twin take(const Slot& slot);
@@ -33,8 +34,14 @@ class NodeEdits {
 
  private:
   void setSingle(const Slot& slot, const Twin& node);
-  std::function<void(bool)> listChange(const Slot& slot, const Twin& node);
-  std::vector<Twin> namedIn(const Twin& root);
+  void changeList(const Slot& slot, const Twin& node, bool inserts);
+  // The nodes with names in a node that stands in the file, itself included, and how much memory
+  // all of its nodes take, about.
+  struct Named {
+    std::vector<Twin> twins;
+    uint64_t bytes = 0;
+  };
+  Named namedIn(const Twin& root);
   void giveToLast(Scope& scope, const std::string& name);
   void updateNames(const std::vector<Twin>& named);
 

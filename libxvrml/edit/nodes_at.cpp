@@ -18,18 +18,20 @@ std::vector<size_t> offsetsOf(std::string_view text, std::span<const SourcePosit
                               const std::vector<size_t>& order) {
   std::vector<size_t> offsets(places.size(), nowhere);
   size_t at = 0; // the byte of this line and column
+  size_t end = lineEnd(text, 0);
   uint32_t line = 1, column = 1;
   for (const size_t i : order) {
     const SourcePosition& place = places[i];
     if (place.line == 0) continue;
     for (; line < place.line && at < text.size(); ++line) {
-      at = nextLine(text, lineEnd(text, at));
+      at = nextLine(text, end);
+      end = lineEnd(text, at);
       column = 1;
     }
-    for (; column < place.column && at < text.size(); ++column) do
+    for (; column < place.column && at < end; ++column) do
         ++at;
-      while (at < text.size() && isContinuationByte(text[at]));
-    if (line == place.line) offsets[i] = at;
+      while (at < end && isContinuationByte(text[at]));
+    if (line == place.line) offsets[i] = at; // the end of the line for columns behind it
   }
   return offsets;
 }

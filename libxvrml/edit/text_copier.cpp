@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "edit/changed_value.h"
 #include "edit/lines.h"
 #include "write/xml_escape.h"
 
 namespace xvrml {
+
+// Returns what a string in JSON has between its quotes.
+static std::string withoutQuotes(const std::string& quoted) {
+  return quoted.substr(1, quoted.size() - 2);
+}
 
 TextCopier::TextCopier(const Document& document, std::vector<const PrototypeText*> lifted)
     : document_(document), lifted_(std::move(lifted)), declared_(lifted_.begin(), lifted_.end()) {
@@ -70,6 +76,8 @@ void TextCopier::replaceName(const DocumentText& text, const TextSpan& span, con
   raw(text, span.begin);
   if (document_.isXml())
     escapeXml(out, node.defName, "'\"");
+  else if (document_.encoding() == Encoding::x3dJson)
+    out += withoutQuotes(jsonString(node.defName));
   else
     out += node.defName;
   at = span.end;

@@ -444,6 +444,16 @@ TEST_F(Sheet, HidingIsNoEdit) {
   EXPECT_EQ(model.hiddenCount(), 0u);
 }
 
+TEST_F(Sheet, ANodeThatAnEditHidesStaysHidden) {
+  select({"A"});
+  model.hideSelected();
+  model.edit([&](WorldEditor& editor) { editor.editor().set(*world.node("A"), "visible", false); });
+  model.showAll();
+  update();
+  EXPECT_FALSE(std::get<bool>(world.browser.get(*world.node("A"), "visible")));
+  EXPECT_EQ(model.hiddenCount(), 0u);
+}
+
 // --- The widths of the panels ---
 
 TEST(PanelState, WidthsAreKept) {

@@ -107,3 +107,30 @@ TEST(Overlay, theHelpListsAllKeys) {
   key.shift = true;
   EXPECT_EQ(actionOf(key), Action::none);
 }
+
+// The keys of the editor are those of the table that the help shows.
+TEST(Overlay, theEditorTakesTheKeysOfItsTable) {
+  const auto action = [](const char* key, bool control = false, bool shift = false) {
+    InputEvent event;
+    event.kind = InputEvent::Kind::down;
+    event.text = key;
+    event.control = control;
+    event.shift = shift;
+    return editorActionOf(event);
+  };
+  EXPECT_EQ(action("S"), EditorAction::scale);
+  EXPECT_EQ(action("S", true), EditorAction::save);
+  EXPECT_EQ(action("V"), EditorAction::probe);
+  EXPECT_EQ(action("V", false, true), EditorAction::rectangle);
+  EXPECT_EQ(action("Z", true), EditorAction::undo);
+  EXPECT_EQ(action("Y", true), EditorAction::redo);
+  EXPECT_EQ(action("Z", true, true), EditorAction::redo);
+  EXPECT_EQ(action("Delete"), EditorAction::remove);
+  EXPECT_EQ(action("\\"), EditorAction::showA);
+  EXPECT_EQ(action("D"), EditorAction::showDifference);
+  EXPECT_EQ(action("D", false, true), EditorAction::duplicate);
+  EXPECT_EQ(action("."), EditorAction::frame) << "not the minus of a number behind it";
+  EXPECT_EQ(action("E"), EditorAction::none) << "a key of the window";
+  EXPECT_EQ(action("click"), EditorAction::none);
+  EXPECT_EQ(action(""), EditorAction::none);
+}

@@ -1,7 +1,6 @@
 // xvrml_edit_places.cpp: Tests where nodes of a file may stand: not in themselves, and also in
 // fields that could not be read as a whole; and lists of many nodes in one line.
 #include "edit/history.h"
-#include "parse/parser.h"
 #include "unit/xvrml_edit_support.h"
 #include "xvrml/set_field.h"
 
@@ -252,19 +251,38 @@ TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
   undoAll();
 }
 
-// Groups around groups may nest deeper than any file, but the text of the file takes no more stack.
-TEST(EditorPlaces, NodesThatNestTooDeepHaveNoText) {
-  const Folder folder;
-  const std::string text = "#VRML V2.0 utf8\nDEF G Group { children Shape { } }\n";
-  const auto world = loadWorld(folder.write("w.wrl", text));
-  Editor editor(*world);
-  Node& group = *world->scope.names.at("G");
-  for (uint64_t i = 0; i < Parser::maximumNesting; ++i) editor.wrap({&group, "children", 0});
-  EXPECT_THROW(editor.draft(), EditError);
-  EXPECT_THROW(editor.text(), EditError);
-  EXPECT_THROW(editor.duplicate({nullptr, "", 0}), EditError);
-  while (editor.undo()) {}
-  EXPECT_EQ(editor.text(), text);
+// A file must be readable again: what would nest too deep in it is refused at the edit.
+TEST_P(EditedPlaces, NodesThatNestTooDeepAreRefused) {
+  load("DEF G Group { children Shape { } }\nDEF H Group { }\n");
+  const uint64_t most = xvrml::LoadOptions().limits.nesting;
+  const NodeSlot slot{&node("G"), "children", 0};
+  for (uint64_t i = 2; i < most; ++i) editor->wrap(slot);
+  EXPECT_EQ(refusal([&] { editor->wrap(slot); }),
+            "Transform cannot stand there: nodes would be nested deeper than limit nesting=1000");
+  EXPECT_NE(refusal([&] {
+              editor->move({nullptr, "", 0}, {&node("H"), "children", 0});
+            }).find("nested deeper"),
+            std::string::npos);
+  EXPECT_TRUE(editor->undo());
+  editor->move({nullptr, "", 0}, {&node("H"), "children", 0});
+  undoAll();
+}
+
+// The text of a node that is refused is not kept, and the next one of its kind is found.
+TEST_P(EditedPlaces, WhatIsRefusedLeavesNothing) {
+  load("DEF G Group { }\n");
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NE(refusal([&] {
+                editor->insert({&node("G"), "children", 0}, "DEF M Material { }");
+              }),
+              "done");
+  const NodeRef made = editor->insert({&node("G"), "children", 0}, "DEF M Shape { }");
+  EXPECT_EQ(made->defName, "M");
+  EXPECT_TRUE(editor->stands(*made));
+  EXPECT_EQ(editor->countPlaces(*made), 1u);
+  editor->use({nullptr, "", 1}, *made);
+  EXPECT_EQ(editor->countPlaces(*made), 2u);
+  undoAll();
 }
 
 TEST(EditorPlaces, LongLines) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "edit/node_fields.h"
+#include "edit/outline.h"
 #include "edit/transform_tool.h"
 
 namespace vv {
@@ -42,10 +43,8 @@ const FieldInfo* childrenOf(const Node& node) {
 NodeRef nodeOf(WorldEditor& editor, PickHit hit, bool group) {
   // From the Shape upwards: what stands in the file, and is a group if one is wanted.
   if (group) hit.path.pop_back();
-  const auto step = std::find_if(hit.path.rbegin(), hit.path.rend(), [&](const auto& one) {
-    return !editor.editor().placesOf(*one.node).empty();
-  });
-  return step == hit.path.rend() ? NodeRef() : step->node;
+  const MFNode above = nodesOfFile(editor.browser().world(), hit.path);
+  return above.empty() ? NodeRef() : above.back();
 }
 
 void selectAt(WorldEditor& editor, const EditView& view, double x, double y, bool group, bool add) {
@@ -61,7 +60,7 @@ void removeSelected(WorldEditor& editor) {
     bool anyGone = false;
     for (const NodeRef& node : nodes) {
       // A node may have gone with the group that it was in.
-      if (anyGone && editor.editor().placesOf(*node).empty()) continue;
+      if (anyGone && !editor.editor().stands(*node)) continue;
       editor.editor().remove(editor.placeOf(*node));
       anyGone = true;
     }

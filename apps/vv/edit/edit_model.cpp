@@ -175,7 +175,7 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
     isStale_ = true;
-    if (Node* node = editor.selected(); node && outline_.reveal(editor.browser().world(), *node))
+    if (Node* node = editor.selected(); node && outline_.reveal(editor.browser(), *node))
       shown_ = NodeRef(node);
   }
   if (!hasAsked_ && editor.prepare()) {

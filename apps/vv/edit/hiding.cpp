@@ -1,6 +1,7 @@
 #include "edit/hiding.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ bool canHide(const Node& node) {
 NodeRef toHide(WorldEditor& editor, const NodeRef& node) {
   if (canHide(*node)) return node;
   if (!node->type().is("child")) {
-    const std::vector<Node*> path = pathTo(editor.browser().world(), *node);
+    const std::vector<Node*> path = pathTo(editor.browser(), *node);
     const auto found = std::find_if(path.rbegin(), path.rend(),
                                     [](const Node* one) { return one->type().is("child"); });
     if (found != path.rend() && canHide(**found)) return NodeRef(*found);
@@ -35,12 +36,13 @@ NodeRef toHide(WorldEditor& editor, const NodeRef& node) {
 
 bool Hiding::contains(const Node& node) const {
   return std::any_of(hidden_.begin(), hidden_.end(),
-                     [&](const NodeRef& one) { return one.get() == &node; });
+                     [&](const Hidden& one) { return one.node.get() == &node; });
 }
 
 void Hiding::hide(WorldEditor& editor, const NodeRef& node) {
   if (!std::get<bool>(editor.browser().get(*node, "visible"))) return;
-  if (editor.browser().set(*node, "visible", false)) hidden_.push_back(node);
+  if (editor.browser().set(*node, "visible", false))
+    hidden_.push_back({node, editor.editor().editsOf(*node, "visible")});
 }
 
 void Hiding::hideSelected(WorldEditor& editor) {
@@ -60,7 +62,7 @@ void Hiding::isolateSelected(WorldEditor& editor) {
   SeenNodes kept, above;
   for (const NodeRef& node : nodes) {
     shown.push_back(node.get());
-    for (Node* one : pathTo(world, *node)) above.insert(one);
+    for (Node* one : pathTo(editor.browser(), *node)) above.insert(one);
   }
   walk(shown, kept, [](Node& node, std::vector<Node*>& open) { appendChildren(node, open); });
   MFNode others; // hiding may change the world, so it comes last
@@ -75,8 +77,9 @@ void Hiding::isolateSelected(WorldEditor& editor) {
 }
 
 void Hiding::showAll(WorldEditor& editor) {
-  for (const NodeRef& node : hidden_) editor.browser().set(*node, "visible", true);
-  hidden_.clear();
+  for (const auto& [node, edits] : std::exchange(hidden_, {}))
+    if (editor.editor().editsOf(*node, "visible") == edits)
+      editor.browser().set(*node, "visible", true);
 }
 
 } // namespace vv

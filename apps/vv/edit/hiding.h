@@ -3,6 +3,9 @@
 // thread, while the world can be used]
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "edit/world_editor.h"
 
 namespace vv {
@@ -15,7 +18,7 @@ class Hiding {
   // Hides all Shapes and groups but those that are selected, with what is in them. Lights, views
   // and instances of prototypes stay.
   void isolateSelected(WorldEditor& editor);
-  // Shows all again that has been hidden.
+  // Shows all again that has been hidden, unless an edit has set the field `visible` since.
   void showAll(WorldEditor& editor);
 
   size_t count() const { return hidden_.size(); }
@@ -24,7 +27,11 @@ class Hiding {
  private:
   void hide(WorldEditor& editor, const xvrml::NodeRef& node);
 
-  xvrml::MFNode hidden_;
+  struct Hidden {
+    xvrml::NodeRef node;
+    uint64_t edits = 0; // Editor::editsOf() its field `visible`, when it was hidden
+  };
+  std::vector<Hidden> hidden_;
 };
 
 } // namespace vv

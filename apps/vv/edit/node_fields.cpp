@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "xvrml/walk.h"
-
 namespace vv {
 
 using namespace xvrml;
@@ -88,25 +86,6 @@ std::vector<NodeRef> nodesFor(const World& world, const FieldInfo& field, size_t
   return nodes;
 }
 
-std::unordered_map<const Node*, size_t> countPlaces(const World& world, const MFNode& nodes) {
-  std::unordered_map<const Node*, size_t> counts;
-  for (const NodeRef& node : nodes)
-    if (node) counts.emplace(node.get(), 0);
-  std::vector<Node*> held = rootsOf(world.scope);
-  const auto count = [&] {
-    for (const Node* node : held)
-      if (const auto found = counts.find(node); found != counts.end()) ++found->second;
-  };
-  count();
-  walk(held, [&](Node& parent, std::vector<Node*>& open) {
-    held.clear();
-    appendChildren(parent, held);
-    count();
-    open.insert(open.end(), held.begin(), held.end());
-  });
-  return counts;
-}
-
 NodeRef insertNew(WorldEditor& editor, const NodeSlot& slot, const std::string& type) {
   const char* form = "{} {{ }}";
   switch (editor.browser().world().head.version.encoding) {
@@ -130,7 +109,7 @@ void useNode(WorldEditor& editor, const NodeRef& parent, const std::string& fiel
 void removeAt(WorldEditor& editor, const PlacedNode& place) {
   editor.editor().remove(slotOf(editor, place));
   MFNode rest = editor.selection();
-  if (editor.editor().placesOf(*place.node).empty()) std::erase(rest, place.node);
+  if (!editor.editor().stands(*place.node)) std::erase(rest, place.node);
   editor.select(std::move(rest));
 }
 

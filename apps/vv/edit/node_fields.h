@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "edit/world_editor.h"
@@ -25,9 +24,6 @@ std::vector<const xvrml::NodeType*> typesFor(const xvrml::FieldInfo& field);
 // Returns nodes of the file with names that may stand in a field; at most `most`.
 std::vector<xvrml::NodeRef> nodesFor(const xvrml::World& world, const xvrml::FieldInfo& field,
                                      size_t most);
-// Returns in how many places of the file each of these nodes stands.
-std::unordered_map<const xvrml::Node*, size_t> countPlaces(const xvrml::World& world,
-                                                           const xvrml::MFNode& nodes);
 
 // Inserts a new node of a type, as the encoding of the file writes it. Returns the node.
 xvrml::NodeRef insertNew(WorldEditor& editor, const xvrml::NodeSlot& slot, const std::string& type);

@@ -121,8 +121,8 @@ void Outline::setOpen(const NodeRef& node, bool open) {
     open_.erase(node.get());
 }
 
-bool Outline::reveal(const World& world, const Node& node) {
-  const std::vector<Node*> path = pathTo(world, node);
+bool Outline::reveal(Browser& browser, Node& node) {
+  const std::vector<Node*> path = pathTo(browser, node);
   for (Node* one : path)
     if (one != &node) setOpen(NodeRef(one), true);
   return !path.empty();
@@ -143,7 +143,35 @@ std::vector<OutlineRow> Outline::find(const World& world, std::string_view text,
   return found;
 }
 
-std::vector<Node*> pathTo(const World& world, const Node& node) {
+// Returns whether a node is in a field of another.
+static bool holds(const Node& parent, const Node& searched) {
+  const auto is = [&searched](const NodeRef& one) { return one.get() == &searched; };
+  return std::any_of(parent.type().fields.begin(), parent.type().fields.end(),
+                     [&](const FieldInfo& field) {
+                       if (!holdsValue(field)) return false;
+                       if (field.type == FieldType::SFNode)
+                         return is(*static_cast<const SFNode*>(parent.storage(field)));
+                       if (field.type != FieldType::MFNode) return false;
+                       const MFNode& list = *static_cast<const MFNode*>(parent.storage(field));
+                       return std::any_of(list.begin(), list.end(), is);
+                     });
+}
+
+MFNode nodesOfFile(const World& world, const std::vector<PickHit::Step>& path) {
+  MFNode nodes;
+  const MFNode& roots = world.scope.roots;
+  for (const PickHit::Step& step : path) {
+    const bool stands =
+        nodes.empty() ? std::find(roots.begin(), roots.end(), step.node) != roots.end()
+                      : std::any_of(nodes.rbegin(), nodes.rend(),
+                                    [&](const NodeRef& one) { return holds(*one, *step.node); });
+    if (stands) nodes.push_back(step.node);
+  }
+  return nodes;
+}
+
+// Finds a node by a walk over the file.
+static std::vector<Node*> searchFor(const World& world, const Node& node) {
   std::unordered_map<const Node*, Node*> parents;
   std::vector<Open> open = rootPlaces(world);
   while (!open.empty() && !parents.contains(&node)) {
@@ -156,6 +184,18 @@ std::vector<Node*> pathTo(const World& world, const Node& node) {
   for (Node* at = const_cast<Node*>(&node); at; at = parents[at]) path.push_back(at);
   std::reverse(path.begin(), path.end());
   return path;
+}
+
+std::vector<Node*> pathTo(Browser& browser, Node& node) {
+  if (NodePlacement placement; browser.locate(node, placement)) {
+    const MFNode nodes = nodesOfFile(browser.world(), placement.path);
+    if (!nodes.empty() && nodes.back().get() == &node) {
+      std::vector<Node*> path;
+      for (const NodeRef& one : nodes) path.push_back(one.get());
+      return path;
+    }
+  }
+  return searchFor(browser.world(), node);
 }
 
 } // namespace vv

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "edit/node_fields.h"
+#include "xvrml/browser.h"
 #include "xvrml/world.h"
 
 namespace vv {
@@ -29,7 +30,7 @@ class Outline {
   // Opens a node, so that its children are to be seen, or closes it.
   void setOpen(const xvrml::NodeRef& node, bool open);
   // Opens all nodes on the way from a root to this one. Returns false if it is not in the file.
-  bool reveal(const xvrml::World& world, const xvrml::Node& node);
+  bool reveal(xvrml::Browser& browser, xvrml::Node& node);
 
   // Returns the nodes whose DEF name, type or field names have this text, in any case, in the order
   // of the file; at most `most`.
@@ -43,8 +44,11 @@ class Outline {
 // Returns what a row says of a node: its DEF name and its type.
 std::string labelOf(const xvrml::Node& node);
 
-// Returns the nodes from a root of the file to this one, first place only; empty if it is not in
-// the file.
-std::vector<xvrml::Node*> pathTo(const xvrml::World& world, const xvrml::Node& node);
+// Returns the nodes of a path through the scene that stand in the world's file: each is a root, or
+// in a field of one before it. Bodies of prototypes and contents of Inlines are left out.
+xvrml::MFNode nodesOfFile(const xvrml::World& world, const std::vector<xvrml::PickHit::Step>& path);
+// Returns the nodes from a root of the file to this one, in one of its places; empty if it is not
+// in the file. Cheap for nodes of the scene; for others the file is walked.
+std::vector<xvrml::Node*> pathTo(xvrml::Browser& browser, xvrml::Node& node);
 
 } // namespace vv

@@ -101,15 +101,12 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
   }
 }
 
-// Counts where the nodes of the sheet stand, in one walk.
-std::unordered_map<const Node*, size_t> placesIn(WorldEditor& editor, const PropertySheet& sheet) {
-  MFNode nodes{sheet.node, sheet.look.appearance};
-  for (const PropertyRow& row : sheet.rows) {
-    if (const auto* const one = std::get_if<SFNode>(&row.value)) nodes.push_back(*one);
-    if (const auto* const list = std::get_if<MFNode>(&row.value))
-      nodes.insert(nodes.end(), list->begin(), list->end());
-  }
-  return countPlaces(editor.browser().world(), nodes);
+// Returns in how many places of the file a node stands. Where nothing can be edited, or not yet,
+// one is as good as any other, and nobody waits for it.
+size_t placesOf(WorldEditor& editor, const NodeRef& node) {
+  if (!node) return 0;
+  const bool isEditable = !editor.editor().isPreparing() && editor.editor().whyReadOnly().empty();
+  return isEditable ? editor.editor().countPlaces(*node) : 1;
 }
 
 std::string noteOf(const Node& node, size_t places) {
@@ -143,8 +140,7 @@ PropertySheet sheetOf(WorldEditor& editor, const NodeRef& node) {
     addParameters(editor, *shader, sheet);
   sheet.hasLook = nodeCast<nodes::Shape>(node) != nullptr;
   if (sheet.hasLook) sheet.look = lookOf(*node);
-  const std::unordered_map<const Node*, size_t> counts = placesIn(editor, sheet);
-  const auto places = [&](const NodeRef& one) { return one ? counts.at(one.get()) : 0; };
+  const auto places = [&editor](const NodeRef& one) { return placesOf(editor, one); };
   sheet.note = noteOf(*node, places(node));
   sheet.look.places = places(sheet.look.appearance);
   for (PropertyRow& row : sheet.rows) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cstdint>
 #include <cstdlib>
 #include <iterator>
 #include <string_view>
@@ -21,7 +22,7 @@ namespace {
 std::optional<Value> valueOf(const ShaderParameter& parameter) {
   const std::vector<float>& n = parameter.value;
   switch (parameter.type) {
-  case RT_PARAM_INT: return int32_t(n[0]);
+  case RT_PARAM_INT: return int32_t(std::clamp(double(n[0]), double(INT32_MIN), double(INT32_MAX)));
   case RT_PARAM_FLOAT: return n[0];
   case RT_PARAM_VEC2: return Vec2f{n[0], n[1]};
   case RT_PARAM_VEC3: return Vec3f{n[0], n[1], n[2]};

@@ -1,5 +1,6 @@
 #include "session/measuring.h"
 
+#include <new>
 #include <utility>
 
 namespace vv {
@@ -22,7 +23,9 @@ void Measuring::advance() {
       if (!shared_.isMoving()) shared_.cancel();
       return;
     }
-    shared_.measure(*std::exchange(wanted_, std::nullopt));
+    try {
+      shared_.measure(*std::exchange(wanted_, std::nullopt));
+    } catch (const std::bad_alloc&) { return end({{}, "not enough memory"}); }
     world_ = shared_.world();
   } else if (const std::optional<picture::LiveReadings> readings = shared_.live.takeReadings()) {
     end(*readings);

@@ -83,9 +83,10 @@ class Pilot {
   // the user's choice; none: not switched
   std::optional<bool> headlight() const { return headlight_; }
   double exposure() const { return exposure_; } // stops that the user has added
-  // the end of the scale of false colours, or 0 if pictures choose it; none: own colours are shown
-  // Tells whether pictures have light that can be measured, and not colours for screens.
+  // Tells whether pictures have light that can be measured, and not colours for screens. false for
+  // vv serve, whose ServedWorld knows it.
   bool hasLight() const { return scaleEnd_.has_value(); }
+  // the end of the scale of false colours, or 0 if pictures choose it; none: own colours are shown
   std::optional<double> falseColour() const {
     return showsFalseColours_ ? scaleEnd_ : std::nullopt;
   }

@@ -146,15 +146,30 @@ std::string WorldReport::progress(Session& session) const {
   return work_->files.valid() ? "Report: the files are being written" : "";
 }
 
-void WorldReport::reset() { work_ = std::make_shared<Work>(); }
+void WorldReport::reset() {
+  if (work_->files.valid()) earlier_.push_back(work_);
+  work_ = std::make_shared<Work>();
+}
+
+// Takes the message of files that have been written.
+void WorldReport::finish(Work& work) {
+  if (!work.files.valid() ||
+      work.files.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  work.message = work.files.get();
+  if (!work.isDelivered) say("vv: " + work.message);
+}
 
 std::string WorldReport::takeMessage() {
-  if (work_->files.valid() &&
-      work_->files.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    work_->message = work_->files.get();
-    if (!work_->isDelivered) say("vv: " + work_->message);
-  }
-  return std::exchange(work_->message, {});
+  for (const std::shared_ptr<Work>& one : earlier_) finish(*one);
+  finish(*work_);
+  std::string message = std::exchange(work_->message, {});
+  for (const std::shared_ptr<Work>& one : earlier_)
+    if (message.empty()) message = std::exchange(one->message, {});
+  std::erase_if(earlier_, [](const std::shared_ptr<Work>& one) {
+    return !one->files.valid() && one->message.empty();
+  });
+  return message;
 }
 
 } // namespace vv

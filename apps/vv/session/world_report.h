@@ -31,7 +31,7 @@ class WorldReport {
   void giveUp(Session& session);
   // Returns what it is doing, as a line for the user; "" if there is nothing to do.
   std::string progress(Session& session) const;
-  // Forgets the session, because it ends.
+  // Forgets the session, because it ends. Files that are being written are finished.
   void reset();
   // Returns, once, what has become of the report, which is also printed if it is in files; "" if
   // there is nothing to say.
@@ -39,7 +39,10 @@ class WorldReport {
 
  private:
   struct Work;
-  std::shared_ptr<Work> work_; // the callback of the picture has it, too
+  static void finish(Work& work);
+
+  std::shared_ptr<Work> work_;                 // the callback of the picture has it, too
+  std::vector<std::shared_ptr<Work>> earlier_; // other sessions, whose files are being written
 };
 
 } // namespace vv

@@ -184,98 +184,84 @@ void Editing::click(const InputEvent& event) {
 
 // Takes a key of the editor. Returns whether it is one.
 bool Editing::press(const InputEvent& event) {
-  const std::string& key = event.text;
-  const auto request = [this](EditModel::Command command) {
-    model_->request(std::move(command));
-    return true;
-  };
-  if (event.control && key == "Z" && !event.shift)
-    return request([](WorldEditor& editor) { editor.undo(); });
-  if (event.control && (key == "Y" || key == "Z"))
-    return request([](WorldEditor& editor) { editor.redo(); });
-  if (event.control && key == "S") {
-    save();
-    return true;
-  }
-  const bool measures = !event.control && !event.alt && (key == "V" || key == "U");
-  if (measures && !hasLight_) {
-    say("--colour vrml97 makes colours for screens, not light");
-    return true;
-  }
-  if (measures && event.shift && key == "V") {
-    measures_ = true;
-    show("drag a rectangle over what is to be measured (Escape: none)");
-    return true;
-  }
-  if (measures && key == "V")
-    return request(
-        [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          needPicture(inside);
-          light_.addProbe(editor, view, at.x, at.y);
-        });
-  if (measures && !event.shift)
-    return request(
-        [this, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
-          needPicture(inside);
-          light_.addSensor(editor, view, at.x, at.y);
-        });
-  if (pressForComparison(event)) return true;
+  const EditorAction action = editorActionOf(event);
   // The keys are taken whatever is selected: what was clicked just now may still have to be.
-  if (event.control && key == "G") return request(wrapSelected);
-  if (event.control || event.alt) return false;
-  if (event.shift && key == "A") {
+  switch (action) {
+  case EditorAction::none: return false;
+  case EditorAction::handles:
+    gizmo_.cycle();
+    say(fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none"));
+    break;
+  case EditorAction::move: return beginTool(TransformTool::Kind::move, -1, pointer_);
+  case EditorAction::turn: return beginTool(TransformTool::Kind::turn, -1, pointer_);
+  case EditorAction::scale: return beginTool(TransformTool::Kind::scale, -1, pointer_);
+  case EditorAction::menu:
     panels_->openAddMenu();
     for (int frame = 0; frame < framesToOpen; ++frame) {
       screen_.redraw();
       screen_.present();
     }
-    return true;
+    break;
+  case EditorAction::duplicate: model_->request(duplicateSelected); break;
+  case EditorAction::group: model_->request(wrapSelected); break;
+  case EditorAction::remove: model_->request(removeSelected); break;
+  case EditorAction::undo: model_->request([](WorldEditor& editor) { editor.undo(); }); break;
+  case EditorAction::redo: model_->request([](WorldEditor& editor) { editor.redo(); }); break;
+  case EditorAction::save: save(); break;
+  case EditorAction::probe:
+  case EditorAction::sensor:
+  case EditorAction::rectangle: measure(action); break;
+  case EditorAction::keep:
+    model_->request([this](WorldEditor& editor) { light_.keep(editor, view_); });
+    break;
+  case EditorAction::showA: toggle(Comparison::Shown::a); break;
+  case EditorAction::showWiper: toggle(Comparison::Shown::wiper); break;
+  case EditorAction::showDifference: toggle(Comparison::Shown::difference); break;
+  case EditorAction::frame: wantsFrame_ = true; break;
+  case EditorAction::escape: escape(); break;
   }
-  if (event.shift) return key == "D" && request(duplicateSelected);
-  if (key == "X" || key == "Delete") return request(removeSelected);
-  if (key == ".") return wantsFrame_ = true;
-  if (key == "G") return beginTool(TransformTool::Kind::move, -1, pointer_);
-  if (key == "R") return beginTool(TransformTool::Kind::turn, -1, pointer_);
-  if (key == "S") return beginTool(TransformTool::Kind::scale, -1, pointer_);
-  if (key == "T") {
-    gizmo_.cycle();
-    say(fmt::format("handles: {}", gizmo_.kind() ? kindNames[int(*gizmo_.kind())] : "none"));
-    return true;
-  }
-  if (key == "Escape" && (measures_ || drag_ == Drag::measure || drag_ == Drag::select)) {
-    measures_ = false;
-    pressed_.reset();
-    show("");
-    return true;
-  }
-  if (key == "Escape" && report_.isWaiting()) return givesUpReport_ = true;
-  if (key == "Escape")
-    return request([this](WorldEditor& editor) {
-      if (comparison_.shown() != Comparison::Shown::present)
-        comparison_.toggle(comparison_.shown());
-      else if (editor.selection().empty())
-        open(false);
-      else
-        editor.select({});
-    });
-  return false;
+  return true;
 }
 
-// Takes a key that is about A. Returns whether it is one.
-bool Editing::pressForComparison(const InputEvent& event) {
-  using Shown = Comparison::Shown;
-  if (event.control || event.alt || event.shift) return false;
-  if (event.text == "B") {
-    model_->request([this](WorldEditor& editor) { light_.keep(editor, view_); });
-    return true;
+// Places a probe, or lets the next drag be a rectangle.
+void Editing::measure(EditorAction action) {
+  if (!hasLight_) return say("--colour vrml97 makes colours for screens, not light");
+  if (action == EditorAction::rectangle) {
+    measures_ = true;
+    return show("drag a rectangle over what is to be measured (Escape: none)");
   }
-  const Shown wanted = event.text == "\\"  ? Shown::a
-                       : event.text == "W" ? Shown::wiper
-                       : event.text == "D" ? Shown::difference
-                                           : Shown::present;
-  if (wanted == Shown::present) return false;
-  model_->request([this, wanted](WorldEditor&) { comparison_.toggle(wanted); });
-  return true;
+  model_->request(
+      [this, action, view = view_, at = pointer_, inside = isOverPicture_](WorldEditor& editor) {
+        needPicture(inside);
+        if (action == EditorAction::probe)
+          light_.addProbe(editor, view, at.x, at.y);
+        else
+          light_.addSensor(editor, view, at.x, at.y);
+      });
+}
+
+void Editing::toggle(Comparison::Shown shown) {
+  model_->request([this, shown](WorldEditor&) { comparison_.toggle(shown); });
+}
+
+void Editing::escape() {
+  if (measures_ || drag_ == Drag::measure || drag_ == Drag::select) {
+    measures_ = false;
+    pressed_.reset();
+    return show("");
+  }
+  if (report_.isWaiting()) {
+    givesUpReport_ = true;
+    return;
+  }
+  model_->request([this](WorldEditor& editor) {
+    if (comparison_.shown() != Comparison::Shown::present)
+      comparison_.toggle(comparison_.shown());
+    else if (editor.selection().empty())
+      open(false);
+    else
+      editor.select({});
+  });
 }
 
 bool Editing::beginTool(TransformTool::Kind kind, int axis, const InputEvent& at) {

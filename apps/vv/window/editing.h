@@ -11,6 +11,7 @@
 #include "edit/edit_model.h"
 #include "edit/gizmo.h"
 #include "edit/transform_tool.h"
+#include "session/input/editor_keys.h"
 #include "session/light_reader.h"
 #include "session/session.h"
 #include "session/world_loader.h"
@@ -73,7 +74,9 @@ class Editing {
   // Asks once whether the edits that an earlier session has left are used.
   void offerLeft(WorldEditor& editor);
   bool press(const InputEvent& event);
-  bool pressForComparison(const InputEvent& event);
+  void measure(EditorAction action);
+  void toggle(Comparison::Shown shown);
+  void escape();
   void click(const InputEvent& event);
   Drag dragAt(const InputEvent& press) const;
   void follow(const InputEvent& move);

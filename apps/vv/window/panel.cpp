@@ -154,7 +154,8 @@ Panel PanelPainter::paint(const std::vector<std::string>& texts, int width, bool
   panel.width = std::clamp(wide + 2 * margin, 1, std::max(1, width));
   panel.height = step * int(lines.size()) + margin;
   panel.rgba.assign(4 * size_t(panel.width) * size_t(panel.height), 0);
-  for (size_t i = 3; i < panel.rgba.size(); i += 4) panel.rgba[i] = 150;
+  const uint8_t ground = fixed ? 255 : 150;
+  for (size_t i = 3; i < panel.rgba.size(); i += 4) panel.rgba[i] = ground;
   int y = margin / 2 + ascent;
   for (const std::string& line : lines) {
     const bool weak = line.starts_with('\t');

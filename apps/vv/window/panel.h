@@ -23,8 +23,8 @@ class PanelPainter {
   explicit PanelPainter(int size);
   ~PanelPainter();
   // Draws UTF-8 text; a line that begins with a tab gets a weaker colour. Lines longer than `width`
-  // pixels are wrapped, and cut if that fails. fixed: uses a fixed-width font, and lines are only
-  // cut.
+  // pixels are wrapped, and cut if that fails. fixed: for long lists, uses a fixed-width font on an
+  // opaque ground, and lines are only cut.
   Panel paint(const std::vector<std::string>& lines, int width, bool fixed = false);
 
  private:

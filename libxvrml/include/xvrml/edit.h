@@ -46,6 +46,9 @@ struct NodeSlot {
   size_t index = 0;  // in an MFNode or among the roots; one past the last appends
 };
 
+// Memory in bytes that the steps of an editor take at most, as far as nothing else is said.
+inline constexpr uint64_t defaultUndoBytes = 512'000'000;
+
 // Wide because each kind of edit is a function, and so is each question about the file.
 class Editor {
  public:
@@ -74,6 +77,9 @@ class Editor {
   // An edit after undo() forgets the steps that could be done again.
   bool undo();
   bool redo();
+  // Bounds the estimated memory of all steps. When more is needed, the oldest ones are forgotten,
+  // but never the last one; the first time a warning in World::diagnostics says so.
+  void setUndoBytes(uint64_t bytes);
   // Return the names of these steps; empty if there is none.
   std::string undoName() const;
   std::string redoName() const;
@@ -94,6 +100,8 @@ class Editor {
   // Returns whether a node stands anywhere in the file as it is edited; false before the first
   // edit. Unlike placesOf() it does not look through the world.
   bool stands(const Node& node) const;
+  // Returns in how many places of the file it does.
+  size_t countPlaces(const Node& node) const;
 
   // Returns for each place in the world's file, as it was read, the innermost node whose text holds
   // it, as the messages about the file have places; null if there is none, or it is not in the

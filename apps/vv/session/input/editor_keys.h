@@ -1,7 +1,9 @@
-// editor_keys.h: Lists what keys and mouse do in the editor of the window, in one table, which F1,
-// vv --list-keys and docs/editor.md show. [any thread]
+// editor_keys.h: Defines what keys and mouse do in the editor of the window, in one table. The
+// window asks it, and F1, vv --list-keys and docs/editor.md show it. [any thread]
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -9,7 +11,41 @@
 
 namespace vv {
 
-std::span<const MouseInfo> editorTable();
+enum class EditorAction : uint8_t {
+  none,
+  handles,
+  move,
+  turn,
+  scale,
+  menu,
+  duplicate,
+  group,
+  remove,
+  undo,
+  redo,
+  save,
+  probe,
+  sensor,
+  rectangle,
+  keep,
+  showA,
+  showWiper,
+  showDifference,
+  frame,
+  escape
+};
+
+struct EditorKeyInfo {
+  const char* what; // keys, separated by ", ", or what is done with the mouse
+  const char* text;
+  // The actions of the keys, in their order. Rows without actions are explained only: the mouse,
+  // keys of a tool that is in use, of menus and of the window.
+  std::array<EditorAction, 3> actions{};
+};
+std::span<const EditorKeyInfo> editorTable();
+
+// Returns the action for a key that goes down.
+EditorAction editorActionOf(const InputEvent& event);
 
 std::string listEditorKeys(); // for people, as listKeys()
 
