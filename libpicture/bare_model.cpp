@@ -39,16 +39,18 @@ ViewTransform curveFor(const std::array<float, 3>& backdrop) {
 } // namespace
 
 Look lookOf(const xvrml::World& world, bool shadersGiven) {
-  // Modellers write the camera of their window into glTF files. It does not say what is around.
-  const bool camerasSayNothing = world.head.version.encoding == xvrml::Encoding::gltf;
+  // Modellers write the camera of their window into glTF files. It does not say what is around, nor
+  // does the shader that glass of such a file gets.
+  const bool isModel = world.head.version.encoding == xvrml::Encoding::gltf;
   bool bare = true, metal = false;
   const auto visit = [&](const xvrml::Node& node) {
     const std::string_view type = node.type().name;
-    if (camerasSayNothing && type.ends_with("Viewpoint")) return;
-    bare = bare && !decidesTheLook(type) && (shadersGiven || type != "ORTAppearance");
+    if (isModel && type.ends_with("Viewpoint")) return;
+    const bool isShaded = type == "ORTAppearance";
+    bare = bare && !decidesTheLook(type) && (shadersGiven || isModel || !isShaded);
     const auto* material =
         xvrml::nodeCast<xvrml::nodes::PhysicalMaterial>(const_cast<xvrml::Node*>(&node));
-    metal = metal || (material && material->metallic > 0);
+    metal = metal || isShaded || (material && material->metallic > 0);
   };
   walkInto(world.scope, visit, [](const xvrml::Scope&) {});
   if (!bare) return Look::own;

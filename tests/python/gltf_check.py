@@ -55,6 +55,7 @@ class Checker:
                     getattr(self, "check_" + kind)(item, f"{kind}[{number}]")
             self.check_nodes()
             self.check_lights()
+            self.check_uses()
             self.check_extensions()
         except (KeyError, IndexError, TypeError, ValueError, struct.error) as error:
             self.say(f"{type(error).__name__}: {error}")
@@ -297,6 +298,33 @@ class Checker:
             light = node.get("extensions", {}).get("KHR_lights_punctual")
             if light is not None:
                 self.need(0 <= light["light"] < len(lights), f"nodes[{number}]: light")
+
+    def check_uses(self):
+        """Everything but nodes, scenes and animations is there because something refers to it."""
+        used = {kind: set() for kind in LISTS}
+        for mesh in self.list("meshes"):
+            for primitive in mesh["primitives"]:
+                used["accessors"].update(primitive["attributes"].values(), [primitive["indices"]])
+                used["materials"].add(primitive["material"])
+        for animation in self.list("animations"):
+            channels = {channel["sampler"] for channel in animation["channels"]}
+            self.need(channels == set(range(len(animation["samplers"]))), "an animation has a sampler without a channel")
+            for sampler in animation["samplers"]:
+                used["accessors"].update((sampler["input"], sampler["output"]))
+        for material in self.list("materials"):
+            used["textures"].update(info["index"] for info in texture_infos(material))
+        for texture in self.list("textures"):
+            used["images"].add(texture["source"])
+            used["samplers"].add(texture["sampler"])
+        for node in self.list("nodes"):
+            for name, kind in (("mesh", "meshes"), ("camera", "cameras")):
+                used[kind].update([node[name]] if name in node else [])
+        for kind, member in (("accessors", "bufferView"), ("images", "bufferView"), ("bufferViews", "buffer")):
+            target = "buffers" if member == "buffer" else "bufferViews"
+            used[target].update(item[member] for item in self.list(kind) if member in item)
+        for kind in ("accessors", "materials", "textures", "images", "samplers", "meshes", "cameras", "bufferViews", "buffers"):
+            unused = set(range(len(self.list(kind)))) - used[kind]
+            self.need(not unused, f"nothing refers to {kind} {sorted(unused)[:5]}")
 
     def check_extensions(self):
         found, open_items = set(), [self.json]

@@ -302,4 +302,67 @@ TEST(RareMeshes, EntitiesInOtherFilesAreReported) {
   EXPECT_TRUE(holds(*world, "DEF g Group"));
 }
 
+// A triangle of zeros with a material.
+std::string withMaterial(const std::string& material) {
+  return gltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+      "buffers":[{"byteLength":36,"uri":"data:;base64,)" +
+              std::string(48, 'A') + R"("}],"bufferViews":[{"buffer":0,"byteLength":36}],
+      "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
+      "images":[{"uri":"a.png"}],"textures":[{"source":0}],"materials":[)" +
+              material + "]");
+}
+
+// Without a reflection at its boundary a surface is a Material without highlights.
+TEST(RareMeshes, GltfMattSurfaces) {
+  const std::string head = R"({"pbrMetallicRoughness":{"metallicFactor":0,
+      "baseColorTexture":{"index":0}},"extensions":{)";
+  for (const char* matt : {R"("KHR_materials_specular":{"specularFactor":0})",
+                           R"("KHR_materials_specular":{"specularColorFactor":[0,0,0]})",
+                           R"("KHR_materials_ior":{"ior":1})"}) {
+    const auto world = loadWorldFromMemory(withMaterial(head + matt + "}}"), "a.gltf");
+    EXPECT_TRUE(holds(*world, "material Material {")) << matt << writeWorld(*world);
+    EXPECT_TRUE(holds(*world, "diffuseTexture")) << matt;
+    EXPECT_EQ(messages(*world).find("KHR_"), std::string::npos) << messages(*world);
+  }
+  for (const char* shiny : {R"("KHR_materials_specular":{"specularFactor":0.5})",
+                            R"("KHR_materials_specular":{"specularColorFactor":[0,0,1]})",
+                            R"("KHR_materials_specular":{"specularFactor":null})",
+                            R"("KHR_materials_ior":{"ior":0})"}) {
+    const auto world = loadWorldFromMemory(withMaterial(head + shiny + "}}"), "a.gltf");
+    EXPECT_TRUE(holds(*world, "material PhysicalMaterial {")) << shiny << writeWorld(*world);
+    EXPECT_NE(messages(*world).find("KHR_"), std::string::npos) << shiny;
+  }
+  // A metal reflects by its own colour.
+  const auto metal = loadWorldFromMemory(
+      withMaterial(R"({"extensions":{"KHR_materials_specular":{"specularFactor":0}}})"), "a.gltf");
+  EXPECT_TRUE(holds(*metal, "material PhysicalMaterial {")) << writeWorld(*metal);
+}
+
+TEST(RareMeshes, GltfClearBodies) {
+  const auto read = [](const std::string& roughness, const std::string& volume) {
+    return loadWorldFromMemory(
+        withMaterial(R"({"pbrMetallicRoughness":{"roughnessFactor":)" + roughness +
+                     R"(},"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},
+        "KHR_materials_ior":{"ior":1.25},"KHR_materials_dispersion":{"dispersion":0.5},
+        "KHR_materials_volume":{)" +
+                     volume + "}}}"),
+        "a.gltf");
+  };
+  const auto glass =
+      read("0", R"("thicknessFactor":1,"attenuationDistance":2,"attenuationColor":[1,0.5,0])");
+  EXPECT_TRUE(holds(*glass, "name \"Glass\"")) << writeWorld(*glass);
+  EXPECT_TRUE(holds(*glass, "\"1f index 1.25\"")) << writeWorld(*glass);
+  EXPECT_TRUE(holds(*glass, "\"1f abbe 40\"")) << writeWorld(*glass);
+  EXPECT_TRUE(holds(*glass, "absorption 0 0.3465")) << writeWorld(*glass); // ln 2 / 2
+  EXPECT_EQ(messages(*glass).find("KHR_"), std::string::npos) << messages(*glass);
+  const auto ground = read("0.5", R"("thicknessFactor":1,"attenuationDistance":0)");
+  EXPECT_TRUE(holds(*ground, "name \"RoughGlass\"")) << writeWorld(*ground);
+  EXPECT_TRUE(holds(*ground, "\"1f roughness 0.25\"")) << writeWorld(*ground);
+  // A wall without thickness does not refract: it stays opaque, with a message.
+  const auto wall = read("0", R"("thicknessFactor":0)");
+  EXPECT_TRUE(holds(*wall, "material PhysicalMaterial {")) << writeWorld(*wall);
+  EXPECT_NE(messages(*wall).find("KHR_materials_transmission"), std::string::npos);
+}
+
 } // namespace

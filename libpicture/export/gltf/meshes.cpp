@@ -89,25 +89,26 @@ Meshes::Geometry Meshes::write(const GeometryArrays& arrays) {
   if (vertices.hasNormals() && arrays.kind == GeometryArrays::Kind::triangles)
     geometry.normals = int64_t(document_.add(
         floatsOf<Vec3f>(count, "VEC3", [&](size_t i) { return vertices.normal(i); })));
-  if (vertices.hasColors()) writeColors(vertices, geometry);
+  if (vertices.hasColors())
+    geometry.colors = vertices.hasAlphas() ? VertexColors::transparent : VertexColors::opaque;
   geometry.indices = int64_t(document_.add(indicesOf(vertices.indices(), count)));
   return geometry;
 }
 
-void Meshes::writeColors(const Vertices& vertices, Geometry& geometry) {
+// Returns the accessor of the colours. They are written for the first material that shows them.
+size_t Meshes::colorsOf(const DrawnShape& shape, Geometry& geometry) {
+  if (geometry.colorValues) return *geometry.colorValues;
+  const Vertices vertices(shape.mesh());
   const size_t count = vertices.size();
-  if (!vertices.hasAlphas()) {
-    geometry.colors = VertexColors::opaque;
-    geometry.colorValues = int64_t(document_.add(floatsOf<xvrml::Color>(
-        count, "VEC3", [&](size_t i) { return linearOf(vertices.color(i)); })));
-    return;
-  }
-  geometry.colors = VertexColors::transparent;
-  geometry.colorValues =
-      int64_t(document_.add(floatsOf<xvrml::ColorRGBA>(count, "VEC4", [&](size_t i) {
-        const xvrml::Color c = linearOf(vertices.color(i));
-        return xvrml::ColorRGBA{c.r, c.g, c.b, vertices.alpha(i)};
-      })));
+  if (geometry.colors == VertexColors::opaque)
+    geometry.colorValues = document_.add(floatsOf<xvrml::Color>(
+        count, "VEC3", [&](size_t i) { return linearOf(vertices.color(i)); }));
+  else
+    geometry.colorValues = document_.add(floatsOf<xvrml::ColorRGBA>(count, "VEC4", [&](size_t i) {
+      const xvrml::Color c = linearOf(vertices.color(i));
+      return xvrml::ColorRGBA{c.r, c.g, c.b, vertices.alpha(i)};
+    }));
+  return *geometry.colorValues;
 }
 
 // Returns the accessor of u v, whose origin is at the upper left.
@@ -127,7 +128,7 @@ size_t Meshes::texCoords(const DrawnShape& shape, const std::array<float, 6>& tr
 Json Meshes::primitiveOf(const DrawnShape& shape, Geometry& geometry, const MaterialUse& material) {
   Json attributes = {{"POSITION", geometry.points}};
   if (geometry.normals >= 0) attributes["NORMAL"] = geometry.normals;
-  if (material.showsVertexColors) attributes["COLOR_0"] = geometry.colorValues;
+  if (material.showsVertexColors) attributes["COLOR_0"] = colorsOf(shape, geometry);
   if (material.textured)
     attributes["TEXCOORD_0"] = texCoords(shape, material.bakedTransform, geometry);
   Json primitive = {{"attributes", std::move(attributes)},

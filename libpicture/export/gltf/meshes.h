@@ -35,12 +35,13 @@ class Meshes {
     xvrml::GeometryArrays::Kind kind = xvrml::GeometryArrays::Kind::empty;
     bool solid = true;
     VertexColors colors = VertexColors::none;
-    int64_t points = -1, normals = -1, colorValues = -1, indices = -1;
+    int64_t points = -1, normals = -1, indices = -1;
     Box box;
+    std::optional<size_t> colorValues;
     std::map<std::array<float, 6>, size_t> texCoords; // by their transform
   };
   Geometry write(const xvrml::GeometryArrays& arrays);
-  void writeColors(const Vertices& vertices, Geometry& geometry);
+  size_t colorsOf(const xvrml::DrawnShape& shape, Geometry& geometry);
   size_t texCoords(const xvrml::DrawnShape& shape, const std::array<float, 6>& transform,
                    Geometry& geometry);
   Json primitiveOf(const xvrml::DrawnShape& shape, Geometry& geometry, const MaterialUse& material);

@@ -1,7 +1,9 @@
-// materials.cpp: PhysicalMaterial, UnlitMaterial and ImageTexture of glTF's materials.
+// materials.cpp: Material, PhysicalMaterial, UnlitMaterial and ImageTexture of glTF's materials,
+// and ORTShader for clear bodies.
 #include "parse/mesh/gltf/materials.h"
 
 #include <algorithm>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -10,12 +12,6 @@
 
 namespace xvrml::gltf {
 namespace {
-
-Color colorOf(const std::vector<double>& numbers, Color fallback) {
-  if (numbers.size() < 3) return fallback;
-  const auto part = [&](size_t i) { return float(std::clamp(numbers[i], 0.0, 1.0)); };
-  return {part(0), part(1), part(2)};
-}
 
 // KHR_materials_pbrSpecularGlossiness, which older programs write beside or instead of the
 // metallic-roughness model.
@@ -136,8 +132,10 @@ void Materials::writeSurface(std::optional<size_t> material) {
   if (!def.empty()) return nodes_.useIn("appearance", def);
   const Item& item = materials_[*material];
   def = nodes_.define(item.text("name"), "Material");
-  nodes_.openIn("appearance", "Appearance", def);
-  writeAppearance(item);
+  const std::optional<ClearBody> body = clearBodyOf(item);
+  const bool clear = body && nodes_.knows("ORTAppearance");
+  nodes_.openIn("appearance", clear ? "ORTAppearance" : "Appearance", def);
+  clear ? writeClearBody(item, *body) : writeAppearance(item);
   nodes_.closeIn();
 }
 
@@ -145,8 +143,28 @@ void Materials::writeAppearance(const Item& material) {
   if (!hasPhysical())
     writePhong(material);
   else
-    isUnlit(material) ? writeFlat(material) : writePhysical(material);
+    isUnlit(material)  ? writeFlat(material)
+    : isMatt(material) ? writeMatt(material)
+                       : writePhysical(material);
   writeAlpha(material);
+  warnOfExtensions(material);
+}
+
+void Materials::writeClearBody(const Item& material, const ClearBody& body) {
+  const bool polished = body.alpha == 0;
+  MFString options = {fmt::format("1f index {}", body.index),
+                      fmt::format("3f tint {} {} {}", body.tint.r, body.tint.g, body.tint.b),
+                      fmt::format("3f absorption {} {} {}", body.absorption.r, body.absorption.g,
+                                  body.absorption.b)};
+  if (!polished) options.push_back(fmt::format("1f roughness {}", body.alpha));
+  if (polished && body.abbe > 0) options.push_back(fmt::format("1f abbe {}", body.abbe));
+  nodes_.openIn("shader", "ORTShader");
+  nodes_.set("name", std::string(polished ? "Glass" : "RoughGlass"));
+  nodes_.set("file", std::string(polished ? "glass" : "roughglass"));
+  nodes_.set("options", std::move(options));
+  nodes_.closeIn();
+  if (!picturesOf(material).empty())
+    material.warn("pictures of a clear body are not supported: they are left out");
   warnOfExtensions(material);
 }
 
@@ -213,6 +231,14 @@ void Materials::writePhysical(const Item& material) {
   nodes_.set("metallic", glossy ? 0.0f : inUnit(pbr.number("metallicFactor", 1)));
   nodes_.set("roughness", glossy ? inUnit(1 - glossiness(material).number("glossinessFactor", 1))
                                  : inUnit(pbr.number("roughnessFactor", 1)));
+  writeLit(material);
+  writePictures(material, {"baseTexture", "metallicRoughnessTexture", "normalTexture",
+                           "occlusionTexture", "emissiveTexture"});
+  nodes_.closeIn();
+}
+
+// Sets what Material and PhysicalMaterial have in common.
+void Materials::writeLit(const Item& material) {
   nodes_.set("emissiveColor", encoded(emissionOf(material)));
   nodes_.set("transparency", transparencyOf(material));
   if (const Item normal = material.object("normalTexture")) {
@@ -222,9 +248,23 @@ void Materials::writePhysical(const Item& material) {
   }
   if (const Item occlusion = material.object("occlusionTexture"))
     nodes_.set("occlusionStrength", inUnit(occlusion.number("strength", 1)));
-  writePictures(material, {"baseTexture", "metallicRoughnessTexture", "normalTexture",
-                           "occlusionTexture", "emissiveTexture"});
+}
+
+// A Material without a specularColor scatters light evenly, as such a surface does.
+void Materials::writeMatt(const Item& material) {
+  nodes_.openIn("material", "Material");
+  nodes_.set("diffuseColor", encoded(baseColor(material)));
+  writeLit(material);
+  writePictures(material, {"baseTexture", "normalTexture", "occlusionTexture", "emissiveTexture"});
   nodes_.closeIn();
+}
+
+// Returns the field of the material's node that shows a picture.
+std::string_view Materials::fieldOf(const Item& material, const Picture& picture) const {
+  if (picture.field != "baseTexture" || !hasPhysical()) return picture.field;
+  return isUnlit(material)  ? "emissiveTexture"
+         : isMatt(material) ? "diffuseTexture"
+                            : picture.field;
 }
 
 // KHR_materials_unlit: the base colour is what is seen.
@@ -247,8 +287,7 @@ void Materials::writePicture(const Item& material, const Picture& picture) {
   const auto number = picture.texture.index("index", textures_.size());
   if (!number) return;
   const Item& texture = textures_[*number];
-  const bool flat = hasPhysical() && isUnlit(material);
-  const std::string_view field = flat ? "emissiveTexture" : picture.field;
+  const std::string_view field = fieldOf(material, picture);
   const std::string url = urlOf(texture);
   if (url.empty()) return;
   // A texture that several materials show is one node.
@@ -268,6 +307,7 @@ void Materials::writePicture(const Item& material, const Picture& picture) {
   const auto use = std::find(uses.begin(), uses.end(), useOf(picture.texture));
   constexpr std::pair<std::string_view, std::string_view> mappings[] = {
       {"baseTexture", "baseTextureMapping"},
+      {"diffuseTexture", "diffuseTextureMapping"},
       {"metallicRoughnessTexture", "metallicRoughnessTextureMapping"},
       {"normalTexture", "normalTextureMapping"},
       {"occlusionTexture", "occlusionTextureMapping"},
@@ -326,8 +366,16 @@ void Materials::writeSampler(const Item& texture) {
 void Materials::warnOfExtensions(const Item& material) {
   constexpr std::string_view known[] = {"KHR_materials_unlit", "KHR_materials_emissive_strength",
                                         "KHR_materials_pbrSpecularGlossiness"};
+  constexpr std::string_view clear[] = {"KHR_materials_transmission", "KHR_materials_volume",
+                                        "KHR_materials_dispersion", "KHR_materials_ior"};
+  constexpr std::string_view matt[] = {"KHR_materials_specular", "KHR_materials_ior"};
+  const auto has = [](std::span<const std::string_view> list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  const bool isClear = clearBodyOf(material).has_value(), scatters = isMatt(material);
   for (const std::string& name : material.object("extensions").keys()) {
-    if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
+    if (has(known, name) || (isClear && has(clear, name)) || (scatters && has(matt, name)))
+      continue;
     if (warned_.emplace(name, true).second)
       material.warn(fmt::format("{} is not supported: it is left out here and below", name));
   }

@@ -1,5 +1,6 @@
 // materials.h: the materials and pictures of a glTF file (glTF 2.0, 3.8 and 3.9) as Appearance
-// nodes with PhysicalMaterial or UnlitMaterial. [the thread that loads]
+// nodes with Material, PhysicalMaterial or UnlitMaterial, and clear bodies as ORTAppearance nodes.
+// [the thread that loads]
 #pragma once
 
 #include <map>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "parse/mesh/gltf/accessors.h"
+#include "parse/mesh/gltf/material_extensions.h"
 #include "parse/mesh/node_stream.h"
 
 namespace xvrml::gltf {
@@ -51,7 +53,11 @@ class Materials {
   std::vector<Picture> picturesOf(const Item& material) const;
   bool isUnlit(const Item& material) const;
   void writeAppearance(const Item& material);
+  void writeClearBody(const Item& material, const ClearBody& body);
   void writePhysical(const Item& material);
+  void writeMatt(const Item& material);
+  void writeLit(const Item& material);
+  std::string_view fieldOf(const Item& material, const Picture& picture) const;
   // The sink has the nodes of X3D 4.0.
   bool hasPhysical() const;
   Color baseColor(const Item& material) const;
