@@ -119,7 +119,8 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
   for (uint32_t i = 0; i < shaderClass.paramCount; i++) {
     const RtsParam& param = shaderClass.params[i];
     std::byte* at = block.bytes.get() + param.offset;
-    const std::optional<ParameterValue> value = values ? values->parameters.find(i) : std::nullopt;
+    std::optional<ParameterValue> value;
+    if (values) value = values->parameters.find(i);
     if (const size_t n = parameterFloats(param.type)) {
       float numbers[16];
       std::memcpy(numbers, param.defaultValue, sizeof numbers);
@@ -141,9 +142,9 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
       std::memcpy(at, &text, sizeof text);
     } else if (param.type == RTS_TEXTURE) {
       RtsTexture texture = 0;
-      if (value)
-        if (auto found = textureIndex.find(value->texture); found != textureIndex.end())
-          texture = found->second;
+      const uint32_t handle = value ? value->texture : 0;
+      if (const auto found = textureIndex.find(handle); value && found != textureIndex.end())
+        texture = found->second;
       std::memcpy(at, &texture, sizeof texture);
     }
   }
