@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/export/export.h"
+#include "libpicture/export/pictures.h"
 #include "libpicture/export/placed_vertices.h"
 #include "libpicture/export/surface.h"
 #include "libpicture/export/walk_options.h"

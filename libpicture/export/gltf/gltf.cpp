@@ -10,6 +10,7 @@
 #include "libpicture/export/beside.h"
 #include "libpicture/export/export.h"
 #include "libpicture/export/gltf/scene.h"
+#include "libpicture/export/pictures.h"
 #include "libpicture/export/walk_options.h"
 
 namespace picture {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libpicture/export/gltf/document.h"
+#include "libpicture/export/pictures.h"
 #include "libpicture/export/surface.h"
 
 namespace picture::gltf {
