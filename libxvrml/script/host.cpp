@@ -2,6 +2,7 @@
 #include "script/host.h"
 
 #include <algorithm>
+#include <ctime>
 #include <new>
 
 #include <fmt/format.h>
@@ -16,6 +17,13 @@ namespace {
 uint64_t bytesOf(const Value& value) {
   return std::visit(
       [&](const auto& v) { return sizeof v + valueBytes(FieldType(value.index()), &v); }, value);
+}
+
+// Returns the processor time of this thread in seconds.
+double threadSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 // Returns the node of a Script that cannot have one of its own: it has no fields.
@@ -105,14 +113,13 @@ void ScriptHost::enter(Script& script) {
   script.steps = 0;
   script.failed = false;
   script.since = std::chrono::steady_clock::now();
+  script.processor = threadSeconds();
   script.wasStopped = std::exchange(script.stopped, false);
 }
 
 XsResult ScriptHost::leave(Script& script, const char* function, XsResult result) {
-  if (!script.process) {
-    const auto taken = std::chrono::steady_clock::now() - script.since;
-    chargeTime(taken, std::chrono::duration<double>(taken).count());
-  }
+  if (!script.process)
+    chargeTime(std::chrono::steady_clock::now() - script.since, threadSeconds() - script.processor);
   if (script.stopped || result == XS_STOPPED) {
     script.stopped = true;
     script.outputs.clear();
@@ -306,12 +313,18 @@ Script* ScriptHost::find(XsNode self) {
   return found == bySelf_.end() ? nullptr : found->second;
 }
 
+// Returns whether the running function has used up its time. A process has its own clock.
+bool ScriptHost::isLate(const Script& script) const {
+  if (script.process) return false;
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - script.since;
+  const double limit = options_.scriptSeconds;
+  return taken.count() > limit && (taken.count() > ScriptProcess::maximumWaitFactor * limit ||
+                                   threadSeconds() - script.processor > limit);
+}
+
 bool ScriptHost::overBudget(Script& script, uint64_t steps) {
   script.steps = saturatingAdd(script.steps, steps);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - script.since;
-  // A process has its own clock.
-  const bool late = !script.process && taken.count() > options_.scriptSeconds;
-  if (script.steps > options_.scriptSteps || late) script.stopped = true;
+  if (script.steps > options_.scriptSteps || isLate(script)) script.stopped = true;
   return script.stopped;
 }
 

@@ -80,7 +80,9 @@ struct Script {
   bool stopped = false;    // out of time: no more calls except shutdown and destroy
   bool failed = false;     // the running function has logged an error
   uint64_t steps = 0;      // used by the running function
+  // When the running function was called, and the processor time of the thread then, in seconds.
   std::chrono::steady_clock::time_point since;
+  double processor = 0;
 
   Handles handles;
   LentValue lent; // the last value given out through XsHost
@@ -190,6 +192,7 @@ class ScriptHost : public ScriptRunner {
   void deliver(Script& script, const FieldInfo& in, const Value& value);
   Script* find(XsNode self);
   void log(Script& script, int severity, uint32_t line, const std::string& text);
+  bool isLate(const Script& script) const;
   bool overBudget(Script& script, uint64_t steps);
   void chargeTime(std::chrono::steady_clock::duration time, double processor);
   void chargeProcesses();

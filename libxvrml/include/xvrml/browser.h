@@ -36,8 +36,8 @@ struct BrowserOptions {
   bool allowNetwork = false; // tells script engines that their programs may use the network
   // Limit for one call into a Script, counted by its engine; beyond it the Script is stopped.
   uint64_t scriptSteps = 1'000'000'000;
-  // Time limit for one call into a Script: processor time if the program runs in a process of its
-  // own, wall-clock time otherwise.
+  // Limit for one call into a Script, in seconds of processor time. A call that waits or sleeps may
+  // take 16 times as long, in a process of its own no longer.
   double scriptSeconds = 2;
   uint64_t scriptMemory = 256 << 20; // bytes that one Script's program may use
   // Selects the process for the programs of Scripts. A separate process can only compute.

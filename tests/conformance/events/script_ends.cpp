@@ -2,11 +2,13 @@
 // reference to other Scripts, and to their own nodes; each Script must still be shut down once,
 // with its own fields. The last test makes worlds at random; HACKING.md says how to run many.
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <map>
 #include <random>
 #include <stdexcept>
+#include <thread>
 
 #include "conformance/events/ecmascript_world.h"
 
@@ -67,6 +69,24 @@ TEST_F(ScriptEnds, AScriptThatEndedBeforeMayHoldTheLastReferenceWhenTheWorldEnds
     made.clear(); // the Script ends here, and is shut down later
   }
   EXPECT_EQ(sorted(), (Log{"1", "2"}));
+}
+
+// A machine that is busy with other programs must not decide which Scripts of a world live.
+TEST_F(ScriptEnds, TimeInWhichAProgramDoesNotComputeDoesNotStopIt) {
+  BrowserOptions options = printingInto(lines);
+  options.scriptSeconds = 0.05;
+  options.print = [lines = lines](const std::string& text) {
+    if (text == "wait") std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    lines->push_back(text);
+  };
+  Running r("DEF S Script { eventIn SFBool go" +
+                javascript("function go() { print('wait'); for (var i = 0; i < 1000; i++); "
+                           "print('went on') } function shutdown() { print('end') }") +
+                "}",
+            0, options);
+  r.set("S", "go", true);
+  r.set("S", "go", true);
+  EXPECT_EQ(*lines, (Log{"wait", "went on", "wait", "went on"}));
 }
 
 TEST_F(ScriptEnds, AFunctionMayLetGoOfItsOwnNodeWhileEventsWait) {
