@@ -1,4 +1,4 @@
-// deforming.cpp: large meshes that deform. Their trees are refitted (decision 88), and pictures are
+// deforming.cpp: large meshes that deform. Their trees are refitted (decision 89), and pictures are
 // those of the same mesh in a context of its own.
 #include <functional>
 #include <vector>
