@@ -174,27 +174,57 @@ bool remain(const MeshTopology* former, std::span<const Vec3f> points) {
   return true;
 }
 
-// Uses the node's points directly, for flat triangles without colours or texture coordinates of
-// their own.
-bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> points,
-                  const MeshOptions& options, Mesh& mesh) {
+// Returns whether there are no values, or those of the points in their order.
+template <class T> bool matchPoints(std::span<const T> values, std::span<const int32_t> index,
+                                    bool perVertex, size_t points) {
+  return values.empty() ||
+         (perVertex && index.empty() && values.size() >= points && allFinite(values));
+}
+
+bool areUnit(std::span<const Vec3f> normals) {
+  return std::all_of(normals.begin(), normals.end(), [](const Vec3f& n) {
+    return std::abs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-4f;
+  });
+}
+
+// Uses the node's arrays directly, for triangles whose points each are one vertex. Meshes with such
+// arrays would be built of a FaceSet in the same way.
+bool buildInPlace(const nodes::IndexedFaceSet& node, const FaceSet& set, const MeshOptions& options,
+                  Mesh& mesh) {
+  constexpr size_t manyIndices = 1 << 14; // fewer are not worth an attempt to smooth them
+  const std::span<const Vec3f> points = set.points;
+  const bool smooth = set.normals.values.empty() && node.creaseAngle > 0;
   if (node.coordIndex.size() / 4 + 1 > triangleLimit(options) ||
-      points.size() / 4 > node.coordIndex.size())
+      points.size() / 4 > node.coordIndex.size() ||
+      (smooth && node.coordIndex.size() < manyIndices) || !set.alphas.empty() ||
+      !matchPoints<Color>(set.colors.values, node.colorIndex, node.colorPerVertex, points.size()) ||
+      !matchPoints<Vec2f>(set.texCoords.values, node.texCoordIndex, true, points.size()) ||
+      !matchPoints<Vec3f>(set.normals.values, node.normalIndex, node.normalPerVertex,
+                          points.size()) ||
+      !areUnit(set.normals.values) || !allFinite(points))
     return false;
-  if (!allFinite(points)) return false;
   if (remain(options.former, points)) {
     mesh.ownIndices = std::move(options.former->indices);
   } else if (!plainTriangles(node.coordIndex, points, mesh.ownIndices)) {
-    mesh.ownIndices.clear();
     return false;
   }
+  if (smooth &&
+      !smoothNormals(points, mesh.ownIndices, node.creaseAngle, node.ccw, mesh.ownNormals))
+    return false;
   mesh.kind = Mesh::Kind::triangles;
   mesh.plain = true;
   mesh.points = points;
   mesh.indices = mesh.ownIndices;
   mesh.solid = node.solid;
   mesh.ccw = node.ccw;
-  if (options.needTexCoords) {
+  if (smooth)
+    mesh.normals = mesh.ownNormals;
+  else if (!set.normals.values.empty())
+    mesh.normals = set.normals.values.first(points.size());
+  if (!set.colors.values.empty()) mesh.colors = set.colors.values.first(points.size());
+  if (!set.texCoords.values.empty()) {
+    mesh.texCoords = set.texCoords.values.first(points.size());
+  } else if (options.needTexCoords) {
     mesh.ownTexCoords = defaultTextureMapping(mesh.points, mesh.indices);
     mesh.texCoords = mesh.ownTexCoords;
   }
@@ -216,11 +246,8 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
   set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   set.normals.values = normalVectors(node.normal);
   set.texCoords.values = textureCoordinates(node.texCoord);
-  bool flat = set.normals.values.empty() && !(node.creaseAngle > 0);
   Mesh mesh;
-  if (flat && set.colors.values.empty() && set.texCoords.values.empty() &&
-      buildInPlace(node, set.points, options, mesh))
-    return mesh;
+  if (buildInPlace(node, set, options, mesh)) return mesh;
 
   set.solid = node.solid;
   set.ccw = node.ccw;

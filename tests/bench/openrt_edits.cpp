@@ -12,24 +12,37 @@
 
 namespace {
 
-RTid grid(RTid object, int n, double size, double phase) {
+struct Mesh {
   std::vector<float> points;
   std::vector<uint32_t> indices;
+};
+
+Mesh wave(int n, double size, double phase) {
+  Mesh mesh;
   for (int y = 0; y <= n; y++)
     for (int x = 0; x <= n; x++) {
       const double u = size * (double(x) / n - .5), v = size * (double(y) / n - .5);
-      points.insert(points.end(),
-                    {float(u),
-                     float(.02 * size * std::sin(9 * u / size + phase) * std::cos(7 * v / size)),
-                     float(v)});
+      mesh.points.insert(
+          mesh.points.end(),
+          {float(u), float(.02 * size * std::sin(9 * u / size + phase) * std::cos(7 * v / size)),
+           float(v)});
       const auto i = uint32_t(y * (n + 1) + x), w = uint32_t(n + 1);
-      if (x < n && y < n) indices.insert(indices.end(), {i, i + w, i + 1, i + 1, i + w, i + w + 1});
+      if (x < n && y < n)
+        mesh.indices.insert(mesh.indices.end(), {i, i + w, i + 1, i + 1, i + w, i + w + 1});
     }
+  return mesh;
+}
+
+RTid define(RTid object, const Mesh& mesh) {
   const RTid id = rtBeginObject(object);
-  rtVertexPointer(3, RT_FLOAT, 0, points.data());
-  rtDrawElements(RT_TRIANGLES, indices.size(), indices.data(), points.size() / 3);
+  rtVertexPointer(3, RT_FLOAT, 0, mesh.points.data());
+  rtDrawElements(RT_TRIANGLES, mesh.indices.size(), mesh.indices.data(), mesh.points.size() / 3);
   rtEndObject();
   return id;
+}
+
+RTid grid(RTid object, int n, double size, double phase) {
+  return define(object, wave(n, size, phase));
 }
 
 void place(RTid instance, double x, double y, double z) {
@@ -174,6 +187,37 @@ BENCHMARK(parameterOfMany)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(moveCamera)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(addAndDelete)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
 BENCHMARK(buildAll)->Arg(10)->Arg(10000)->Unit(benchmark::kMillisecond);
+
+// A mesh of n x n squares that deforms with each frame of 320x240 pixels, under a lamp.
+void deform(benchmark::State& state) {
+  std::vector<Mesh> phases;
+  for (int i = 0; i < 6; i++) phases.push_back(wave(int(state.range(0)), 2, i));
+  const RTcontext context = rtNewContext("threads=2");
+  rtFrameBuffer(320, 240, RT_RGBA);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 1);
+  rtBindShader(rtNewShader(rtNewShaderClass("VRML97", nullptr)));
+  rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", nullptr)));
+  RTid object = 0;
+  rtGenObjects(1, &object);
+  rtObjectHint(object, RT_DYNAMIC);
+  rtInstantiateObject(define(object, phases[0]));
+  rtLookAt(0, 1, 2, 0, 0, 0, 0, 1, 0);
+  rtPerspective(45);
+  rtRender();
+  const RTstats before = stats();
+  size_t step = 0;
+  for (auto _ : state) {
+    define(object, phases[++step % phases.size()]);
+    rtRender();
+  }
+  const RTstats now = stats();
+  state.counters["objects"] = double(now.bvh.objectBuilds - before.bvh.objectBuilds);
+  state.counters["buildSeconds"] = now.time.build;
+  state.counters["renderSeconds"] = now.time.render;
+  if (rtGetError() != RT_NO_ERROR) state.SkipWithError(rtGetErrorMessage());
+  rtDeleteContext(context);
+}
+BENCHMARK(deform)->Arg(300)->Arg(1000)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 double residentMegabytes() {
   long pages = 0, resident = 0;

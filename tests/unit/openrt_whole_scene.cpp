@@ -97,7 +97,7 @@ class Comparer {
            same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
            a.width == b.width && same(a.points, b.points) && same(a.indices, b.indices) &&
            same(a.normals, b.normals) && same(a.texCoords, b.texCoords) &&
-           same(a.colors, b.colors) && !a.surface == !b.surface &&
+           same(a.colors, b.colors) && same(a.rest, b.rest) && !a.surface == !b.surface &&
            (!a.surface || *a.surface == *b.surface) &&
            (known(a.shader) == 0 ||
             std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
@@ -340,6 +340,65 @@ TEST_P(WholeScene, OfNothingIsNothing) {
   EXPECT_FALSE(whole->edits.render);
 }
 
+class DeformingScene : public WholeScene {
+ protected:
+  // Defines a square that is folded flat onto itself at one side: there a ray hits two triangles at
+  // the same place, and the tree decides which one it finds.
+  void define(RTid object, float phase) {
+    constexpr uint32_t side = 165; // more triangles than refittedTriangles
+    std::vector<float> points, colors;
+    std::vector<uint32_t> indices;
+    for (uint32_t y = 0; y < side; y++)
+      for (uint32_t x = 0; x < side; x++) {
+        const float u = 4 * float(x) / (side - 1) - 2, v = 4 * float(y) / (side - 1) - 2;
+        const float folded = std::min(v, 3 - v);
+        points.insert(points.end(), {u, folded, .2f * std::sin(3 * u + phase)});
+        colors.insert(colors.end(), {v > 1.5f ? 1.0f : 0.0f, .5f, float(x % 2)});
+        const uint32_t a = y * side + x, b = a + 1, c = a + side, d = c + 1;
+        if (x + 1 < side && y + 1 < side) indices.insert(indices.end(), {a, b, c, b, d, c});
+      }
+    rtBeginObject(object);
+    rtVertexPointer(3, RT_FLOAT, 0, points.data());
+    rtColorPointer(3, RT_FLOAT, 0, colors.data());
+    rtDrawElements(RT_TRIANGLES, indices.size(), indices.data(), points.size() / 3);
+    rtEndObject();
+  }
+};
+
+TEST_P(DeformingScene, HasTheSameTreesForWhoeverJoinsLate) {
+  BackendOptions options;
+  options.threads = 1;
+  options.shaders = &captured->shaders;
+  const auto seeing = makeLocalBackend(options);
+  Scene seen;
+  begin();
+  RTid object = 0;
+  rtGenObjects(1, &object);
+  rtObjectHint(object, RT_DYNAMIC);
+  define(object, 0);
+  rtLoadIdentity();
+  rtInstantiateObject(object);
+  for (int step = 1; step < 5; step++) {
+    commit();
+    seen.apply(*captured->commits.back());
+    seeing->apply(captured->commits.back());
+    const std::vector<float> a = picture(*seeing, seen);
+    const auto whole = wholeScene(seen);
+    ASSERT_NO_THROW(CommitValidator(&captured->shaders).check(*whole));
+    Scene late;
+    late.apply(*whole);
+    EXPECT_EQ(bool(late.objects.at(object).geometries[0].rest), step > 1) << step;
+    BackendOptions others = options;
+    others.threads = 2;
+    const auto joining = makeLocalBackend(others);
+    joining->apply(whole);
+    const std::vector<float> b = picture(*joining, late);
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0) << step;
+    define(object, .1f * float(step));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Once, DeformingScene, testing::Values(1));
 INSTANTIATE_TEST_SUITE_P(Seeds, WholeScene, testing::Range(1, 9));
 
 } // namespace

@@ -1,5 +1,7 @@
 // xvrml_geometry_crease.cpp: Tests creaseAngle (clause 4.6.3.5): which edges are smooth, and that
 // generated normals are finite unit vectors on the front side.
+#include <cstring>
+
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -132,6 +134,44 @@ TEST(GeometryCrease, ManyFacesAtOnePoint) {
   for (size_t i = 0; i < mesh.points.size(); i++)
     if (mesh.points[i].y == 1) { // the apex: all normals together give the axis
       EXPECT_NEAR(mesh.normals[i].y, 1, 1e-3);
+    }
+}
+
+// A wave of n x n points. Its mesh uses the node's points; with `again` the first face names a
+// point twice, so that the mesh is built of a FaceSet.
+Faces wave(size_t n, float creaseAngle, bool again) {
+  Faces node("IndexedFaceSet");
+  MFVec3f points;
+  for (size_t i = 0; i < n * n; i++) {
+    const float u = float(i % n) / float(n), v = float(i / n) / float(n);
+    points.push_back({u, .05f * std::sin(9 * u) * std::cos(7 * v), v});
+  }
+  node->coord = coordinate(points);
+  if (again) node->coordIndex.push_back(0);
+  for (size_t i = 0; i + n < n * n; i++) {
+    const auto a = int32_t(i), b = a + 1, c = a + int32_t(n), d = c + 1;
+    if (size_t(b) % n != 0)
+      node->coordIndex.insert(node->coordIndex.end(), {a, c, b, -1, b, c, d, -1});
+  }
+  node->creaseAngle = creaseAngle;
+  return node;
+}
+
+template <class T> bool sameBytes(std::span<const T> a, std::span<const T> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+TEST(GeometryCrease, LargeSetsOfTrianglesGetTheNormalsOfAllOthers) {
+  for (const float creaseAngle : {.01f, 1.0f, 4.0f})
+    for (const bool ccw : {true, false}) {
+      Faces plain = wave(90, creaseAngle, false), again = wave(90, creaseAngle, true);
+      plain->ccw = again->ccw = ccw;
+      const Built a = build(plain), b = build(again);
+      EXPECT_EQ(a.mesh.plain, creaseAngle >= 1);
+      EXPECT_FALSE(b.mesh.plain);
+      EXPECT_TRUE(sameBytes(a.mesh.points, b.mesh.points));
+      EXPECT_TRUE(sameBytes(a.mesh.indices, b.mesh.indices));
+      EXPECT_TRUE(sameBytes(a.mesh.normals, b.mesh.normals));
     }
 }
 

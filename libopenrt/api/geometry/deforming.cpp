@@ -1,6 +1,6 @@
 // deforming.cpp: estimates what a refitted tree costs by the surface area heuristic: the sum of the
 // areas of its boxes by the area of the whole. In place of the tree's boxes there are those of the
-// points in each cell of a grid over the mesh at rest.
+// points in each cell of a grid of cubes over the mesh at rest.
 #include "api/geometry/deforming.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace openrt {
 namespace {
 
-constexpr int gridSize = 16;            // cells along each axis
+constexpr size_t gridSize = 16;         // cells along the longest axis
 constexpr size_t mostSamples = 1 << 17; // points that are looked at
 constexpr double mostExpensive = 1.5;   // times the cost at rest
 
@@ -41,8 +41,9 @@ bool hasDeformedMuch(const Array& rest, const Array& now) {
     wholeNow.add(pointOf(now, i));
   }
   if (!(wholeRest.area() > 0)) return wholeNow.area() > 0;
-  const auto cellAlong = [](double place, double low, double high) {
-    return high > low ? std::min(int((place - low) / (high - low) * gridSize), gridSize - 1) : 0;
+  const double edge = largest(wholeRest.high - wholeRest.low) / gridSize;
+  const auto cellAlong = [edge](double offset) {
+    return std::min(size_t(offset / edge), gridSize - 1);
   };
   struct Cell {
     Bounds rest, now;
@@ -50,10 +51,10 @@ bool hasDeformedMuch(const Array& rest, const Array& now) {
   std::vector<Cell> cells(gridSize * gridSize * gridSize);
   for (size_t i = 0; i < count; i += step) {
     const Vec3d p = pointOf(rest, i);
-    const int x = cellAlong(p.x, wholeRest.low.x, wholeRest.high.x),
-              y = cellAlong(p.y, wholeRest.low.y, wholeRest.high.y),
-              z = cellAlong(p.z, wholeRest.low.z, wholeRest.high.z);
-    Cell& cell = cells[size_t((x * gridSize + y) * gridSize + z)];
+    const Vec3d offset = p - wholeRest.low;
+    const size_t number =
+        (cellAlong(offset.x) * gridSize + cellAlong(offset.y)) * gridSize + cellAlong(offset.z);
+    Cell& cell = cells[number];
     cell.rest.add(p);
     cell.now.add(pointOf(now, i));
   }

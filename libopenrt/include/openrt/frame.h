@@ -315,7 +315,7 @@ typedef struct RTrayStats {
 typedef struct RTbvhStats {
   uint64_t bytes;
   uint64_t objectBuilds;   /* structures built for objects (or for merged static ones) since the
-                              context was made */
+                              context was made; those that are refitted do not count */
   uint64_t topLevelBuilds; /* times the top level above them was built or refitted */
 } RTbvhStats;
 

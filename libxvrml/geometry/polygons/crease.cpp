@@ -25,6 +25,21 @@ float roughAngle(float y, float x) {
   return x < 0 ? float(std::numbers::pi) - angle : angle;
 }
 
+// Returns the weight of a face at a corner.
+float weightOf(const V3f& previous, const V3f& corner, const V3f& next) {
+  const V3f a = previous - corner, b = next - corner, product = a.cross(b);
+  const float square = product.dot(product);
+  // The squares overflow or underflow for very large or small faces, which then get equal weights.
+  return square > 1e-30f && std::isfinite(square) ? roughAngle(std::sqrt(square), a.dot(b)) : 1.0f;
+}
+
+// Returns the largest square of the chord between unit vectors that is surely within half of the
+// crease angle.
+float closeLimitOf(float creaseAngle) {
+  const double quarter = std::sin(std::min(double(creaseAngle), std::numbers::pi) / 4);
+  return float(4 * quarter * quarter * (1 - 1e-5));
+}
+
 std::vector<float> cornerAngles(const FaceSet& set) {
   std::vector<float> angles(set.corners.size());
   for (uint32_t face = 0; face < set.faceCount(); face++) {
@@ -34,13 +49,7 @@ std::vector<float> cornerAngles(const FaceSet& set) {
         current = toV3f(set.points[set.corners[first]]);
     for (uint32_t corner = first; corner < last; corner++) {
       V3f next = toV3f(set.points[set.corners[corner + 1 < last ? corner + 1 : first]]);
-      V3f a = previous - current, b = next - current;
-      V3f product = a.cross(b);
-      float square = product.dot(product), dot = a.dot(b);
-      // The squares overflow or underflow for very large or small faces, which then get equal
-      // weights.
-      angles[corner] =
-          square > 1e-30f && std::isfinite(square) ? roughAngle(std::sqrt(square), dot) : 1.0f;
+      angles[corner] = weightOf(previous, current, next);
       previous = current;
       current = next;
     }
@@ -61,8 +70,7 @@ class PointCrease {
     everything_ = creaseAngle >= float(std::numbers::pi);
     double half = std::sin(std::min(double(creaseAngle), std::numbers::pi) / 2);
     limit_ = float(4 * half * half);
-    double quarter = std::sin(std::min(double(creaseAngle), std::numbers::pi) / 4);
-    closeLimit_ = float(4 * quarter * quarter * (1 - 1e-5));
+    closeLimit_ = closeLimitOf(creaseAngle);
   }
 
   void process(std::vector<Member>& members) {
@@ -180,6 +188,38 @@ class PointCrease {
 };
 
 } // namespace
+
+bool smoothNormals(std::span<const Vec3f> points, std::span<const uint32_t> triangles,
+                   float creaseAngle, bool ccw, std::vector<Vec3f>& normals) {
+  std::vector<V3f> means(points.size(), V3f(0, 0, 0)), ofFaces(triangles.size() / 3);
+  for (size_t t = 0; t < ofFaces.size(); t++) {
+    const uint32_t* corner = &triangles[3 * t];
+    const V3f p[3] = {toV3f(points[corner[0]]), toV3f(points[corner[1]]), toV3f(points[corner[2]])};
+    const V3f normal = toV3f(toVec3f(unit((V3d(p[1]) - V3d(p[0])).cross(V3d(p[2]) - V3d(p[0])))));
+    if (normal == V3f(0, 0, 0)) return false;
+    ofFaces[t] = normal;
+    for (size_t k = 0; k < 3; k++)
+      means[corner[k]] += normal * weightOf(p[(k + 2) % 3], p[k], p[(k + 1) % 3]);
+  }
+  for (V3f& mean : means) {
+    const float length = std::sqrt(mean.dot(mean));
+    if (!(length > 1e-6f)) return false;
+    mean /= length;
+  }
+  if (creaseAngle < float(std::numbers::pi)) {
+    const float closeLimit = closeLimitOf(creaseAngle);
+    for (size_t i = 0; i < triangles.size(); i++) {
+      const V3f apart = ofFaces[i / 3] - means[triangles[i]];
+      if (!(apart.dot(apart) < closeLimit)) return false;
+    }
+  }
+  normals.resize(points.size());
+  for (size_t i = 0; i < points.size(); i++) {
+    const V3d normal = unit(V3d(means[i]));
+    normals[i] = toVec3f(ccw ? normal : -normal);
+  }
+  return true;
+}
 
 void creaseNormals(FaceSet& set, std::span<const Vec3f> faceNormals) {
   std::vector<uint32_t> faceOf = set.facesOfCorners();

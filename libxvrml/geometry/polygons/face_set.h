@@ -88,6 +88,10 @@ std::vector<Vec3f> faceNormals(const FaceSet& set, Faults& faults);
 // Computes corner normals, smoothed across edges between faces whose normals differ by less than
 // creaseAngle.
 void creaseNormals(FaceSet& set, std::span<const Vec3f> faceNormals);
+// Computes the same normals for triangles whose faces all smooth into each other, one for each
+// point. Returns false if they do not, or a point is not used.
+bool smoothNormals(std::span<const Vec3f> points, std::span<const uint32_t> triangles,
+                   float creaseAngle, bool ccw, std::vector<Vec3f>& normals);
 // Replaces missing, zero and non-finite normals by face normals.
 void repairNormals(FaceSet& set, std::span<const Vec3f> faceNormals, Faults& faults);
 // Returns three corner numbers per triangle. It adds corners where a face crosses itself.

@@ -56,7 +56,7 @@ AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
   if (const Signature signature = sign(); !entry.blas || entry.signature != signature) {
     entry.blas = make(entry.blas.get());
     entry.signature = signature;
-    objectBuilds++;
+    objectBuilds += !entry.blas->refitted;
   }
   return entry.blas;
 }

@@ -131,6 +131,7 @@ void BlasBuilder::addDeforming(const Geometry& g, const Matrix4d& toKernel, uint
 void BlasBuilder::takeOver(Blas& former, std::vector<float> vertices) {
   std::swap(blas_->scene, former.scene);
   former.tree.reset();
+  blas_->refitted = true;
   auto part = std::make_unique<Part>();
   Part& before = *former.parts[0].part;
   part->primitives = std::move(before.primitives);

@@ -31,6 +31,7 @@ struct Blas : PartScene {
     bool operator==(const Tree& other) const;
   };
   std::optional<Tree> tree;
+  bool refitted = false; // the tree is that of a former Blas
 };
 
 // The unit sphere for each mask; ellipsoids are instances of it.
