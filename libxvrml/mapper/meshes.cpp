@@ -200,6 +200,7 @@ int32_t Meshes::newGroup(uint64_t hash) {
 void Meshes::join(int32_t mesh) {
   Entry& entry = entries_[size_t(mesh)];
   const uint64_t hash = contentHash(*entry.mesh);
+  if (byContent_.empty()) byContent_.reserve(entries_.size());
   const auto known = byContent_.find(hash);
   int32_t id = known == byContent_.end() ? none_ : known->second;
   while (id != none_ && !sameContent(mesh, groups_[size_t(id)].first))

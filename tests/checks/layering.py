@@ -85,7 +85,7 @@ TABLE = [
          "the interface between the API and whoever renders", "api-h openrt-scene common"),
     part("backend-local", "libopenrt/backend/local/",
          "renders in this process; the only part that knows Embree",
-         "api-h openrt-scene openrt-shading render-scene render-lanes render-wave render-lights render-medium render-path render-frame openrt-backend common"),
+         "api-h openrt-scene openrt-shading render-scene render-lanes render-wave render-lights render-medium render-path render-frame openrt-backend common system"),
     part("backend-record", "libopenrt/backend/record/",
          "writes edits to a file, and reads it; checks them against class tables",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),

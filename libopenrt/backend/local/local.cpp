@@ -28,9 +28,23 @@
 #include "scene/quality.h"
 #include "scene/transports.h"
 #include "steady_clock.h"
+#include "system/memory.h"
 
 namespace openrt {
 namespace {
+
+// The edits of so many things, which are freed when they have been applied, take more memory than
+// the structures that are made next.
+constexpr size_t manyThings = 100'000;
+
+// Returns the number of edits and geometries of a commit.
+size_t countThings(const Commit& commit) {
+  size_t things = commit.edits.edits.size();
+  for (const auto& edit : commit.edits.edits)
+    if (const edit::ObjectT* object = edit ? edit->any.AsObject() : nullptr)
+      things += object->geometries.size();
+  return things;
+}
 
 std::string kernelText() { return std::string("Embree ") + RTC_VERSION_STRING; }
 
@@ -49,6 +63,7 @@ LocalBackend::~LocalBackend() = default;
 void LocalBackend::apply(std::shared_ptr<const Commit> commit) {
   const double begin = steadySeconds();
   changes_.add(scene_.apply(*commit, &history_));
+  freedMuch_ |= countThings(*commit) > manyThings;
   commitSeconds_ = steadySeconds() - begin;
 }
 
@@ -63,6 +78,7 @@ void LocalBackend::prepareGeometry() {
   const bool motionsDiffer =
       snapshot_ && snapshotFrame_ != history_.number() && (snapshot_->motions || history_.any());
   if (snapshot_ && accel_ && !changes_.any() && !motionsDiffer) return;
+  if (std::exchange(freedMuch_, false)) os::giveBackMemory();
   auto next = std::make_shared<RenderScene>();
   next->frame = scene_.frame;
   makeShaders(*next);

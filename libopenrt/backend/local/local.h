@@ -80,6 +80,7 @@ class LocalBackend final : public Backend {
   // last.
   mutable std::mutex mutex_;
   std::shared_ptr<Frame> frame_, finished_;
+  bool freedMuch_ = false; // a commit of many things, since the last prepareGeometry()
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };
 

@@ -84,7 +84,9 @@ bool consistent(const Geometry& g) {
 std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& m) {
   const float* p = geometry.points->as<float>();
   const size_t n = geometry.points->count<float>() / 3;
-  std::vector<float> out(3 * n);
+  std::vector<float> out;
+  out.reserve(3 * n + 4); // attachTriangles() appends padding
+  out.resize(3 * n);
   forRanges(n, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; i++)
       store(Vec3f(m.point(Vec3d(vectorOf(p + 3 * i)))), &out[3 * i]);

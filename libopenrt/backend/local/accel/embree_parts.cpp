@@ -84,6 +84,9 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
   const size_t points = part->vertices.size() / 3;
   part->vertices.resize(part->vertices.size() + 4); // padding: the kernels read past the end
   part->indices.reserve(part->indices.size() + 4);
+  // Merged parts have grown by doubling.
+  if (part->vertices.capacity() > part->vertices.size() + part->vertices.size() / 8)
+    part->vertices.shrink_to_fit();
   const size_t corners =
       part->sharedIndices ? part->sharedIndices->count<uint32_t>() : part->indices.size();
   const uint32_t* indices =
