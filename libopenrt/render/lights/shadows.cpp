@@ -130,7 +130,7 @@ void transmitAt(const RtsBatch& batch, const ShadowRays& s, const RtsClass& shad
           if (Vec3f weight; weightAt(lobe, i, weight)) store(load(through, i) + weight, through, i);
       return;
     }
-  } else if (scene.lightSources && shaderClass.surface && shaderClass.medium) {
+  } else if ((scene.lightSources || s.toCamera) && shaderClass.surface && shaderClass.medium) {
     return; // light tracing follows the refracted light
   }
   if (!shaderClass.transmit) return;

@@ -25,6 +25,8 @@ struct ShadowRays {
   // directions, so that the MIS weights of both agree: passesStraight(), and boundaries without
   // effect. No glass is crossed, because rays of paths are bent there.
   bool toEmitters = false;
+  // The rays connect light paths to the camera. They cross no glass either.
+  bool toCamera = false;
   float* const* lastOrigin = nullptr; // gets the origins of the rays' last parts, by `lane`
 };
 // Returns whether light samples pass what the surfaces of a shader transmit straight on. Those of

@@ -106,6 +106,7 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const f
 
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]) {
   ShadowRays rays = allocateShadowRays(batch.scene, to.count, batch.arena);
+  rays.toCamera = true;
   uint32_t n = 0;
   for (uint32_t i = 0; i < to.count; i++) {
     if (!(to.weight[i] > 0) || !(colour[0][i] > 0 || colour[1][i] > 0 || colour[2][i] > 0))

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "render/lights/light_sources.h"
+#include "render/path/light_path_ratios.h"
 #include "render/path/light_tracer.h"
 #include "render/path/tile.h"
 #include "render/path/trial_blocks.h"
@@ -77,7 +78,8 @@ bool tryGlossyPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.glossySources = sources;
   LightTracer tracer(scene);
   const GlossyGain gain = tracer.tryGlossy(lightPaths, trialSeed, stop);
-  const double rays = camera.rays * costOfWeights + raysOf(tracer.counters()) / lightPaths,
+  const double lightRays = raysOf(tracer.counters()) / (lightPaths * camerasPerGlossyPath),
+               rays = camera.rays * costOfWeights + lightRays,
                without = (camera.variance + gain.without) * camera.rays,
                with = (camera.variance + gain.with) * rays;
   if (stop || !(with < without)) scene.glossySources = nullptr;

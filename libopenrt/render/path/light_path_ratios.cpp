@@ -59,7 +59,8 @@ const float* ratiosOfArrived(const RtsBatch& batch) {
 } // namespace
 
 float firstRatio(const RenderScene& scene) {
-  return scene.glossySources ? float(scene.frame.width) * float(scene.frame.height) : 0.0f;
+  if (!scene.glossySources) return 0;
+  return float(scene.frame.width) * float(scene.frame.height) / float(camerasPerGlossyPath);
 }
 
 void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples) {

@@ -8,8 +8,12 @@
 
 namespace openrt {
 
-// Returns the ratio that a path has before it has reached the first surface: the pixels of the
-// picture, if light paths take a part of the frame's light; else 0.
+// There is one light path by way of glossy surfaces for so many other light paths, of which there
+// are about as many as camera paths. More cost more than they gain (docs/decisions/0089).
+inline constexpr uint32_t camerasPerGlossyPath = 4;
+
+// Returns the ratio that a path has before it has reached the first surface: such light paths of
+// the picture over the camera paths of a pixel; 0 if the frame has no such light paths.
 float firstRatio(const RenderScene& scene);
 
 // Computes the ratios of the rays that camera paths spawn, sample by sample, after chooseSamples().

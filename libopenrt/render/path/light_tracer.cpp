@@ -31,7 +31,9 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
   picture_.assign(size_t(scene_.frame.width) * scene_.frame.height * 3, 0.0f);
   return (!scene_.lightSources || traceFrom(*scene_.lightSources, paths, seed, stop)) &&
          (!scene_.glossySources ||
-          traceFrom(*scene_.glossySources, paths, hash(seed, glossySeed), stop));
+          traceFrom(*scene_.glossySources,
+                    (paths + camerasPerGlossyPath - 1) / camerasPerGlossyPath,
+                    hash(seed, glossySeed), stop));
 }
 
 GlossyGain LightTracer::tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
@@ -359,16 +361,19 @@ void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
   scatterToCamera(batch, to, ratiosToCamera(batch, to), weighted);
   for (int k = 0; k < 3; k++) std::copy_n(whole[k], to.count, seen[k]);
   traceToCamera(batch, to, seen);
-  const double pixels = double(firstRatio(scene_));
+  const double pixels = double(scene_.frame.width) * scene_.frame.height,
+               scale = scale_ * cameraArea_ * cameraArea_ / (double(firstRatio(scene_)) * pixels);
   for (uint32_t i = 0; i < to.count; i++) {
     const Vec3f all = load(whole, i), shared = load(weighted, i);
-    const double share = double(shared.x + shared.y + shared.z) / double(all.x + all.y + all.z),
-                 ratio = std::min(mostRatio, std::sqrt(share / (1 - share)));
+    const double found = double(all.x + all.y + all.z);
+    if (!(found > 0) || !isInPicture(to, i)) continue;
+    const double share = std::min(1.0, double(shared.x + shared.y + shared.z) / found),
+                 ratio =
+                     share < 1 ? std::min(mostRatio, std::sqrt(share / (1 - share))) : mostRatio;
     const Vec3d radiance =
-        Vec3d(load(batch.states->throughput, batch.order[to.hit[i]]) * load(seen, i)) *
-        (cameraArea_ / pixels);
-    const double square = dot(radiance, radiance) * scale_;
-    if (!isInPicture(to, i) || !std::isfinite(square * ratio)) continue;
+        Vec3d(load(batch.states->throughput, batch.order[to.hit[i]]) * load(seen, i));
+    const double square = dot(radiance, radiance) * scale;
+    if (!std::isfinite(square * ratio)) continue;
     gain_->without += square * ratio;
     gain_->with += square * (ratio * (1 - share) * (1 - share) + share * share);
   }
