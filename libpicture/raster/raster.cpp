@@ -110,13 +110,16 @@ class Shapes : public xvrml::Renderer {
   Batch batch_;
 };
 
-// Adds the lamp at the eye, if the world has one or would be dark without it.
+// Adds the headlight, if the world has it. A world that would be dark gets a lamp at the eye, which
+// shines on all that is seen.
 void addHeadlight(const RasterView& view, const Eye& eye, Surroundings& around) {
   using Headlight = xvrml::MapOptions::Headlight;
-  const bool wanted = view.headlight == Headlight::automatic
-                          ? around.headlight.value_or(true) || around.lamps.empty()
-                          : view.headlight == Headlight::on;
-  if (wanted) around.lamps.emplace_front(eye.ray(view.width / 2.0, view.height / 2.0).direction);
+  const bool wanted = view.headlight == Headlight::automatic ? around.headlight.value_or(true)
+                                                             : view.headlight == Headlight::on;
+  if (wanted)
+    around.lamps.push_front(Lamp::along(eye.ray(view.width / 2.0, view.height / 2.0).direction));
+  else if (around.lamps.empty() && view.headlight == Headlight::automatic)
+    around.lamps.push_front(Lamp::at(eye.position()));
 }
 
 std::vector<float> rgbaOf(const Frame& frame, const Eye& eye, const std::optional<Sky>& sky) {

@@ -114,7 +114,7 @@ Color Shading::lit(const Mesh& mesh, const Point& point, const Color& diffuse) c
   const Surface& surface = mesh.look.surface;
   Color sum = surface.emission;
   for (const Lamp* lamp : mesh.lamps) {
-    const Incident light = lamp->at(point.place);
+    const Incident light = lamp->incidentAt(point.place);
     const double cosine = dot(point.normal, light.toLight);
     add(sum, product(light.ambient, diffuse), mesh.look.ambient);
     if (!(cosine > 0)) continue;

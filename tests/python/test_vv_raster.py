@@ -79,7 +79,7 @@ def test_files_say_what_they_are(vv):
 
 
 @pytest.mark.parametrize("option", [("--error", "5%"), ("--channels", "z"), ("--spp", "4"),
-                                    ("--stats", "s.json"), ("--denoise", ), ("--audit", "2"),
+                                    ("--stats", "s.json"), ("--audit", "2"),
                                     ("--transport", "path"), ("--environment", "sky.hdr")])
 def test_what_needs_rays_is_refused(vv, option):
     vv.write("world.wrl", MATT)
@@ -155,6 +155,6 @@ Shape { appearance Appearance { material Material { emissiveColor 1 1 1 } }
     camera = xvrml.Pinhole([[60, 0, 30], [0, 80, 10], [0, 0, 1]],
                            np.diag([1., -1, -1, 1]))
     image = world.render(size=(64, 48), camera=camera, raster=True, background="none").array
-    x, y = camera.project([[.3, .2, -4]])[0]
+    x, y = camera.project([[.3, .2, -4]])[0][:2]
     rows, columns = np.nonzero(image[..., 0])
     assert [len(rows), abs(columns[0] - x) <= 1, abs(rows[0] - y) <= 1] == [1, True, True]

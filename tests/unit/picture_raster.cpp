@@ -207,7 +207,7 @@ TEST(Raster, LampsLightTheirGroups) {
   EXPECT_EQ(middle(away(wall) + "SpotLight { direction 0 1 0 }"), 0);
 }
 
-TEST(Raster, ADarkWorldGetsTheHeadlight) {
+TEST(Raster, ADarkWorldGetsALampAtTheEye) {
   EXPECT_GT(Drawn("NavigationInfo { headlight FALSE } Transform { translation 0 0 -5 children "
                   "Shape { appearance Appearance { material Material { } } geometry Box { } } }")(
                 width / 2, height / 2)[0],
