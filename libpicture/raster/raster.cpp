@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include "libpicture/raster/batch.h"
+#include "libpicture/raster/large_mesh.h"
 #include "parallel_for.h"
 
 namespace picture {
@@ -67,19 +68,19 @@ class Shapes : public xvrml::Renderer {
 
   Visit renderShape(xvrml::nodes::Shape&, const RenderState&) override { return Visit::draw; }
   void draw(const DrawnShape& shape) override {
-    if (cornersOf(shape.mesh().kind) == 0) return;
-    Look look = lookOf(shape);
+    xvrml::GeometryArrays arrays = arraysOf(shape);
+    if (cornersOf(arrays.kind) == 0) return;
+    Look look = lookOf(shape, arrays);
     if (!look.surface.visible) return;
     std::vector<const Lamp*> lamps;
     for (const Lamp& lamp : around_.lamps)
       if (lamp.reaches(shape.state)) lamps.push_back(&lamp);
-    batch_.add(shape, std::move(look), std::move(lamps), remarks_);
+    batch_.add(std::move(arrays), shape.matrix(), std::move(look), std::move(lamps), remarks_);
   }
   void finish() { batch_.draw(); }
 
  private:
-  Look lookOf(const DrawnShape& shape) {
-    const xvrml::GeometryArrays& mesh = shape.mesh();
+  Look lookOf(const DrawnShape& shape, const xvrml::GeometryArrays& mesh) {
     const VertexColors colors = mesh.colors.empty()   ? VertexColors::none
                                 : mesh.alphas.empty() ? VertexColors::opaque
                                                       : VertexColors::transparent;

@@ -316,6 +316,38 @@ TEST(Raster, ThreadsDoNotChangePictures) {
   EXPECT_EQ(Drawn(text, one).rgba, Drawn(text, several).rgba);
 }
 
+// Large meshes are drawn from their node, without the normals that a crease angle asks for.
+TEST(Raster, LargeMeshesHaveTheirPixels) {
+  constexpr int side = 320; // 204,800 triangles
+  std::string points, faces;
+  for (int y = 0; y <= side; ++y)
+    for (int x = 0; x <= side; ++x)
+      points +=
+          std::to_string(2.0 * x / side - 1) + " " + std::to_string(2.0 * y / side - 1) + " -2,";
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const int a = y * (side + 1) + x, b = a + side + 1;
+      for (const auto& [i, k, m] : {std::array{a, a + 1, b}, std::array{a + 1, b + 1, b}})
+        faces += std::to_string(i) + " " + std::to_string(k) + " " + std::to_string(m) + " -1 ";
+    }
+  const auto seen = [&](const std::string& fields) {
+    const Drawn drawn(
+        "Shape { appearance Appearance { material Material { diffuseColor 1 1 1 } } geometry "
+        "IndexedFaceSet { creaseAngle 1 " +
+        fields + " coordIndex [ " + faces + " ] coord Coordinate { point [ " + points + " ] } } }");
+    int covered = 0;
+    for (size_t i = 0; i < drawn.rgba.size(); i += 4)
+      if (drawn.rgba[i + 3] > 0) {
+        ++covered;
+        EXPECT_NEAR(drawn.rgba[i], 1, 1e-5);
+      }
+    return covered;
+  };
+  EXPECT_EQ(seen(""), (height / 2) * (height / 2));
+  EXPECT_EQ(seen("ccw FALSE"), 0);
+  EXPECT_EQ(seen("ccw FALSE solid FALSE"), (height / 2) * (height / 2));
+}
+
 TEST(Raster, ARendererSaysWhichPicturesAreOfTheZBuffer) {
   xvrml::Browser browser(worldOf("Viewpoint { position 0 0 5 } Shape { geometry Box { } }"));
   RenderSettings settings;
