@@ -120,6 +120,17 @@ Transform { translation 0 0 -5 rotation 0 1 0 1.0471976 children Shape {
   expectNear(drawn(width / 2, height / 2), {0.5f, 0.25f, 0, 1}, 1e-4);
 }
 
+// The headlight shines along the line of sight on a wall that is turned by 60 degrees.
+TEST(Raster, HighlightsHaveTheirExponent) {
+  for (const double shininess : {0.0, 0.05}) {
+    const Drawn drawn("Transform { translation 0 0 -5 rotation 0 1 0 1.0471976 children Shape { "
+                      "appearance Appearance { material Material { diffuseColor 0 0 0 "
+                      "specularColor .5 .5 .5 shininess " +
+                      std::to_string(shininess) + " } } geometry Box { size 8 8 .001 } } }");
+    EXPECT_NEAR(drawn(width / 2, height / 2)[0], 0.5 * std::pow(0.5, 128 * shininess), 2e-3);
+  }
+}
+
 TEST(Raster, NormalsAreInterpolated) {
   // The normals of the left and the right edge point 60 degrees to their sides.
   const Drawn drawn(R"(
