@@ -23,9 +23,9 @@ template <class Work> void forEach(size_t count, const Work& work) {
 
 } // namespace
 
-void Batch::add(const xvrml::DrawnShape& shape, Look look, std::vector<const Lamp*> lamps,
-                Remarks& remarks) {
-  Mesh& mesh = meshes_.emplace_back(shape, std::move(look), remarks);
+void Batch::add(xvrml::GeometryArrays arrays, const double matrix[16], Look look,
+                std::vector<const Lamp*> lamps, Remarks& remarks) {
+  Mesh& mesh = meshes_.emplace_back(std::move(arrays), matrix, std::move(look), remarks);
   mesh.lamps = std::move(lamps);
   mesh.number = shapes_++;
   const auto number = uint32_t(meshes_.size() - 1), count = uint32_t(mesh.size());

@@ -18,8 +18,8 @@ class Batch {
   Batch(const Eye& eye, const Shading& shading, Frame& frame)
       : eye_(eye), shading_(shading), frame_(frame) {}
   // Adds a mesh, and draws those so far if they are many.
-  void add(const xvrml::DrawnShape& shape, Look look, std::vector<const Lamp*> lamps,
-           Remarks& remarks);
+  void add(xvrml::GeometryArrays arrays, const double matrix[16], Look look,
+           std::vector<const Lamp*> lamps, Remarks& remarks);
   // Draws all meshes that are not drawn yet, and forgets them.
   void draw();
 

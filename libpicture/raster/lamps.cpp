@@ -49,6 +49,20 @@ template <class T> void Lamp::setPlaced(const T& light, bool linear) {
   radius_ = light.radius;
 }
 
+Lamp Lamp::along(const Vec& direction) {
+  Lamp lamp;
+  lamp.kind_ = Kind::directional;
+  lamp.axis_ = direction;
+  return lamp;
+}
+
+Lamp Lamp::at(const Vec& place) {
+  Lamp lamp;
+  lamp.location_ = place;
+  lamp.radius_ = INFINITY;
+  return lamp;
+}
+
 std::optional<Lamp> Lamp::of(const Node& node, const RenderState& state, bool linear) {
   Lamp lamp;
   bool on = false, global = true;
@@ -87,7 +101,7 @@ bool Lamp::reaches(const RenderState& shape) const {
          std::equal(scope_.begin(), scope_.end(), shape.path.begin());
 }
 
-Incident Lamp::at(const Vec& point) const {
+Incident Lamp::incidentAt(const Vec& point) const {
   if (kind_ == Kind::directional) return {unit(toWorld_.vector(axis_)) * -1.0, direct_, ambient_};
   const Vec local = fromWorld_.point(point), toLight = location_ + local * -1.0;
   const double distance = length(toLight);

@@ -17,14 +17,16 @@ struct Incident {
 
 class Lamp {
  public:
-  // A parallel light from the eye, without ambient light.
-  explicit Lamp(const Vec& direction) : kind_(Kind::directional), axis_(direction) {}
+  // Returns a parallel light, as a headlight is.
+  static Lamp along(const Vec& direction);
+  // Returns a light at a point that does not grow weaker with distance.
+  static Lamp at(const Vec& place);
   // Returns nothing for nodes that are no lamps, that are off, and whose place is unusable.
   static std::optional<Lamp> of(const xvrml::Node& node, const xvrml::RenderState& state,
                                 bool linear);
   // Returns whether a shape is within the group that the lamp shines on.
   bool reaches(const xvrml::RenderState& shape) const;
-  Incident at(const Vec& point) const;
+  Incident incidentAt(const Vec& point) const;
 
  private:
   enum class Kind : uint8_t { directional, point, spot };

@@ -23,8 +23,8 @@ struct Look {
 };
 
 struct Mesh {
-  Mesh(const xvrml::DrawnShape& shape, Look seen, Remarks& remarks)
-      : arrays(shape.mesh()), vertices(arrays, shape.matrix(), remarks), look(std::move(seen)) {}
+  Mesh(xvrml::GeometryArrays given, const double matrix[16], Look seen, Remarks& remarks)
+      : arrays(std::move(given)), vertices(arrays, matrix, remarks), look(std::move(seen)) {}
   Mesh(const Mesh&) = delete;
   Mesh& operator=(const Mesh&) = delete;
 

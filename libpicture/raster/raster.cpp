@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include "libpicture/raster/batch.h"
+#include "libpicture/raster/large_mesh.h"
 #include "parallel_for.h"
 
 namespace picture {
@@ -67,19 +68,19 @@ class Shapes : public xvrml::Renderer {
 
   Visit renderShape(xvrml::nodes::Shape&, const RenderState&) override { return Visit::draw; }
   void draw(const DrawnShape& shape) override {
-    if (cornersOf(shape.mesh().kind) == 0) return;
-    Look look = lookOf(shape);
+    xvrml::GeometryArrays arrays = arraysOf(shape);
+    if (cornersOf(arrays.kind) == 0) return;
+    Look look = lookOf(shape, arrays);
     if (!look.surface.visible) return;
     std::vector<const Lamp*> lamps;
     for (const Lamp& lamp : around_.lamps)
       if (lamp.reaches(shape.state)) lamps.push_back(&lamp);
-    batch_.add(shape, std::move(look), std::move(lamps), remarks_);
+    batch_.add(std::move(arrays), shape.matrix(), std::move(look), std::move(lamps), remarks_);
   }
   void finish() { batch_.draw(); }
 
  private:
-  Look lookOf(const DrawnShape& shape) {
-    const xvrml::GeometryArrays& mesh = shape.mesh();
+  Look lookOf(const DrawnShape& shape, const xvrml::GeometryArrays& mesh) {
     const VertexColors colors = mesh.colors.empty()   ? VertexColors::none
                                 : mesh.alphas.empty() ? VertexColors::opaque
                                                       : VertexColors::transparent;
@@ -110,13 +111,16 @@ class Shapes : public xvrml::Renderer {
   Batch batch_;
 };
 
-// Adds the lamp at the eye, if the world has one or would be dark without it.
+// Adds the headlight, if the world has it. A world that would be dark gets a lamp at the eye, which
+// shines on all that is seen.
 void addHeadlight(const RasterView& view, const Eye& eye, Surroundings& around) {
   using Headlight = xvrml::MapOptions::Headlight;
-  const bool wanted = view.headlight == Headlight::automatic
-                          ? around.headlight.value_or(true) || around.lamps.empty()
-                          : view.headlight == Headlight::on;
-  if (wanted) around.lamps.emplace_front(eye.ray(view.width / 2.0, view.height / 2.0).direction);
+  const bool wanted = view.headlight == Headlight::automatic ? around.headlight.value_or(true)
+                                                             : view.headlight == Headlight::on;
+  if (wanted)
+    around.lamps.push_front(Lamp::along(eye.ray(view.width / 2.0, view.height / 2.0).direction));
+  else if (around.lamps.empty() && view.headlight == Headlight::automatic)
+    around.lamps.push_front(Lamp::at(eye.position()));
 }
 
 std::vector<float> rgbaOf(const Frame& frame, const Eye& eye, const std::optional<Sky>& sky) {

@@ -114,12 +114,12 @@ Color Shading::lit(const Mesh& mesh, const Point& point, const Color& diffuse) c
   const Surface& surface = mesh.look.surface;
   Color sum = surface.emission;
   for (const Lamp* lamp : mesh.lamps) {
-    const Incident light = lamp->at(point.place);
+    const Incident light = lamp->incidentAt(point.place);
     const double cosine = dot(point.normal, light.toLight);
     add(sum, product(light.ambient, diffuse), mesh.look.ambient);
     if (!(cosine > 0)) continue;
     add(sum, product(light.direct, diffuse), float(cosine));
-    if (surface.isMatt || !(surface.exponent > 0)) continue;
+    if (surface.isMatt) continue;
     const double shine = dot(point.normal, unit(light.toLight + point.toEye));
     if (shine > 0)
       add(sum, product(light.direct, surface.specular), std::pow(float(shine), surface.exponent));

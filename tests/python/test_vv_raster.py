@@ -1,11 +1,10 @@
-"""Tests pictures of the z-buffer: vv --preview-raster and World.render(raster=True)."""
-import pathlib
-
+"""Tests pictures of the z-buffer: vv --preview-raster, World.render(raster=True), live views."""
 import numpy as np
 import pytest
-from conftest import HEADER, ROOT, exr_header, read_pfm
+from conftest import HEADER, ROOT
 
 import xvrml
+from live_view_tools import steps  # noqa: E402
 
 SIZE = ("--size", "48x36")
 NOTE = b"fast view: a z-buffer picture"
@@ -79,7 +78,7 @@ def test_files_say_what_they_are(vv):
 
 
 @pytest.mark.parametrize("option", [("--error", "5%"), ("--channels", "z"), ("--spp", "4"),
-                                    ("--stats", "s.json"), ("--denoise", ), ("--audit", "2"),
+                                    ("--stats", "s.json"), ("--audit", "2"),
                                     ("--transport", "path"), ("--environment", "sky.hdr")])
 def test_what_needs_rays_is_refused(vv, option):
     vv.write("world.wrl", MATT)
@@ -155,6 +154,26 @@ Shape { appearance Appearance { material Material { emissiveColor 1 1 1 } }
     camera = xvrml.Pinhole([[60, 0, 30], [0, 80, 10], [0, 0, 1]],
                            np.diag([1., -1, -1, 1]))
     image = world.render(size=(64, 48), camera=camera, raster=True, background="none").array
-    x, y = camera.project([[.3, .2, -4]])[0]
+    x, y = camera.project([[.3, .2, -4]])[0][:2]
     rows, columns = np.nonzero(image[..., 0])
     assert [len(rows), abs(columns[0] - x) <= 1, abs(rows[0] - y) <= 1] == [1, True, True]
+
+
+def test_a_live_view_of_a_large_world_begins_with_the_fast_view():
+    side = 330  # 217,800 triangles
+    world = xvrml.loads("""#VRML V2.0 utf8
+Viewpoint { position 0 0 3 }
+Transform { rotation 1 0 0 1.2 translation -1 1 0 children Shape {
+  appearance Appearance { material Material { diffuseColor .2 .8 .4 } }
+  geometry ElevationGrid { solid FALSE xDimension %d zDimension %d xSpacing .006 zSpacing .006
+    height [ %s ] } } }""" % (side + 1, side + 1, "0 " * (side + 1)**2))
+    seen = []
+    with xvrml.LiveView(world, size=(64, 48), spp=4) as view:
+
+        def finished():
+            seen.append(view.facts.get("samples"))
+            return view.facts.get("finished") and not view.facts["preview"]
+
+        steps(view, finished)
+        assert 0 in seen, "the fast view has no samples"
+        assert view.facts["samples"] == 4

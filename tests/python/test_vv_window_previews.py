@@ -184,3 +184,20 @@ def test_a_finished_picture_lets_the_processor_sleep(window):
     w.wait(sleeps, "a window that sleeps")
     w.key("h")  # and wakes up for input
     w.until(lambda s: s.at(0, 0) == (0, 0, 0))
+
+
+def test_a_large_world_begins_with_the_fast_view(window, vv):
+    """The first picture is that of the z-buffer; what is saved is the one of rays."""
+    side = 330  # 217,800 triangles
+    w = window(HEADER + """
+Viewpoint { position 0 0 3 }
+Transform { rotation 1 0 0 1.2 translation -1 1 0 children Shape {
+  appearance Appearance { material Material { diffuseColor .2 .8 .4 } }
+  geometry ElevationGrid { solid FALSE xDimension %d zDimension %d xSpacing .006 zSpacing .006
+    height [ %s ] } } }""" % (side + 1, side + 1, "0 " * (side + 1)**2))
+    w.said("first picture (fast view)")
+    w.still()
+    assert w.end() == 0
+    assert vv("world.wrl", "-o", "h.png", "--size", "%dx%d" % SIZE, "--spp", "1").returncode == 0
+    saved = sorted(vv.folder.glob("world-*.png"), key=lambda p: int(p.stem.split("-")[1]))
+    assert saved[-1].read_bytes() == (vv.folder / "h.png").read_bytes()

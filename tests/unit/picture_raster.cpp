@@ -120,6 +120,17 @@ Transform { translation 0 0 -5 rotation 0 1 0 1.0471976 children Shape {
   expectNear(drawn(width / 2, height / 2), {0.5f, 0.25f, 0, 1}, 1e-4);
 }
 
+// The headlight shines along the line of sight on a wall that is turned by 60 degrees.
+TEST(Raster, HighlightsHaveTheirExponent) {
+  for (const double shininess : {0.0, 0.05}) {
+    const Drawn drawn("Transform { translation 0 0 -5 rotation 0 1 0 1.0471976 children Shape { "
+                      "appearance Appearance { material Material { diffuseColor 0 0 0 "
+                      "specularColor .5 .5 .5 shininess " +
+                      std::to_string(shininess) + " } } geometry Box { size 8 8 .001 } } }");
+    EXPECT_NEAR(drawn(width / 2, height / 2)[0], 0.5 * std::pow(0.5, 128 * shininess), 2e-3);
+  }
+}
+
 TEST(Raster, NormalsAreInterpolated) {
   // The normals of the left and the right edge point 60 degrees to their sides.
   const Drawn drawn(R"(
@@ -207,7 +218,7 @@ TEST(Raster, LampsLightTheirGroups) {
   EXPECT_EQ(middle(away(wall) + "SpotLight { direction 0 1 0 }"), 0);
 }
 
-TEST(Raster, ADarkWorldGetsTheHeadlight) {
+TEST(Raster, ADarkWorldGetsALampAtTheEye) {
   EXPECT_GT(Drawn("NavigationInfo { headlight FALSE } Transform { translation 0 0 -5 children "
                   "Shape { appearance Appearance { material Material { } } geometry Box { } } }")(
                 width / 2, height / 2)[0],
@@ -314,6 +325,38 @@ TEST(Raster, ThreadsDoNotChangePictures) {
   one.threads = 1;
   several.threads = 4;
   EXPECT_EQ(Drawn(text, one).rgba, Drawn(text, several).rgba);
+}
+
+// Large meshes are drawn from their node, without the normals that a crease angle asks for.
+TEST(Raster, LargeMeshesHaveTheirPixels) {
+  constexpr int side = 320; // 204,800 triangles
+  std::string points, faces;
+  for (int y = 0; y <= side; ++y)
+    for (int x = 0; x <= side; ++x)
+      points +=
+          std::to_string(2.0 * x / side - 1) + " " + std::to_string(2.0 * y / side - 1) + " -2,";
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const int a = y * (side + 1) + x, b = a + side + 1;
+      for (const auto& [i, k, m] : {std::array{a, a + 1, b}, std::array{a + 1, b + 1, b}})
+        faces += std::to_string(i) + " " + std::to_string(k) + " " + std::to_string(m) + " -1 ";
+    }
+  const auto seen = [&](const std::string& fields) {
+    const Drawn drawn(
+        "Shape { appearance Appearance { material Material { diffuseColor 1 1 1 } } geometry "
+        "IndexedFaceSet { creaseAngle 1 " +
+        fields + " coordIndex [ " + faces + " ] coord Coordinate { point [ " + points + " ] } } }");
+    int covered = 0;
+    for (size_t i = 0; i < drawn.rgba.size(); i += 4)
+      if (drawn.rgba[i + 3] > 0) {
+        ++covered;
+        EXPECT_NEAR(drawn.rgba[i], 1, 1e-5);
+      }
+    return covered;
+  };
+  EXPECT_EQ(seen(""), (height / 2) * (height / 2));
+  EXPECT_EQ(seen("ccw FALSE"), 0);
+  EXPECT_EQ(seen("ccw FALSE solid FALSE"), (height / 2) * (height / 2));
 }
 
 TEST(Raster, ARendererSaysWhichPicturesAreOfTheZBuffer) {

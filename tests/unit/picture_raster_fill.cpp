@@ -163,7 +163,7 @@ TEST(RasterFill, LinesAreClippedAtThePictureAndTheEye) {
   EXPECT_TRUE(pixelsOf(at(-10, -10), at(100, -10)).empty());
   EXPECT_TRUE(pixelsOf(at(5, 5, -1), at(9, 9, -2)).empty());
   // from the middle of the picture to a point behind the eye
-  EXPECT_GE(pixelsOf(at(20, 15, 1), Corner{-50, 15, -1, 1}).size(), size_t(width / 2));
+  EXPECT_GE(pixelsOf(at(20, 15, 1), Corner{-50, -15, -1, 1}).size(), size_t(width / 2));
   EXPECT_TRUE(pixelsOf(Corner{NAN, 0, 1, 1}, at(1, 1)).empty());
   EXPECT_FALSE(pixelsOf(Corner{-1e30f, 15, 1, 1}, Corner{1e30f, 15, 1, 1}).empty());
 }

@@ -217,8 +217,8 @@ void Window::show() {
   screen_.setPicture(picture_.shownWidth, picture_.shownHeight, picture_.rgb);
   showLegend();
   if (std::exchange(first_, false) && options_.verbose)
-    say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
-                    duration(seconds() - loadStart_)));
+    say(fmt::format("vv: first picture{}, {}x{}, after {}", picture_.raster ? " (fast view)" : "",
+                    picture_.width, picture_.height, duration(seconds() - loadStart_)));
   if (options_.verbose && picture_.purpose == picture::LiveFrame::Purpose::preview) sayFilter();
 }
 
