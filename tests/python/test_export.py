@@ -140,6 +140,35 @@ def test_animations(vv):
     assert target["name"] == "Inner" and document["nodes"][target["children"][0]]["translation"] == [-1, 0, 0]
 
 
+def test_curves_move_as_in_the_world(vv):
+    world = """#X3D V3.3 utf8
+PROFILE Full
+DEF Clock TimeSensor { cycleInterval 4 loop TRUE }
+DEF Path SplinePositionInterpolator { key [ 0 0.25 1 ] keyValue [ 0 0 0, 2 1 0, 0 3 1 ] }
+DEF Turn SquadOrientationInterpolator { key [ 0 0.5 1 ] keyValue [ 0 1 0 0, 1 0 0 1, 0 0 1 2 ] }
+DEF Body Transform { children Shape { geometry Box { } } }
+ROUTE Clock.fraction_changed TO Path.set_fraction
+ROUTE Clock.fraction_changed TO Turn.set_fraction
+ROUTE Path.value_changed TO Body.set_translation
+ROUTE Turn.value_changed TO Body.set_rotation
+"""
+    document, checker, talk = export(vv, world)
+    assert "ROUTE" not in talk, talk
+    animation, = document["animations"]
+    for path, most in (("translation", 0.02), ("rotation", 0.005)):
+        channel, = [one for one in animation["channels"] if one["target"]["path"] == path]
+        sampler = animation["samplers"][channel["sampler"]]
+        times, values = checker.arrays[sampler["input"]], checker.vectors(sampler["output"])
+        for at in (0.3, 0.8, 1.7, 3.1):
+            still, _, _ = export(vv, world, "still.glb", "--time", str(at))
+            right = next(i for i, time in enumerate(times) if time >= at)
+            t = (at - times[right - 1]) / (times[right] - times[right - 1])
+            now = [(1 - t) * a + t * b for a, b in zip(values[right - 1], values[right])]
+            wanted = node(still, "Body")[path]
+            side = -1 if path == "rotation" and sum(a * b for a, b in zip(now, wanted)) < 0 else 1
+            assert [side * x for x in now] == pytest.approx(wanted, abs=most), (path, at)
+
+
 def test_animations_in_prototypes(vv):
     document, _, _ = export(vv, HEADER + """
 PROTO Door [ eventIn SFFloat open exposedField SFVec3f place 0 0 0 ] {
@@ -225,6 +254,31 @@ DEF Sign Billboard { children Shape { geometry Box { } } }""")
     assert "rotation" not in node(document, "Sign")
     for text in ("an LOD has its finest level alone", "a Switch has its present choice", "a Billboard does not turn"):
         assert text in talk, talk
+
+
+def test_looks_of_a_switch_are_variants(vv):
+    shapes = """DEF Body Switch { whichChoice 1 choice [
+  Shape { appearance DEF Red Appearance { material Material { diffuseColor 1 0 0 } } geometry DEF G Box { } }
+  Shape { appearance DEF Wood Appearance { texture PixelTexture { image 1 1 3 0x804020 } } geometry USE G }
+  Shape { appearance Appearance { material DEF Blue Material { } } geometry USE G }
+  Shape { geometry USE G } ] }
+Transform { translation 3 0 0 children Switch { whichChoice 0 choice [
+  Shape { appearance USE Red geometry DEF H Cone { } } Shape { appearance USE Wood geometry USE H } ] } }"""
+    document, _, talk = export(vv, HEADER + shapes)
+    assert "a Switch" not in talk, talk
+    names = [one["name"] for one in document["extensions"]["KHR_materials_variants"]["variants"]]
+    assert names == ["Red", "Wood", "Blue", "Body 3"]
+    body, cone = [mesh["primitives"][0] for mesh in document["meshes"]]
+    for primitive, shown, looks in ((body, "Wood", names), (cone, "Red", ["Red", "Wood"])):
+        assert document["materials"][primitive["material"]]["name"] == shown
+        mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"]
+        mapped = {names[v]: mapping["material"] for mapping in mappings for v in mapping["variants"]}
+        assert list(sorted(mapped)) == sorted(looks) and mapped[shown] == primitive["material"]
+        assert "TEXCOORD_0" in primitive["attributes"]
+    other = shapes.replace("geometry USE G }\n  Shape { geometry", "geometry Sphere { } }\n  Shape { geometry")
+    document, _, talk = export(vv, HEADER + other)
+    assert "a Switch has its present choice" in talk, talk
+    assert len(document["extensions"]["KHR_materials_variants"]["variants"]) == 2
 
 
 HOSTILE = {

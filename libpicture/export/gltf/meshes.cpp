@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 namespace picture::gltf {
 
@@ -138,7 +139,34 @@ Json Meshes::primitiveOf(const DrawnShape& shape, Geometry& geometry, const Mate
   return primitive;
 }
 
-std::optional<MeshUse> Meshes::use(const DrawnShape& shape) {
+// Adds the looks that a Switch chooses between to a primitive. A primitive has one set of
+// attributes, so a look that needs others is left out. Sets what the attributes must have.
+Json Meshes::mappingsOf(const xvrml::nodes::Switch& chooser, const MaterialOf& materialOf,
+                        MaterialUse& attributes) {
+  std::map<size_t, std::vector<size_t>> variants; // by material
+  std::set<size_t> taken;
+  for (const Look& look : looksOf(chooser)) {
+    const MaterialUse use = materialOf(look.parts);
+    const bool fits =
+        use.material && use.showsVertexColors == attributes.showsVertexColors &&
+        (!use.textured || !attributes.textured || use.bakedTransform == attributes.bakedTransform);
+    if (!fits) {
+      remarks_.change("a choice of a Switch that needs other colours of vertices or coordinates of "
+                      "textures is left out");
+      continue;
+    }
+    if (use.textured) attributes.bakedTransform = use.bakedTransform;
+    attributes.textured = attributes.textured || use.textured;
+    const size_t variant = variants_.of(look.name);
+    if (taken.insert(variant).second) variants[*use.material].push_back(variant);
+  }
+  Json mappings = Json::array();
+  for (const auto& [material, indices] : variants)
+    mappings.push_back({{"material", material}, {"variants", indices}});
+  return mappings;
+}
+
+std::optional<MeshUse> Meshes::use(const DrawnShape& shape, const xvrml::nodes::Switch* chooser) {
   // ClipPlanes leave other parts of a geometry at each place.
   const bool cut = !shape.kept().empty();
   Geometry own;
@@ -152,16 +180,23 @@ std::optional<MeshUse> Meshes::use(const DrawnShape& shape) {
   }
   if (geometry->kind == GeometryArrays::Kind::empty) return {};
   const bool lines = geometry->kind != GeometryArrays::Kind::triangles;
-  const MaterialUse material = materials_.use(shape.appearance(), geometry->colors, lines,
-                                              !lines && !geometry->solid, leastSide(geometry->box));
+  const auto materialOf = [&](const xvrml::AppearanceParts& parts) {
+    return materials_.use(parts, geometry->colors, lines, !lines && !geometry->solid,
+                          leastSide(geometry->box));
+  };
+  MaterialUse material = materialOf(shape.appearance());
   if (!material.material) return {};
   const auto mesh = [&] {
-    Json object = {{"primitives", Json::array({primitiveOf(shape, *geometry, material)})}};
+    const Json mappings = chooser ? mappingsOf(*chooser, materialOf, material) : Json::array();
+    Json primitive = primitiveOf(shape, *geometry, material);
+    if (!mappings.empty())
+      primitive["extensions"]["KHR_materials_variants"] = {{"mappings", mappings}};
+    Json object = {{"primitives", Json::array({std::move(primitive)})}};
     if (!shape.geometry.defName.empty()) object["name"] = shape.geometry.defName;
     return document_.add("meshes", object);
   };
   if (cut) return MeshUse{mesh(), geometry->box};
-  const auto [known, fresh] = meshes_.try_emplace({&shape.geometry, *material.material});
+  const auto [known, fresh] = meshes_.try_emplace({&shape.geometry, *material.material, chooser});
   if (fresh) known->second = mesh();
   return MeshUse{known->second, geometry->box};
 }

@@ -51,6 +51,14 @@ bool isGroup(const Node& node) {
   return node.type().is("grouping") || nodeCast<xvrml::ProtoInstance>(&node) || node.type().expand;
 }
 
+// Returns the Switch that chooses a Shape for its look; null if there is none.
+const nodes::Switch* chooserOf(const xvrml::RenderState& state) {
+  size_t above = state.path.size() - 1;
+  while (above > 0 && nodeCast<xvrml::ProtoInstance>(state.path[above - 1])) --above;
+  const auto* chooser = above > 0 ? nodeCast<nodes::Switch>(state.path[above - 1]) : nullptr;
+  return chooser && !looksOf(*chooser).empty() ? chooser : nullptr;
+}
+
 } // namespace
 
 double candelaOf(double intensity, const Vec3f& attenuation, double distance, double scale) {
@@ -123,7 +131,9 @@ Scene::Visit Scene::renderLOD(nodes::LOD& node, const State& state) {
 }
 
 Scene::Visit Scene::renderSwitch(nodes::Switch& node, const State& state) {
-  if (node.choice.size() > 1 || (node.whichChoice != 0 && !node.choice.empty()))
+  const bool shows = node.choice.size() == 1 && node.whichChoice == 0;
+  const bool none = node.whichChoice < 0 || size_t(node.whichChoice) >= node.choice.size();
+  if (!shows && !node.choice.empty() && (none || looksOf(node).empty()))
     remarks_.change("a Switch has its present choice");
   return render(node, state);
 }
@@ -136,7 +146,7 @@ Scene::Visit Scene::renderAnchor(nodes::Anchor& node, const State& state) {
 Scene::Visit Scene::renderShape(nodes::Shape&, const State&) { return Visit::draw; }
 
 void Scene::draw(const xvrml::DrawnShape& shape) {
-  const std::optional<MeshUse> use = meshes_.use(shape);
+  const std::optional<MeshUse> use = meshes_.use(shape, chooserOf(shape.state));
   if (!use) return;
   grow(use->box, shape.matrix());
   if (!open_.empty()) {
