@@ -191,7 +191,7 @@ template <class Node> auto curveOf(const Node& node) {
 
 // Returns a curve that is not straight between its keys, with more keys.
 template <class Node> auto sampledCurveOf(const Node& node) {
-  constexpr int parts = 16; // of the interval between two keys
+  constexpr int parts = 16; // between two keys
   const auto given = curveOf(node);
   auto curve = decltype(curveOf(node))();
   for (size_t i = 0; i < given.fractions.size(); ++i) {

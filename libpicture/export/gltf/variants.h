@@ -12,7 +12,7 @@
 
 namespace picture::gltf {
 
-// What a choice of a Switch looks like. name: the DEF name of the Appearance, the material or the
+// The look of a choice of a Switch. name: the DEF name of the Appearance, the material or the
 // Shape, else a number.
 struct Look {
   std::string name;
