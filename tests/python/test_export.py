@@ -9,7 +9,7 @@ import struct
 import pytest
 from conftest import HEADER, ROOT
 from exports import export, node
-from gltf_check import problems_of
+from gltf_check import document_of, problems_of
 
 SCENES = sorted((ROOT / "examples").rglob("*.wr[lz]"))
 CORPUS = pathlib.Path(os.environ.get("OPENRT_CORPUS", ROOT.parent / "shared/corpus"))
