@@ -42,6 +42,18 @@ ALIKE = {
 }
 
 
+@pytest.mark.parametrize("mode", ("OPAQUE", "MASK", "BLEND", "AUTO"))
+@pytest.mark.parametrize("material", ("Material { diffuseTexture", "PhysicalMaterial { metallic 0 baseTexture",
+                                      "UnlitMaterial { emissiveTexture"))
+def test_alpha_of_pictures(vv, material, mode):
+    """The alpha of a picture in a material of X3D 4 multiplies that of the material."""
+    picture_node = "PixelTexture { image 2 2 4 0xff0000ff 0x00ff0080 0x0000ff40 0xffffff00 }"
+    world = "#X3D V4.0 utf8\nPROFILE Full\n" + VIEW + SUN + shape(
+        f"material {material} {picture_node} transparency 0.2 }}", SQUARE, f'alphaMode "{mode}"')
+    export(vv, world + "Transform { translation 0 0 -2 children " + shape("material UnlitMaterial { emissiveColor 0 1 0 }") + "}")
+    assert difference(picture(vv, "in.wrl"), picture(vv, "out.glb")) < 1
+
+
 def test_glass_is_read_again(vv):
     ball = """Shape { appearance ORTAppearance { shader ORTShader { name "Glass" file "glass"
   options [ "1f index 1.3" "3f absorption .1 .5 1" ] } } geometry Sphere { } }

@@ -72,16 +72,26 @@ float leastSide(const Box& box) {
 
 } // namespace
 
-Meshes::Geometry Meshes::write(const GeometryArrays& arrays) {
+// Returns what a geometry has, without writing it.
+Meshes::Geometry Meshes::describe(const GeometryArrays& arrays) {
   Geometry geometry;
   geometry.solid = arrays.solid;
   const Vertices vertices(arrays);
   if (vertices.leftOut() > 0)
     remarks_.change("triangles, lines or points with numbers that are not finite are left out");
   if (vertices.empty()) return geometry;
-  const size_t count = vertices.size();
   geometry.kind = arrays.kind;
   geometry.box = boxOf(vertices);
+  if (vertices.hasColors())
+    geometry.colors = vertices.hasAlphas() ? VertexColors::transparent : VertexColors::opaque;
+  return geometry;
+}
+
+// Writes what all materials show, for the first one that is visible.
+void Meshes::write(const GeometryArrays& arrays, Geometry& geometry) {
+  if (geometry.points >= 0) return;
+  const Vertices vertices(arrays);
+  const size_t count = vertices.size();
   const auto& [low, high] = geometry.box;
   Elements points = floatsOf<Vec3f>(count, "VEC3", [&](size_t i) { return vertices.point(i); });
   points.minimum = {low.x, low.y, low.z};
@@ -90,10 +100,7 @@ Meshes::Geometry Meshes::write(const GeometryArrays& arrays) {
   if (vertices.hasNormals() && arrays.kind == GeometryArrays::Kind::triangles)
     geometry.normals = int64_t(document_.add(
         floatsOf<Vec3f>(count, "VEC3", [&](size_t i) { return vertices.normal(i); })));
-  if (vertices.hasColors())
-    geometry.colors = vertices.hasAlphas() ? VertexColors::transparent : VertexColors::opaque;
   geometry.indices = int64_t(document_.add(indicesOf(vertices.indices(), count)));
-  return geometry;
 }
 
 // Returns the accessor of the colours. They are written for the first material that shows them.
@@ -172,10 +179,10 @@ std::optional<MeshUse> Meshes::use(const DrawnShape& shape, const xvrml::nodes::
   Geometry own;
   Geometry* geometry = &own;
   if (cut) {
-    own = write(shape.mesh());
+    own = describe(shape.mesh());
   } else {
     const auto [found, fresh] = geometries_.try_emplace(&shape.geometry);
-    if (fresh) found->second = write(shape.mesh());
+    if (fresh) found->second = describe(shape.mesh());
     geometry = &found->second;
   }
   if (geometry->kind == GeometryArrays::Kind::empty) return {};
@@ -187,6 +194,7 @@ std::optional<MeshUse> Meshes::use(const DrawnShape& shape, const xvrml::nodes::
   MaterialUse material = materialOf(shape.appearance());
   if (!material.material) return {};
   const auto mesh = [&] {
+    write(shape.mesh(), *geometry);
     const Json mappings = chooser ? mappingsOf(*chooser, materialOf, material) : Json::array();
     Json primitive = primitiveOf(shape, *geometry, material);
     if (!mappings.empty())

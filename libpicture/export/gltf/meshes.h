@@ -47,7 +47,8 @@ class Meshes {
     std::optional<size_t> colorValues;
     std::map<std::array<float, 6>, size_t> texCoords; // by their transform
   };
-  Geometry write(const xvrml::GeometryArrays& arrays);
+  Geometry describe(const xvrml::GeometryArrays& arrays);
+  void write(const xvrml::GeometryArrays& arrays, Geometry& geometry);
   size_t colorsOf(const xvrml::DrawnShape& shape, Geometry& geometry);
   size_t texCoords(const xvrml::DrawnShape& shape, const std::array<float, 6>& transform,
                    Geometry& geometry);
