@@ -258,6 +258,9 @@ Transform { translation 3 0 0 children Switch { whichChoice 0 choice [
         mapped = {names[v]: mapping["material"] for mapping in mappings for v in mapping["variants"]}
         assert list(sorted(mapped)) == sorted(looks) and mapped[shown] == primitive["material"]
         assert "TEXCOORD_0" in primitive["attributes"]
+    document, _, _ = export(vv, HEADER + shapes.replace("DEF Wood Appearance", "DEF Red Appearance").replace("USE Wood", "USE Red"))
+    names = [one["name"] for one in document["extensions"]["KHR_materials_variants"]["variants"]]
+    assert names == ["Red", "Red 1", "Blue", "Body 3"]
     other = shapes.replace("geometry USE G }\n  Shape { geometry", "geometry Sphere { } }\n  Shape { geometry")
     document, _, talk = export(vv, HEADER + other)
     assert "a Switch has its present choice" in talk, talk

@@ -51,14 +51,6 @@ bool isGroup(const Node& node) {
   return node.type().is("grouping") || nodeCast<xvrml::ProtoInstance>(&node) || node.type().expand;
 }
 
-// Returns the Switch that chooses a Shape for its look; null if there is none.
-const nodes::Switch* chooserOf(const xvrml::RenderState& state) {
-  size_t above = state.path.size() - 1;
-  while (above > 0 && nodeCast<xvrml::ProtoInstance>(state.path[above - 1])) --above;
-  const auto* chooser = above > 0 ? nodeCast<nodes::Switch>(state.path[above - 1]) : nullptr;
-  return chooser && !looksOf(*chooser).empty() ? chooser : nullptr;
-}
-
 } // namespace
 
 double candelaOf(double intensity, const Vec3f& attenuation, double distance, double scale) {
@@ -133,7 +125,7 @@ Scene::Visit Scene::renderLOD(nodes::LOD& node, const State& state) {
 Scene::Visit Scene::renderSwitch(nodes::Switch& node, const State& state) {
   const bool shows = node.choice.size() == 1 && node.whichChoice == 0;
   const bool none = node.whichChoice < 0 || size_t(node.whichChoice) >= node.choice.size();
-  if (!shows && !node.choice.empty() && (none || looksOf(node).empty()))
+  if (!shows && !node.choice.empty() && (none || !choosesLooks(node)))
     remarks_.change("a Switch has its present choice");
   return render(node, state);
 }
@@ -144,6 +136,21 @@ Scene::Visit Scene::renderAnchor(nodes::Anchor& node, const State& state) {
 }
 
 Scene::Visit Scene::renderShape(nodes::Shape&, const State&) { return Visit::draw; }
+
+// Returns whether a Switch chooses between looks of one geometry.
+bool Scene::choosesLooks(const nodes::Switch& node) {
+  const auto [found, fresh] = choosers_.try_emplace(&node);
+  if (fresh) found->second = !looksOf(node).empty();
+  return found->second;
+}
+
+// Returns the Switch that chooses a Shape for its look; null if there is none.
+const nodes::Switch* Scene::chooserOf(const State& state) {
+  size_t above = state.path.size() - 1;
+  while (above > 0 && nodeCast<xvrml::ProtoInstance>(state.path[above - 1])) --above;
+  const auto* chooser = above > 0 ? nodeCast<nodes::Switch>(state.path[above - 1]) : nullptr;
+  return chooser && choosesLooks(*chooser) ? chooser : nullptr;
+}
 
 void Scene::draw(const xvrml::DrawnShape& shape) {
   const std::optional<MeshUse> use = meshes_.use(shape, chooserOf(shape.state));

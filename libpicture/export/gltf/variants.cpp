@@ -1,7 +1,5 @@
 #include "libpicture/export/gltf/variants.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace picture::gltf {
@@ -22,6 +20,7 @@ std::string nameOf(const xvrml::AppearanceParts& parts, const nodes::Shape& shap
 
 std::vector<Look> looksOf(const nodes::Switch& node) {
   std::vector<Look> looks;
+  std::unordered_map<std::string, const Node*> appearances; // by name
   const Node* geometry = nullptr;
   for (const xvrml::NodeRef& choice : node.choice) {
     const auto* shape = nodeCast<nodes::Shape>(xvrml::renderedNode(choice.get()));
@@ -31,9 +30,11 @@ std::vector<Look> looksOf(const nodes::Switch& node) {
     Look& look = looks.emplace_back();
     look.parts = xvrml::resolveAppearance(shape->appearance.get());
     look.name = nameOf(look.parts, *shape);
-    if (look.name.empty())
-      look.name = fmt::format("{} {}", node.defName.empty() ? "Switch" : node.defName.c_str(),
-                              looks.size() - 1);
+    const auto named = appearances.try_emplace(look.name, look.parts.appearance).first;
+    const bool taken = named->second != look.parts.appearance;
+    const std::string scope = node.defName.empty() ? "Switch" : node.defName;
+    if (look.name.empty() || taken)
+      look.name = fmt::format("{} {}", look.name.empty() ? scope : look.name, looks.size() - 1);
   }
   if (looks.size() < 2) looks.clear();
   return looks;

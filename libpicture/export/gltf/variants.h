@@ -13,7 +13,7 @@
 namespace picture::gltf {
 
 // The look of a choice of a Switch. name: the DEF name of the Appearance, the material or the
-// Shape, else a number.
+// Shape, with a number where two looks of a Switch have one name; else a number.
 struct Look {
   std::string name;
   xvrml::AppearanceParts parts;
