@@ -32,6 +32,12 @@ float componentOf(const Film& film, int x, int y, GLenum format, int i) {
   }
 }
 
+// Renders the frame; what is drawn next still belongs to it.
+void showFrame(State& s) {
+  s.textures.decode(s.scene.linear());
+  s.showFrame();
+}
+
 bool endFrame(State& s) {
   s.textures.decode(s.scene.linear());
   return s.endFrame();
@@ -73,7 +79,7 @@ void rtglReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum form
     if (type != GL_UNSIGNED_BYTE && type != GL_FLOAT)
       fail(GL_INVALID_ENUM, "pixels are GL_UNSIGNED_BYTE or GL_FLOAT");
     if (width < 0 || height < 0) fail(GL_INVALID_VALUE, "a size is below 0");
-    if (s.drewSomething()) endFrame(s);
+    if (s.drewSomething()) showFrame(s);
     const Film& film = s.scene.film();
     if (film.samples == 0) fail(GL_INVALID_OPERATION, "there is no picture yet");
     const int components = componentsOf(format);

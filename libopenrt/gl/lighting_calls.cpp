@@ -66,15 +66,21 @@ void setLight(State& s, GLenum which, GLenum name, const Values& v) {
     for (size_t i = 0; i < 3; i++) light.direction[i] = static_cast<float>(eye[i]);
     break;
   }
-  case GL_SPOT_EXPONENT: light.exponent = std::clamp(v[0], 0.0f, 128.0f); break;
+  case GL_SPOT_EXPONENT:
+    if (!(v[0] >= 0 && v[0] <= 128)) fail(GL_INVALID_VALUE, "the exponent is not 0 to 128");
+    light.exponent = v[0];
+    break;
   case GL_SPOT_CUTOFF:
     if (!(v[0] == 180 || (v[0] >= 0 && v[0] <= 90)))
       fail(GL_INVALID_VALUE, "the cutoff is neither 180 nor 0 to 90");
     light.cutoff = v[0];
     break;
-  case GL_CONSTANT_ATTENUATION: light.attenuation[0] = v[0]; break;
-  case GL_LINEAR_ATTENUATION: light.attenuation[1] = v[0]; break;
-  case GL_QUADRATIC_ATTENUATION: light.attenuation[2] = v[0]; break;
+  case GL_CONSTANT_ATTENUATION:
+  case GL_LINEAR_ATTENUATION:
+  case GL_QUADRATIC_ATTENUATION:
+    if (!(v[0] >= 0)) fail(GL_INVALID_VALUE, "the attenuation is below 0");
+    light.attenuation[name - GL_CONSTANT_ATTENUATION] = v[0];
+    break;
   default: fail(GL_INVALID_ENUM, "no such property");
   }
 }

@@ -31,9 +31,18 @@ void emit(const RTUquadric& q, const Point& p, const Vector& normal) {
   rtglVertex3d(p.at[0], p.at[1], p.at[2]);
 }
 
+// The edges of a grid within one plane, which GLU_SILHOUETTE leaves out.
+enum class Plane {
+  none,  // a sphere has no such edges
+  rings, // between the rows of a cylinder
+  disk,  // all but the first and the last ring
+  sector // all but the first and the last ring and column
+};
+
 // Draws a grid of columns x rows facets. at(column, row) returns a point; columns run
 // counter-clockwise and rows upwards, seen from outside.
-template <class At> void grid(const RTUquadric& q, int columns, int rows, const At& at) {
+template <class At>
+void grid(const RTUquadric& q, Plane plane, int columns, int rows, const At& at) {
   if (q.style == RTU_POINT) {
     rtglBegin(GL_POINTS);
     for (int row = 0; row <= rows; row++)
@@ -45,7 +54,9 @@ template <class At> void grid(const RTUquadric& q, int columns, int rows, const 
     return;
   }
   if (q.style != RTU_FILL) {
+    if (q.style != RTU_SILHOUETTE) plane = Plane::none;
     for (int row = 0; row <= rows; row++) {
+      if (plane != Plane::none && row > 0 && row < rows) continue;
       rtglBegin(GL_LINE_STRIP);
       for (int column = 0; column <= columns; column++) {
         const Point p = at(column, row);
@@ -54,6 +65,8 @@ template <class At> void grid(const RTUquadric& q, int columns, int rows, const 
       rtglEnd();
     }
     for (int column = 0; column <= columns; column++) {
+      const bool ends = column == 0 || column == columns;
+      if (plane == Plane::disk || (plane == Plane::sector && !ends)) continue;
       rtglBegin(GL_LINE_STRIP);
       for (int row = 0; row <= rows; row++) {
         const Point p = at(column, row);
@@ -117,7 +130,7 @@ void rtuQuadricTexture(RTUquadric* q, GLboolean texture) {
 
 void rtuSphere(RTUquadric* q, GLdouble radius, GLint slices, GLint stacks) {
   if (!isShape(q, slices, stacks)) return;
-  grid(*q, slices, stacks, [=](int column, int row) {
+  grid(*q, Plane::none, slices, stacks, [=](int column, int row) {
     // Slices begin at the y axis, as in GLU.
     const double around = turn(column, slices), up = turn(row, stacks, 180);
     const Vector n = {-std::sin(around) * std::sin(up), std::cos(around) * std::sin(up),
@@ -129,7 +142,7 @@ void rtuSphere(RTUquadric* q, GLdouble radius, GLint slices, GLint stacks) {
 void rtuCylinder(RTUquadric* q, GLdouble base, GLdouble top, GLdouble height, GLint slices,
                  GLint stacks) {
   if (!isShape(q, slices, stacks)) return;
-  grid(*q, slices, stacks, [=](int column, int row) {
+  grid(*q, Plane::rings, slices, stacks, [=](int column, int row) {
     const double around = turn(column, slices), share = double(row) / stacks;
     const double radius = base + share * (top - base);
     const double x = -std::sin(around), y = std::cos(around);
@@ -145,7 +158,8 @@ void rtuPartialDisk(RTUquadric* q, GLdouble inner, GLdouble outer, GLint slices,
   if (!isShape(q, slices, loops)) return;
   const double first = start * (std::numbers::pi / 180);
   // Angles run clockwise from the y axis; the facets run the other way, so that +z is the front.
-  grid(*q, slices, loops, [=](int column, int row) {
+  const Plane plane = std::abs(sweep) >= 360 ? Plane::disk : Plane::sector;
+  grid(*q, plane, slices, loops, [=](int column, int row) {
     const double radius = inner + (outer - inner) * (loops - row) / loops;
     const double angle = first + turn(slices - column, slices, sweep);
     const double x = radius * std::sin(angle), y = radius * std::cos(angle);

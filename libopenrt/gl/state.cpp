@@ -196,6 +196,7 @@ Material State::material(bool colored, const Color& color) const {
 
 // Opens the frame with the first draw: projection, viewport and fog hold for all of it.
 void State::beginFrame() {
+  isShown_ = false;
   if (frame_.projection) return;
   frame_.projection = projection();
   frame_.fog = now.fog;
@@ -370,6 +371,9 @@ void State::popAttributes() {
 }
 
 void State::clear(GLbitfield mask) {
+  constexpr GLbitfield all =
+      GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT | GL_ACCUM_BUFFER_BIT;
+  if (mask & ~all) fail(GL_INVALID_VALUE, "no such buffer");
   if (mask & GL_STENCIL_BUFFER_BIT)
     refuse("glClear(GL_STENCIL_BUFFER_BIT)", "there are no stencils; see glStencilFunc");
   if (mask & GL_ACCUM_BUFFER_BIT)
@@ -378,17 +382,24 @@ void State::clear(GLbitfield mask) {
   frame_ = Frame();
   frame_.clear = now.pixels.clear;
   cleared_ = true;
+  isShown_ = false;
 }
 
-bool State::endFrame() {
+bool State::showFrame() {
+  if (isShown_) return true;
   if (frame_.width == 0) {
     frame_.width = now.viewport[2];
     frame_.height = now.viewport[3];
   }
+  return isShown_ = scene.show(frame_);
+}
+
+bool State::endFrame() {
+  const bool rendered = showFrame();
   const Frame frame = std::exchange(frame_, Frame());
   frame_.clear = frame.clear;
-  cleared_ = false;
-  return scene.show(frame);
+  cleared_ = isShown_ = false;
+  return rendered;
 }
 
 } // namespace rtgl

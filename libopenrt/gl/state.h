@@ -94,6 +94,7 @@ class State {
   const Matrix& projection() const { return projection_.back(); }
   const Matrix& textureMatrix() const { return texture_.back(); }
   size_t depthOf(GLenum mode) const;
+  size_t attributeDepth() const { return attributes_.size(); }
 
   void pushAttributes(GLbitfield mask);
   void popAttributes();
@@ -107,6 +108,8 @@ class State {
   // Frames.
   void clear(GLbitfield mask);
   bool drewSomething() const { return !frame_.draws.empty() || cleared_; }
+  // Renders the frame as it is by now, without ending it.
+  bool showFrame();
   bool endFrame();
 
  private:
@@ -147,6 +150,7 @@ class State {
   std::vector<Saved> attributes_;
   Frame frame_;
   bool cleared_ = false;
+  bool isShown_ = false; // the picture is that of the frame as it is
 };
 
 // Fails because a primitive has more than maxVertices vertices.

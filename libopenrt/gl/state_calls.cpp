@@ -126,6 +126,13 @@ std::vector<double> valuesOf(State& s, GLenum name) {
   case GL_TEXTURE_BINDING_2D: return {double(a.texturing.bound)};
   case GL_LIST_BASE: return {double(a.listBase)};
   case GL_LIST_INDEX: return {double(s.listName())};
+  case GL_ATTRIB_STACK_DEPTH: return {double(s.attributeDepth())};
+  case GL_CLIENT_ATTRIB_STACK_DEPTH: return {double(s.clientStack.size())};
+  case GL_COLOR_MATERIAL_FACE: return {double(a.lighting.colorFace)};
+  case GL_COLOR_MATERIAL_PARAMETER: return {double(a.lighting.colorMode)};
+  case GL_COLOR_WRITEMASK: return {1, 1, 1, 1};
+  case GL_DRAW_BUFFER:
+  case GL_READ_BUFFER: return {double(s.singleBuffer ? GL_FRONT : GL_BACK)};
   case GL_MODELVIEW_STACK_DEPTH: return {double(s.depthOf(GL_MODELVIEW))};
   case GL_PROJECTION_STACK_DEPTH: return {double(s.depthOf(GL_PROJECTION))};
   case GL_TEXTURE_STACK_DEPTH: return {double(s.depthOf(GL_TEXTURE))};

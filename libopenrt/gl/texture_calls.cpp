@@ -22,7 +22,8 @@ void requireTarget(State& s, GLenum target) {
 void setImage(State& s, GLenum target, GLint level, GLsizei width, GLsizei height, GLint border,
               GLenum format, GLenum type, const void* pixels) {
   requireTarget(s, target);
-  if (width < 0 || height < 0 || border < 0) fail(GL_INVALID_VALUE, "a size is below 0");
+  if (width < 0 || height < 0 || level < 0) fail(GL_INVALID_VALUE, "a size or level is below 0");
+  if (border != 0 && border != 1) fail(GL_INVALID_VALUE, "borders are 0 and 1");
   if (width > maxTextureSize || height > maxTextureSize)
     fail(GL_INVALID_VALUE, "a size is above " + std::to_string(maxTextureSize));
   if (level != 0 || width == 0 || height == 0) return;
@@ -55,6 +56,10 @@ void setParameter(State& s, GLenum target, GLenum name, float value) {
   requireTarget(s, target);
   Texture& texture = s.textures.at(s.now.texturing.bound);
   const GLenum mode = toName(static_cast<double>(value));
+  constexpr GLenum clampToEdge = 0x812F; // OpenGL 1.2
+  const bool wraps = name == GL_TEXTURE_WRAP_S || name == GL_TEXTURE_WRAP_T;
+  if (wraps && mode != GL_REPEAT && mode != GL_CLAMP && mode != clampToEdge)
+    fail(GL_INVALID_ENUM, "no such way to go on beyond the edges");
   switch (name) {
   case GL_TEXTURE_WRAP_S: texture.wrapS = mode; break;
   case GL_TEXTURE_WRAP_T: texture.wrapT = mode; break;

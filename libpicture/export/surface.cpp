@@ -11,6 +11,7 @@ namespace picture {
 using xvrml::AppearanceParts;
 using xvrml::Color;
 using xvrml::MaterialValues;
+using xvrml::nodeCast;
 using Model = xvrml::MaterialValues::Model;
 
 namespace {
@@ -103,9 +104,25 @@ std::optional<SurfacePicture> Surfaces::pictureOf(const AppearanceParts& parts,
   return picture;
 }
 
+namespace {
+
+// Returns whether the alpha of a picture multiplies that of a Material, as it does where the
+// surface has what X3D adds to VRML97. It replaces it elsewhere.
+bool alphaMultiplies(const AppearanceParts& parts, const MaterialValues& values) {
+  const auto* plain = parts.plain;
+  return values.colorTexture || values.emissiveTexture || values.normalTexture ||
+         values.specularTexture || values.ambientTexture || values.shininessTexture ||
+         xvrml::backValues(parts) ||
+         (plain && (plain->alphaMode == "OPAQUE" || plain->alphaMode == "MASK")) ||
+         nodeCast<xvrml::nodes::MultiTexture>(parts.texture) ||
+         nodeCast<xvrml::nodes::TwoSidedMaterial>(parts.material);
+}
+
+} // namespace
+
 // The picture of the base colour. In VRML97 one with colours replaces the colour of the material
 // and of vertices, a grey one multiplies it, and alpha replaces the transparency (4.14.3). In X3D
-// all multiply, except alpha.
+// all colours multiply.
 void Surfaces::setColorPicture(const AppearanceParts& parts, const MaterialValues& values,
                                Surface& surface) {
   surface.picture = pictureOf(parts, xvrml::colorTexture(parts));
@@ -117,7 +134,7 @@ void Surfaces::setColorPicture(const AppearanceParts& parts, const MaterialValue
     surface.showsVertexColors = false;
   }
   const bool hasAlpha = file.components == 2 || file.components == 4;
-  if (hasAlpha && !physical) surface.opacity = 1;
+  if (hasAlpha && !physical && !alphaMultiplies(parts, values)) surface.opacity = 1;
 }
 
 void Surfaces::setMaterial(const AppearanceParts& parts, Surface& surface) {

@@ -2,6 +2,7 @@
 // SplineScalarInterpolator (ISO/IEC 19775-1 19.2.4, 19.4.10 to 19.4.12).
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include "behaviour/keys.h"
 #include "behaviour/named_fields.h"
 #include "behaviour/spline.h"
+#include "xvrml/interpolation.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -33,17 +35,23 @@ template <class Interpolator> void check(Events& events, const Interpolator& nod
                   keys != values ? "what is in excess is ignored" : "velocities are ignored"));
 }
 
-template <class Interpolator> void evaluate(Events& events, Interpolator& node, float fraction) {
+template <class Interpolator> auto splineAt(const Interpolator& node, float fraction) {
   using T = ElementOf<decltype(node.keyValue)>;
-  static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
   const size_t count = std::min(node.key.size(), node.keyValue.size());
-  if (count == 0) return;
-  check(events, node, *static_cast<State*>(events.state(node)));
+  if (count == 0 || std::isnan(fraction)) return std::optional<T>();
   const KeyPosition place = locate(node.key.data(), count, fraction);
+  if (place.t == 0) return std::optional<T>(node.keyValue[place.left]);
   const Spline<T> spline{std::span(node.key).first(count), std::span(node.keyValue).first(count),
                          node.keyVelocity, node.closed, node.normalizeVelocity};
-  events.send(node, out,
-              place.t == 0 ? node.keyValue[place.left] : spline.at(place.left, double(place.t)));
+  return std::optional<T>(spline.at(place.left, double(place.t)));
+}
+
+template <class Interpolator> void evaluate(Events& events, Interpolator& node, float fraction) {
+  static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
+  const auto value = splineAt(node, fraction);
+  if (!value) return;
+  check(events, node, *static_cast<State*>(events.state(node)));
+  events.send(node, out, *value);
 }
 
 // As with the linear interpolators, value_changed reads as the first value before it first sends.
@@ -57,7 +65,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
   auto& interpolator = static_cast<Interpolator&>(node);
   if (!isField<"set_fraction">(node, in))
     presetFirst(events, interpolator);
-  else if (!std::isnan(std::get<SFFloat>(value)))
+  else
     evaluate(events, interpolator, std::get<SFFloat>(value));
 }
 
@@ -71,6 +79,10 @@ template <class Interpolator> void addOne(const AddBehaviour& add) {
 }
 
 } // namespace
+
+std::optional<Vec3f> valueAt(const nodes::SplinePositionInterpolator& node, float fraction) {
+  return splineAt(node, fraction);
+}
 
 void addSplineInterpolatorBehaviours(const AddBehaviour& add) {
   addOne<nodes::SplinePositionInterpolator>(add);

@@ -397,11 +397,22 @@ static void teapot(void) {
   glutSolidTeapot(0.65);
 }
 
+static void silhouettes(void) {
+  gluQuadricDrawStyle(quadric, GLU_SILHOUETTE);
+  glLineWidth(2);
+  gluDisk(quadric, 0.2, 0.5, 12, 3);
+  gluPartialDisk(quadric, 0.6, 1, 12, 3, 20, 120);
+  glRotatef(-70, 1, 0, 0);
+  glTranslatef(-0.6f, -0.2f, -1);
+  gluCylinder(quadric, 0.4, 0.2, 0.7, 8, 4);
+  gluQuadricDrawStyle(quadric, GLU_FILL);
+}
+
 static void (*const features[])(void) = {
     spot,           attenuated,   highlights, twoLights,     twoSides, oneSide, flat,
     flatColours,    modes,        wires,      litTexture,    decal,    clamped, alphaTest,
     blended,        blendedLight, lists,      arrays,        painter,  skewed,  winding,
-    colourMaterial, softSpot,     overlay,    culledOverlay, solids,   teapot};
+    colourMaterial, softSpot,     overlay,    culledOverlay, solids,   teapot,  silhouettes};
 
 static void display(void) {
   glPushAttrib(GL_ALL_ATTRIB_BITS);

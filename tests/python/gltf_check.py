@@ -187,10 +187,20 @@ class Checker:
             restart = 256**SIZES[item["componentType"]] - 1
             self.need(max(indices) < count and max(indices) != restart, f"{where}: an index is {max(indices)} of {count}")
             self.need(len(indices) % CORNERS[mode] == 0, f"{where}: {len(indices)} indices for mode {mode}")
-            if self.index(primitive["material"], "materials", where):
-                used = [info.get("texCoord", 0) for info in texture_infos(self.json["materials"][primitive["material"]])]
-                for number in used:
-                    self.need(f"TEXCOORD_{number}" in attributes, f"{where}: TEXCOORD_{number} is missing")
+            for material in materials_of(primitive):
+                if self.index(material, "materials", where):
+                    used = [info.get("texCoord", 0) for info in texture_infos(self.json["materials"][material])]
+                    for number in used:
+                        self.need(f"TEXCOORD_{number}" in attributes, f"{where}: TEXCOORD_{number} is missing")
+            self.check_variants(primitive, where)
+
+    def check_variants(self, primitive, where):
+        names = self.json.get("extensions", {}).get("KHR_materials_variants", {}).get("variants", [])
+        self.need(len({one["name"] for one in names}) == len(names), "two variants have one name")
+        mappings = primitive.get("extensions", {}).get("KHR_materials_variants", {}).get("mappings", [])
+        variants = [variant for mapping in mappings for variant in mapping["variants"]]
+        self.need(len(set(variants)) == len(variants), f"{where}: a variant twice")
+        self.need(all(0 <= variant < len(names) for variant in variants), f"{where}: a variant that is not there")
 
     def check_materials(self, material, where):
         pbr = material.get("pbrMetallicRoughness", {})
@@ -305,7 +315,7 @@ class Checker:
         for mesh in self.list("meshes"):
             for primitive in mesh["primitives"]:
                 used["accessors"].update(primitive["attributes"].values(), [primitive["indices"]])
-                used["materials"].add(primitive["material"])
+                used["materials"].update(materials_of(primitive))
         for animation in self.list("animations"):
             channels = {channel["sampler"] for channel in animation["channels"]}
             self.need(channels == set(range(len(animation["samplers"]))), "an animation has a sampler without a channel")
@@ -342,6 +352,12 @@ class Checker:
 def single(x):
     """Returns the float of 32 bits that a number of JSON stands for."""
     return struct.unpack("f", struct.pack("f", x))[0]
+
+
+def materials_of(primitive):
+    """Returns the material of a primitive, and those of its variants."""
+    mappings = primitive.get("extensions", {}).get("KHR_materials_variants", {}).get("mappings", [])
+    return [primitive["material"]] + [mapping["material"] for mapping in mappings]
 
 
 def texture_infos(material):

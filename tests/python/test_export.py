@@ -1,5 +1,5 @@
 """Exports of vv --write and World.save: glTF, STL, PLY and OBJ. The files are checked by gltf_check.py,
-which shares nothing with the writer, and read again by vv: the pictures must be alike."""
+which shares nothing with the writer."""
 import os
 import pathlib
 import random
@@ -8,6 +8,7 @@ import struct
 
 import pytest
 from conftest import HEADER, ROOT
+from exports import export, node
 from gltf_check import document_of, problems_of
 
 SCENES = sorted((ROOT / "examples").rglob("*.wr[lz]"))
@@ -48,24 +49,6 @@ ROUTE Button.touchTime TO Clock.startTime
 Fog { }
 Background { skyColor 0 0 1 }
 """
-
-
-def export(vv, world, name="out.glb", *more):
-    """Exports a world, given as text or path; returns the document, the checker and what vv said."""
-    if isinstance(world, str):
-        vv.write("in.wrl", world)
-        world = "in.wrl"
-    done = vv(world, "--write", name, *more)
-    assert done.returncode == 0, done.talk
-    document, problems, checker = document_of(vv.folder / name)
-    assert problems == []
-    return document, checker, done.talk
-
-
-def node(document, name):
-    found = [one for one in document["nodes"] if one.get("name") == name]
-    assert found, name
-    return found[0]
 
 
 def test_names_places_and_instances(vv):
@@ -138,6 +121,35 @@ def test_animations(vv):
     assert [list(v) for v in checker.vectors(sampler["output"])] == [[1, 0, 0], [1, 1, 0], [1, 0, 0]]
     target = document["nodes"][moves["target"]["node"]]
     assert target["name"] == "Inner" and document["nodes"][target["children"][0]]["translation"] == [-1, 0, 0]
+
+
+def test_curves_move_as_in_the_world(vv):
+    world = """#X3D V3.3 utf8
+PROFILE Full
+DEF Clock TimeSensor { cycleInterval 4 loop TRUE }
+DEF Path SplinePositionInterpolator { key [ 0 0.25 1 ] keyValue [ 0 0 0, 2 1 0, 0 3 1 ] }
+DEF Turn SquadOrientationInterpolator { key [ 0 0.5 1 ] keyValue [ 0 1 0 0, 1 0 0 1, 0 0 1 2 ] }
+DEF Body Transform { children Shape { geometry Box { } } }
+ROUTE Clock.fraction_changed TO Path.set_fraction
+ROUTE Clock.fraction_changed TO Turn.set_fraction
+ROUTE Path.value_changed TO Body.set_translation
+ROUTE Turn.value_changed TO Body.set_rotation
+"""
+    document, checker, talk = export(vv, world)
+    assert "ROUTE" not in talk, talk
+    animation, = document["animations"]
+    for path, most in (("translation", 0.02), ("rotation", 0.005)):
+        channel, = [one for one in animation["channels"] if one["target"]["path"] == path]
+        sampler = animation["samplers"][channel["sampler"]]
+        times, values = checker.arrays[sampler["input"]], checker.vectors(sampler["output"])
+        for at in (0.3, 0.8, 1.7, 3.1):
+            still, _, _ = export(vv, world, "still.glb", "--time", str(at))
+            right = next(i for i, time in enumerate(times) if time >= at)
+            t = (at - times[right - 1]) / (times[right] - times[right - 1])
+            now = [(1 - t) * a + t * b for a, b in zip(values[right - 1], values[right])]
+            wanted = node(still, "Body")[path]
+            side = -1 if path == "rotation" and sum(a * b for a, b in zip(now, wanted)) < 0 else 1
+            assert [side * x for x in now] == pytest.approx(wanted, abs=most), (path, at)
 
 
 def test_animations_in_prototypes(vv):
@@ -225,6 +237,34 @@ DEF Sign Billboard { children Shape { geometry Box { } } }""")
     assert "rotation" not in node(document, "Sign")
     for text in ("an LOD has its finest level alone", "a Switch has its present choice", "a Billboard does not turn"):
         assert text in talk, talk
+
+
+def test_looks_of_a_switch_are_variants(vv):
+    shapes = """DEF Body Switch { whichChoice 1 choice [
+  Shape { appearance DEF Red Appearance { material Material { diffuseColor 1 0 0 } } geometry DEF G Box { } }
+  Shape { appearance DEF Wood Appearance { texture PixelTexture { image 1 1 3 0x804020 } } geometry USE G }
+  Shape { appearance Appearance { material DEF Blue Material { } } geometry USE G }
+  Shape { geometry USE G } ] }
+Transform { translation 3 0 0 children Switch { whichChoice 0 choice [
+  Shape { appearance USE Red geometry DEF H Cone { } } Shape { appearance USE Wood geometry USE H } ] } }"""
+    document, _, talk = export(vv, HEADER + shapes)
+    assert "a Switch" not in talk, talk
+    names = [one["name"] for one in document["extensions"]["KHR_materials_variants"]["variants"]]
+    assert names == ["Red", "Wood", "Blue", "Body 3"]
+    body, cone = [mesh["primitives"][0] for mesh in document["meshes"]]
+    for primitive, shown, looks in ((body, "Wood", names), (cone, "Red", ["Red", "Wood"])):
+        assert document["materials"][primitive["material"]]["name"] == shown
+        mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"]
+        mapped = {names[v]: mapping["material"] for mapping in mappings for v in mapping["variants"]}
+        assert list(sorted(mapped)) == sorted(looks) and mapped[shown] == primitive["material"]
+        assert "TEXCOORD_0" in primitive["attributes"]
+    document, _, _ = export(vv, HEADER + shapes.replace("DEF Wood Appearance", "DEF Red Appearance").replace("USE Wood", "USE Red"))
+    names = [one["name"] for one in document["extensions"]["KHR_materials_variants"]["variants"]]
+    assert names == ["Red", "Red 1", "Blue", "Body 3"]
+    other = shapes.replace("geometry USE G }\n  Shape { geometry", "geometry Sphere { } }\n  Shape { geometry")
+    document, _, talk = export(vv, HEADER + other)
+    assert "a Switch has its present choice" in talk, talk
+    assert len(document["extensions"]["KHR_materials_variants"]["variants"]) == 2
 
 
 HOSTILE = {
@@ -390,71 +430,3 @@ def test_worlds_of_others_are_right(vv):
         if problems := problems_of(vv.folder / "out.glb"):
             bad[str(path)] = problems
     assert bad == {} and written > 20
-
-
-# Worlds that glTF can say as they are: without highlights, backgrounds and headlights.
-VIEW = "Viewpoint { position 2 2 4 orientation -0.6 0.8 0.1 0.7 }\n"
-SUN = "DirectionalLight { direction -1 -2 -3 }\n"
-PICTURE = "PixelTexture { image 2 2 3 0xff0000 0x00ff00 0x0000ff 0xffffff }"
-SQUARE = """IndexedFaceSet { solid FALSE coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } coordIndex [ 0 1 2 3 ]
-  texCoord TextureCoordinate { point [ 0 0, 2 0, 2 2, 0 2 ] } }"""
-
-
-def shape(material, geometry="Box { }", more=""):
-    return f"Shape {{ appearance Appearance {{ {material} {more} }} geometry {geometry} }}\n"
-
-
-ALIKE = {
-    "matt": SUN + shape("material Material { diffuseColor 0.2 0.5 0.8 }"),
-    "light near by": "PointLight { location 1 2 3 attenuation 0 0 0.2 }\n" + shape("material Material { }", "Sphere { }"),
-    "spot": "SpotLight { location 0 0 4 attenuation 0 0 0.1 cutOffAngle 0.3 beamWidth 0.2 }\n" +
-            shape("material Material { }", "Box { size 4 4 1 }"),
-    "emission": shape("material Material { diffuseColor 0 0 0 emissiveColor 0.3 0.6 0.1 }", "Cone { }"),
-    "no material": shape("", "Cylinder { }"),
-    "picture": shape(f"texture {PICTURE}", SQUARE),
-    "picture on a material": SUN + shape(f"material Material {{ diffuseColor 1 0 0 }} texture {PICTURE}", SQUARE),
-    "picture that is moved": shape(f"texture {PICTURE}", SQUARE,
-                                   "textureTransform TextureTransform { translation 0.3 0.1 rotation 0.4 scale 2 2 }"),
-    "picture that is sheared": shape(f"texture {PICTURE}", SQUARE,
-                                     "textureTransform TextureTransform { rotation 0.4 scale 2 0.7 center 0.5 0.5 }"),
-    "grey picture": SUN + shape("material Material { diffuseColor 1 0.5 0 } texture PixelTexture { image 1 2 1 0x80 0xff }",
-                                SQUARE),
-    "transparent": SUN + shape("material Material { transparency 0.5 diffuseColor 1 0 0 }") +
-                   "Transform { translation 0 0 -3 " + "children " + shape("material Material { emissiveColor 0 1 0 }") + "}",
-    "colours of vertices": """Shape { geometry IndexedFaceSet { coord Coordinate { point [ -1 -1 0, 1 -1 0, 0 1 0 ] }
-  coordIndex [ 0 1 2 ] color Color { color [ 1 0 0, 0 0.5 0, 0.2 0.2 1 ] } } }""",
-    "clockwise": SUN + """Shape { appearance Appearance { material Material { } } geometry IndexedFaceSet { ccw FALSE
-  coord Coordinate { point [ -1 -1 0, 1 -1 0, 0 1 0 ] } coordIndex [ 0 2 1 ] } }""",
-    "places": SUN + """Transform { translation 1 0 0 center 1 0 0 rotation 0 0 1 1 scale 1 2 0.5 scaleOrientation 1 1 0 1
-  children Transform { scale -1 1 1 rotation 0 1 0 0.5 children """ +
-              shape("material Material { diffuseColor 0 1 0 }", "Box { size 0.5 1 2 }") + "} }",
-}
-
-
-def test_glass_is_read_again(vv):
-    ball = """Shape { appearance ORTAppearance { shader ORTShader { name "Glass" file "glass"
-  options [ "1f index 1.3" "3f absorption .1 .5 1" ] } } geometry Sphere { } }
-Transform { translation 0 0 -3 children """ + shape("material Material { emissiveColor 0 1 0 }", "Box { size 1 9 1 }") + "}"
-    export(vv, HEADER + VIEW + ball)
-    ours, theirs = picture(vv, "in.wrl"), picture(vv, "out.glb")
-    assert sum(ours) > 20000 and difference(ours, theirs) < 2
-
-
-def picture(vv, name):
-    done = vv(name, "-o", "ppm:-", "--size", "64x48", "--spp", "16", "--viewpoint", "0", "--headlight", "off",
-              "--background", "0,0,0", "-q")
-    assert done.returncode == 0, done.talk
-    return done.stdout[-64 * 48 * 3:]
-
-
-def difference(a, b):
-    """Returns the mean difference of two pictures, of 255."""
-    return sum(abs(x - y) for x, y in zip(a, b)) / len(a)
-
-
-@pytest.mark.parametrize("name", ALIKE)
-def test_what_is_read_again_looks_the_same(vv, name):
-    export(vv, HEADER + VIEW + ALIKE[name])
-    ours = picture(vv, "in.wrl")
-    assert sum(ours) > 20000  # something is to be seen
-    assert difference(ours, picture(vv, "out.glb")) < 1

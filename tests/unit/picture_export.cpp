@@ -237,6 +237,31 @@ TEST(ExportMotion, KeysOutsideOfTheCycleCutTheCurve) {
   EXPECT_NEAR(motion.keys().values.front()[2], std::sin(pi / 8), 1e-6);
 }
 
+// A Hermite spline through points at equal distances is 3 t^2 - 2 t^3 where it rests at its ends.
+TEST(ExportMotion, CurvesAreSampled) {
+  xvrml::nodes::TimeSensor clock;
+  clock.cycleInterval = 16;
+  xvrml::nodes::SplinePositionInterpolator move;
+  move.key = {0, 1};
+  move.keyValue = {{0, 0, 0}, {1, 0, 0}};
+  const Keys keys = keysOf({&clock, &move, nullptr, Path::translation});
+  ASSERT_EQ(keys.times.size(), 17u);
+  for (size_t i = 0; i < 17; ++i) {
+    const double t = double(i) / 16;
+    EXPECT_NEAR(keys.times[i], double(i), 1e-5);
+    EXPECT_NEAR(keys.values[i][0], t * t * (3 - 2 * t), 1e-6);
+  }
+  xvrml::nodes::SquadOrientationInterpolator turn;
+  turn.key = {0, 0.5f, 0.5f, 1};
+  turn.keyValue = {{0, 1, 0, 0}, {0, 1, 0, 1}, {0, 1, 0, 2}, {0, 1, 0, 3}};
+  const Keys turns = keysOf({&clock, &turn, nullptr, Path::rotation});
+  EXPECT_EQ(turns.width, 4u);
+  ASSERT_EQ(turns.times.size(), 34u); // no places between keys at one time
+  EXPECT_NEAR(turns.values.back()[1], std::sin(1.5), 1e-6);
+  move.key.clear();
+  EXPECT_TRUE(keysOf({&clock, &move, nullptr, Path::translation}).times.empty());
+}
+
 TEST(ExportVertices, KeepWhatIsGood) {
   xvrml::GeometryArrays arrays;
   arrays.kind = xvrml::GeometryArrays::Kind::triangles;

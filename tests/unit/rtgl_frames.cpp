@@ -276,6 +276,52 @@ TEST_F(Gl, VertexArraysDrawAsVerticesDo) {
   expectNear(pixel(3, 28), {0, 255, 255});
 }
 
+TEST_F(Gl, PixelsAreReadWithinAFrame) {
+  clear();
+  glColor3f(1, 0, 0);
+  square(0.5f);
+  expectNear(pixel(16, 16), {255, 0, 0});
+  const uint64_t frames = stats().frame;
+  expectNear(pixel(16, 16), {255, 0, 0});
+  EXPECT_EQ(stats().frame, frames) << "nothing was drawn since";
+  glTranslatef(0.75f, 0.75f, 0);
+  glColor3f(0, 1, 0);
+  square(0.2f);
+  expectNear(pixel(28, 28), {0, 255, 0});
+  EXPECT_TRUE(rtglEndFrame());
+  expectNear(pixel(16, 16), {255, 0, 0});
+  expectNear(pixel(28, 28), {0, 255, 0});
+  clear();
+  expectNear(pixel(16, 16), {0, 0, 0});
+}
+
+TEST_F(Gl, NumbersOutOfTheirRangesAreErrors) {
+  const auto expectError = [](GLenum wanted, const char* call) {
+    EXPECT_EQ(glGetError(), wanted) << call;
+  };
+  glLightf(GL_LIGHT0, GL_SPOT_EXPONENT, 129);
+  expectError(GL_INVALID_VALUE, "exponent");
+  glLightf(GL_LIGHT0, GL_LINEAR_ATTENUATION, -1);
+  expectError(GL_INVALID_VALUE, "attenuation");
+  const GLubyte white[4] = {255, 255, 255, 255};
+  glTexImage2D(GL_TEXTURE_2D, -1, GL_RGBA, 1, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, white);
+  expectError(GL_INVALID_VALUE, "level");
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 2, GL_RGBA, GL_UNSIGNED_BYTE, white);
+  expectError(GL_INVALID_VALUE, "border");
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_NEAREST);
+  expectError(GL_INVALID_ENUM, "wrap");
+  glClear(1);
+  expectError(GL_INVALID_VALUE, "clear");
+  GLint depth = -1, mode = 0;
+  glPushAttrib(GL_ENABLE_BIT);
+  glGetIntegerv(GL_ATTRIB_STACK_DEPTH, &depth);
+  glPopAttrib();
+  EXPECT_EQ(depth, 1);
+  glGetIntegerv(GL_COLOR_MATERIAL_PARAMETER, &mode);
+  EXPECT_EQ(GLenum(mode), GLenum(GL_AMBIENT_AND_DIFFUSE));
+  expectError(GL_NO_ERROR, "glGet");
+}
+
 TEST_F(Gl, RefiningAddsSamples) {
   clear();
   square(0.52f);

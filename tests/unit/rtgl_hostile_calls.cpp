@@ -101,6 +101,7 @@ TEST_F(HostileGl, NumbersThatAreNoIntegers) {
   glFogf(GL_FOG_MODE, -1e30f);
   expectError(GL_INVALID_ENUM);
   glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, INFINITY);
+  expectError(GL_INVALID_ENUM);
   glTexEnvf(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, -INFINITY);
   const GLfloat lists[] = {NAN, INFINITY, -1};
   glCallLists(3, GL_FLOAT, lists);

@@ -31,6 +31,7 @@ struct Made {
     gltf::Scene scene(document, meshes, motions, remarks);
     xvrml::render(world, scene, walkOptions());
     scene.finish();
+    meshes.finish();
     motions.write(document);
   }
   Document document;

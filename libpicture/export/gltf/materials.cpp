@@ -110,7 +110,8 @@ Json materialOf(const Surface& surface, bool doubleSided, float thickness, Docum
     pbr["baseColorFactor"] = {surface.color.r, surface.color.g, surface.color.b, surface.opacity};
   Json material = {{"pbrMetallicRoughness", std::move(pbr)}};
   if (!surface.name.empty()) material["name"] = surface.name;
-  if (doubleSided) material["doubleSided"] = true;
+  // KHR_materials_volume wants bodies whose faces have one side.
+  if (doubleSided && !(surface.transmission > 0)) material["doubleSided"] = true;
   if (surface.alpha == Surface::Alpha::blend) material["alphaMode"] = "BLEND";
   if (surface.alpha == Surface::Alpha::mask) {
     material["alphaMode"] = "MASK";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 namespace picture::gltf {
 
@@ -71,16 +72,26 @@ float leastSide(const Box& box) {
 
 } // namespace
 
-Meshes::Geometry Meshes::write(const GeometryArrays& arrays) {
+// Returns what a geometry has, without writing it.
+Meshes::Geometry Meshes::describe(const GeometryArrays& arrays) {
   Geometry geometry;
   geometry.solid = arrays.solid;
   const Vertices vertices(arrays);
   if (vertices.leftOut() > 0)
     remarks_.change("triangles, lines or points with numbers that are not finite are left out");
   if (vertices.empty()) return geometry;
-  const size_t count = vertices.size();
   geometry.kind = arrays.kind;
   geometry.box = boxOf(vertices);
+  if (vertices.hasColors())
+    geometry.colors = vertices.hasAlphas() ? VertexColors::transparent : VertexColors::opaque;
+  return geometry;
+}
+
+// Writes what all materials show, for the first one that is visible.
+void Meshes::write(const GeometryArrays& arrays, Geometry& geometry) {
+  if (geometry.points >= 0) return;
+  const Vertices vertices(arrays);
+  const size_t count = vertices.size();
   const auto& [low, high] = geometry.box;
   Elements points = floatsOf<Vec3f>(count, "VEC3", [&](size_t i) { return vertices.point(i); });
   points.minimum = {low.x, low.y, low.z};
@@ -89,10 +100,7 @@ Meshes::Geometry Meshes::write(const GeometryArrays& arrays) {
   if (vertices.hasNormals() && arrays.kind == GeometryArrays::Kind::triangles)
     geometry.normals = int64_t(document_.add(
         floatsOf<Vec3f>(count, "VEC3", [&](size_t i) { return vertices.normal(i); })));
-  if (vertices.hasColors())
-    geometry.colors = vertices.hasAlphas() ? VertexColors::transparent : VertexColors::opaque;
   geometry.indices = int64_t(document_.add(indicesOf(vertices.indices(), count)));
-  return geometry;
 }
 
 // Returns the accessor of the colours. They are written for the first material that shows them.
@@ -138,30 +146,65 @@ Json Meshes::primitiveOf(const DrawnShape& shape, Geometry& geometry, const Mate
   return primitive;
 }
 
-std::optional<MeshUse> Meshes::use(const DrawnShape& shape) {
+// Adds the looks that a Switch chooses between to a primitive. A primitive has one set of
+// attributes, so a look that needs others is left out. Sets what the attributes must have.
+Json Meshes::mappingsOf(const xvrml::nodes::Switch& chooser, const MaterialOf& materialOf,
+                        MaterialUse& attributes) {
+  std::map<size_t, std::vector<size_t>> variants; // by material
+  std::set<size_t> taken;
+  for (const Look& look : looksOf(chooser)) {
+    const MaterialUse use = materialOf(look.parts);
+    const bool fits =
+        use.material && use.showsVertexColors == attributes.showsVertexColors &&
+        (!use.textured || !attributes.textured || use.bakedTransform == attributes.bakedTransform);
+    if (!fits) {
+      remarks_.change("a choice of a Switch that needs other colours of vertices or coordinates of "
+                      "textures is left out");
+      continue;
+    }
+    if (use.textured) attributes.bakedTransform = use.bakedTransform;
+    attributes.textured = attributes.textured || use.textured;
+    const size_t variant = variants_.of(look.name);
+    if (taken.insert(variant).second) variants[*use.material].push_back(variant);
+  }
+  Json mappings = Json::array();
+  for (const auto& [material, indices] : variants)
+    mappings.push_back({{"material", material}, {"variants", indices}});
+  return mappings;
+}
+
+std::optional<MeshUse> Meshes::use(const DrawnShape& shape, const xvrml::nodes::Switch* chooser) {
   // ClipPlanes leave other parts of a geometry at each place.
   const bool cut = !shape.kept().empty();
   Geometry own;
   Geometry* geometry = &own;
   if (cut) {
-    own = write(shape.mesh());
+    own = describe(shape.mesh());
   } else {
     const auto [found, fresh] = geometries_.try_emplace(&shape.geometry);
-    if (fresh) found->second = write(shape.mesh());
+    if (fresh) found->second = describe(shape.mesh());
     geometry = &found->second;
   }
   if (geometry->kind == GeometryArrays::Kind::empty) return {};
   const bool lines = geometry->kind != GeometryArrays::Kind::triangles;
-  const MaterialUse material = materials_.use(shape.appearance(), geometry->colors, lines,
-                                              !lines && !geometry->solid, leastSide(geometry->box));
+  const auto materialOf = [&](const xvrml::AppearanceParts& parts) {
+    return materials_.use(parts, geometry->colors, lines, !lines && !geometry->solid,
+                          leastSide(geometry->box));
+  };
+  MaterialUse material = materialOf(shape.appearance());
   if (!material.material) return {};
   const auto mesh = [&] {
-    Json object = {{"primitives", Json::array({primitiveOf(shape, *geometry, material)})}};
+    write(shape.mesh(), *geometry);
+    const Json mappings = chooser ? mappingsOf(*chooser, materialOf, material) : Json::array();
+    Json primitive = primitiveOf(shape, *geometry, material);
+    if (!mappings.empty())
+      primitive["extensions"]["KHR_materials_variants"] = {{"mappings", mappings}};
+    Json object = {{"primitives", Json::array({std::move(primitive)})}};
     if (!shape.geometry.defName.empty()) object["name"] = shape.geometry.defName;
     return document_.add("meshes", object);
   };
   if (cut) return MeshUse{mesh(), geometry->box};
-  const auto [known, fresh] = meshes_.try_emplace({&shape.geometry, *material.material});
+  const auto [known, fresh] = meshes_.try_emplace({&shape.geometry, *material.material, chooser});
   if (fresh) known->second = mesh();
   return MeshUse{known->second, geometry->box};
 }

@@ -6,8 +6,10 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 #include "libpicture/walk.h"
+#include "xvrml/interpolation.h"
 
 namespace picture::gltf {
 
@@ -90,9 +92,12 @@ std::optional<Path> pathOf(const Link& link) {
       nodeCast<xvrml::nodes::Transform>(link.to) || nodeCast<xvrml::nodes::CADPart>(link.to);
   if (!hasMatrix) return {};
   const std::string_view field = fieldSet(*link.to, *link.in);
-  const bool turns = nodeCast<xvrml::nodes::OrientationInterpolator>(link.from) != nullptr;
+  const bool turns = nodeCast<xvrml::nodes::OrientationInterpolator>(link.from) ||
+                     nodeCast<xvrml::nodes::SquadOrientationInterpolator>(link.from);
   if (turns) return field == "rotation" ? std::optional(Path::rotation) : std::nullopt;
-  if (!nodeCast<xvrml::nodes::PositionInterpolator>(link.from)) return {};
+  if (!nodeCast<xvrml::nodes::PositionInterpolator>(link.from) &&
+      !nodeCast<xvrml::nodes::SplinePositionInterpolator>(link.from))
+    return {};
   return field == "translation" ? std::optional(Path::translation)
          : field == "scale"     ? std::optional(Path::scale)
                                 : std::nullopt;
@@ -171,21 +176,58 @@ std::array<float, 4> betweenTurns(const std::array<float, 4>& a, const std::arra
   return valueOf(between(turnOf(a), turnOf(b), t));
 }
 
+// The keys of an interpolator: fractions, and a value for each.
+template <class T> struct Curve {
+  std::vector<float> fractions;
+  std::vector<T> values;
+};
+
+template <class Node> auto curveOf(const Node& node) {
+  using T = std::decay_t<decltype(node.keyValue[0])>;
+  const size_t count = std::min(node.key.size(), node.keyValue.size());
+  return Curve<T>{{node.key.begin(), node.key.begin() + ptrdiff_t(count)},
+                  {node.keyValue.begin(), node.keyValue.begin() + ptrdiff_t(count)}};
+}
+
+// Returns a curve that is not straight between its keys, with more keys.
+template <class Node> auto sampledCurveOf(const Node& node) {
+  constexpr int parts = 16; // between two keys
+  const auto given = curveOf(node);
+  auto curve = decltype(curveOf(node))();
+  for (size_t i = 0; i < given.fractions.size(); ++i) {
+    const float from = i > 0 ? given.fractions[i - 1] : 0, to = given.fractions[i];
+    for (int k = 1; k < parts && i > 0 && from < to; ++k) {
+      const float fraction = from + (to - from) * float(k) / parts;
+      curve.fractions.push_back(fraction);
+      curve.values.push_back(xvrml::valueAt(node, fraction).value_or(given.values[i]));
+    }
+    curve.fractions.push_back(to);
+    curve.values.push_back(given.values[i]);
+  }
+  return curve;
+}
+
+void appendPlaces(Keys& keys, const Curve<xvrml::Vec3f>& curve, double length) {
+  const auto valueAt = [&](size_t i) {
+    const xvrml::Vec3f& v = curve.values[i];
+    return std::array<float, 4>{v.x, v.y, v.z, 0};
+  };
+  appendAll(keys, stepsOf(curve.fractions, curve.values.size(), valueAt, betweenPositions), length);
+}
+
 // glTF turns by the shorter way, which is not certain for nearly half a circle of quaternions. Our
 // interpolators go on in the same direction there (ISO/IEC 14772-1 6.32).
-void appendTurns(Keys& keys, const xvrml::nodes::OrientationInterpolator& node, size_t count,
-                 double length) {
+void appendTurns(Keys& keys, const Curve<xvrml::Rotation>& curve, double length) {
+  const size_t count = curve.values.size();
   std::vector<Quaternion> turns(count);
   for (size_t i = 0; i < count; ++i) {
-    turns[i] = quaternionOf(node.keyValue[i]);
+    turns[i] = quaternionOf(curve.values[i]);
     const double side = i > 0 ? dot(turns[i - 1], turns[i]) : 1;
     if (side < -1e-3) turns[i] = {-turns[i].x, -turns[i].y, -turns[i].z, -turns[i].w};
   }
   Keys sparse;
-  appendAll(sparse,
-            stepsOf(
-                node.key, count, [&](size_t i) { return valueOf(turns[i]); }, betweenTurns),
-            length);
+  const auto valueAt = [&](size_t i) { return valueOf(turns[i]); };
+  appendAll(sparse, stepsOf(curve.fractions, count, valueAt, betweenTurns), length);
   for (size_t i = 0; i < sparse.times.size(); ++i) {
     constexpr double near = 0.1; // 0 is the product of quaternions at right angles
     if (i > 0 && dot(turnOf(sparse.values[i - 1]), turnOf(sparse.values[i])) < near)
@@ -232,20 +274,16 @@ Keys keysOf(const Motion& motion) {
   const double length = motion.clock->cycleInterval;
   constexpr double longest = 1e9; // seconds; floats count no single ones beyond
   if (!(length > 0) || length > longest) return keys;
-  if (const auto* turn = nodeCast<xvrml::nodes::OrientationInterpolator>(motion.interpolator)) {
-    keys.width = 4;
-    appendTurns(keys, *turn, std::min(turn->key.size(), turn->keyValue.size()), length);
-  } else {
-    const auto& node = static_cast<const xvrml::nodes::PositionInterpolator&>(*motion.interpolator);
-    const auto valueAt = [&](size_t i) {
-      const xvrml::Vec3f& v = node.keyValue[i];
-      return std::array<float, 4>{v.x, v.y, v.z, 0};
-    };
-    appendAll(keys,
-              stepsOf(node.key, std::min(node.key.size(), node.keyValue.size()), valueAt,
-                      betweenPositions),
-              length);
-  }
+  const Node* node = motion.interpolator;
+  if (motion.path == Path::rotation) keys.width = 4;
+  if (const auto* turn = nodeCast<xvrml::nodes::OrientationInterpolator>(node))
+    appendTurns(keys, curveOf(*turn), length);
+  else if (const auto* squad = nodeCast<xvrml::nodes::SquadOrientationInterpolator>(node))
+    appendTurns(keys, sampledCurveOf(*squad), length);
+  else if (const auto* spline = nodeCast<xvrml::nodes::SplinePositionInterpolator>(node))
+    appendPlaces(keys, sampledCurveOf(*spline), length);
+  else if (const auto* place = nodeCast<xvrml::nodes::PositionInterpolator>(node))
+    appendPlaces(keys, curveOf(*place), length);
   if (!std::all_of(keys.values.begin(), keys.values.end(), isFinite)) return {};
   return keys;
 }

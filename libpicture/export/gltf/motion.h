@@ -23,7 +23,7 @@ enum class Path : uint8_t { translation, rotation, scale };
 // A way from a TimeSensor through an interpolator to a field.
 struct Motion {
   const xvrml::nodes::TimeSensor* clock = nullptr;
-  const xvrml::Node* interpolator = nullptr; // a PositionInterpolator or OrientationInterpolator
+  const xvrml::Node* interpolator = nullptr; // moves or turns, straight or in a curve
   const xvrml::Node* target = nullptr;       // a Transform or CADPart
   Path path = Path::translation;
 };
@@ -36,7 +36,8 @@ struct Keys {
 };
 // Returns the keys of a motion, over a whole cycle: the first and the last value hold until its
 // ends. Where an interpolator jumps, two keys are as near as floats can be. Turns by nearly half a
-// circle or more get a key between, so that they go the same way round. Empty: there are none.
+// circle or more get a key between, so that they go the same way round. Curves are sampled at 16
+// places between two keys. Empty: there are none.
 Keys keysOf(const Motion& motion);
 
 class Motions {

@@ -123,7 +123,9 @@ Scene::Visit Scene::renderLOD(nodes::LOD& node, const State& state) {
 }
 
 Scene::Visit Scene::renderSwitch(nodes::Switch& node, const State& state) {
-  if (node.choice.size() > 1 || (node.whichChoice != 0 && !node.choice.empty()))
+  const bool shows = node.choice.size() == 1 && node.whichChoice == 0;
+  const bool none = node.whichChoice < 0 || size_t(node.whichChoice) >= node.choice.size();
+  if (!shows && !node.choice.empty() && (none || !choosesLooks(node)))
     remarks_.change("a Switch has its present choice");
   return render(node, state);
 }
@@ -135,8 +137,23 @@ Scene::Visit Scene::renderAnchor(nodes::Anchor& node, const State& state) {
 
 Scene::Visit Scene::renderShape(nodes::Shape&, const State&) { return Visit::draw; }
 
+// Returns whether a Switch chooses between looks of one geometry.
+bool Scene::choosesLooks(const nodes::Switch& node) {
+  const auto [found, fresh] = choosers_.try_emplace(&node);
+  if (fresh) found->second = !looksOf(node).empty();
+  return found->second;
+}
+
+// Returns the Switch that chooses a Shape for its look; null if there is none.
+const nodes::Switch* Scene::chooserOf(const State& state) {
+  size_t above = state.path.size() - 1;
+  while (above > 0 && nodeCast<xvrml::ProtoInstance>(state.path[above - 1])) --above;
+  const auto* chooser = above > 0 ? nodeCast<nodes::Switch>(state.path[above - 1]) : nullptr;
+  return chooser && choosesLooks(*chooser) ? chooser : nullptr;
+}
+
 void Scene::draw(const xvrml::DrawnShape& shape) {
-  const std::optional<MeshUse> use = meshes_.use(shape);
+  const std::optional<MeshUse> use = meshes_.use(shape, chooserOf(shape.state));
   if (!use) return;
   grow(use->box, shape.matrix());
   if (!open_.empty()) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "libpicture/export/export.h"
@@ -80,6 +81,8 @@ class Scene : public xvrml::Renderer {
   void addLight(Deferred light, const Place& place, const xvrml::Node& node);
   void addCamera(Json camera, const std::string& name, const xvrml::Vec3f& position,
                  const xvrml::Rotation& orientation, const xvrml::Node& node, const State& state);
+  bool choosesLooks(const xvrml::nodes::Switch& node);
+  const xvrml::nodes::Switch* chooserOf(const State& state);
   void grow(const Box& box, const double matrix[16]);
   Vec centre() const;
   void finishCamera(Deferred& camera);
@@ -90,6 +93,7 @@ class Scene : public xvrml::Renderer {
   Motions& motions_;
   Remarks& remarks_;
   std::vector<Open> open_;
+  std::unordered_map<const xvrml::Node*, bool> choosers_; // answers of choosesLooks()
   std::vector<Deferred> lights_, cameras_;
   double low_[3], high_[3]; // bounds of what is drawn; low_[0] > high_[0]: nothing is
 };
