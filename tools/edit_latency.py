@@ -78,7 +78,7 @@ def measure(nodes, times):
         editor.page.edit("end_drag")
         selects = [editor.select(("OTHER", "LAMP")[i % 2]) for i in range(times // 2 * 2)]
         cpu = editor.server.cpu()
-        drags = [editor.drag((i + 1) / 1024) for i in range(times)]
+        drags = [editor.drag((i % 60 + 1) / 64) for i in range(times)]
         cpu = (editor.server.cpu() - cpu) / times
         editor.page.edit("end_drag")
         undo = editor.time(lambda t: intensity(t) == 0.25, "undo")

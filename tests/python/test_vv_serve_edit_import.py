@@ -40,7 +40,7 @@ def test_a_file_becomes_an_inline(serve, vv):
     history(page, undo="Import my_ball-2", unsaved=True)
     page.edit("save")
     history(page, unsaved=False)
-    assert 'url "my_ball-2.wrl"' in text_of(vv)
+    assert 'url [ "my_ball-2.wrl" ]' in text_of(vv)
 
 
 def test_what_is_refused_leaves_no_file(serve, vv):
@@ -48,7 +48,7 @@ def test_what_is_refused_leaves_no_file(serve, vv):
     page.still()
     before = sorted(os.listdir(vv.folder))
     for name, content, why in (("x.sh", b"rm", "only worlds and meshes"),
-                               ("x.wrl", b"", "empty"), ("x.stl", b"nothing", "x.stl")):
+                               ("x.wrl", b"", "empty"), ("x.wrl", b"no world", "x.wrl is not")):
         count = len(page.of("said"))
         page.edit("import", name=name, bytes=len(content))
         page.edit("import_part", data=base64.b64encode(content).decode())

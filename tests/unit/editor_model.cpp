@@ -171,6 +171,55 @@ TEST_F(Model, AValueChangesNoRows) {
   EXPECT_EQ(model.rows().at(1).label, "LAMP  PointLight");
 }
 
+// So does a selection: the rows of what it opens are added to the others.
+TEST(EditModel, ASelectionReadsNoOtherRows) {
+  EditedWorld world("#VRML V2.0 utf8\n"
+                    "DEF A Group { children DEF B Group { children [ DEF C Group { } DEF D Group { "
+                    "children Group { } } ] } }\n"
+                    "DEF E Group { children [ DEF F Group { } USE C ] } DEF G Group { }\n");
+  EditModel model;
+  double seconds = 0;
+  const auto rows = [&](EditModel& shown) {
+    shown.update(world.editor, front(), false, seconds += 1);
+    std::string text;
+    for (const OutlineRow& row : shown.rows())
+      text += std::string(size_t(row.depth), '.') + (row.isUse ? "USE " : "") + row.node->defName +
+              (row.isOpen    ? "-"
+               : row.canOpen ? "+"
+                             : "") +
+              " ";
+    return text;
+  };
+  // Shows the same nodes by reading all rows.
+  const auto expectAsRead = [&](std::initializer_list<const char*> opened) {
+    EditModel read;
+    rows(read);
+    for (const char* name : opened) read.setOpen(world.node(name), true);
+    EXPECT_EQ(rows(model), rows(read));
+  };
+  EXPECT_EQ(rows(model), "A+ E+ G ");
+  const OutlineRow* const first = model.rows().data();
+  world.editor.choose(world.node("G"), false);
+  EXPECT_EQ(rows(model), "A+ E+ G ");
+  EXPECT_EQ(model.rows().data(), first);
+  EXPECT_EQ(model.takeScroll(), 2);
+  world.editor.choose(world.node("D"), false);
+  EXPECT_EQ(rows(model), "A- .B- ..C ..D+ E+ G ");
+  EXPECT_EQ(model.takeScroll(), 3);
+  expectAsRead({"A", "B"});
+  world.editor.choose(world.node("F"), false); // C has two places then
+  EXPECT_EQ(rows(model), "A- .B- ..C ..D+ E- .F .USE C G ");
+  expectAsRead({"A", "B", "E"});
+  // A node that is open already brings its rows.
+  model.setOpen(world.node("A"), false);
+  EXPECT_EQ(rows(model), "A+ E- .F .C G ");
+  world.editor.choose(world.node("D"), false);
+  EXPECT_EQ(rows(model), "A- .B- ..C ..D+ E- .F .USE C G ");
+  world.editor.choose(world.node("G"), false);
+  world.editor.editor().remove({nullptr, "", 1});
+  EXPECT_EQ(rows(model), "A- .B- ..C ..D+ G ");
+}
+
 TEST_F(Model, WrongValuesAreSaidAndChangeNothing) {
   model.select(world.node("LAMP"), false);
   update();

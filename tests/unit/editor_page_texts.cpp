@@ -166,7 +166,8 @@ TEST(EditorPageTexts, ProblemsAreABoundedList) {
 }
 
 TEST(EditorPageTexts, AnElementOfAListIsSetAddedAndRemoved) {
-  Shown shown("DEF C Coordinate { point [ 0 0 0, 1 0 0 ] } DEF L PointLight { }");
+  Shown shown("Shape { geometry PointSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0 ] } } }\n"
+              "DEF L PointLight { }");
   const auto points = [&] {
     return xvrml::nodeCast<xvrml::nodes::Coordinate>(shown.world.node("C"))->point;
   };

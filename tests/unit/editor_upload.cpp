@@ -93,7 +93,7 @@ TEST_F(EditorUploadFiles, AFileIsWrittenBesideTheWorldAndNeverOverAnother) {
   EXPECT_EQ(send("box.wrl", box), "");
   EXPECT_EQ(contentOf("box.wrl"), "precious");
   EXPECT_EQ(contentOf("box-2.wrl"), box);
-  EXPECT_NE(world->editor.editor().text().find("url \"box-2.wrl\""), std::string::npos);
+  EXPECT_NE(world->editor.editor().text().find("url [ \"box-2.wrl\" ]"), std::string::npos);
   world->editor.undo();
   EXPECT_FALSE(world->editor.isChanged());
   EXPECT_EQ(names(), (std::set<std::string>{"box-2.wrl", "box.wrl", "world.wrl"}));
@@ -102,7 +102,7 @@ TEST_F(EditorUploadFiles, AFileIsWrittenBesideTheWorldAndNeverOverAnother) {
 TEST_F(EditorUploadFiles, WhatIsRefusedLeavesNothing) {
   EXPECT_NE(send("notes.txt", box).find("only worlds and meshes"), std::string::npos);
   EXPECT_NE(send("box.wrl", "").find("is empty"), std::string::npos);
-  EXPECT_NE(send("box.stl", "no mesh at all"), "");
+  EXPECT_NE(send("box.wrl", "no world at all"), "");
   Upload upload;
   EXPECT_THROW(upload.take(edit::Import{"box.wrl", size_t(maxImportBytes) + 1}, world->editor),
                xvrml::EditError);

@@ -147,13 +147,13 @@ void EditModel::showAll() {
 
 void EditModel::setOpen(const NodeRef& node, bool open) {
   outline_.setOpen(node, open);
-  isStale_ = true;
+  areRowsStale_ = true;
 }
 
 void EditModel::search(std::string text) {
   if (text == search_) return;
   search_ = std::move(text);
-  isStale_ = true;
+  areRowsStale_ = true;
 }
 
 void EditModel::select(const NodeRef& node, bool add) {
@@ -171,19 +171,19 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   }
   const uint64_t changes = editor.editor().changes(), nodes = editor.editor().nodeChanges();
   areValuesStale_ |= std::exchange(changes_, changes) != changes;
-  isStale_ |= std::exchange(nodeChanges_, nodes) != nodes;
+  if (std::exchange(nodeChanges_, nodes) != nodes) isStale_ = areRowsStale_ = true;
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
     isStale_ = true;
-    if (Node* node = editor.selected(); node && outline_.reveal(editor.browser(), *node))
-      shown_ = NodeRef(node);
+    if (Node* node = editor.selected()) reveal(editor, *node);
   }
   if (!hasAsked_ && editor.prepare()) {
     hasAsked_ = isStale_ = true;
     unwritable_ = picture::whyNotEditable(editor.browser().world().path);
     readOnly_ = editor.editor().whyReadOnly();
   }
-  bool reads = isStale_ || areValuesStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  bool reads = isStale_ || areRowsStale_ || areValuesStale_ ||
+               (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
@@ -191,6 +191,21 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   reads |= problems_.update(editor, seconds);
   std::vector<Line> frames = framesOf(editor, view);
   return std::exchange(frames_, frames) != frames || reads;
+}
+
+// Opens the nodes above one that is to be shown, and scrolls to it. In a world of a million nodes
+// the other rows stay as they are.
+void EditModel::reveal(WorldEditor& editor, Node& node) {
+  const std::optional<MFNode> opened = outline_.reveal(editor.browser(), node);
+  if (!opened) return;
+  shown_ = NodeRef(&node);
+  for (const NodeRef& one : *opened)
+    if (areRowsStale_ || !search_.empty() || !outline_.addRowsOf(*one, rows_)) areRowsStale_ = true;
+}
+
+void EditModel::readRows(const World& world) {
+  areRowsStale_ = false;
+  rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
 }
 
 void EditModel::readSheet(WorldEditor& editor) {
@@ -202,12 +217,13 @@ void EditModel::readSheet(WorldEditor& editor) {
 }
 
 // A value that is dragged in a world of a million nodes must not cost a walk over all of them: rows
-// and places of nodes are read again only if more than values has changed.
+// and places of nodes are read again only if more than values has changed, and rows only if nodes
+// have been opened, moved, added or removed.
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
   const bool all = std::exchange(isStale_, false), values = std::exchange(areValuesStale_, false);
+  if (areRowsStale_) readRows(world);
   if (all) {
-    rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
   } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {
     readSheet(editor);
@@ -219,8 +235,9 @@ void EditModel::read(WorldEditor& editor) {
   }
   if (!shown_) return;
   const NodeRef wanted = std::exchange(shown_, NodeRef());
-  for (size_t i = 0; i < rows_.size(); ++i)
-    if (rows_[i].node == wanted) scroll_ = int(i);
+  const auto row = std::find_if(rows_.begin(), rows_.end(),
+                                [&](const OutlineRow& one) { return one.node == wanted; });
+  if (row != rows_.end()) scroll_ = int(row - rows_.begin());
 }
 
 CameraSettings EditModel::cameraAround(WorldEditor& editor, const EditView& view,

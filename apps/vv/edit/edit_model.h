@@ -119,6 +119,8 @@ class EditModel {
   static std::string nameOf(const Dragged& dragged); // "Text.string"
   void begin(const Dragged& dragged);
   void finishDrag();
+  void reveal(WorldEditor& editor, xvrml::Node& node);
+  void readRows(const xvrml::World& world);
   void read(WorldEditor& editor);
   void readSheet(WorldEditor& editor);
   std::vector<Line> framesOf(WorldEditor& editor, const EditView& view) const;
@@ -134,8 +136,9 @@ class EditModel {
   std::vector<Look> looks_;
   Hiding hiding_;
   bool unsaved_ = false, hasAsked_ = false, isActive_ = false;
-  // Everything that is shown may have changed; only the values of fields may have.
-  bool isStale_ = true, areValuesStale_ = false;
+  // Everything that is shown may have changed, but for the rows of the outline; these may have;
+  // only the values of fields may have.
+  bool isStale_ = true, areRowsStale_ = true, areValuesStale_ = false;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
   std::vector<bool> touched_;              // elements of a list that it has changed

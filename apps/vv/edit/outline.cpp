@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <unordered_map>
 
 #include "printable.h"
@@ -84,6 +85,15 @@ void appendChildPlaces(std::vector<Open>& open, const Open& parent) {
   std::reverse(open.begin() + first, open.end());
 }
 
+// Returns the row of a place, which is closed.
+OutlineRow closedRow(const Open& place) {
+  OutlineRow row{place.node, place.depth, labelOf(*place.node), hasChildren(*place.node),
+                 false,      false,       placed(place)};
+  if (place.slot.parent && !place.slot.field.empty() && place.slot.field != "children")
+    row.label = place.slot.field + ": " + row.label;
+  return row;
+}
+
 } // namespace
 
 std::string labelOf(const Node& node) {
@@ -101,12 +111,8 @@ std::vector<OutlineRow> Outline::rows(const World& world) const {
   while (!open.empty()) {
     const Open place = std::move(open.back());
     open.pop_back();
-    OutlineRow row{place.node, place.depth, labelOf(*place.node), false,
-                   false,      false,       placed(place)};
-    if (place.slot.parent && !place.slot.field.empty() && place.slot.field != "children")
-      row.label = place.slot.field + ": " + row.label;
+    OutlineRow row = closedRow(place);
     row.isUse = !seen.insert(place.node.get());
-    row.canOpen = hasChildren(*place.node);
     row.isOpen = row.canOpen && !row.isUse && open_.contains(place.node.get());
     if (row.isOpen) appendChildPlaces(open, place);
     rows.push_back(std::move(row));
@@ -121,11 +127,38 @@ void Outline::setOpen(const NodeRef& node, bool open) {
     open_.erase(node.get());
 }
 
-bool Outline::reveal(Browser& browser, Node& node) {
+std::optional<MFNode> Outline::reveal(Browser& browser, Node& node) {
   const std::vector<Node*> path = pathTo(browser, node);
+  if (path.empty()) return {};
+  MFNode opened;
   for (Node* one : path)
-    if (one != &node) setOpen(NodeRef(one), true);
-  return !path.empty();
+    if (one != &node && !open_.contains(one)) {
+      setOpen(NodeRef(one), true);
+      opened.emplace_back(one);
+    }
+  return opened;
+}
+
+bool Outline::addRowsOf(const Node& node, std::vector<OutlineRow>& rows) const {
+  const auto parent = std::find_if(rows.begin(), rows.end(),
+                                   [&](const OutlineRow& row) { return row.node.get() == &node; });
+  if (parent == rows.end() || parent->isOpen) return false;
+  std::vector<Open> places;
+  appendChildPlaces(places, {{}, parent->node, parent->depth});
+  std::reverse(places.begin(), places.end());
+  SeenNodes seen;
+  std::vector<OutlineRow> added;
+  for (const Open& place : places) {
+    if (!seen.insert(place.node.get()) || open_.contains(place.node.get())) return false;
+    added.push_back(closedRow(place));
+  }
+  if (std::any_of(rows.begin(), rows.end(),
+                  [&](const OutlineRow& row) { return seen.contains(row.node.get()); }))
+    return false;
+  parent->isOpen = true;
+  rows.insert(parent + 1, std::make_move_iterator(added.begin()),
+              std::make_move_iterator(added.end()));
+  return true;
 }
 
 std::vector<OutlineRow> Outline::find(const World& world, std::string_view text, size_t most) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,8 +30,13 @@ class Outline {
   std::vector<OutlineRow> rows(const xvrml::World& world) const;
   // Opens a node, so that its children are to be seen, or closes it.
   void setOpen(const xvrml::NodeRef& node, bool open);
-  // Opens all nodes on the way from a root to this one. Returns false if it is not in the file.
-  bool reveal(xvrml::Browser& browser, xvrml::Node& node);
+  // Opens all nodes on the way from a root to this one. Returns those that were closed, the
+  // outermost first; none: it is not in the file.
+  std::optional<xvrml::MFNode> reveal(xvrml::Browser& browser, xvrml::Node& node);
+  // Adds to rows, which rows() has returned, those of a node that has been opened since. Returns
+  // false if the rows must be read again: its row is not there, or what is in it stands elsewhere,
+  // too, or is open.
+  bool addRowsOf(const xvrml::Node& node, std::vector<OutlineRow>& rows) const;
 
   // Returns the nodes whose DEF name, type or field names have this text, in any case, in the order
   // of the file; at most `most`.

@@ -7,6 +7,7 @@
 
 #include "server/texts.h"
 #include "session/overlay.h"
+#include "steady_clock.h"
 
 namespace vv::server {
 
@@ -15,6 +16,9 @@ namespace {
 // Seconds between two reports: while something changes, and while nothing does.
 constexpr double interval = 0.15, quietInterval = 1;
 constexpr double messageSeconds = 3;
+// Reading the viewpoints, which are looked for in the whole world, takes at most this part of the
+// time, so that a page is answered as fast in a world of a million nodes.
+constexpr double largestShare = 1. / 50;
 
 } // namespace
 
@@ -26,6 +30,7 @@ void Reports::notify(uint32_t view, const std::string& text, double ends) {
 void Reports::beginAnew() {
   told_.clear();
   notices_.clear();
+  viewpointsDue_ = 0;
   hurry();
 }
 
@@ -69,17 +74,24 @@ std::string Reports::stateOf(const Page& page, double now) {
   return stateText(state);
 }
 
+void Reports::readViewpoints(double now) {
+  if (now < viewpointsDue_) return;
+  const double begun = steadySeconds();
+  const std::vector<xvrml::ViewpointName> list = world_.session().browser().viewpoints();
+  viewpointsDue_ = now + (steadySeconds() - begun) / largestShare;
+  viewpoints_.clear();
+  for (const xvrml::ViewpointName& one : list) viewpoints_.push_back(one.node.get());
+  viewpointsText_ = viewpointsText(list);
+}
+
 void Reports::tell(double now, bool changes, Host& host) {
   if (now < next_ || pages_.count() == 0) return;
   takeMessages(now);
-  const std::vector<xvrml::ViewpointName> list = world_.session().browser().viewpoints();
-  viewpoints_.clear();
-  for (const xvrml::ViewpointName& one : list) viewpoints_.push_back(one.node.get());
-  const std::string viewpoints = viewpointsText(list);
+  readViewpoints(now);
   for (const auto& [number, page] : pages_.all()) {
     Told& told = told_[number];
-    if (told.viewpoints != viewpoints)
-      host.sendText(number, "viewpoints", told.viewpoints = viewpoints);
+    if (told.viewpoints != viewpointsText_)
+      host.sendText(number, "viewpoints", told.viewpoints = viewpointsText_);
     if (std::string state = stateOf(page, now); told.state != state)
       host.sendText(number, "state", told.state = std::move(state));
   }

@@ -40,6 +40,7 @@ class Reports {
   };
 
   void takeMessages(double now);
+  void readViewpoints(double now);
   std::string bottomOf(const Page& page, double now);
   std::string stateOf(const Page& page, double now);
 
@@ -48,6 +49,8 @@ class Reports {
   std::map<uint64_t, Told> told_;
   std::map<uint32_t, Notice> notices_;         // by view
   std::vector<const xvrml::Node*> viewpoints_; // for comparison; they may be gone
+  std::string viewpointsText_;                 // the message that lists them
+  double viewpointsDue_ = 0;                   // when they are read again
   double next_ = 0;                            // time of the next report
 };
 
