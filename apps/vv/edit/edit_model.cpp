@@ -164,7 +164,10 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   while (!requests_.empty()) {
     const Request request = std::move(requests_.front());
     requests_.pop_front();
-    (request.setsValue ? areValuesStale_ : isStale_) = true;
+    if (request.setsValue)
+      areValuesStale_ = true;
+    else
+      noteRequest();
     try {
       request.command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
@@ -174,16 +177,19 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   isStale_ |= std::exchange(nodeChanges_, nodes) != nodes;
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
-    isStale_ = true;
+    noteRequest();
+    const size_t open = outline_.openCount();
     if (Node* node = editor.selected(); node && outline_.reveal(editor.browser(), *node))
       shown_ = NodeRef(node);
+    isStale_ |= outline_.openCount() != open;
   }
   if (!hasAsked_ && editor.prepare()) {
     hasAsked_ = isStale_ = true;
     unwritable_ = picture::whyNotEditable(editor.browser().world().path);
     readOnly_ = editor.editor().whyReadOnly();
   }
-  bool reads = isStale_ || areValuesStale_ || (moves && seconds >= readAt_ + refreshInterval);
+  bool reads = isStale_ || isSheetStale_ || areValuesStale_ ||
+               (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
@@ -191,6 +197,13 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   reads |= problems_.update(editor, seconds);
   std::vector<Line> frames = framesOf(editor, view);
   return std::exchange(frames_, frames) != frames || reads;
+}
+
+// Notes that something other than a value may have changed. Edits of nodes are counted; only what
+// Scripts have done to them may be missed, where it takes long to read all rows again.
+void EditModel::noteRequest() {
+  constexpr size_t mostReread = 10'000; // rows, which take some milliseconds
+  (rows_.size() > mostReread ? isSheetStale_ : isStale_) = true;
 }
 
 void EditModel::readSheet(WorldEditor& editor) {
@@ -205,9 +218,12 @@ void EditModel::readSheet(WorldEditor& editor) {
 // and places of nodes are read again only if more than values has changed.
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
-  const bool all = std::exchange(isStale_, false), values = std::exchange(areValuesStale_, false);
-  if (all) {
+  const bool hasOtherRows = std::exchange(isStale_, false),
+             all = std::exchange(isSheetStale_, false) || hasOtherRows,
+             values = std::exchange(areValuesStale_, false);
+  if (hasOtherRows)
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
+  if (all) {
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
   } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {
     readSheet(editor);

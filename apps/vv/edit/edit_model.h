@@ -117,6 +117,7 @@ class EditModel {
 
   void requestValue(Command command) { requests_.push_back({std::move(command), true}); }
   static std::string nameOf(const Dragged& dragged); // "Text.string"
+  void noteRequest();
   void begin(const Dragged& dragged);
   void finishDrag();
   void read(WorldEditor& editor);
@@ -134,8 +135,8 @@ class EditModel {
   std::vector<Look> looks_;
   Hiding hiding_;
   bool unsaved_ = false, hasAsked_ = false, isActive_ = false;
-  // Everything that is shown may have changed; only the values of fields may have.
-  bool isStale_ = true, areValuesStale_ = false;
+  // Everything that is shown may have changed; only the sheet, or the values of fields, may have.
+  bool isStale_ = true, isSheetStale_ = false, areValuesStale_ = false;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
   std::vector<bool> touched_;              // elements of a list that it has changed

@@ -29,6 +29,7 @@ class Outline {
   std::vector<OutlineRow> rows(const xvrml::World& world) const;
   // Opens a node, so that its children are to be seen, or closes it.
   void setOpen(const xvrml::NodeRef& node, bool open);
+  size_t openCount() const { return open_.size(); }
   // Opens all nodes on the way from a root to this one. Returns false if it is not in the file.
   bool reveal(xvrml::Browser& browser, xvrml::Node& node);
 
