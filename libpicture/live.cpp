@@ -329,7 +329,7 @@ void LiveRenderer::Impl::begin(FrameRequest frame) {
   throwOnError("rendering");
   flight.step = steps.begin(flight.facts.viewer);
   inFlight.push_back(std::move(flight));
-  if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
+  if (cancelled) stage.cancel(); // a cancellation that came before the frame existed
 }
 
 void LiveRenderer::Impl::apply(WorldChanges worldChanges) {
@@ -444,7 +444,7 @@ LiveRenderer::State LiveRenderer::Impl::now() const {
 
 void LiveRenderer::Impl::cancel() {
   cancelled = true;
-  if (const RTcontext context = stage.context()) rtCancel(context);
+  stage.cancel();
 }
 
 std::shared_ptr<const EndedFrame> LiveRenderer::Impl::still() {

@@ -148,13 +148,14 @@ std::vector<Measurement> Stage::measure(const std::vector<PlacedSensor>& sensors
   if (!sensors.empty()) frame.timeLimit /= double(sensors.size());
   for (const PlacedSensor& sensor : sensors) {
     if (cancelled) break;
-    out.push_back(measure(sensor, frame));
+    out.push_back(measure(sensor, frame, cancelled));
     out.back().interrupted = cancelled;
   }
   return out;
 }
 
-Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& given) {
+Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& given,
+                           const std::atomic<bool>& cancelled) {
   // Points that lie in a surface are lifted off it by more than the rounding of its vertices.
   constexpr double liftOfRadius = 2e-6;
   Measurement out;
@@ -175,7 +176,9 @@ Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& giv
   if (!sensor.cells && frame.quality.whole(RT_TRANSPORT) == RT_TRANSPORT_LIGHT)
     frame.quality.set(RT_TRANSPORT, RT_TRANSPORT_PATH);
   setUpFrame(frame);
-  rtRender();
+  rtSwapBuffers();
+  if (cancelled) cancel(); // a cancellation that came before the frame existed
+  rtFinishFrame();
   throwOnError("measuring");
   const size_t n = size_t(sensor.columns) * size_t(sensor.rows);
   std::vector<float> rgba(4 * n), error(3 * n), trust(n), samples(n);

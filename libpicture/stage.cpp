@@ -161,6 +161,11 @@ void Stage::open(const std::function<bool()>& stop) {
   }
 }
 
+void Stage::cancel() {
+  const std::lock_guard lock(closingMutex_);
+  if (const RTcontext context = context_) rtCancel(context);
+}
+
 std::string Stage::close(bool leaveMapper) {
   if (borrowed_) rtCancel(context_); // nobody will see this frame
   if (leaveMapper && !borrowed_) static_cast<void>(mapper_.release());
@@ -173,7 +178,10 @@ std::string Stage::close(bool leaveMapper) {
   environment_ = environmentTexture_ = 0;
   if (borrowed_) studio_.clear();
   studio_.forget();
-  const RTcontext context = context_.exchange(nullptr);
+  const RTcontext context = [this] {
+    const std::lock_guard lock(closingMutex_);
+    return context_.exchange(nullptr);
+  }();
   if (std::exchange(borrowed_, false)) {
     settings.cluster->giveBack();
     return "";

@@ -88,6 +88,8 @@ class Stage {
 
   // --- On any thread ---
   RTcontext context() const { return context_; } // null before open()
+  // Cancels the frames in flight, if there is a context.
+  void cancel();
   // Copies the finished part of the channels of the frame in flight; returns false if there is
   // none. The settings must be those of the frame, and the mapper must be idle.
   bool snapshot(Picture& picture, uint32_t channels) const;
@@ -97,7 +99,8 @@ class Stage {
   bool showsBackground() const;
   void useEnvironment();
   void readBackground();
-  Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame);
+  Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame,
+                      const std::atomic<bool>& cancelled);
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
 
@@ -105,6 +108,7 @@ class Stage {
   xvrml::Browser* browser_; // null: the world is static
   std::unique_ptr<xvrml::OpenRTMapper> mapper_;
   std::atomic<RTcontext> context_{nullptr};
+  std::mutex closingMutex_; // other threads use the context under it, and close() takes it away
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
   RTid environment_ = 0, environmentTexture_ = 0;

@@ -1,5 +1,6 @@
 """Runs mypy --strict on the stubs, the examples and a program that uses the API; also on one that
 must be rejected."""
+import ast
 import os
 import pathlib
 import shutil
@@ -116,3 +117,15 @@ def test_programs_and_examples_are_typed(tmp_path):
         assert any(
             line.startswith(f"{tmp_path}/bad.py:{number}:") and word in line for line in lines), (
                 code, done.stdout)
+
+
+def test_named_tuples_have_the_fields_of_their_stubs():
+    stub = ast.parse(pathlib.Path(xvrml.__file__).with_name("__init__.pyi").read_text())
+    tuples = {
+        one.name: tuple(field.target.id for field in one.body if isinstance(field, ast.AnnAssign))
+        for one in stub.body if isinstance(one, ast.ClassDef) and any(
+            isinstance(base, ast.Name) and base.id == "NamedTuple" for base in one.bases)
+    }
+    assert "MaterialValues" in tuples
+    for name, fields in tuples.items():
+        assert getattr(xvrml, name)._fields == fields, name

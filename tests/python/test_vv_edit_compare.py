@@ -5,7 +5,7 @@ import time
 import pytest
 
 from conftest import HEADER
-from editor_window import needs_the_editor, press, saved  # noqa: F401
+from editor_window import needs_the_editor, press, saved, text  # noqa: F401
 from window_driver import framebuffer, screen, window  # noqa: F401
 
 # At 600x400 the panels leave the picture from -0.48 to 0.4. The boxes are at -0.32 and 0.32.
@@ -185,6 +185,50 @@ def test_a_report_shows_how_far_it_is_until_escape_gives_it_up(window, screen, v
     w.said("no report: its picture was given up")
     assert not list(vv.folder.glob("world-report*"))
     assert w.program.poll() is None
+
+
+def test_the_view_follows_the_camera_while_a_report_waits(window, screen, vv):
+    editor = Editor(window(WORLD, "--size", "600x400", "--spp", 60000), screen)
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, RIGHT, .05)), "the box")
+    before = editor.says()
+    press(w, 32, 118)
+    w.wait(lambda: editor.says() != before, "how far it is")
+
+    def boxes(rows):
+        return {x for x in range(170, 410) if is_grey(rows[190][x])}
+
+    shown = boxes(editor.rows())
+    editor.drag(0, -.6, .35, -.6)  # turns the world
+    editor.until(lambda rows: len(boxes(rows) ^ shown) > 12, "the turned world")
+    w.key("Escape")
+    w.said("no report: its picture was given up")
+    assert w.program.poll() is None
+
+
+def test_the_menu_of_a_probe_keeps_it_in_the_world(editor, vv):
+    w = editor.window
+    editor.until(lambda rows: is_grey(pixel(rows, -RIGHT, .05)), "the box")
+    w.move(-RIGHT, .05)
+    w.key("v")
+
+    def lines(rows):
+        """The rows of pixels in the list of the probes that have text."""
+        return [y for y in range(300, 370) if sum(max(p) > 150 for p in rows[y][170:400]) > 8]
+
+    editor.until(lines, "the list")
+
+    def tried():
+        for y in lines(editor.rows()):
+            press(w, 200, y, button=3)
+            w.key("Down", "Return", "ctrl+s")
+            if "ORTSensor" in text(vv):
+                return True
+        return False
+
+    w.wait(tried, "the sensor")
+    now = text(vv)
+    assert now.count("ORTSensor") == 1 and 'description "probe 1"' in now
 
 
 @pytest.mark.timed

@@ -307,13 +307,19 @@ TEST_F(Library, SensorsAreShownAsProbes) {
                                  "  ORTSensor { quantity \"LUMINANCE\" direction 0 0 -1 } ] }\n"));
   Probes probes;
   showSensors(*editor, probes);
-  ASSERT_EQ(probes.all().size(), 2u);
+  ASSERT_EQ(probes.all().size(), 3u);
   EXPECT_EQ(probes.all()[0].point, (std::array<double, 3>{1, 2, 0}));
   EXPECT_STREQ(unitOf(probes.all()[0]), "lx");
-  EXPECT_EQ(probes.all()[1].point, (std::array<double, 3>{1, 0, 0}));
-  EXPECT_STREQ(unitOf(probes.all()[1]), "cd/m2");
+  EXPECT_EQ(probes.all()[1].point, (std::array<double, 3>{1, 0, 0})) << "the middle of two points";
+  EXPECT_TRUE(probes.all()[1].isMean());
+  EXPECT_FALSE(canBeKept(probes.all()[1]));
+  EXPECT_THROW(keepInWorld(*editor, probes.all()[1], front()), EditError);
+  EXPECT_EQ(probes.all()[2].point, (std::array<double, 3>{1, 0, 0}));
+  EXPECT_STREQ(unitOf(probes.all()[2]), "cd/m2");
   EXPECT_THROW(showSensors(*editor, probes), EditError) << "all are shown";
-  EXPECT_EQ(probes.all().size(), 2u);
+  EXPECT_EQ(probes.all().size(), 3u);
+  open(write("home/grid.wrl", "#VRML V2.0 utf8\nORTSensor { size 1 1 columns 100 rows 100 }\n"));
+  EXPECT_THROW(showSensors(*editor, probes), EditError) << "it has too many points";
   open(write("home/bad.wrl", "#VRML V2.0 utf8\nORTSensor { direction 0 0 0 }\n"));
   EXPECT_THROW(showSensors(*editor, probes), picture::SensorError);
 }

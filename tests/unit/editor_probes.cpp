@@ -194,6 +194,35 @@ TEST_F(ProbesOfAWall, SensorsReadIlluminanceInAnyView) {
   EXPECT_EQ(measure(5, 1), 1u);
 }
 
+TEST_F(ProbesOfAWall, ASensorOfSeveralPointsHasTheirMean) {
+  const double point[3] = {0, 0, 1}, normal[3] = {0, 0, 1}, seen[3] = {0, 0, -1};
+  picture::PlacedSensor sensor = picture::sensorAt(point, normal, seen);
+  sensor.columns = 2;
+  sensor.rows = 2;
+  sensor.column[0] = sensor.row[1] = 4;
+  sensor.column[1] = sensor.column[2] = sensor.row[0] = sensor.row[2] = 0;
+  probes.addSensor(sensor);
+  EXPECT_EQ(probes.all()[0].point, (std::array<double, 3>{2, 2, 1}));
+  picture::Measurement reading;
+  reading.sensor = probes.waitingSensors().at(0);
+  reading.value = {100, 200, 300, 400};
+  reading.halfWidth = {10, 10, 10, 10};
+  reading.trusted = {1, 1, 1, 1};
+  reading.samples = {64, 64, 32, 64};
+  probes.take({reading});
+  // Four independent errors of 10 are 20 / 4 for the mean, and 1.6 times as much to be sure.
+  EXPECT_EQ(probeText(probes.all()[0], {}),
+            "1  mean 250 lx +- 3.2 %  trusted  100 to 400, uniformity 0.4");
+  EXPECT_EQ(probes.all()[0].now.samples, 32u);
+  EXPECT_NE(probes.csv().find("1,2,2,1,illuminance,lx,250,8,true,,,,,,,,,,100,400,0.4\n"),
+            std::string::npos)
+      << probes.csv();
+  reading.trusted[2] = 0;
+  probes.expireSensors();
+  probes.take({reading});
+  EXPECT_FALSE(probes.all()[0].now.trusted);
+}
+
 TEST_F(ProbesOfAWall, AReadingOfAProbeThatHasGoneIsNotThatOfTheNextOne) {
   const double point[3] = {0, 0, 1}, other[3] = {5, 0, 1}, normal[3] = {0, 0, 1},
                seen[3] = {0, 0, -1};

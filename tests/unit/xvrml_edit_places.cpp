@@ -252,20 +252,45 @@ TEST_P(EditedPlaces, AScriptThatHoldsItselfGoesWithItsRoutes) {
 }
 
 // A file must be readable again: what would nest too deep in it is refused at the edit.
-TEST_P(EditedPlaces, NodesThatNestTooDeepAreRefused) {
-  load("DEF G Group { children Shape { } }\nDEF H Group { }\n");
-  const uint64_t most = xvrml::LoadOptions().limits.nesting;
-  const NodeSlot slot{&node("G"), "children", 0};
-  for (uint64_t i = 2; i < most; ++i) editor->wrap(slot);
-  EXPECT_EQ(refusal([&] { editor->wrap(slot); }),
-            "Transform cannot stand there: nodes would be nested deeper than limit nesting=1000");
-  EXPECT_NE(refusal([&] {
-              editor->move({nullptr, "", 0}, {&node("H"), "children", 0});
-            }).find("nested deeper"),
-            std::string::npos);
-  EXPECT_TRUE(editor->undo());
-  editor->move({nullptr, "", 0}, {&node("H"), "children", 0});
-  undoAll();
+TEST(EditorPlaces, NodesThatNestTooDeepAreRefused) {
+  const Folder folder;
+  const std::string text = "#VRML V2.0 utf8\nDEF G Group { children Shape { } }\nDEF H Group { }\n"
+                           "DEF I Group { children USE H }\n";
+  LoadOptions options;
+  options.limits.nesting = 10;
+  const auto world = loadWorld(folder.write("w.wrl", text), options);
+  Editor editor(*world);
+  const auto node = [&](const char* name) { return world->scope.names.at(name); };
+  const auto refusal = [](const std::function<void()>& edit) -> std::string {
+    try {
+      edit();
+    } catch (const EditError& error) { return error.what(); }
+    return "done";
+  };
+  constexpr const char* refused =
+      " cannot stand there: nodes would be nested deeper than limit nesting=10";
+  const NodeSlot slot{node("G").get(), "children", 0};
+  for (int i = 2; i < 10; ++i) editor.wrap(slot);
+  std::string deepest = editor.text();
+  EXPECT_EQ(refusal([&] { editor.wrap(slot); }), std::string("Transform") + refused);
+  EXPECT_EQ(editor.text(), deepest);
+  EXPECT_EQ(refusal([&] {
+              editor.move({nullptr, "", 0}, {node("H").get(), "children", 0});
+            }),
+            std::string("Group") + refused);
+  EXPECT_TRUE(editor.undo());
+  // H also stands in I, whose text would get all of it if H went.
+  EXPECT_EQ(refusal([&] {
+              editor.move({nullptr, "", 0}, {node("H").get(), "children", 0});
+            }),
+            std::string("Group") + refused);
+  EXPECT_TRUE(editor.undo());
+  editor.move({nullptr, "", 0}, {node("H").get(), "children", 0});
+  editor.remove({nullptr, "", 0});
+  EXPECT_NE(editor.text().find("DEF I Group { children DEF H Group"), std::string::npos);
+  EXPECT_EQ(refusal([&] { editor.wrap(slot); }), std::string("Transform") + refused);
+  while (editor.undo()) {}
+  EXPECT_EQ(editor.text(), text);
 }
 
 // The text of a node that is refused is not kept, and the next one of its kind is found.

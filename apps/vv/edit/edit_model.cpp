@@ -164,7 +164,10 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   while (!requests_.empty()) {
     const Request request = std::move(requests_.front());
     requests_.pop_front();
-    (request.setsValue ? areValuesStale_ : isStale_) = true;
+    if (request.setsValue)
+      areValuesStale_ = true;
+    else
+      noteRequest();
     try {
       request.command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
@@ -174,7 +177,7 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   if (std::exchange(nodeChanges_, nodes) != nodes) isStale_ = areRowsStale_ = true;
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
-    isStale_ = true;
+    noteRequest();
     if (Node* node = editor.selected()) reveal(editor, *node);
   }
   if (!hasAsked_ && editor.prepare()) {
@@ -206,6 +209,14 @@ void EditModel::reveal(WorldEditor& editor, Node& node) {
 void EditModel::readRows(const World& world) {
   areRowsStale_ = false;
   rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
+}
+
+// Notes that something other than a value may have changed. Edits of nodes are counted; only what
+// Scripts have done to them may be missed, where it takes long to read all rows again.
+void EditModel::noteRequest() {
+  constexpr size_t mostReread = 10'000; // rows, which take some milliseconds
+  isStale_ = true;
+  areRowsStale_ |= rows_.size() <= mostReread;
 }
 
 void EditModel::readSheet(WorldEditor& editor) {

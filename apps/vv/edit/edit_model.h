@@ -117,6 +117,7 @@ class EditModel {
 
   void requestValue(Command command) { requests_.push_back({std::move(command), true}); }
   static std::string nameOf(const Dragged& dragged); // "Text.string"
+  void noteRequest();
   void begin(const Dragged& dragged);
   void finishDrag();
   void reveal(WorldEditor& editor, xvrml::Node& node);

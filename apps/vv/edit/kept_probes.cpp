@@ -23,7 +23,8 @@ Vec3f vectorOf(const double v[3]) { return {float(v[0]), float(v[1]), float(v[2]
 
 // Returns what the sensor of a probe reads.
 Reading readingOf(const Probe& probe, const EditView& view) {
-  if (!canBeKept(probe)) throw EditError("a rectangle belongs to the pictures of its view");
+  if (probe.area) throw EditError("a rectangle belongs to the pictures of its view");
+  if (!canBeKept(probe)) throw EditError("the file has this sensor already");
   if (probe.sensor)
     return {vectorOf(probe.sensor->first), vectorOf(probe.sensor->direction),
             probe.sensor->luminance ? "LUMINANCE" : "ILLUMINANCE"};
@@ -44,7 +45,8 @@ bool hasProbe(const Probes& probes, const picture::PlacedSensor& sensor) {
   return std::any_of(probes.all().begin(), probes.all().end(), [&](const Probe& probe) {
     return probe.sensor && std::equal(sensor.first, sensor.first + 3, probe.sensor->first) &&
            std::equal(sensor.direction, sensor.direction + 3, probe.sensor->direction) &&
-           sensor.luminance == probe.sensor->luminance;
+           sensor.luminance == probe.sensor->luminance && sensor.columns == probe.sensor->columns &&
+           sensor.rows == probe.sensor->rows;
   });
 }
 
@@ -76,6 +78,7 @@ void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
   });
   std::reverse(sensors.begin(), sensors.end()); // walks begin at the last root
   const size_t before = probes.all().size();
+  bool hasLarge = false;
   for (const NodeRef& node : sensors) {
     NodePlacement placement;
     if (!editor.browser().locate(*node, placement)) continue; // it is not in the scene
@@ -83,13 +86,20 @@ void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
     const std::array<double, 16>& place = placement.path.back().toWorld;
     std::copy(place.begin(), place.end(), info.matrix);
     const picture::PlacedSensor sensor = picture::placeSensor(info);
-    if (sensor.columns * sensor.rows != 1 || hasProbe(probes, sensor)) continue;
+    if (int64_t(sensor.columns) * sensor.rows > mostPoints) {
+      hasLarge = true;
+      continue;
+    }
+    if (hasProbe(probes, sensor)) continue;
     if (probes.all().size() >= most)
       throw EditError(fmt::format("there are {} probes already", most));
     probes.addSensor(sensor);
   }
   if (probes.all().size() == before)
-    throw EditError("the file has no more sensors of a single point");
+    throw EditError(hasLarge ? fmt::format("the file has no more sensors of at most {} points: vv "
+                                           "--measure reads larger ones",
+                                           mostPoints)
+                             : "the file has no more sensors");
 }
 
 } // namespace vv

@@ -61,7 +61,7 @@ const char* quantityOf(const Probe& probe) {
 const char* unitOf(const Probe& probe) { return readsIlluminance(probe) ? "lx" : "cd/m2"; }
 
 std::string probeText(const Probe& probe, const std::optional<Difference>& change) {
-  std::string text = fmt::format("{}  {}", probe.number, probe.area ? "mean " : "");
+  std::string text = fmt::format("{}  {}", probe.number, probe.isMean() ? "mean " : "");
   switch (probe.state) {
   case Probe::State::waiting:
     return text + (probe.sensor ? "is being measured" : "waits for a still picture");
@@ -77,11 +77,9 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
               ? fmt::format("{:.4g} {} +- {:.2g} %", luminance, unit, 100 * halfWidth / luminance)
               : fmt::format("{:.4g} +- {:.2g} {}", luminance, halfWidth, unit);
   text += probe.now.trusted ? "  trusted" : "  not trusted";
-  if (probe.area) {
-    const RegionReading& area = probe.area->reading;
-    text += fmt::format("  {:.4g} to {:.4g}, uniformity {:.3g}", area.least, area.most,
-                        area.uniformity());
-  }
+  if (const MeanReading* const several = probe.several())
+    text += fmt::format("  {:.4g} to {:.4g}, uniformity {:.3g}", several->least, several->most,
+                        several->uniformity());
   if (change)
     text += fmt::format("   B - A: {:+.3g} +- {:.2g}, {}", change->value, change->halfWidth,
                         change->isSignificant                          ? "significant"
@@ -98,7 +96,11 @@ void Probes::add(const std::array<double, 3>& point) {
 }
 
 void Probes::addSensor(const picture::PlacedSensor& sensor) {
-  add({sensor.first[0], sensor.first[1], sensor.first[2]});
+  std::array<double, 3> middle{};
+  for (size_t k = 0; k < 3; ++k)
+    middle[k] = sensor.first[k] + (sensor.columns - 1) * sensor.column[k] / 2 +
+                (sensor.rows - 1) * sensor.row[k] / 2;
+  add(middle);
   probes_.back().sensor = sensor;
 }
 
@@ -150,11 +152,16 @@ void Probes::take(const std::vector<picture::Measurement>& readings) {
       if (!std::equal(std::begin(reading.sensor.first), std::end(reading.sensor.first),
                       std::begin(probe.sensor->first)))
         continue;
-      probe.now = {};
-      probe.now.luminance = reading.value[0];
-      probe.now.luminanceHalfWidth = reading.halfWidth[0];
-      probe.now.samples = reading.samples[0];
-      probe.now.trusted = reading.trusted[0] != 0;
+      const MeanReading mean = meanOf(reading.value.size(), [&reading](size_t i) {
+        picture::PixelReading point;
+        point.luminance = reading.value[i];
+        point.luminanceHalfWidth = reading.halfWidth[i];
+        point.samples = reading.samples[i];
+        point.trusted = reading.trusted[i] != 0;
+        return point;
+      });
+      probe.now = mean.mean;
+      if (probe.isMean()) probe.points = mean;
       probe.state = Probe::State::read;
     }
 }
@@ -215,13 +222,14 @@ std::string Probes::csv() const {
                                      probe.before.luminanceHalfWidth, changes[i]->value,
                                      changes[i]->halfWidth, changes[i]->isSignificant)
                        : ",,,,,";
-    if (const RegionReading* const area = probe.area ? &probe.area->reading : nullptr;
-        area && isRead)
-      text += fmt::format(",{},{},{},{},{:.9g},{:.9g},{:.9g}", area->pixels.left, area->pixels.top,
-                          area->pixels.width, area->pixels.height, area->least, area->most,
-                          area->uniformity());
-    else
-      text += ",,,,,,,";
+    const PixelRectangle* const pixels = probe.area ? &probe.area->reading.pixels : nullptr;
+    text += pixels && isRead ? fmt::format(",{},{},{},{}", pixels->left, pixels->top, pixels->width,
+                                           pixels->height)
+                             : ",,,,";
+    const MeanReading* const several = probe.several();
+    text += several && isRead ? fmt::format(",{:.9g},{:.9g},{:.9g}", several->least, several->most,
+                                            several->uniformity())
+                              : ",,,";
     text += "\n";
   }
   return text;

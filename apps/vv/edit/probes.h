@@ -29,12 +29,18 @@ struct Probe {
   // Reads the light at the point, whatever the view is: the illuminance of the surface, or the
   // luminance that a sensor of the world sees; none: the probe reads the luminance in pictures.
   std::optional<picture::PlacedSensor> sensor;
+  std::optional<MeanReading> points; // the readings of a sensor with several points
   State state = State::waiting;
-  // The reading of its pixel, the mean of its area, or that of its sensor as a luminance, also in
-  // lux.
+  // The reading of its pixel, the mean of its area, or that of its sensor, or of the sensor's
+  // points, as a luminance, also in lux.
   picture::PixelReading now;
   picture::PixelReading before; // the same, as it was kept
   bool hasBefore = false;
+
+  // Tells whether its reading is the mean of several ones.
+  bool isMean() const { return area || (sensor && sensor->columns * sensor->rows > 1); }
+  // Returns these; null: there are none, or they have not been read.
+  const MeanReading* several() const { return area ? &area->reading : points ? &*points : nullptr; }
 };
 
 // Return what a probe reads: "luminance" in "cd/m2", or "illuminance" in "lx".
@@ -50,7 +56,7 @@ class Probes {
   bool readPictures() const;
   bool isWaiting() const;
   void add(const std::array<double, 3>& point);
-  // Adds a sensor with one point.
+  // Adds a sensor. The place of one with several points is their middle.
   void addSensor(const picture::PlacedSensor& sensor);
   // Adds a rectangle of the pictures of this view.
   void add(const Region& region, const EditView& view);

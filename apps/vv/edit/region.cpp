@@ -40,34 +40,39 @@ PixelRectangle pixelsOf(const Region& region, int width, int height) {
           std::max(first((1 - region.bottom) / 2, height) - top, 1)};
 }
 
-// The errors of pixels are independent, so squares of half-widths add up. This also holds for upper
-// bounds by the rule of three: for all pixels together it is as narrow as for one. Pixels
+// The errors of readings are independent, so squares of half-widths add up. This also holds for
+// upper bounds by the rule of three: for all readings together it is as narrow as for one. Readings
 // that are not trusted may err in one direction, so their half-widths are added. The neighbours'
 // variance is part of each error bar, so all may be wrong in the same direction (decision 37).
-RegionReading readRegion(const picture::Picture& picture, const Region& region) {
-  RegionReading out;
-  out.pixels = pixelsOf(region, picture.width, picture.height);
+MeanReading meanOf(size_t count, const std::function<picture::PixelReading(size_t)>& reading) {
+  MeanReading out;
   double sum = 0, squares = 0, doubtful = 0;
   out.mean.trusted = true;
-  bool isFirst = true;
-  for (int y = out.pixels.top; y < out.pixels.top + out.pixels.height; ++y)
-    for (int x = out.pixels.left; x < out.pixels.left + out.pixels.width; ++x) {
-      const picture::PixelReading one = readPixel(picture, x, y);
-      const auto value = double(one.luminance), half = double(one.luminanceHalfWidth);
-      sum += value;
-      (one.trusted ? squares : doubtful) += one.trusted ? half * half : half;
-      out.mean.trusted &= one.trusted;
-      out.least = isFirst ? value : std::min(out.least, value);
-      out.most = isFirst ? value : std::max(out.most, value);
-      out.mean.samples = isFirst ? one.samples : std::min(out.mean.samples, one.samples);
-      isFirst = false;
-    }
-  const double count = double(out.pixels.width) * out.pixels.height;
-  out.mean.luminance = float(sum / count);
-  const bool isAlone = count == 1; // the error bar of a pixel is what it is
+  for (size_t i = 0; i < count; ++i) {
+    const picture::PixelReading one = reading(i);
+    const bool isFirst = i == 0;
+    const auto value = double(one.luminance), half = double(one.luminanceHalfWidth);
+    sum += value;
+    (one.trusted ? squares : doubtful) += one.trusted ? half * half : half;
+    out.mean.trusted &= one.trusted;
+    out.least = isFirst ? value : std::min(out.least, value);
+    out.most = isFirst ? value : std::max(out.most, value);
+    out.mean.samples = isFirst ? one.samples : std::min(out.mean.samples, one.samples);
+  }
+  out.mean.luminance = float(sum / double(count));
+  const bool isAlone = count == 1; // the error bar of one reading is what it is
   out.mean.luminanceHalfWidth =
-      float((std::sqrt(squares) * (isAlone ? 1 : 1 + unsureScale) + doubtful) / count);
+      float((std::sqrt(squares) * (isAlone ? 1 : 1 + unsureScale) + doubtful) / double(count));
   return out;
+}
+
+RegionReading readRegion(const picture::Picture& picture, const Region& region) {
+  const PixelRectangle pixels = pixelsOf(region, picture.width, picture.height);
+  const auto width = size_t(pixels.width);
+  const MeanReading mean = meanOf(width * size_t(pixels.height), [&](size_t i) {
+    return readPixel(picture, pixels.left + int(i % width), pixels.top + int(i / width));
+  });
+  return {mean, pixels};
 }
 
 void selectIn(WorldEditor& editor, const EditView& view, const Region& region, bool add) {

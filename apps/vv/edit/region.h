@@ -1,6 +1,9 @@
-// region.h: A rectangle of the picture: the light of its pixels, and the nodes that are seen in it.
+// region.h: A rectangle of the picture: the light of its pixels, and the nodes that are seen in it;
+// and the mean of several readings.
 // [the browser's thread]
 #pragma once
+
+#include <functional>
 
 #include "edit/edit_model.h"
 #include "libpicture/pixel_reading.h"
@@ -20,14 +23,20 @@ struct PixelRectangle {
 // Returns the pixels whose middle is in a region of a picture of this size; at least one.
 PixelRectangle pixelsOf(const Region& region, int width, int height);
 
-struct RegionReading {
-  PixelRectangle pixels;
-  // The mean luminance with its interval. It is trusted if those of all pixels are; its samples
-  // are those of the pixel with the fewest. It has no colours.
+// The light of several pixels, or of several points of a sensor.
+struct MeanReading {
+  // The mean with its interval. It is trusted if those of all are; its samples are those of the one
+  // with the fewest. It has no colours.
   picture::PixelReading mean;
-  double least = 0, most = 0; // cd/m2
-  // The least over the mean luminance (EN 12665).
+  double least = 0, most = 0;
+  // The least over the mean (EN 12665).
   double uniformity() const { return mean.luminance > 0 ? least / double(mean.luminance) : 0; }
+};
+// reading: returns one of them, by its number.
+MeanReading meanOf(size_t count, const std::function<picture::PixelReading(size_t)>& reading);
+
+struct RegionReading : MeanReading {
+  PixelRectangle pixels;
 };
 // picture: has picture::readingChannels, and linear light.
 RegionReading readRegion(const picture::Picture& picture, const Region& region);

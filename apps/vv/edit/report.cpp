@@ -85,10 +85,14 @@ const char* stateOf(const Probe& probe) {
   }
 }
 
-// Returns where a probe reads: the mean of a rectangle of the picture, or a point of the world.
+// Returns where a probe reads: the mean of a rectangle of the picture, or of points of the world,
+// or a point of the world.
 std::string placeOf(const Probe& probe) {
   if (!probe.area)
-    return fmt::format("{:.4g} {:.4g} {:.4g}", probe.point[0], probe.point[1], probe.point[2]);
+    return (probe.isMean() ? fmt::format("mean of {} x {} points about ", probe.sensor->columns,
+                                         probe.sensor->rows)
+                           : "") +
+           fmt::format("{:.4g} {:.4g} {:.4g}", probe.point[0], probe.point[1], probe.point[2]);
   const PixelRectangle& pixels = probe.area->reading.pixels;
   return fmt::format("mean of {} x {} pixels at {}, {}", pixels.width, pixels.height, pixels.left,
                      pixels.top);
@@ -205,7 +209,7 @@ std::string reportTable(const Report& report) {
     out += change ? fmt::format("{:.9g},{:.9g},", change->value, change->halfWidth) : ",,";
     std::string remark = change ? fmt::format("{}, ", verdictOf(*change)) : "";
     remark += stateOf(probe);
-    if (probe.area) remark += ", " + placeOf(probe);
+    if (probe.isMean()) remark += ", " + placeOf(probe);
     out += quoted(remark) + "\n";
   }
   for (const xvrml::ChangedField& field : report.fields)

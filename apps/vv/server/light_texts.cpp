@@ -49,10 +49,10 @@ std::string probesText(const Probes& probes) {
       one[quantityOf(probe)] = probe.now.luminance;
       one["half_width"] = probe.now.luminanceHalfWidth;
       one["trusted"] = probe.now.trusted;
-      if (probe.area) {
-        one["least"] = probe.area->reading.least;
-        one["most"] = probe.area->reading.most;
-        one["uniformity"] = probe.area->reading.uniformity();
+      if (const MeanReading* const several = probe.several()) {
+        one["least"] = several->least;
+        one["most"] = several->most;
+        one["uniformity"] = several->uniformity();
       }
     }
     if (changes[i]) {

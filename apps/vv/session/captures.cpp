@@ -7,13 +7,24 @@ namespace vv {
 
 void Captures::want(Request request) { waiting_.push_back(std::move(request)); }
 
-void Captures::adopt(uint64_t asker, uint64_t number, Done done) {
-  inFlight_ = true;
-  asker_ = asker;
+void Captures::adopt(Request request, uint64_t number) {
+  current_ = std::move(request);
   isOwn_ = false;
   number_ = number;
-  done_ = std::move(done);
   samples_ = 0;
+}
+
+void Captures::yield(bool moves, double seconds) {
+  constexpr double rest = 1; // seconds
+  if (moves) {
+    movedAt_ = seconds;
+    if (!current_ || !current_->givesWay) return;
+    if (isOwn_) shared_.cancel();
+    postponed_ = std::exchange(current_, std::nullopt);
+    samples_ = 0;
+  } else if (postponed_ && seconds >= movedAt_ + rest) {
+    waiting_.push_front(*std::exchange(postponed_, std::nullopt));
+  }
 }
 
 void Captures::giveUp(uint64_t asker) {
@@ -23,14 +34,16 @@ void Captures::giveUp(uint64_t asker) {
     dropped.push_back(std::move(request.done));
     return true;
   });
+  if (postponed_ && postponed_->asker == asker)
+    dropped.push_back(std::exchange(postponed_, std::nullopt)->done);
   for (const Done& done : dropped) done(nullptr);
-  if (!inFlight_ || asker_ != asker) return;
+  if (!current_ || current_->asker != asker) return;
   if (isOwn_) shared_.cancel();
   end(nullptr);
 }
 
 void Captures::advance() {
-  if (inFlight_ || waiting_.empty()) return;
+  if (current_ || waiting_.empty()) return;
   if (!shared_.isIdle()) {
     if (!shared_.isMoving()) shared_.cancel();
     return;
@@ -43,13 +56,14 @@ void Captures::advance() {
     s.headlight = next.headlight;
     s.view = next.view;
   });
-  adopt(next.asker, shared_.start(next.frame, false), std::move(next.done));
+  const uint64_t number = shared_.start(next.frame, false);
+  adopt(std::move(next), number);
   isOwn_ = true;
 }
 
 bool Captures::note(const picture::LivePicture& picture, uint32_t viewer) {
-  if (inFlight_ && picture.number == number_) samples_ = picture.samples;
-  if (inFlight_ && picture.number == number_ && picture.ended) {
+  if (current_ && picture.number == number_) samples_ = picture.samples;
+  if (current_ && picture.number == number_ && picture.ended) {
     picture::Picture copied;
     uint64_t number = 0;
     const bool complete =
@@ -60,12 +74,12 @@ bool Captures::note(const picture::LivePicture& picture, uint32_t viewer) {
 }
 
 void Captures::noteIdle() {
-  if (inFlight_) end(nullptr);
+  if (current_) end(nullptr);
 }
 
 void Captures::end(const picture::Picture* picture) {
-  inFlight_ = false;
-  if (const Done done = std::exchange(done_, nullptr)) done(picture);
+  if (const std::optional<Request> ended = std::exchange(current_, std::nullopt))
+    ended->done(picture);
 }
 
 } // namespace vv

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 
 #include "session/shared_renderer.h"
 
@@ -21,6 +22,8 @@ class Captures {
     xvrml::MapOptions::Headlight headlight;
     picture::ViewTransform view;
     Done done;
+    // It waits while somebody moves, whose pictures are drawn then, and begins anew afterwards.
+    bool givesWay = false;
   };
 
   // The renderer must outlive this object.
@@ -28,13 +31,17 @@ class Captures {
 
   void want(Request request);
   // Takes the still frame that is in flight, and has this number, as the capture.
-  void adopt(uint64_t asker, uint64_t number, Done done);
+  void adopt(Request request, uint64_t number);
   // Gives up what somebody has asked for: there will be no picture.
   void giveUp(uint64_t asker);
   // A capture has not read the world yet, so the world must not change.
-  bool isWaiting() const { return !waiting_.empty() && !inFlight_; }
+  bool isWaiting() const { return !waiting_.empty() && !current_; }
   // A capture is waiting or in flight, so no other frame may be started.
-  bool isPending() const { return inFlight_ || !waiting_.empty(); }
+  bool isPending() const { return current_ || !waiting_.empty(); }
+  // Stops a capture in flight that gives way when somebody moves, and begins it anew a second after
+  // that. seconds: time of any clock.
+  void yield(bool moves, double seconds);
+  bool isPostponed() const { return postponed_.has_value(); }
   // Starts the next capture as soon as the renderer is free. [not while mapping]
   void advance();
   // Notes a picture that the renderer has returned. Returns true if it is nobody's but a capture's.
@@ -52,13 +59,12 @@ class Captures {
 
   SharedRenderer& shared_;
   std::deque<Request> waiting_;
-  bool inFlight_ = false;
-  // The capture in flight: who wants it, whether its frame is nobody else's, the frame's number.
-  uint64_t asker_ = 0;
-  bool isOwn_ = false;
-  uint64_t number_ = 0;
-  Done done_;
+  std::optional<Request> current_; // the capture in flight
+  bool isOwn_ = false;             // its frame is nobody else's
+  uint64_t number_ = 0;            // that of its frame
   double samples_ = 0;
+  std::optional<Request> postponed_; // gives way
+  double movedAt_ = 0;               // when somebody moved last
 };
 
 } // namespace vv

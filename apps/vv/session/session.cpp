@@ -157,8 +157,13 @@ void Session::advance(double seconds) {
   }
   viewers_.placeGuests();
   if (captures_.isWaiting()) return captures_.advance();
+  bool moves = viewers_.haveMoved();
   step();
+  viewers_.noteViews(); // what moves by itself is no user
   takeEvents();
+  moves |= viewers_.haveMoved();
+  viewers_.noteViews();
+  captures_.yield(moves, clock_.reading());
   loadSome();
   problems_.tell(browser_->world());
   takeTurns();
@@ -313,27 +318,33 @@ bool Session::release() {
   return true;
 }
 
-void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
+void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done, bool givesWay) {
   SessionViewer& one = viewers_.findOrOwn(viewer);
   const Pilot& pilot = one.pilot;
   PictureLoop& pictures = one.pictures;
+  Captures::Request request{asker,
+                            pictures.stillOf(pilot),
+                            pictures.headlightOf(pilot),
+                            pictures.transformOf(pilot),
+                            std::move(done),
+                            givesWay};
   // The picture that is shown may be the one that is wanted, or become it.
   if (!captures_.isPending() && pictures.isRefining() && !one.isOutdated()) {
     picture::Picture picture;
     if (pictures.isFinished(pilot)) {
-      if (pictures.copyStill(picture)) return done(&picture);
+      if (pictures.copyStill(picture)) return request.done(&picture);
     } else if (shared_.viewer() == pictures.viewer() && !pictures.isInterrupted() &&
                !shared_.isIdle()) {
-      return captures_.adopt(asker, pictures.number(), std::move(done));
+      return captures_.adopt(std::move(request), pictures.number());
     }
   }
-  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot),
-                  pictures.transformOf(pilot), std::move(done)});
+  captures_.want(std::move(request));
 }
 
 bool Session::isQuiet() const {
   const auto isQuiet = [](const auto& one) { return one.second->isQuiet(); };
-  return resting() && !inlines_.isLoading() && !captures_.isPending() && !measuring_.isPending() &&
+  return resting() && !inlines_.isLoading() && !captures_.isPending() && !captures_.isPostponed() &&
+         !measuring_.isPending() &&
          std::all_of(viewers_.all().begin(), viewers_.all().end(), isQuiet);
 }
 

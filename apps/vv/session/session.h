@@ -100,8 +100,8 @@ class Session {
   // Frees the pictures of all viewers, because nobody looks. Returns false if that cannot be now.
   bool release();
   // Renders the true picture of this instant for a viewer, with all samples. asker: any number, by
-  // which it can be given up.
-  void capture(uint32_t viewer, uint64_t asker, Captures::Done done);
+  // which it can be given up. givesWay: see Captures::Request.
+  void capture(uint32_t viewer, uint64_t asker, Captures::Done done, bool givesWay = false);
   // Tells whether nothing moves or is to be done, so that steps may come more slowly.
   bool isQuiet() const;
 

@@ -93,6 +93,18 @@ void SessionViewers::takeGuestEvents(bool pointerWaits, const OnAction& onAction
   }
 }
 
+void SessionViewers::noteViews() {
+  for (const auto& [number, viewer] : viewers_)
+    viewer->noted = {viewer->pilot.camera(), viewer->pilot.aspect()};
+}
+
+bool SessionViewers::haveMoved() const {
+  return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& one) {
+    const Pilot& pilot = one.second->pilot;
+    return pilot.isSteering() || one.second->noted != EditView{pilot.camera(), pilot.aspect()};
+  });
+}
+
 void SessionViewers::takeTurns(double now) {
   using Urgency = PictureLoop::Urgency;
   std::vector<std::pair<uint32_t, SessionViewer*>> turns;

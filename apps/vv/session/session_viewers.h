@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 
+#include "edit/edit_model.h"
 #include "session/fit.h"
 #include "session/picture_loop.h"
 #include "session/pilot.h"
@@ -41,6 +42,7 @@ struct SessionViewer {
   PictureLoop pictures;
   Fit fit;
   std::deque<InputEvent> waiting;
+  EditView noted; // the view when it was noted last
 };
 
 class SessionViewers {
@@ -75,6 +77,10 @@ class SessionViewers {
   // onAction receives the actions that are not the pilot's.
   using OnAction = std::function<void(uint32_t viewer, const InputEvent& event, Action action)>;
   void takeGuestEvents(bool pointerWaits, const OnAction& onAction);
+
+  // Note all views, and tell whether some have changed since, or are about to by a user.
+  void noteViews();
+  bool haveMoved() const;
 
   // Lets the viewers draw: those for whom something has changed, each in turn, or else those whose
   // picture could be better, in the order of their numbers. now: time of any clock.

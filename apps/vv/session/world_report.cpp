@@ -90,6 +90,8 @@ struct WorldReport::Work {
   std::string message;
   bool waits = false;             // for the picture
   bool isDelivered = false;       // there are no files
+  uint64_t edits = 0;             // Editor::changes() when it was begun
+  bool isEdited = false;          // it is given up because of edits
   int samples = 0;                // that the picture gets
   std::future<std::string> files; // valid: they are being written
 };
@@ -116,21 +118,27 @@ void WorldReport::begin(Session& session, const Probes& probes, const picture::P
   if (before) shots.push_back(shotOf("Before (A)", *before, falseColour));
   work_->waits = true;
   work_->isDelivered = deliver != nullptr;
+  work_->isEdited = false;
+  work_->edits = editor.editor().changes();
   work_->samples = session.pictures().stillOf(session.pilot()).samples;
-  session.capture(0, asker,
-                  [work = work_, report, shots, falseColour, command = session.command(arguments),
-                   path = world.path, deliver](const picture::Picture* made) mutable {
-                    work->waits = false;
-                    if (!made) {
-                      work->message = "no report: its picture was given up";
-                      if (!work->isDelivered) say("vv: " + work->message);
-                      return;
-                    }
-                    shots.push_back(shotOf(shots.empty() ? "The view" : "Now (B)", *made,
-                                           falseColour, command));
-                    work->files = std::async(std::launch::async, write, std::move(report),
-                                             std::move(shots), path, deliver);
-                  });
+  session.capture(
+      0, asker,
+      [work = work_, report, shots, falseColour, command = session.command(arguments),
+       path = world.path, deliver](const picture::Picture* made) mutable {
+        work->waits = false;
+        if (!made) {
+          work->message = work->isEdited
+                              ? "no report: the world was edited while its picture was interrupted"
+                              : "no report: its picture was given up";
+          if (!work->isDelivered) say("vv: " + work->message);
+          return;
+        }
+        shots.push_back(
+            shotOf(shots.empty() ? "The view" : "Now (B)", *made, falseColour, command));
+        work->files = std::async(std::launch::async, write, std::move(report), std::move(shots),
+                                 path, deliver);
+      },
+      true);
 }
 
 bool WorldReport::isWaiting() const { return work_->waits; }
@@ -139,7 +147,13 @@ void WorldReport::giveUp(Session& session) {
   if (work_->waits) session.captures().giveUp(asker);
 }
 
+// A picture that gives way to users who move is that of the world when it begins anew.
 std::string WorldReport::progress(Session& session) const {
+  if (work_->waits && session.captures().isPostponed()) {
+    work_->isEdited = session.editor().editor().changes() != work_->edits;
+    if (!work_->isEdited) return "Report: waits until nobody moves; Escape gives it up";
+    session.captures().giveUp(asker);
+  }
   if (work_->waits)
     return fmt::format("Report: its picture has {:.0f} of {} samples; Escape gives it up",
                        session.captures().samples(), work_->samples);

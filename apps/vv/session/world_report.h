@@ -29,7 +29,8 @@ class WorldReport {
   bool isWaiting() const;
   // Gives up such a report: no file is written.
   void giveUp(Session& session);
-  // Returns what it is doing, as a line for the user; "" if there is nothing to do.
+  // Returns what it is doing, as a line for the user; "" if there is nothing to do. Gives up a
+  // report whose picture would show later edits.
   std::string progress(Session& session) const;
   // Forgets the session, because it ends. Files that are being written are finished.
   void reset();
