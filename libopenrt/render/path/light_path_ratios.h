@@ -9,7 +9,7 @@
 namespace openrt {
 
 // There is one light path by way of glossy surfaces for so many other light paths, of which there
-// are about as many as camera paths. More cost more than they gain (docs/decisions/0089).
+// are about as many as camera paths. More cost more than they gain (docs/decisions/0090).
 inline constexpr uint32_t camerasPerGlossyPath = 4;
 
 // Returns the ratio that a path has before it has reached the first surface: such light paths of
