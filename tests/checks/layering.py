@@ -351,7 +351,7 @@ def self_test():
         ("libopenrt/include/openrt/openrts.h", "<openrt/openrt.h>"),
         ("libxvrml/include/xvrml/world.h", "<fmt/format.h>"),
         ("libopenrt/backend/local/a.cpp", "<sys/socket.h>"),
-        ("libopenrt/backend/local/a.cpp", '"system/sockets.h"'),
+        ("libopenrt/render/path/a.cpp", '"system/sockets.h"'),
         ("libopenrt/backend/null/a.cpp", '"backend/local/accel/embree.h"'),
         ("libxvrml/base/a.cpp", '"no/such.h"'),
         ("somewhere/a.cpp", "<vector>"),
