@@ -171,23 +171,28 @@ TEST_F(Model, AValueChangesNoRows) {
   EXPECT_EQ(model.rows().at(1).label, "LAMP  PointLight");
 }
 
-// So does a selection: the rows of what it opens are added to the others.
+// So does a selection, where there are many rows: those of what it opens are added to the others.
 TEST(EditModel, ASelectionReadsNoOtherRows) {
+  std::string others; // which are not shown below
+  for (int i = 0; i < 10'001; ++i) others += "Group { }\n";
   EditedWorld world("#VRML V2.0 utf8\n"
                     "DEF A Group { children DEF B Group { children [ DEF C Group { } DEF D Group { "
                     "children Group { } } ] } }\n"
-                    "DEF E Group { children [ DEF F Group { } USE C ] } DEF G Group { }\n");
+                    "DEF E Group { children [ DEF F Group { } USE C ] } DEF G Group { }\n" +
+                    others);
   EditModel model;
   double seconds = 0;
   const auto rows = [&](EditModel& shown) {
     shown.update(world.editor, front(), false, seconds += 1);
     std::string text;
-    for (const OutlineRow& row : shown.rows())
+    for (const OutlineRow& row : shown.rows()) {
+      if (row.depth == 0 && row.node->defName.empty()) break;
       text += std::string(size_t(row.depth), '.') + (row.isUse ? "USE " : "") + row.node->defName +
               (row.isOpen    ? "-"
                : row.canOpen ? "+"
                              : "") +
               " ";
+    }
     return text;
   };
   // Shows the same nodes by reading all rows.
