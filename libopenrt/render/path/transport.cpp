@@ -27,7 +27,7 @@ struct Choice {
   const char* reason;
 };
 constexpr Choice choices[] = {
-    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH, "{} needs the light of other surfaces"},
+    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH, "{} needs interreflection"},
     {RT_TRANSPORT_AUTO, hasScattering, hasEmitters | hasGlow, RT_TRANSPORT_PATH,
      "{} scatters the light that [] emits"},
     {RT_TRANSPORT_AUTO, hasScattering, hasSky, RT_TRANSPORT_PATH,
