@@ -1,6 +1,5 @@
 // base64.h: Encodes bytes as text and back (RFC 4648, section 4), for data: URLs and JSON. Pure
-// functions.
-// [any thread]
+// functions. [any thread]
 #pragma once
 
 #include <cstdint>
@@ -27,25 +26,27 @@ inline std::string base64Of(std::string_view bytes) {
   return text;
 }
 
+// Returns the six bits of a base64 digit; 64 if it is none.
+inline uint32_t valueOfBase64(char c) {
+  return c >= 'A' && c <= 'Z'   ? uint32_t(c - 'A')
+         : c >= 'a' && c <= 'z' ? uint32_t(c - 'a') + 26
+         : c >= '0' && c <= '9' ? uint32_t(c - '0') + 52
+         : c == '+'             ? 62
+         : c == '/'             ? 63
+                                : 64;
+}
+
 // Appends the bytes of a base64 text, which must be complete: groups of four characters, the last
 // one filled with "=". Returns false if it is not; then some bytes may have been appended.
 inline bool appendBytesOfBase64(std::string_view text, std::string& bytes) {
   if (text.size() % 4 != 0) return false;
   const size_t filled = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
-  const auto digitOf = [](char c) -> uint32_t {
-    return c >= 'A' && c <= 'Z'   ? uint32_t(c - 'A')
-           : c >= 'a' && c <= 'z' ? uint32_t(c - 'a') + 26
-           : c >= '0' && c <= '9' ? uint32_t(c - '0') + 52
-           : c == '+'             ? 62
-           : c == '/'             ? 63
-                                  : 64;
-  };
   bytes.reserve(bytes.size() + text.size() / 4 * 3);
   for (size_t i = 0; i < text.size(); i += 4) {
     const size_t digits = i + 4 == text.size() ? 4 - filled : 4;
     uint32_t bits = 0;
     for (size_t k = 0; k < 4; ++k) {
-      const uint32_t digit = k < digits ? digitOf(text[i + k]) : 0;
+      const uint32_t digit = k < digits ? valueOfBase64(text[i + k]) : 0;
       if (digit > 63) return false;
       bits = bits << 6 | digit;
     }

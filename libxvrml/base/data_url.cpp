@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/percent.h"
+#include "base64.h"
 
 namespace xvrml {
 
@@ -34,18 +35,16 @@ bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::strin
   if (!head.ends_with(";base64")) {
     out.bytes = percentDecoded(body); // here %00 is a byte like any other
   } else {
-    constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     uint32_t bits = 0;
     int count = 0;
     for (const char c : body) {
       if (c == '=' || c == ' ' || c == '\t' || c == '\r' || c == '\n') continue;
-      const size_t digit = digits.find(c);
-      if (digit == digits.npos) {
+      const uint32_t digit = valueOfBase64(c);
+      if (digit > 63) {
         why = "a data: URL that is not base64";
         return false;
       }
-      bits = bits << 6 | uint32_t(digit);
+      bits = bits << 6 | digit;
       if ((count += 6) < 8) continue;
       count -= 8;
       out.bytes += char(bits >> count & 0xff);
