@@ -8,12 +8,12 @@
 namespace openrt {
 namespace {
 
-// The slots of a cluster, in this order: the baked scene, shared items, ellipsoids, lines, points.
+// The slots of a cluster, in this order: the baked scenes, shared items, ellipsoids, lines, points.
 // For the root part the first three are in the static scene and have no slots.
 struct Slots {
   uint32_t shared, ellipsoids, lines, points, end; // first slot of each kind
   Slots(const PartInfo& part, bool root) {
-    shared = !root && part.baked ? 1 : 0;
+    shared = root ? 0 : part.baked;
     ellipsoids = shared + (root ? 0 : uint32_t(part.sharedItems.size()));
     lines = ellipsoids + (root ? 0 : uint32_t(part.ellipsoids.size()));
     points = lines + part.lines;
@@ -132,8 +132,8 @@ void AccelBuilder::placeInstances(uint32_t c) {
   const uint32_t override = overrideMask(cluster.path.shader);
   uint32_t slot = placed.firstSlot;
   bool any = false;
-  if (info.baked) {
-    const auto blas = partBlas(cluster.part, override);
+  for (uint32_t group = 0; group < info.baked; group++) {
+    const auto blas = partBlas(cluster.part, group, override);
     any |= placeInstance(slot++, blas, placed.firstRecord, partToRender * blas->fromKernel);
   }
   for (uint32_t i : info.sharedItems) {

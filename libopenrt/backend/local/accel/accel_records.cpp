@@ -90,8 +90,10 @@ void AccelBuilder::writeRecords(uint32_t c) {
   Accel::PlacedCluster& placed = accel_->placed_[c];
   const bool root = cluster.part == 0;
   const Matrix4d partToRender = worldToRender_ * cluster.world;
-  const std::shared_ptr<const Blas> blas =
-      root ? accel_->static_ : partBlas(cluster.part, overrideMask(cluster.path.shader));
+  std::vector<std::shared_ptr<const Blas>> baked; // by group
+  if (root) baked.push_back(accel_->static_);
+  for (uint32_t group = 0; !root && group < info.baked; group++)
+    baked.push_back(partBlas(cluster.part, group, overrideMask(cluster.path.shader)));
   placed.transparent = placed.culls = false;
   placed.rejected = 0;
   for (uint32_t i = 0; i < part.items.size(); i++) {
@@ -117,15 +119,17 @@ void AccelBuilder::writeRecords(uint32_t c) {
       Record r = recordOf(path, g, toRender);
       r.toObject = toObject;
       switch (info.drawn[entry]) {
-      case DrawnAs::baked:
+      case DrawnAs::baked: {
+        const Blas& blas = *baked[info.groupOf(entry)];
         if (!root)
-          setPlace(r, partToRender * blas->fromKernel);
+          setPlace(r, partToRender * blas.fromKernel);
         else if (sphere && !similarity(uniformScale(input_->scale) * toRender) &&
                  !isHugeSphere(uniformScale(input_->scale) * unit))
           setPlace(r, unit); // baked as an instance of the unit sphere
         r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
-        r.vertices = blas->vertices[entry];
+        r.vertices = blas.vertices[entry];
         break;
+      }
       case DrawnAs::shared:
         setPlace(r, itemToRender * shared->fromKernel);
         r.flip = flipped(g, g.matrix);
