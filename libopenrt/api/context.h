@@ -45,6 +45,7 @@ struct Definition {
   RTid object = 0;
   ObjectBuilder builder;
   std::vector<RTid> children;
+  ArrayPtr formerIndices; // of a mesh that deforms: the indices of its tree
 };
 
 class Context {

@@ -64,6 +64,7 @@ struct DrawCall {
   const uint32_t* indices = nullptr; // vertex indices; null stands for 0, 1, 2 ...
   AttributeSource points, normals, texCoords, colors;
   std::vector<ParameterSource> parameters;
+  ArrayPtr formerIndices; // an array that is used if its bytes are those of the indices; or null
 };
 
 struct BuiltParameter {
