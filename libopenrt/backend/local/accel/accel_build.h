@@ -89,7 +89,10 @@ class AccelBuilder {
   void finish();
 
   // Records (accel_records.cpp).
+  std::vector<std::shared_ptr<const Blas>> bakedBlases(const Cluster& cluster);
   void writeRecords(uint32_t cluster);
+  void writeItem(uint32_t cluster, uint32_t item,
+                 const std::vector<std::shared_ptr<const Blas>>& baked, RecordFrames*& free);
   bool carriesParameters(const Geometry& g, uint32_t slot) const;
   Record recordOf(const Inherited& path, const Geometry& geometry, const Matrix4d& toRender);
   uint32_t bucketOf(uint32_t shaderSlot, uint32_t lightSet);

@@ -106,6 +106,7 @@ PartInfo Survey::measurePart(const Scene& scene, const ScenePart& part, bool roo
       if (shared) drawn = DrawnAs::shared;
       if (drawn == DrawnAs::ellipsoid) info.ellipsoids.emplace_back(i, g);
       if (drawn == DrawnAs::baked) info.baked = 1;
+      info.framed += hasFrames(geometries[g], drawn, root);
       info.drawn.push_back(drawn);
     }
   }

@@ -22,6 +22,12 @@ enum class DrawnAs : uint8_t {
   thin       // as lines or points, whose width in pixels depends on the camera
 };
 
+// Returns whether the records of a geometry have frames. root: in the static scene.
+inline bool hasFrames(const Geometry& g, DrawnAs drawn, bool root) {
+  if (drawn == DrawnAs::thin) return false;
+  return !root || drawn == DrawnAs::shared || g.surface || g.primitive == edit::Primitive::Sphere;
+}
+
 struct ObjectInfo {
   uint64_t version = 0;
   std::vector<double> sizes; // half the diagonal of each geometry's bounds
@@ -38,6 +44,7 @@ struct PartInfo {
   Box bounds;                       // in the part's frame
   uint64_t triangles = 0;
   bool lines = false, points = false;
+  uint32_t framed = 0;               // number of entries that have frames
   uint32_t baked = 0;                // number of Embree scenes with baked geometry
   std::vector<uint32_t> groups;      // which of them holds an entry; empty: the only one
   std::vector<uint32_t> sharedItems; // in order
