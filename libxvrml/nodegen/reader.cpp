@@ -182,7 +182,7 @@ class Reader {
         defaultValue(type));
   }
 
-  // attribute ::= "change" kind | "accepts" name { name } | "urls" | "x3d" | string
+  // attribute ::= "change" kind | "accepts" name { name } | "urls" | "x3d" | "rare" | string
   bool readAttribute(FieldSpec& field) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::string)) {
@@ -210,6 +210,13 @@ class Reader {
       field.ofX3dSource = lexer_.place(token.at());
       return true;
     }
+    if (token.is("rare")) {
+      if (field.rare) fail(token, fmt::format("{} says twice that it is rare", field.name));
+      take();
+      field.rare = true;
+      field.rareSource = lexer_.place(token.at());
+      return true;
+    }
     if (!token.is("accepts")) return false;
     if (!field.accepts.empty())
       fail(token, fmt::format("{} says twice what it accepts", field.name));
@@ -235,7 +242,7 @@ class Reader {
     Access access = Access::field;
     return token.is(TokenKind::identifier) &&
            (token.text == "change" || token.text == "accepts" || token.text == "urls" ||
-            token.text == "x3d" || accessFromName(token.text, access));
+            token.text == "x3d" || token.text == "rare" || accessFromName(token.text, access));
   }
 
   // Reads a name. Names become C++ and Python names, so they have letters, digits and underscores
