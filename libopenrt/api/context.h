@@ -45,7 +45,7 @@ struct Definition {
   RTid object = 0;
   ObjectBuilder builder;
   std::vector<RTid> children;
-  ArrayPtr formerIndices; // of a mesh that deforms: the indices of its tree
+  ArrayPtr formerIndices; // indices of the tree of a mesh that deforms
 };
 
 class Context {

@@ -8,7 +8,7 @@
 namespace xvrml {
 
 struct PlainTriangles {
-  std::span<const int32_t> index; // of the corners
+  std::span<const int32_t> index; // points of the corners
   bool ended = false;             // each triangle ends with -1; that of the last may be missing
   float creaseAngle = 0;          // as in a FaceSet, for triangles without normals
   bool solid = true, ccw = true;
