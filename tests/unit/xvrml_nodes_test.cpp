@@ -381,7 +381,7 @@ size_t sizeOf(const FieldInfo& field) {
 TEST(Nodes, StorageDoesNotOverlap) {
   constexpr size_t padding = alignof(Node); // a member may start in the tail padding of its base
   for (const NodeType* type : nodeTypes()) {
-    size_t end = sizeof(Node) - padding, endOfRare = 0; // of the block of rare fields
+    size_t end = sizeof(Node) - padding, endOfRare = 0;
     for (const FieldInfo& field : type->fields) {
       if (!stored(field)) continue;
       if (field.rare) {
