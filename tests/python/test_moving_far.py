@@ -2,6 +2,7 @@
 import pytest
 
 WORLD = """#VRML V2.0 utf8
+Viewpoint {{ }}
 DEF T TimeSensor {{ cycleInterval 10 loop TRUE startTime 0 }}
 DEF P PositionInterpolator {{ key [ 0 1 ] keyValue [ 0 0 0, 0 .5 0 ] }}
 DEF M Transform {{ children [
