@@ -73,6 +73,9 @@ struct RenderScene {
   // Light paths that a glossy surface scatters first (lights/light_path_weights.h); null: camera
   // paths make all of these.
   std::shared_ptr<const LightSources> glossySources;
+  // Where these light paths are connected: to the camera, and to the first non-specular surfaces of
+  // camera paths behind mirrors and glass.
+  bool showsGlossy = false, connectsGlossy = false;
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
   // scene fills space (fillsSpace()).
   std::vector<MediumLights> mediumLights;

@@ -345,7 +345,8 @@ void LocalBackend::prepareFrame() {
   snapshot_->aroundEye = mediaAroundEye(*snapshot_);
   guided_ = guideByPhotons(*snapshot_, stop_) && tryGlossyPaths(*snapshot_, stop_);
   if (snapshot_->photonGuide) transportReason_ += ", guided";
-  if (snapshot_->glossySources) transportReason_ += ", glossy";
+  if (snapshot_->showsGlossy) transportReason_ += ", glossy";
+  if (snapshot_->connectsGlossy) transportReason_ += ", connected";
 }
 
 std::shared_ptr<const RenderScene> LocalBackend::prepared() {

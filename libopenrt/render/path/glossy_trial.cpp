@@ -36,9 +36,11 @@ double raysOf(const RayCounters& counters) {
   return double(counters.camera + counters.secondary + counters.shadow);
 }
 
-// The variance and the rays of one camera path: the mean over the pixels, colours summed.
+// Traces camera paths in blocks of pixels, and tells the rays of one camera path and, in the mean
+// over the pixels, its variance and what connections are worth; colours are summed.
 struct CameraTrial {
   double variance = 0, rays = 0;
+  GlossyGain connections;
 };
 
 CameraTrial tryCameraPaths(RenderScene& scene, const std::atomic<bool>& stop) {
@@ -46,6 +48,7 @@ CameraTrial tryCameraPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   prepareTrial(scene.frame);
   TileRenderer renderer(scene);
   CameraTrial out;
+  renderer.observe(&out.connections);
   double pixels = 0;
   std::vector<PixelSums> sums;
   for (uint32_t b = 0; b < blocks && !stop; b++) {
@@ -62,13 +65,29 @@ CameraTrial tryCameraPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.frame = settings;
   out.variance /= pixels;
   out.rays = raysOf(renderer.counters()) / (pixels * samples);
+  for (double* moment : {&out.connections.without, &out.connections.with})
+    *moment /= pixels * samples;
   return out;
 }
+
+// The variance and the rays of a pixel's samples. Light paths that are worth their rays change
+// them.
+struct Expectation {
+  double variance, rays;
+
+  bool take(const GlossyGain& gain, double variantRays) {
+    const bool pays = (variance + gain.with) * variantRays < (variance + gain.without) * rays;
+    variance += pays ? gain.with : gain.without;
+    if (pays) rays = variantRays;
+    return pays;
+  }
+};
 
 } // namespace
 
 bool tryGlossyPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.glossySources = nullptr;
+  scene.showsGlossy = scene.connectsGlossy = false;
   if (!canTrace(scene)) return true;
   const auto sources =
       std::make_shared<const LightSources>(scene, nullptr, LightSources::Kind::glossy);
@@ -76,13 +95,21 @@ bool tryGlossyPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   const CameraTrial camera = tryCameraPaths(scene, stop);
   if (stop) return false;
   scene.glossySources = sources;
+  scene.showsGlossy = true;
   LightTracer tracer(scene);
-  const GlossyGain gain = tracer.tryGlossy(lightPaths, trialSeed, stop);
-  const double lightRays = raysOf(tracer.counters()) / (lightPaths * camerasPerGlossyPath),
-               rays = camera.rays * costOfWeights + lightRays,
-               without = (camera.variance + gain.without) * camera.rays,
-               with = (camera.variance + gain.with) * rays;
-  if (stop || !(with < without)) scene.glossySources = nullptr;
+  const GlossyGain shown = tracer.tryGlossy(lightPaths, trialSeed, stop);
+  const double lightRays = raysOf(tracer.counters()) / (lightPaths * camerasPerGlossyPath);
+  Expectation one{camera.variance, camera.rays};
+  const bool shows = one.take(shown, camera.rays * costOfWeights + lightRays);
+  scene.showsGlossy = false;
+  scene.connectsGlossy = true;
+  const CameraTrial connected = tryCameraPaths(scene, stop);
+  const double more = connected.rays - camera.rays;
+  const bool connects =
+      more > 0 && one.take(connected.connections, one.rays * (shows ? 1 : costOfWeights) + more);
+  scene.showsGlossy = !stop && shows;
+  scene.connectsGlossy = !stop && connects;
+  if (!scene.showsGlossy && !scene.connectsGlossy) scene.glossySources = nullptr;
   return !stop;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "render/lights/light_sources.h"
+#include "render/surface/projected_pdfs.h"
 #include "render/surface/sample_arrays.h"
 
 namespace openrt {
@@ -19,9 +20,21 @@ float firstRatio(const RenderScene& scene);
 // Computes the ratios of the rays that camera paths spawn, sample by sample, after chooseSamples().
 void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples);
 
+// Pairs of a hit of a batch and a direction; no hit occurs twice.
+struct HitDirections {
+  uint32_t count;
+  const uint32_t* hit;
+  const float* const* direction;
+};
+// Returns by pair the factors of the ratios of light paths that leave the hits by a lobe. to: by
+// pair, what the surface has for `back`. pdfs: of the lobe; the camera's side is that of the
+// direction, so `ahead` and `back` have changed places. start: by hit, the ray with which a path
+// has started that has not been scattered yet; null: it has been.
+const float* lightPathFactors(const RtsBatch& batch, const RtsLobe& lobe,
+                              const HitDirections& pairs, const ProjectedPdfs& pdfs,
+                              const float* to, const LightSources::LightRay* const* start);
 // Returns by hit the factor of the ratio of a light path that follows the sample, for the hits
-// whose number[] is `selected`. start: by hit, the ray with which a path has started that has not
-// been scattered yet; null: it has been.
+// whose number[] is `selected`. start: as above.
 const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
                              const uint32_t* number, uint32_t selected,
                              const LightSources::LightRay* const* start);
