@@ -22,7 +22,8 @@ FrameFacts factsOf(const RenderScene& scene) {
           .lamps = scene.lightSources || scene.showsGlossy,
           .guide = (scene.photonGuide || scene.lightPathFlux > 0 ? photonsOf(scene.frame) : 0) |
                    (scene.showsGlossy ? FrameFacts::glossyPaths : 0) |
-                   (scene.connectsGlossy ? FrameFacts::connectedPaths : 0)};
+                   (scene.connectsGlossy ? FrameFacts::connectedPaths : 0) |
+                   (scene.sharesMirrors ? FrameFacts::sharedMirrors : 0)};
 }
 
 struct JobRunner::Impl {

@@ -32,8 +32,15 @@ float backOfCameraPath(const RtsBatch& batch, const RtsLobe& lobe, uint32_t i, f
 float lightPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place, float surfaces,
                      float glossyPdf, float lightPdf) {
   if (!(surfaces > 0) || !(glossyPdf > 0) || !std::isfinite(lightPdf)) return 0;
-  return float(scene.glossySources->startPdf(shape, place) * double(surfaces)) *
+  return float(scene.glossySources->startPdf(scene, shape, place) * double(surfaces) /
+               camerasPerGlossyPath) *
          (glossyPdf / (glossyPdf + lightPdf));
+}
+
+float mirrorPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place,
+                      float surfaces) {
+  if (!(surfaces > 0)) return 0;
+  return float(scene.lightSources->startPdf(scene, shape, place) * double(surfaces));
 }
 
 namespace {
@@ -67,8 +74,9 @@ const float* cameraPathShares(const RtsBatch& batch, const RtsLobe& lobe, const 
   uint32_t n = 0;
   for (uint32_t r = 0; r < rays.count; r++) {
     const uint32_t i = samples.hit[r], lane = batch.order[i];
+    const PathFlags flags = batch.states->flagsOf(lane);
     if (samples.shape[r] == EmissiveShapes::none || !(batch.states->lightPathRatio[lane] > 0) ||
-        !batch.states->flagsOf(lane).scattered() || !isAimedAt(batch, i))
+        !flags.scattered() || !sharesGlossy(batch.scene, flags) || !isAimedAt(batch, i))
       continue;
     ray[n] = r;
     hit[n] = i;

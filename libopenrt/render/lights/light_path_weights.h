@@ -41,9 +41,22 @@ inline float lightPathShare(float ratio) {
 }
 inline float cameraPathShare(float ratio) { return 1 - lightPathShare(ratio); }
 
+// There is one light path by way of glossy surfaces for so many other light paths, of which there
+// are about as many as camera paths. More cost more than they gain (docs/decisions/0090).
+inline constexpr uint32_t camerasPerGlossyPath = 4;
+// Returns whether light paths by way of glossy surfaces make paths of a kind.
+inline bool sharesGlossy(const RenderScene& scene, PathFlags path) {
+  return path.pathClass() == PathClass::specularFirst ? scene.connectsGlossy : scene.showsGlossy;
+}
+
 // Returns the number of light paths that are connected to the surface of a camera path, on average;
 // 0 where it is not the first non-specular one, or not seen by way of specular ones.
 float connectionsAt(const RenderScene& scene, PathFlags path, const Vec3f& throughput);
+// Returns the ratio that this number stands for: the ratio counts light paths that are not by way
+// of glossy surfaces, of which there are more.
+inline float connectionRatio(float connections) {
+  return connections * float(camerasPerGlossyPath);
+}
 // Returns the squared distance of two points over the cosine at the second one: the geometry term
 // of a connection is the cosine at the first point over it.
 inline float spreadTo(const Vec3f& from, const Vec3f& to, const Vec3f& normal) {
@@ -58,10 +71,12 @@ inline bool isGlossy(const RtsLobe& lobe) { return lobe.kind != RTS_LOBE_DIFFUSE
 // Returns whether light paths start towards the surface at hit i.
 bool isAimedAt(const RtsBatch& batch, uint32_t i);
 
-// Returns the ratio for a path whose last surface sends on the light of a point of a shape.
-// surfaces: the product over its surfaces. glossyPdf, lightPdf: f and e.
+// Return the ratio for a path whose last surface sends on the light of a point of a shape.
+// surfaces: the product over its surfaces. glossyPdf, lightPdf: f and e. The second one is for
+// paths that come to that surface by way of mirrors or smooth glass.
 float lightPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place, float surfaces,
                      float glossyPdf, float lightPdf);
+float mirrorPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place, float surfaces);
 
 // Returns the weights of the camera paths for light samples at the hits of a batch by a lobe, by
 // ray; null: they are 1. pdf: of the lobe, by ray.

@@ -45,8 +45,10 @@ const float* ratiosOfArrived(const RtsBatch& batch) {
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order[i];
     const PathFlags flags = states.flagsOf(lane);
-    ratio[i] = flags.scattered() ? states.lightPathRatio[lane]
-                                 : connectionsAt(batch.scene, flags, load(states.throughput, lane));
+    ratio[i] =
+        flags.scattered()
+            ? states.lightPathRatio[lane]
+            : connectionRatio(connectionsAt(batch.scene, flags, load(states.throughput, lane)));
     if (flags.pathClass() == PathClass::undeflected && states.lightPathRatio[lane] > 0)
       first[count++] = i;
   }
@@ -60,8 +62,8 @@ const float* ratiosOfArrived(const RtsBatch& batch) {
 } // namespace
 
 float firstRatio(const RenderScene& scene) {
-  if (!scene.showsGlossy) return 0;
-  return float(scene.frame.width) * float(scene.frame.height) / float(camerasPerGlossyPath);
+  if (!scene.showsGlossy && !scene.sharesMirrors) return 0;
+  return float(scene.frame.width) * float(scene.frame.height);
 }
 
 void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples) {
@@ -89,7 +91,8 @@ void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples) {
       ratio[i] = arrived[i] * back / pdfs.ahead[j];
       // A geometry term has this cosine, and backOfCameraPath() the rest.
       if (!flags.scattered() && flags.pathClass() == PathClass::specularFirst) ratio[i] /= cosine;
-      if (flags.scattered() && isGlossy(*sample.lobe) && isAimedAt(batch, i))
+      if (flags.scattered() && sharesGlossy(batch.scene, flags) && isGlossy(*sample.lobe) &&
+          isAimedAt(batch, i))
         glossy[i] = pdfs.ahead[j] * cosine;
     }
   }
@@ -97,13 +100,21 @@ void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples) {
 
 const float* lightPathFactors(const RtsBatch& batch, const RtsLobe& lobe,
                               const HitDirections& pairs, const ProjectedPdfs& pdfs,
-                              const float* to, const LightSources::LightRay* const* start) {
+                              const float* to, const LightStarts& starts) {
+  const LightSources::LightRay* const* start = starts.ray;
   Arena& arena = batch.arena;
   const RtsHits& hits = batch.points->hits;
   auto* factor = arena.take<float>(padded(pairs.count));
   ArenaScope scope(arena);
   for (uint32_t j = 0; j < pairs.count; j++)
     factor[j] = pdfs.back[j] > 0 ? to[j] / pdfs.back[j] : 0.0f;
+  if (starts.sources.kind() != LightSources::Kind::glossy) {
+    for (uint32_t j = 0; j < pairs.count; j++)
+      if (const LightSources::LightRay* ray = start[pairs.hit[j]];
+          ray && ray->shape != LightSources::none)
+        factor[j] = mirrorPathRatio(batch.scene, ray->shape, ray->place.position, factor[j]);
+    return factor;
+  }
   FoundShapes found;
   found.allocate(arena, pairs.count);
   auto* pair = arena.take<uint32_t>(pairs.count);
@@ -130,8 +141,7 @@ const float* lightPathFactors(const RtsBatch& batch, const RtsLobe& lobe,
 }
 
 const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
-                             const uint32_t* number, uint32_t selected,
-                             const LightSources::LightRay* const* start) {
+                             const uint32_t* number, uint32_t selected, const LightStarts& starts) {
   Arena& arena = batch.arena;
   const uint32_t n = batch.points->hits.count;
   auto* byHit = arena.takeZero<float>(padded(n));
@@ -142,7 +152,7 @@ const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
   if (pairs.count == 0) return byHit;
   const ProjectedPdfs pdfs = pairs.projected(batch, *sample.lobe);
   const float* factor = lightPathFactors(
-      batch, *sample.lobe, {pairs.count, pairs.hit, pairs.direction}, pdfs, pdfs.ahead, start);
+      batch, *sample.lobe, {pairs.count, pairs.hit, pairs.direction}, pdfs, pdfs.ahead, starts);
   for (uint32_t j = 0; j < pairs.count; j++) byHit[pairs.hit[j]] = factor[j];
   return byHit;
 }
@@ -153,7 +163,10 @@ void firstSurfaceShares(const RtsBatch& batch, const RtsLobe& lobe, uint32_t n, 
   ArenaScope scope(batch.arena);
   const ProjectedPdfs pdfs = projectedPdfs(batch, lobe, n, hit, direction, pdf);
   for (uint32_t i = 0; i < n; i++)
-    share[i] = pdfs.back[i] > 0 ? lightPathShare(ratio[i] / pdfs.back[i]) : 0.0f;
+    if (std::isinf(ratio[i]))
+      share[i] = 1;
+    else
+      share[i] = pdfs.back[i] > 0 ? lightPathShare(ratio[i] / pdfs.back[i]) : 0.0f;
 }
 
 } // namespace openrt

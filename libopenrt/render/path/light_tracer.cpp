@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/lights/light_path_weights.h"
 #include "render/lights/luminance.h"
@@ -47,10 +48,12 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
                     hash(seed, glossySeed), stop));
 }
 
-GlossyGain LightTracer::tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
-  GlossyGain gain;
+LightPathGain LightTracer::tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
+                                    const PixelWeights& weights, const std::atomic<bool>& stop) {
+  LightPathGain gain;
   gain_ = &gain;
-  traceFrom(*scene_.glossySources, paths, seed, stop);
+  weights_ = &weights;
+  traceFrom(sources, paths, seed, stop);
   gain_ = nullptr;
   return gain;
 }
@@ -260,15 +263,18 @@ void LightTracer::leavePhotons(const Points& points, const PathStates& states, c
   }
 }
 
-// Returns by hit the ray with which a path has started that has not been scattered yet; null: it
-// has been.
-const LightSources::LightRay** LightTracer::startsOf(const RtsBatch& batch) const {
+LightStarts LightTracer::startsOf(const RtsBatch& batch) const {
   const uint32_t n = batch.points->hits.count;
   auto** start = batch.arena.takeZero<const LightSources::LightRay*>(padded(n));
   for (uint32_t i = 0; i < n; i++)
-    if (batch.states->flagsOf(batch.order[i]).pathClass() == PathClass::undeflected)
+    if (!batch.states->flagsOf(batch.order[i]).scattered())
       start[i] = &departures_.ray(batch.states->path[batch.order[i]]);
-  return start;
+  return {*sources_, start};
+}
+
+// Returns whether camera paths make paths like those in flight, too.
+bool LightTracer::shares() const {
+  return sources_->kind() == LightSources::Kind::glossy || (scene_.sharesMirrors && !photons_);
 }
 
 // Spawns one ray from each hit. Its sample is selected without the flux of the path, which is not
@@ -280,9 +286,10 @@ void LightTracer::spawnRays(const RtsBatch& batch, const LobeSampling& sampling,
   const PathStates& states = *batch.states;
   const uint32_t n = points.hits.count;
   const bool glossy = sources_->kind() == LightSources::Kind::glossy;
-  const LightSources::LightRay** start = startsOf(batch);
-  auto* first = arena_.take<uint32_t>(padded(n));
-  std::transform(start, start + padded(n), first, [](const auto* ray) { return ray != nullptr; });
+  const LightStarts starts = startsOf(batch);
+  auto* first = arena_.takeZero<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < n; i++)
+    first[i] = states.flagsOf(points.order[i]).pathClass() == PathClass::undeflected;
   BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::importance);
   Selection selection{.points = &points,
                       .choice = sampling.choices[0],
@@ -293,8 +300,8 @@ void LightTracer::spawnRays(const RtsBatch& batch, const LobeSampling& sampling,
   selectSamples(selection, samples);
   uint32_t number = 0;
   for (SampleArrays& sample : samples) {
-    if (glossy && sample.pdf)
-      sample.lightPathRatio = countLightPaths(batch, sample, selection.number, number, start);
+    if (shares() && sample.pdf)
+      sample.lightPathRatio = countLightPaths(batch, sample, selection.number, number, starts);
     number++;
   }
   for (uint32_t i = 0; i < n; i++) {
@@ -331,6 +338,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays
   if (sample.colour) state.flags.setChannel(uint8_t(sample.colour));
   state.media = mediaTowards(points, i, direction, boundaries, state.media);
   if (!sample.deflected) state.flags.addPassage();
+  if (sample.pdf) state.flags.set(PathFlags::scatteredBit, true);
   if (sample.deflected && state.flags.pathClass() == PathClass::undeflected) {
     if (!departures_.applyEmission(points, i, state)) return;
     state.flags.setClass(PathClass::specularFirst);
@@ -367,13 +375,21 @@ void LightTracer::connectToSurfaces(const RtsBatch& batch) {
 
 // Returns the ratios of pdfs for scatterToCamera(); null for paths that only light tracing makes.
 const float* LightTracer::ratiosToCamera(const RtsBatch& batch, const CameraConnections& to) {
-  if (sources_->kind() != LightSources::Kind::glossy) return nullptr;
+  if (!shares()) return nullptr;
   auto* ratio = arena_.takeZero<float>(padded(to.count));
   ArenaScope scope(arena_);
   const float first = firstRatio(scene_), *pixels = coveredPixels(batch, to.hit, to.count);
-  for (uint32_t i = 0; i < to.count; i++)
-    if (pixels[i] > 0)
-      ratio[i] = batch.states->lightPathRatio[batch.order[to.hit[i]]] * first / pixels[i];
+  for (uint32_t i = 0; i < to.count; i++) {
+    const RayState state = (*batch.states)[batch.order[to.hit[i]]];
+    const LightSources::LightRay& start = departures_.ray(state.path);
+    if (start.shape == LightSources::none) {
+      ratio[i] = std::numeric_limits<float>::infinity();
+      continue;
+    }
+    if (pixels[i] > 0) ratio[i] = state.lightPathRatio * first / pixels[i];
+    if (!state.flags.scattered())
+      ratio[i] = mirrorPathRatio(scene_, start.shape, start.place.position, ratio[i]);
+  }
   return ratio;
 }
 
@@ -418,15 +434,18 @@ void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
   scatterToCamera(batch, to, ratiosToCamera(batch, to), weighted);
   for (int k = 0; k < 3; k++) std::copy_n(whole[k], to.count, seen[k]);
   traceToCamera(batch, to, seen);
+  const bool glossy = sources_->kind() == LightSources::Kind::glossy;
   const double pixels = double(scene_.frame.width) * scene_.frame.height,
-               scale = scale_ * cameraArea_ * cameraArea_ / (double(firstRatio(scene_)) * pixels);
+               paths = pixels / (glossy ? camerasPerGlossyPath : 1),
+               scale = scale_ * cameraArea_ * cameraArea_ / (paths * pixels);
   for (uint32_t i = 0; i < to.count; i++) {
     const Vec3f all = load(whole, i), shared = load(weighted, i);
     const double found = double(all.x + all.y + all.z);
     if (!(found > 0) || !isInPicture(to, i)) continue;
     const Vec3d radiance =
         Vec3d(load(batch.states->throughput, batch.order[to.hit[i]]) * load(seen, i));
-    gain_->add(dot(radiance, radiance) * scale, double(shared.x + shared.y + shared.z) / found);
+    const double weight = scale * weights_->at(double(to.xy[0][i]), double(to.xy[1][i]));
+    gain_->add(dot(radiance, radiance) * weight, double(shared.x + shared.y + shared.z) / found);
   }
 }
 

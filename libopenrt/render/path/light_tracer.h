@@ -1,7 +1,7 @@
 // light_tracer.h: light tracing for caustics. Follows paths from light sources whose first hit is
 // specular (a mirror or a smooth boundary). Path tracing from the camera finds these paths with low
-// probability, or never if the light has no extent. Where it pays (glossy_trial.h), it also follows
-// paths that a glossy lobe scatters first. Each non-specular vertex of a light path is
+// probability, or never if the light has no extent. Where it pays (light_path_trial.h), it also
+// follows paths that a glossy lobe scatters first. Each non-specular vertex of a light path is
 // connected to the camera: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 // 1997, chapter 10, with a camera subpath of one vertex. One instance per render thread.
 //
@@ -22,8 +22,9 @@
 
 #include "render/lights/photon_guide.h"
 #include "render/path/camera_connections.h"
-#include "render/path/glossy_gain.h"
 #include "render/path/light_departures.h"
+#include "render/path/light_path_gain.h"
+#include "render/path/pixel_weights.h"
 #include "render/path/sensor_plane.h"
 #include "render/path/surface_connections.h"
 #include "render/surface/sample_arrays.h"
@@ -49,9 +50,10 @@ class LightTracer {
   // Traces a path by way of glossy surfaces for each surface of a camera path, and adds its light
   // there. samples: of the light paths.
   void connectTo(const ConnectedSurfaces& surfaces, const PathSamples& samples);
-  // Traces paths by way of glossy surfaces and returns what they are worth that are connected to
-  // the camera, as the mean over the pixels.
-  GlossyGain tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
+  // Traces paths from sources and returns what they are worth that are connected to the camera, as
+  // the mean over the pixels by their weights.
+  LightPathGain tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
+                         const PixelWeights& weights, const std::atomic<bool>& stop);
   std::vector<float>& picture() { return picture_; }
   RayCounters& counters() { return counters_; } // ray counts since the counters were last reset
 
@@ -75,7 +77,8 @@ class LightTracer {
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
   void connectToSurfaces(const RtsBatch& batch);
-  const LightSources::LightRay** startsOf(const RtsBatch& batch) const;
+  LightStarts startsOf(const RtsBatch& batch) const;
+  bool shares() const;
   void spawnRays(const RtsBatch& batch, const LobeSampling& sampling, const Boundaries& boundaries);
   void spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays& sample, double kept,
                 const Boundaries& boundaries);
@@ -111,7 +114,8 @@ class LightTracer {
   bool probedInside_ = false;
   uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
-  GlossyGain* gain_ = nullptr;             // gets the gain; null: picture_ gets the light
+  LightPathGain* gain_ = nullptr;          // gets the gain; null: picture_ gets the light
+  const PixelWeights* weights_ = nullptr;  // those of the gain
   const ConnectedSurfaces* surfaces_ = nullptr; // get the light; null: picture_ does
   PathSamples samples_{};                       // samples of the paths in flight
   RayQueue queue_, next_;                       // rays of the current wave, and of the next one

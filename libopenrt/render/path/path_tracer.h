@@ -51,7 +51,7 @@ class PathTracer {
 
   // Tell trials about all guided rays, and about all connections of light paths, from now on.
   void observe(GuideTrial* trial) { guided_.observe(trial); }
-  void observe(GlossyGain* gain) { connections_.observe(gain); }
+  void observe(LightPathGain* gain) { connections_.observe(gain); }
   // Begins with the samples of other paths, which have hit no surface.
   void begin(const PathSamples& samples);
   // Traces the rays of a wave, and then those that they spawn.

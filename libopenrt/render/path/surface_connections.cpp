@@ -7,7 +7,6 @@
 #include "render/lights/emitted.h"
 #include "render/lights/light_path_weights.h"
 #include "render/lights/shadows.h"
-#include "render/path/light_path_ratios.h"
 #include "render/surface/adjoint.h"
 #include "render/surface/lobes.h"
 
@@ -118,14 +117,14 @@ const float* ratiosAt(const LightVertices& vertices, const Answer& from,
   ArenaScope scope(batch.arena);
   auto* spread = batch.arena.take<float>(padded(to.count));
   for (uint32_t j = 0; j < to.count; j++)
-    spread[j] = to.connections[j] *
+    spread[j] = connectionRatio(to.connections[j]) *
                 spreadTo(lightSampleContext(*surfaces.batch.points, to.surface[j], false).position,
                          load(batch.points->hits.position, to.vertex[j]),
                          load(from.lobe->normal, to.vertex[j]));
   const ProjectedPdfs pdfs =
       projectedPdfs(batch, *from.lobe, to.count, to.vertex, to.toSurface, from.pdf);
   const float* factor = lightPathFactors(batch, *from.lobe, {to.count, to.vertex, to.toSurface},
-                                         pdfs, spread, vertices.start);
+                                         pdfs, spread, vertices.starts);
   for (uint32_t j = 0; j < to.count; j++)
     ratio[j] = factor[j] * batch.states->lightPathRatio[batch.order[to.vertex[j]]];
   return ratio;

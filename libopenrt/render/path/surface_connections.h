@@ -5,7 +5,8 @@
 #pragma once
 
 #include "render/lights/light_sources.h"
-#include "render/path/glossy_gain.h"
+#include "render/path/light_path_gain.h"
+#include "render/path/light_path_ratios.h"
 #include "render/surface/sent_light.h"
 #include "render/wave/boundaries.h"
 
@@ -20,16 +21,16 @@ struct ConnectedSurfaces {
   uint32_t level;        // number of surfaces that the camera paths have hit before
   uint32_t count;
   const uint32_t* hit; // by light path: index of the hit in the batch
-  GlossyGain* gain;    // gets what the connections are worth; null: nobody asks
+  LightPathGain* gain; // gets what the connections are worth; null: nobody asks
 };
 
 // Vertices of light paths: hits of a batch, at most one of each path.
 struct LightVertices {
   const RtsBatch& batch;
   uint32_t count;
-  const uint32_t* hit;                        // by vertex
-  const float* const* flux;                   // that arrives, by vertex
-  const LightSources::LightRay* const* start; // by hit, as in lightPathFactors()
+  const uint32_t* hit;      // by vertex
+  const float* const* flux; // that arrives, by vertex
+  LightStarts starts;
 };
 
 // Adds the light of the vertices to the surfaces of their paths: one shadow ray each.

@@ -37,7 +37,7 @@ class TileRenderer {
   // Tell trials about all guided rays of camera paths, and about all connections of light paths,
   // from now on.
   void observe(GuideTrial* trial) { tracer_.observe(trial); }
-  void observe(GlossyGain* gain) { tracer_.observe(gain); }
+  void observe(LightPathGain* gain) { tracer_.observe(gain); }
 
  private:
   void begin(const Tile& tile);

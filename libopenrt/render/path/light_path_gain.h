@@ -1,4 +1,4 @@
-// glossy_gain.h: tells what light paths by way of glossy surfaces are worth
+// light_path_gain.h: tells what it is worth that light paths and camera paths share light
 // (lights/light_path_weights.h). [render]
 #pragma once
 
@@ -7,11 +7,11 @@
 
 namespace openrt {
 
-// The second moments of the radiance that such light paths and one camera path of each pixel find,
-// summed over the colours. They are sums over what light paths have found; whoever has traced them
-// divides by the number of camera paths.
-struct GlossyGain {
-  double without = 0, with = 0; // camera paths alone; both, with their weights
+// The second moments of the radiance that shared light brings to one camera path of each pixel,
+// summed over the colours: by camera paths alone, by light paths alone, and by both with their
+// weights. They are sums over what light paths have found.
+struct LightPathGain {
+  double camera = 0, light = 0, both = 0;
 
   // Adds what a light path has found. square: its squared radiance. share: its weight. Found with
   // the density p and the ratio of pdfs q, it tells that camera paths of the density p / q have the
@@ -22,8 +22,9 @@ struct GlossyGain {
     const double ratio =
         share < 1 ? std::min(mostRatio, std::sqrt(share / (1 - share))) : mostRatio;
     if (!std::isfinite(square * ratio)) return;
-    without += square * ratio;
-    with += square * (ratio * (1 - share) * (1 - share) + share * share);
+    camera += square * ratio;
+    light += square;
+    both += square * (ratio * (1 - share) * (1 - share) + share * share);
   }
 };
 
