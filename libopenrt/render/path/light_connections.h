@@ -1,5 +1,6 @@
 // light_connections.h: the stage of camera paths that connects them with light paths by way of
-// glossy surfaces (surface_connections.h), where a trial has found that it pays (light_path_trial.h).
+// glossy surfaces (surface_connections.h), where a trial has found that it pays
+// (light_path_trial.h).
 // Each first non-specular surface that is seen by way of mirrors or smooth glass gets a light path
 // of its own, with a probability that grows with what the camera path carries. One instance per
 // path tracer.
