@@ -110,6 +110,35 @@ class GlossyLight : public Scene {
     rtPopMatrix();
     rtQuality(RT_MAX_DEPTH, 6);
   }
+  // A matt wall is lit by a panel of a half edge and by its image in a mirror on the floor.
+  static void aWallOverAMirror(double panel, double radiance, double height) {
+    Shader mirror("Mirror");
+    placeAt(0, square(mirror, 1.5));
+    placeAt(height, square(matt(0, radiance), panel), true);
+    rtPushMatrix();
+    rtTranslated(0, 1.6, 0);
+    rtRotated(90, 1, 0, 0);
+    place(square(matt(.6), 3));
+    rtPopMatrix();
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(0, -2.5, .6, 0, 1.6, .6, 0, 0, 1);
+    rtPerspective(12);
+    rtPopMatrix();
+    rtQuality(RT_MAX_DEPTH, 6);
+  }
+  // Expects that pictures with light paths spread by at most a part of those by path tracing with
+  // as many samples.
+  static void expectLessNoise(const std::function<void()>& build, const char* way, double part) {
+    const auto noise = [](const Quarters& of) {
+      return of.error[0] + of.error[1] + of.error[2] + of.error[3];
+    };
+    build();
+    const double light = noise(quarters(RT_TRANSPORT_LIGHT, 64, 1000));
+    EXPECT_TRUE(says(way)) << stats().transport.reason;
+    const double path = noise(quarters(RT_TRANSPORT_PATH, 64, 1));
+    EXPECT_LT(light, part * path);
+  }
 };
 
 // A small lamp close to a ball of rough metal, over a matt floor that the camera sees.
@@ -189,25 +218,11 @@ TEST_F(GlossyLight, ARoughFloorInAMirror) {
   expectSameMeans(build, 512, 64, ", connected");
 }
 
-// A floor of matt and smooth reflection under a panel of which a matt wall sees the mirror image: a
-// large lamp is found by camera paths, and a small one by light paths.
+// A wide lamp, which camera paths find in the mirror, and a small one, which light paths find.
 TEST_F(GlossyLight, AWideAndASmallLampOverAMirror) {
   const auto build = [] {
-    Shader mirror("Mirror");
-    placeAt(0, square(mirror, 1.5));
-    placeAt(2.5, square(matt(0, 2), .8), true);
+    aWallOverAMirror(.8, 2, 2.5);
     placeAt({1, 0, 1.5}, ball(matt(0, 100), .05));
-    rtPushMatrix();
-    rtTranslated(0, 1.6, 0);
-    rtRotated(90, 1, 0, 0);
-    place(square(matt(.6), 3));
-    rtPopMatrix();
-    rtPushMatrix();
-    rtLoadIdentity();
-    rtLookAt(0, -2.5, .6, 0, 1.6, .6, 0, 0, 1);
-    rtPerspective(12);
-    rtPopMatrix();
-    rtQuality(RT_MAX_DEPTH, 6);
   };
   expectSameMeans(build, 512, 64, ", shared");
 }
@@ -226,7 +241,7 @@ TEST_F(GlossyLight, AWideLampThroughGlass) {
   expectSameMeans(build, 512, 64, ", shared");
 }
 
-// The spread of pictures of a floor in a mirror falls with connections to a third at most.
+// The spread of pictures with light paths is a part of that by path tracing.
 TEST_F(GlossyLight, ConnectionsTakeTheSparksOutOfMirrors) {
   const auto build = [] {
     aFloorInAMirror([] {
@@ -234,16 +249,19 @@ TEST_F(GlossyLight, ConnectionsTakeTheSparksOutOfMirrors) {
       placeAt({1.5, .2, 1.7}, ball(matt(0, 400), .05));
     });
   };
-  build();
-  const Quarters light = quarters(RT_TRANSPORT_LIGHT, 64, 1000);
-  EXPECT_TRUE(says(", connected")) << stats().transport.reason;
-  const Quarters path = quarters(RT_TRANSPORT_PATH, 64, 1);
-  double lightError = 0, pathError = 0;
-  for (size_t q = 0; q < 4; q++) {
-    lightError += light.error[q];
-    pathError += path.error[q];
-  }
-  EXPECT_LT(lightError, pathError / 3);
+  expectLessNoise(build, ", connected", 1. / 3);
+}
+
+// Neither a large lamp nor a small one over a mirror is worse than by the better way alone.
+TEST_F(GlossyLight, AWideLampOverAMirrorIsNoWorseThanByPathTracing) {
+  expectLessNoise([] { aWallOverAMirror(1, 2, 1.5); }, ", shared", 1.25);
+}
+TEST_F(GlossyLight, ASmallLampOverAMirrorHasNoSparks) {
+  const auto build = [] {
+    aWallOverAMirror(1, .5, 2);
+    placeAt({1, 0, 1.5}, ball(matt(0, 300), .04));
+  };
+  expectLessNoise(build, "", 1. / 3);
 }
 
 TEST_F(GlossyLight, ConnectionsDoNotDependOnThreads) {

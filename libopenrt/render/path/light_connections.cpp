@@ -20,6 +20,18 @@ bool scattersAt(const RtsBatch& batch, uint32_t i) {
   });
 }
 
+// Returns connectionsAt() of hit i, and 0 where no path may go on to a light or no lobe answers.
+float connectionsOf(const CameraPaths& paths, uint32_t i) {
+  const RtsBatch& batch = paths.batch;
+  const uint32_t lane = batch.order[i];
+  const PathFlags flags = batch.states->flagsOf(lane);
+  const float number = connectionsAt(batch.scene, flags, load(batch.states->throughput, lane));
+  return number > 0 && isWithinDepth(flags, paths.level + 2, batch.scene.frame.depth) &&
+                 scattersAt(batch, i)
+             ? number
+             : 0.0f;
+}
+
 } // namespace
 
 LightConnections::LightConnections(const StageContext& context) : context_(context) {}
@@ -28,12 +40,13 @@ LightConnections::~LightConnections() = default;
 void LightConnections::connect(const CameraPaths& paths, const LobeSampling& sampling,
                                const Boundaries& boundaries, const SentLight& sent) {
   const RtsBatch& batch = paths.batch;
-  const RenderScene& scene = batch.scene;
-  if (!scene.connectsGlossy) return;
+  if (!batch.scene.connectsGlossy) return;
   Arena& arena = batch.arena;
   ArenaScope scope(arena);
-  const PathStates& states = *batch.states;
   const uint32_t n = batch.points->hits.count;
+  auto* connections = arena.take<float>(padded(n));
+  for (uint32_t i = 0; i < n; i++) connections[i] = connectionsOf(paths, i);
+  if (std::none_of(connections, connections + n, [](float number) { return number > 0; })) return;
   float* choice[2];
   sampling.random.draw(Decision::choice, arena, choice, connectionPairs);
   auto* hit = arena.take<uint32_t>(padded(n));
@@ -41,18 +54,15 @@ void LightConnections::connect(const CameraPaths& paths, const LobeSampling& sam
   samples.allocate(arena, padded(n));
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    const uint32_t lane = batch.order[i], path = states.path[lane];
-    const PathFlags flags = states.flagsOf(lane);
-    if (!(choice[0][i] < connectionsAt(scene, flags, load(states.throughput, lane))) ||
-        !isWithinDepth(flags, paths.level + 2, scene.frame.depth) || !scattersAt(batch, i))
-      continue;
-    samples.key[count] =
-        hash(paths.samples.key[path], hash(connectionPairs + states.branch[lane], paths.level + 1));
+    if (!(choice[0][i] < connections[i])) continue;
+    const uint32_t lane = batch.order[i], path = batch.states->path[lane];
+    samples.key[count] = hash(paths.samples.key[path],
+                              hash(connectionPairs + batch.states->branch[lane], paths.level + 1));
     samples.index[count] = paths.samples.index[path];
     hit[count++] = i;
   }
   if (count == 0) return;
-  if (!tracer_) tracer_ = std::make_unique<LightTracer>(scene);
+  if (!tracer_) tracer_ = std::make_unique<LightTracer>(batch.scene);
   tracer_->connectTo({batch, boundaries, sent, paths.level, count, hit, gain_}, samples);
   const RayCounters counters = std::exchange(tracer_->counters(), {});
   context_.counters.secondary += counters.secondary;
