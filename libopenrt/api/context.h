@@ -45,6 +45,7 @@ struct Definition {
   RTid object = 0;
   ObjectBuilder builder;
   std::vector<RTid> children;
+  ArrayPtr formerIndices; // indices of the tree of a mesh that deforms
 };
 
 class Context {

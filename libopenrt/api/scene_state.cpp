@@ -124,6 +124,11 @@ void SceneState::defineObject(RTid id, std::vector<BuiltGeometry> geometries,
   for (RTid child : state.children) instances.find(child)->inDefinition = false;
 }
 
+ArrayPtr SceneState::restingIndices(RTid object) const {
+  const auto found = resting_.find(object);
+  return found == resting_.end() ? nullptr : found->second.indices;
+}
+
 bool SceneState::contains(RTid inner, RTid outer) {
   if (inner == outer) return true;
   if (object(outer).users.empty() || object(inner).children.empty()) return false;

@@ -139,6 +139,9 @@ class SceneState {
   // Ends the definition of an object: replaces its geometry and its children.
   void defineObject(RTid id, std::vector<BuiltGeometry> geometries,
                     const std::vector<RTid>& children);
+  // Returns the indices of the mesh that the tree of a deforming object is built of; null if the
+  // object has no such tree.
+  ArrayPtr restingIndices(RTid object) const;
   // Returns whether the object `inner` is, or contains, the object `outer`.
   bool contains(RTid inner, RTid outer);
 

@@ -21,7 +21,8 @@ inline bool isHugeSphere(const Matrix4d& unitToKernel) {
 // in single precision.
 inline bool intersectedInDouble(const Record& r) {
   if (r.primitive != edit::Primitive::Sphere || r.instanced) return false;
-  const Vec3d x(r.toRender.column(0)), y(r.toRender.column(1)), z(r.toRender.column(2));
+  const Vec3d x(r.frames->toRender.column(0)), y(r.frames->toRender.column(1)),
+      z(r.frames->toRender.column(2));
   // The threshold is a little lower here, because the record is rounded to float and the result
   // must agree with what the kernels were given.
   return std::max({dot(x, x), dot(y, y), dot(z, z)}) >=

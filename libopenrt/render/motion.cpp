@@ -35,7 +35,7 @@ Vec3d pointOfMesh(const Record& r, const RayHits& hits, uint32_t lane, const Arr
 
 // Returns the direction of a sphere's point from its centre, in the frame of its geometry.
 Vec3d directionOnSphere(const Record& r, const Vec3f& position) {
-  return normalize(r.fromRender.point(Vec3d(position)));
+  return normalize(r.frames->fromRender.point(Vec3d(position)));
 }
 
 // Returns the image of a point of the geometry under the difference of the two matrices.
@@ -82,7 +82,7 @@ Vec3d motionOf(const RenderScene& scene, const RayHits& hits, uint32_t lane,
     return change(*m, direction * double(m->radius)) +
            m->before.direction(direction * (double(m->radius) - double(m->radiusBefore)));
   }
-  if (r.surface) return change(*m, r.fromRender.point(Vec3d(position)));
+  if (r.surface) return change(*m, r.frames->fromRender.point(Vec3d(position)));
   const Vec3d point = pointOfMesh(r, hits, lane, *m->points);
   if (!m->pointsBefore) return change(*m, point);
   const Vec3d before = pointOfMesh(r, hits, lane, *m->pointsBefore);

@@ -81,10 +81,22 @@ template <class T> Vec3<T> Affine::normal(const Vec3<T>& n) const {
   return inverseOf(*this).transposed(n);
 }
 
+// The frames of a geometry whose hits are not in render space: of an instance, a sphere or an
+// analytic surface. Static triangles, of which large worlds mostly are, have none.
+struct RecordFrames {
+  // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space; analytic
+  // surface: its own frame -> render space
+  Affine toRender;
+  Affine fromRender;        // sphere and analytic surface: inverse of toRender
+  Rows<float> kernelNormal; // instanced: the kernel's geometric normal -> render space
+};
+
+inline const RecordFrames noFrames{};
+
 struct Record {
   edit::Primitive primitive = edit::Primitive::Triangles;
-  // If true, the vertices are in the kernel's object frame, and `toRender` maps them to render
-  // space. Otherwise they are in render space divided by `scale`.
+  // If true, the vertices are in the kernel's object frame, and frames->toRender maps them to
+  // render space. Otherwise they are in render space divided by `scale`.
   bool instanced = false;
   bool cull = false;
   bool flip = false;   // the kernel's geometric normal points to the back
@@ -103,15 +115,12 @@ struct Record {
   const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;
   float scale = 1; // not instanced: vertices times scale are in render space
-  // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space; analytic
-  // surface: its own frame -> render space
-  Affine toRender;
-  Affine fromRender; // sphere and analytic surface: inverse of toRender
+  const RecordFrames* frames = &noFrames;
   const AnalyticSurface* surface = nullptr;
   // Normals of the geometry -> render space (inverse transpose), not normalised.
   Rows<float> normalMatrix;
-  Affine toObject;          // render space -> frame of the object that contains the geometry
-  Rows<float> kernelNormal; // instanced: the kernel's geometric normal -> render space
+  // Maps render space to the frame of the object that contains the geometry.
+  const Affine* toObject = nullptr;
 
   // Returns corner 0, 1 or 2 of a triangle, as the kernel sees it.
   Vec3f corner(uint32_t triangle, int number) const {
@@ -119,7 +128,7 @@ struct Record {
   }
   // Maps a vertex that the kernel sees to render space.
   template <class T> Vec3<T> placeOf(const Vec3<T>& vertex) const {
-    return instanced ? toRender.point(vertex) : vertex * T(scale);
+    return instanced ? frames->toRender.point(vertex) : vertex * T(scale);
   }
   // Returns the corners of a triangle in render space.
   std::array<Vec3f, 3> cornersOf(uint32_t triangle) const {

@@ -14,11 +14,11 @@
 
 namespace openrt {
 
-// The bytes of one bulk array, 64-byte aligned and followed by 64 readable bytes (ray kernels read
-// past the end). Immutable once shared.
+// The bytes of one bulk array, aligned and followed by 64 readable bytes (ray kernels read past the
+// end). Immutable once shared.
 class Array {
  public:
-  explicit Array(size_t bytes);
+  explicit Array(size_t bytes); // aligned to 64 bytes
   ~Array();
   Array(const Array&) = delete;
   Array& operator=(const Array&) = delete;
@@ -29,6 +29,9 @@ class Array {
   template <class T> size_t count() const { return size_ / sizeof(T); }
 
  private:
+  friend class ArrayBlocks;
+  Array(std::byte* data, size_t size) : data_(data), size_(size) {} // in a block, which owns it
+
   std::byte* data_;
   size_t size_;
 };

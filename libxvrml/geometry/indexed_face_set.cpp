@@ -1,9 +1,10 @@
 // indexed_face_set.cpp: IndexedFaceSet (clause 6.23): reads faces and attribute indices from the
-// node's lists, with a fast path for large sets of triangles.
+// node's lists.
 #include <algorithm>
 
 #include "geometry/builders.h"
 #include "geometry/polygons/face_set.h"
+#include "geometry/polygons/plain_triangles.h"
 #include "geometry/texture_mapping.h"
 
 namespace xvrml {
@@ -143,92 +144,16 @@ class FaceReader {
   bool repeats_ = false; // the last face
 };
 
-// Reads the indices of a list of valid triangles only. Returns false at the first anything else.
-bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> points,
-                    std::vector<uint32_t>& out) {
-  size_t n = index.size();
-  if (n == 0 || (n % 4 != 0 && n % 4 != 3)) return false;
-  size_t triangles = (n + 1) / 4;
-  uint32_t limit = uint32_t(std::min<size_t>(points.size(), INT32_MAX));
-  out.resize(3 * triangles);
-  for (size_t t = 0; t < triangles; t++) {
-    uint32_t a = uint32_t(index[4 * t]), b = uint32_t(index[4 * t + 1]),
-             c = uint32_t(index[4 * t + 2]);
-    bool ended = 4 * t + 3 == n || index[4 * t + 3] == -1;
-    if (!ended || a >= limit || b >= limit || c >= limit ||
-        !hasArea(points[a], points[b], points[c]))
-      return false;
-    out[3 * t] = a;
-    out[3 * t + 1] = b;
-    out[3 * t + 2] = c;
-  }
-  return true;
-}
-
-// Returns whether the triangles of the mesh before are valid ones of these points, too.
-bool remain(const MeshTopology* former, std::span<const Vec3f> points) {
-  if (!former || former->indices.empty() || former->points != points.size()) return false;
-  const auto& index = former->indices;
-  for (size_t i = 0; i < index.size(); i += 3)
-    if (!hasArea(points[index[i]], points[index[i + 1]], points[index[i + 2]])) return false;
-  return true;
-}
-
-// Returns whether there are no values, or those of the points in their order.
-template <class T> bool matchPoints(std::span<const T> values, std::span<const int32_t> index,
-                                    bool perVertex, size_t points) {
-  return values.empty() ||
-         (perVertex && index.empty() && values.size() >= points && allFinite(values));
-}
-
-bool areUnit(std::span<const Vec3f> normals) {
-  return std::all_of(normals.begin(), normals.end(), [](const Vec3f& n) {
-    return std::abs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-4f;
-  });
-}
-
-// Uses the node's arrays directly, for triangles whose points each are one vertex. Meshes with such
-// arrays would be built of a FaceSet in the same way.
+// Uses the node's arrays directly if they are triangles whose points each are one vertex.
 bool buildInPlace(const nodes::IndexedFaceSet& node, const FaceSet& set, const MeshOptions& options,
                   Mesh& mesh) {
-  constexpr size_t manyIndices = 1 << 14; // fewer are not worth an attempt to smooth them
-  const std::span<const Vec3f> points = set.points;
-  const bool smooth = set.normals.values.empty() && node.creaseAngle > 0;
-  if (node.coordIndex.size() / 4 + 1 > triangleLimit(options) ||
-      points.size() / 4 > node.coordIndex.size() ||
-      (smooth && node.coordIndex.size() < manyIndices) || !set.alphas.empty() ||
-      !matchPoints<Color>(set.colors.values, node.colorIndex, node.colorPerVertex, points.size()) ||
-      !matchPoints<Vec2f>(set.texCoords.values, node.texCoordIndex, true, points.size()) ||
-      !matchPoints<Vec3f>(set.normals.values, node.normalIndex, node.normalPerVertex,
-                          points.size()) ||
-      !areUnit(set.normals.values) || !allFinite(points))
-    return false;
-  if (remain(options.former, points)) {
-    mesh.ownIndices = std::move(options.former->indices);
-  } else if (!plainTriangles(node.coordIndex, points, mesh.ownIndices)) {
-    return false;
-  }
-  if (smooth &&
-      !smoothNormals(points, mesh.ownIndices, node.creaseAngle, node.ccw, mesh.ownNormals))
-    return false;
-  mesh.kind = Mesh::Kind::triangles;
-  mesh.plain = true;
-  mesh.points = points;
-  mesh.indices = mesh.ownIndices;
-  mesh.solid = node.solid;
-  mesh.ccw = node.ccw;
-  if (smooth)
-    mesh.normals = mesh.ownNormals;
-  else if (!set.normals.values.empty())
-    mesh.normals = set.normals.values.first(points.size());
-  if (!set.colors.values.empty()) mesh.colors = set.colors.values.first(points.size());
-  if (!set.texCoords.values.empty()) {
-    mesh.texCoords = set.texCoords.values.first(points.size());
-  } else if (options.needTexCoords) {
-    mesh.ownTexCoords = defaultTextureMapping(mesh.points, mesh.indices);
-    mesh.texCoords = mesh.ownTexCoords;
-  }
-  return true;
+  const bool normals =
+                 set.normals.values.empty() || (node.normalPerVertex && node.normalIndex.empty()),
+             colors = set.colors.values.empty() || (node.colorPerVertex && node.colorIndex.empty()),
+             texCoords = set.texCoords.values.empty() || node.texCoordIndex.empty();
+  return normals && colors && texCoords &&
+         buildPlain({node.coordIndex, true, node.creaseAngle, node.solid, node.ccw}, set, options,
+                    mesh);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/polygons/face_set.h"
+#include "geometry/polygons/plain_triangles.h"
 #include "geometry/texture_mapping.h"
 
 namespace xvrml {
@@ -121,13 +122,27 @@ template <class T> void bind(Attribute<T>& attribute, uint32_t used, Fault fault
   if (attribute.values.size() < used) faults.add(fault, attribute.values.size());
 }
 
+constexpr float smoothAll = 4; // more than any angle between faces
+
+// Returns a set with the values of a node and no faces.
+template <class Node> FaceSet valuesOf(const Node& node) {
+  FaceSet set;
+  set.points = coordinates(node.coord);
+  set.solid = node.solid;
+  set.ccw = node.ccw;
+  ColorValues colors = colorValues(node.color);
+  set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
+  set.normals.values = normalVectors(node.normal);
+  set.texCoords.values = textureCoordinates(node.texCoord);
+  return set;
+}
+
 // Makes the faces with read(reader), and then the mesh. smooth: vertices without a normal get the
 // mean of the normals of all faces that share their coordinate.
 template <class Node, class Read> Mesh build(const Node& node, Pattern pattern, bool smooth,
                                              const MeshOptions& options, Faults& faults,
                                              Corners corners, const Read& read) {
-  FaceSet set;
-  set.points = coordinates(node.coord);
+  FaceSet set = valuesOf(node);
   if (set.points.size() >= noValue / 2 || corners.index.size() >= noValue / 2) {
     faults.note("too many points or indices");
     return {};
@@ -136,17 +151,11 @@ template <class Node, class Read> Mesh build(const Node& node, Pattern pattern, 
   SetReader reader(set, corners, pattern, triangleLimit(options), faults);
   read(reader, corners.size());
   if (set.corners.empty()) return {};
-  set.solid = node.solid;
-  set.ccw = node.ccw;
-  ColorValues colors = colorValues(node.color);
-  set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
-  set.normals.values = normalVectors(node.normal);
-  set.texCoords.values = textureCoordinates(node.texCoord);
   const uint32_t used = *std::max_element(set.corners.begin(), set.corners.end()) + 1;
   bind(set.colors, used, Fault::colorMissing, faults);
   bind(set.normals, used, Fault::normalMissing, faults);
   bind(set.texCoords, used, Fault::texCoordMissing, faults);
-  if (smooth && node.normalPerVertex) set.creaseAngle = 4; // more than any angle between faces
+  if (smooth && node.normalPerVertex) set.creaseAngle = smoothAll;
   if (options.needTexCoords && set.texCoords.values.empty()) {
     set.texCoords.own = defaultTextureMapping(set.points, set.corners);
     set.texCoords.values = set.texCoords.own;
@@ -162,6 +171,12 @@ constexpr auto byIndex = [](SetReader& reader, uint32_t) { reader.runsByIndex();
 
 Mesh buildIndexedTriangleSet(const nodes::IndexedTriangleSet& node, const MeshOptions& options,
                              Faults& faults) {
+  const FaceSet set = valuesOf(node);
+  Mesh mesh;
+  if (set.points.size() < noValue / 2 && node.index.size() < noValue / 2 &&
+      buildPlain({node.index, false, node.normalPerVertex ? smoothAll : 0, node.solid, node.ccw},
+                 set, options, mesh))
+    return mesh;
   return build(node, Pattern::triangles, true, options, faults, {true, node.index}, oneRun);
 }
 

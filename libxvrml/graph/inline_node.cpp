@@ -26,6 +26,7 @@ const FieldInfo& addField(NodeType& type, FieldInfo field) {
   for (const FieldInfo& other : type.fields)
     offset += holdsValue(other) && (type.index < 0 || other.declared);
   field.sets = -1; // the field may be that of a static type
+  field.rare = nullptr;
   field.offset = offset;
   return type.fields.emplace_back(std::move(field));
 }

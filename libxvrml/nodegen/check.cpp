@@ -197,6 +197,8 @@ class Checker {
                                fieldTypeName(field.type)));
     }
     if (field.urls && field.urlsSource.line) checkUrls(field);
+    if (field.rare && (type.isAbstract || !field.hasStorage()))
+      model_.error(field.rareSource, "only a field or exposedField of a node can be rare");
     if (field.ofX3d && type.ofX3d)
       model_.error(field.ofX3dSource,
                    fmt::format("{} is a node of X3D: all its fields are X3D's", type.name));

@@ -35,7 +35,9 @@ struct FieldSpec {
   std::vector<Reference> accepts;
   bool urls = false;         // the strings are URLs
   SourcePosition urlsSource; // where the field says so; an inherited `urls` has none
-  bool ofX3d = false;        // X3D adds the field to a node of VRML97
+  bool rare = false;         // few worlds set the field: it has no room in every node
+  SourcePosition rareSource;
+  bool ofX3d = false; // X3D adds the field to a node of VRML97
   SourcePosition ofX3dSource;
   std::string text;
 

@@ -182,7 +182,7 @@ class Reader {
         defaultValue(type));
   }
 
-  // attribute ::= "change" kind | "accepts" name { name } | "urls" | "x3d" | string
+  // attribute ::= "change" kind | "accepts" name { name } | "urls" | "x3d" | "rare" | string
   bool readAttribute(FieldSpec& field) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::string)) {
@@ -196,26 +196,28 @@ class Reader {
       readChange(field);
       return true;
     }
-    if (token.is("urls")) {
-      if (field.urls) fail(token, fmt::format("{} says twice that it holds URLs", field.name));
-      take();
-      field.urls = true;
-      field.urlsSource = lexer_.place(token.at());
+    if (readWord(field, "urls", "holds URLs", field.urls, field.urlsSource) ||
+        readWord(field, "x3d", "is X3D's", field.ofX3d, field.ofX3dSource) ||
+        readWord(field, "rare", "is rare", field.rare, field.rareSource))
       return true;
-    }
-    if (token.is("x3d")) {
-      if (field.ofX3d) fail(token, fmt::format("{} says twice that it is X3D's", field.name));
-      take();
-      field.ofX3d = true;
-      field.ofX3dSource = lexer_.place(token.at());
-      return true;
-    }
     if (!token.is("accepts")) return false;
     if (!field.accepts.empty())
       fail(token, fmt::format("{} says twice what it accepts", field.name));
     take();
     do readName(field.accepts.emplace_back(), "a node or an abstract type");
     while (lexer_.peek().is(TokenKind::identifier) && !isWord(lexer_.peek()));
+    return true;
+  }
+
+  // Reads a word that stands for itself, if it comes next.
+  bool readWord(const FieldSpec& field, std::string_view word, std::string_view says, bool& is,
+                SourcePosition& source) {
+    const Token token = lexer_.peek();
+    if (!token.is(word)) return false;
+    if (is) fail(token, fmt::format("{} says twice that it {}", field.name, says));
+    take();
+    is = true;
+    source = lexer_.place(token.at());
     return true;
   }
 
@@ -235,7 +237,7 @@ class Reader {
     Access access = Access::field;
     return token.is(TokenKind::identifier) &&
            (token.text == "change" || token.text == "accepts" || token.text == "urls" ||
-            token.text == "x3d" || accessFromName(token.text, access));
+            token.text == "x3d" || token.text == "rare" || accessFromName(token.text, access));
   }
 
   // Reads a name. Names become C++ and Python names, so they have letters, digits and underscores

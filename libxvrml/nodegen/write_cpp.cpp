@@ -66,9 +66,11 @@ std::string writeStruct(const TypeSpec& type, bool plugin) {
   text += fmt::format(
       "  {0}() : {1}(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : {1}(t) {{}}\n",
       type.name, base);
-  std::string members;
+  std::string members, rare;
   for (const FieldSpec& field : type.fields)
-    if (field.hasStorage()) members += writeMember(field);
+    if (field.hasStorage())
+      (field.rare ? rare : members) += (field.rare ? "  " : "") + writeMember(field);
+  if (!rare.empty()) members += "  struct Rare {\n" + rare + "  };\n  RareFields<Rare> rare;\n";
   if (plugin) members += "\n private:\n  NodeRef standsFor_;\n";
   return text + (members.empty() ? "" : "\n") + members + "};\n\n";
 }
@@ -87,11 +89,17 @@ std::string writeRange(const std::optional<FieldRange>& range) {
 
 std::string writeRow(const TypeSpec& type, const FieldSpec& field) {
   const std::string offset =
-      field.hasStorage() ? fmt::format("offsetof({}, {})", type.name, cppMember(field)) : "0";
-  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}, {}}},\n",
+      field.hasStorage()
+          ? fmt::format("offsetof({}, {})", type.name, field.rare ? "rare" : cppMember(field))
+          : "0";
+  const std::string rare = field.rare
+                               ? fmt::format(", &rareAccess<{0}::Rare>, offsetof({0}::Rare, {1})",
+                                             type.name, cppMember(field))
+                               : std::string();
+  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}, {}{}}},\n",
                      cppString(field.name), fieldTypeName(field.type), accessName(field.access),
                      changeName(*field.change), wordsOf(field), offset, writeRange(field.range),
-                     cppString(joinNames(field.accepts)), cppString(field.text));
+                     cppString(joinNames(field.accepts)), cppString(field.text), rare);
 }
 
 std::string writeTable(const TypeSpec& type) {

@@ -96,6 +96,8 @@ NodeType makeNodeType(const NodeRow& row, int index) {
                            field.range,
                            field.nodeTypes,
                            field.text});
+    type.fields.back().rare = field.rare;
+    type.fields.back().rareOffset = field.rareOffset;
   }
   readFieldNames(type);
   const std::unique_ptr<Node> fresh(row.create(type));

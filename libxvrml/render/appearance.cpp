@@ -16,9 +16,10 @@ template <class T> void setSurface(const T& appearance, AppearanceParts& parts) 
 
 // Returns the first mapping that a picture of a Material names.
 std::string_view mappingOf(const nodes::Material& m) {
+  const auto& rare = m.rare.get();
   for (const std::string* mapping :
-       {&m.diffuseTextureMapping, &m.emissiveTextureMapping, &m.ambientTextureMapping,
-        &m.normalTextureMapping, &m.shininessTextureMapping, &m.specularTextureMapping})
+       {&rare.diffuseTextureMapping, &rare.emissiveTextureMapping, &rare.ambientTextureMapping,
+        &rare.normalTextureMapping, &rare.shininessTextureMapping, &rare.specularTextureMapping})
     if (!mapping->empty()) return *mapping;
   return {};
 }

@@ -2,7 +2,6 @@
 #include "script/host.h"
 
 #include <algorithm>
-#include <ctime>
 #include <new>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "script/host_table.h"
+#include "thread_clock.h"
 
 namespace xvrml {
 namespace {
@@ -17,13 +17,6 @@ namespace {
 uint64_t bytesOf(const Value& value) {
   return std::visit(
       [&](const auto& v) { return sizeof v + valueBytes(FieldType(value.index()), &v); }, value);
-}
-
-// Returns the processor time of this thread in seconds.
-double threadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 // Returns the node of a Script that cannot have one of its own: it has no fields.

@@ -3,8 +3,6 @@
 // (cluster_sim.cpp). [one thread]
 #pragma once
 
-#include <time.h>
-
 #include <cstring>
 #include <map>
 #include <memory>
@@ -12,6 +10,7 @@
 
 #include "backend/cluster/master/master.h"
 #include "bench/cluster_model.h"
+#include "thread_clock.h"
 
 namespace sim {
 
@@ -38,17 +37,11 @@ struct Options {
   SchedulerOptions schedule;
 };
 
-inline double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
-}
-
-// Returns the seconds that one reading of this clock takes. It is a system call, which the real
-// master does not make.
+// Returns the seconds that one reading of the thread's clock takes. It is a system call, which the
+// real master does not make.
 inline double costOfClock() {
   std::vector<double> times;
-  for (int i = 0; i < 10001; i++) times.push_back(cpuSeconds());
+  for (int i = 0; i < 10001; i++) times.push_back(threadSeconds());
   for (size_t i = 0; i + 1 < times.size(); i++) times[i] = times[i + 1] - times[i];
   times.pop_back();
   std::nth_element(times.begin(), times.begin() + 5000, times.end());
@@ -224,7 +217,7 @@ class Simulation {
   void turn() {
     constexpr size_t most = 256; // messages handled before jobs are issued
     turnBegan_ = events_.now;
-    turnCpu_ = cpuSeconds();
+    turnCpu_ = threadSeconds();
     paused_ = 0;
     for (size_t i = 0; i < most && !inbox_.empty(); i++) {
       const Call call = std::move(inbox_.front());
@@ -250,9 +243,9 @@ class Simulation {
       const Merging next = std::move(merging_.front());
       merging_.pop_front();
       mergersBusy_++;
-      const double began = cpuSeconds();
+      const double began = threadSeconds();
       next.heavy();
-      const double took = std::max(0.0, cpuSeconds() - began - clockCost_);
+      const double took = std::max(0.0, threadSeconds() - began - clockCost_);
       mergingCpu_ += took;
       events_.at(events_.now + (o_.ideal ? 0 : took), [this, then = next.then] {
         mergersBusy_--;
@@ -269,7 +262,7 @@ class Simulation {
   }
   double clock() {
     paused_ += clockCost_;
-    return turnBegan_ + (o_.ideal ? 0 : std::max(0.0, cpuSeconds() - turnCpu_ - paused_));
+    return turnBegan_ + (o_.ideal ? 0 : std::max(0.0, threadSeconds() - turnCpu_ - paused_));
   }
   void look() {
     for (Epoch epoch = oldest_; epoch <= lastEpoch_; epoch++) {
@@ -292,7 +285,7 @@ class Simulation {
   }
   bool send(Peer peer, Frames&& frames) {
     paused_ -= o_.send;
-    const double when = clock(), begin = cpuSeconds() - clockCost_;
+    const double when = clock(), begin = threadSeconds() - clockCost_;
     const double bytes = double(sizeOf(frames));
     bytesOut_ += bytes;
     const double sent = nicOut_.take(socket_.take(when, o_.perMessage + bytes * o_.perByte),
@@ -302,7 +295,7 @@ class Simulation {
     events_.at(there, [this, peer, frames = std::make_shared<Frames>(std::move(frames))] {
       arrived(peer - 1, std::move(*frames));
     });
-    paused_ += cpuSeconds() - begin;
+    paused_ += threadSeconds() - begin;
     return true;
   }
   // Sends a worker's message: through its link, the network, the master's network card and the
@@ -420,9 +413,9 @@ class Simulation {
       if (bytes == 0)
         bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));
       toMaster(w, bytes, [this, w, item, pixels, seconds](double now) {
-        const double began = cpuSeconds() - clockCost_;
+        const double began = threadSeconds() - clockCost_;
         Frames frames = results_.make(workers_[w].session, item.epoch, item.job, pixels, seconds);
-        paused_ += cpuSeconds() - began; // excluded from every measured time
+        paused_ += threadSeconds() - began; // excluded from every measured time
         paused_ -= o_.receive + double(sizeOf(frames)) * o_.copy;
         master_->message(w + 1, std::move(frames), now);
       });

@@ -2,8 +2,6 @@
 // last frame costs one thread, in microseconds per sample of a pixel. It writes the file that
 // bench_cluster_sim reads (costs=FILE) to standard output. It uses processor time, so the machine
 // may be busy with other things.
-#include <time.h>
-
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -14,16 +12,11 @@
 #include "render/frame/frame_work.h"
 #include "render/frame/job_runner.h"
 #include "shading/registry.h"
+#include "thread_clock.h"
 
 namespace {
 
 using namespace openrt;
-
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
-}
 
 void print(const char* recording, uint32_t samples) {
   constexpr uint32_t edge = 16;
@@ -46,10 +39,10 @@ void print(const char* recording, uint32_t samples) {
   std::printf("# microseconds of a pixel's sample, %ux%u, tiles of %u; bench_tile_costs\n%u %u\n",
               scene->frame.width, scene->frame.height, edge, columns, work.tiles() / columns);
   for (Job job; work.next(job) == FrameWork::Next::job;) {
-    const double began = cpuSeconds();
+    const double began = threadSeconds();
     runner.run(job, never, result);
     const double perSample =
-        (cpuSeconds() - began) / double(work.tile(job.number).pixels() * job.count);
+        (threadSeconds() - began) / double(work.tile(job.number).pixels() * job.count);
     std::printf("%.2f%c", perSample * 1e6, (job.number + 1) % columns ? ' ' : '\n');
   }
 }

@@ -1,5 +1,7 @@
 // xvrml_geometry_x3d.cpp: Tests the sets of triangles, strips, fans and quadrilaterals of X3D,
 // LineSet and the opacities of ColorRGBA (ISO/IEC 19775-1 clauses 11.4, 32.4).
+#include <array>
+#include <cmath>
 #include <tuple>
 
 #include "unit/mesh_checks.h"
@@ -48,6 +50,41 @@ TEST(GeometryX3d, TrianglesOfAnIndexShareTheirPoints) {
   EXPECT_EQ(std::vector(built.mesh.indices.begin(), built.mesh.indices.end()),
             (std::vector<uint32_t>{0, 2, 1, 1, 2, 3}));
   EXPECT_EQ(built.diagnostics.list().size(), 0u);
+}
+
+// A large set takes a path of its own, on several threads; strips of one triangle each do not.
+TEST(GeometryX3d, LargeTriangleSetsUseTheirArraysAndHaveTheNormalsOfStrips) {
+  constexpr int side = 120;
+  MFVec3f points;
+  MFInt32 triangles, strips;
+  for (int i = 0; i < side * side; i++) {
+    const float x = float(i % side), y = float(i / side);
+    points.push_back({x, y, 3 * std::sin(.3f * x) * std::cos(.2f * y)});
+    if (i % side == side - 1 || i / side == side - 1) continue;
+    for (const std::array<int, 3>& t :
+         {std::array{i, i + 1, i + side}, {i + 1, i + side + 1, i + side}}) {
+      triangles.insert(triangles.end(), t.begin(), t.end());
+      strips.insert(strips.end(), {t[0], t[1], t[2], -1});
+    }
+  }
+  const NodeRef coord = coordinate(points);
+  auto set = indexed<nodes::IndexedTriangleSet>("IndexedTriangleSet", coord, triangles);
+  auto strip = indexed<nodes::IndexedTriangleStripSet>("IndexedTriangleStripSet", coord, strips);
+  const Built plain = build(set), welded = build(strip);
+  EXPECT_TRUE(plain.mesh.plain);
+  EXPECT_FALSE(welded.mesh.plain);
+  EXPECT_EQ(plain.mesh.points.data(), static_cast<nodes::Coordinate&>(*coord).point.data());
+  ASSERT_EQ(plain.mesh.indices.size(), welded.mesh.indices.size());
+  size_t other = 0;
+  for (size_t i = 0; i < plain.mesh.indices.size(); i++) {
+    const uint32_t a = plain.mesh.indices[i], b = welded.mesh.indices[i];
+    const Vec3f n = plain.mesh.normals[a], m = welded.mesh.normals[b];
+    other += plain.mesh.points[a] != welded.mesh.points[b] ||
+             std::hypot(n.x - m.x, n.y - m.y, n.z - m.z) > 1e-6f;
+  }
+  EXPECT_EQ(other, 0u);
+  set->normalPerVertex = false;
+  EXPECT_TRUE(build(set).mesh.normals.empty());
 }
 
 TEST(GeometryX3d, EverySecondTriangleOfAStripRunsTheOtherWay) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <utility>
 
 #include <xvrml/diagnostics.h>
 #include <xvrml/limits.h>
@@ -44,6 +46,24 @@ TEST(NodeRef, AChainOfAMillionNodesIsReleased) {
   EXPECT_EQ(alive, 1'000'000);
   top = nullptr;
   EXPECT_EQ(alive, 0);
+}
+
+// A million Materials have no room for strings that none of them sets.
+TEST(RareFields, TakeNoRoomBeforeOneIsSet) {
+  EXPECT_LT(sizeof(nodes::Material), 8 * sizeof(std::string));
+  nodes::Material material, other;
+  const FieldInfo& field = *material.type().find("diffuseTextureMapping");
+  const FieldInfo& another = *material.type().find("normalTextureMapping");
+  ASSERT_TRUE(field.rare);
+  const Node& read = material;
+  EXPECT_EQ(read.storage(field), std::as_const(other).storage(field)) << "the shared default";
+  EXPECT_EQ(material.get(field), Value(SFString()));
+  EXPECT_TRUE(material.set(field, SFString("picture")));
+  EXPECT_EQ(material.get(field), Value(SFString("picture")));
+  EXPECT_EQ(material.rare.get().diffuseTextureMapping, "picture");
+  EXPECT_EQ(read.storage(field), material.storage(field));
+  EXPECT_EQ(material.get(another), Value(SFString()));
+  EXPECT_EQ(other.get(field), Value(SFString()));
 }
 
 TEST(DynamicNode, HoldsWhatItsTypeDeclares) {

@@ -39,7 +39,8 @@ void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* i
                 advanced(c.normalArray, first),
                 advanced(c.texCoordArray, first),
                 advanced(c.colorArray, first),
-                {}};
+                {},
+                definition.formerIndices};
   if (c.boundShader != 0 && !c.parameterArrays.empty()) {
     const RTid shaderClass = c.scene.shader(c.boundShader).shaderClass;
     for (const ParameterArray& array : c.parameterArrays) {

@@ -146,14 +146,28 @@ bool areTriangles(const DrawCall& call, const float* points) {
   return good;
 }
 
+// Returns whether the indices are those of the former array.
+bool isFormer(const DrawCall& call) {
+  if (!call.formerIndices || call.formerIndices->count<uint32_t>() != call.count) return false;
+  std::atomic<bool> same{true};
+  forRanges(call.count, [&](size_t begin, size_t end) {
+    if (std::memcmp(call.indices + begin, call.formerIndices->as<uint32_t>() + begin,
+                    (end - begin) * sizeof(uint32_t)) != 0)
+      same = false;
+  });
+  return same;
+}
+
 // Returns the indices of the primitives that are not degenerate. ordinals: receives, if not null,
 // the number of each of them among all primitives of the call.
 ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate,
                         std::vector<uint32_t>* ordinals) {
+  const bool unchanged = !ordinals && areTriangles(call, points);
+  if (unchanged && isFormer(call)) return call.formerIndices;
   const size_t room = indexCount(call.mode, call.count);
   auto array = std::make_shared<Array>(room * sizeof(uint32_t));
   uint32_t* out = reinterpret_cast<uint32_t*>(array->data());
-  if (!ordinals && areTriangles(call, points)) {
+  if (unchanged) {
     forRanges(room, [&](size_t begin, size_t end) {
       std::copy(call.indices + begin, call.indices + end, out + begin);
     });

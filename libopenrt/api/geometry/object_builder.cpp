@@ -16,6 +16,7 @@ namespace {
 constexpr size_t maxMergedVertices = size_t(1) << 26; // further lists start another geometry
 constexpr double maxReachInExtents = 64;
 constexpr size_t recentArrays = 1024;
+constexpr size_t fewParts = 16; // which are not worth a block
 
 // Reserves room for more elements with amortised growth, so that the caller can append them without
 // an allocation.
@@ -259,7 +260,7 @@ void ObjectBuilder::draw(const DrawCall& call, const GeometryState& state) {
 }
 
 // Replaces the arrays of a geometry by recent ones with the same bytes, so that many equal parts
-// take memory once while an object is defined.
+// take memory once while an object is defined. Other small arrays of many parts share blocks.
 void ObjectBuilder::shareArrays(BuiltGeometry& built) {
   if (done_.empty()) return;
   recent_.resize(recentArrays);
@@ -269,10 +270,11 @@ void ObjectBuilder::shareArrays(BuiltGeometry& built) {
     ArrayPtr& known = recent_[XXH3_64bits((*array)->data(), (*array)->size()) % recentArrays];
     const bool same = known && known->size() == (*array)->size() &&
                       std::memcmp(known->data(), (*array)->data(), known->size()) == 0;
-    if (same)
-      *array = known;
-    else
-      known = *array;
+    if (!same) {
+      const bool small = (*array)->size() <= ArrayBlocks::largestBytes;
+      known = small && done_.size() >= fewParts ? blocks_.copy(**array) : *array;
+    }
+    *array = known;
   }
 }
 

@@ -20,6 +20,7 @@
 #include "api/geometry/primitives.h"
 #include "api/geometry/vertex_buffer.h"
 #include "openrt/openrts.h"
+#include "scene/array_blocks.h"
 #include "scene/matrix.h"
 
 namespace openrt {
@@ -64,6 +65,7 @@ struct DrawCall {
   const uint32_t* indices = nullptr; // vertex indices; null stands for 0, 1, 2 ...
   AttributeSource points, normals, texCoords, colors;
   std::vector<ParameterSource> parameters;
+  ArrayPtr formerIndices; // an array that is used if its bytes are those of the indices; or null
 };
 
 struct BuiltParameter {
@@ -128,6 +130,7 @@ class ObjectBuilder {
   std::vector<BuiltGeometry> done_;
   // Recent arrays of draw calls, each at its hash modulo the size, which is fixed.
   std::vector<ArrayPtr> recent_;
+  ArrayBlocks blocks_; // for the small arrays of objects with many draw calls
   // The open geometry: state, vertices and indices of the lists merged so far.
   bool open_ = false, local_ = false;
   GeometryState state_;

@@ -39,6 +39,7 @@ RTid beginObject(Context& c, RTid id) {
   c.matrices.openDefinition();
   c.definition.emplace();
   c.definition->object = object;
+  c.definition->formerIndices = c.scene.restingIndices(object);
   return object;
 }
 

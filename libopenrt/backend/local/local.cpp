@@ -158,8 +158,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
   for (const auto& [id, light] : scene_.lights) scoped |= light.scope != 0;
   bool layOut = !accel_ || c.structure || (c.lights && (scoped || scopedLights_)) ||
                 (next.shaders != snapshot_->shaders && !next.shaders->extends(*snapshot_->shaders));
-  for (size_t i = 0; i < c.redefined.size() && !layOut; i++)
-    layOut = !builder_.survey.resurveyObject(scene_, flat_, c.redefined[i]);
+  layOut = layOut || !builder_.survey.resurvey(scene_, flat_, c.redefined);
   std::vector<uint32_t> moved;
   if (layOut) {
     flat_ = flatten(scene_, history_.watches());

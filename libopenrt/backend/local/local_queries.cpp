@@ -27,7 +27,7 @@ constexpr float mostFinite = std::numeric_limits<float>::max();
 // Transforms the kernel's normal from the instance's frame to the world's axes, turns it to the
 // front side and normalises it.
 Vec3f worldNormal(const Record& r, const Vec3f& kernel) {
-  const Vec3d k(kernel), n = r.instanced ? r.kernelNormal * k : k;
+  const Vec3d k(kernel), n = r.instanced ? r.frames->kernelNormal * k : k;
   const double l = length(n);
   return Vec3f(n * (l > 0 ? (r.flip ? -1 : 1) / l : 0));
 }

@@ -40,9 +40,10 @@ void addTriangle(const EmissiveShapes::Shape& shape, std::vector<Probe>& out) {
 void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<Probe>& out) {
   for (int axis = 0; axis < 3; axis++)
     for (const double sign : {-1.0, 1.0}) {
-      const Vec3d radius = sign * Vec3d(r.toRender.column(axis));
+      const Vec3d radius = sign * Vec3d(r.frames->toRender.column(axis));
       const double l = length(radius);
-      if (l > 0) out.push_back({Vec3d(r.toRender.translation()), radius / l, l, shape.record});
+      if (l > 0)
+        out.push_back({Vec3d(r.frames->toRender.translation()), radius / l, l, shape.record});
     }
 }
 

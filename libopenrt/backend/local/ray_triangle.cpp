@@ -133,7 +133,7 @@ std::optional<TriangleHit> refineHit(const Record& r, uint32_t primitive, const 
   if (r.instanced) {
     Matrix4d m;
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 4; j++) m.m[size_t(4 * j + i)] = r.toRender.r[i][j];
+      for (int j = 0; j < 4; j++) m.m[size_t(4 * j + i)] = r.frames->toRender.r[i][j];
     const Matrix4d back = inverse(m);
     from = back.point(ray.origin);
     d = back.direction(ray.direction);

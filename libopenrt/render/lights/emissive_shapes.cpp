@@ -23,7 +23,7 @@ Vec3d areaNormalOf(const std::array<Vec3f, 3>& p) {
 
 // Returns whether the instance's map reverses the orientation of corners. The kernel's normal is
 // not reversed with it.
-bool mirrors(const Record& r) { return r.instanced && determinantOf(r.toRender) < 0; }
+bool mirrors(const Record& r) { return r.instanced && determinantOf(r.frames->toRender) < 0; }
 
 // Probe rays that hit points of a record along given directions, usually the normal.
 struct ProbeRays {
@@ -143,7 +143,8 @@ Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& aren
       probes.hits.u[i] = probes.hits.v[i] = 0;
       probes.hits.record[i] = record;
       probes.hits.primitive[i] = 0;
-      probes.add(r.toRender.translation() + sign * r.toRender.column(axis), towards);
+      probes.add(r.frames->toRender.translation() + sign * r.frames->toRender.column(axis),
+                 towards);
     }
   Brightness each[6], mean;
   emittedBrightness(scene, record, probes, arena, each);
@@ -216,7 +217,7 @@ LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double 
 
 LightBounds sphereBounds(const Record& r, double outside) {
   LightBounds b;
-  const Affine& m = r.toRender;
+  const Affine& m = r.frames->toRender;
   const Vec3d half{length(Vec3d(m.row(0))), length(Vec3d(m.row(1))), length(Vec3d(m.row(2)))};
   b.low = Vec3f(Vec3d(m.translation()) - half);
   b.high = Vec3f(Vec3d(m.translation()) + half);
@@ -229,9 +230,9 @@ LightBounds sphereBounds(const Record& r, double outside) {
 LightBounds surfaceBounds(const Record& r, double luminance) {
   LightBounds b;
   const Vec3d &low = r.surface->low(), &high = r.surface->high();
-  const Vec3d middle = r.toRender.point((low + high) / 2), half = (high - low) / 2;
+  const Vec3d middle = r.frames->toRender.point((low + high) / 2), half = (high - low) / 2;
   Vec3d reach;
-  for (size_t k = 0; k < 3; k++) reach[k] = dot(abs(Vec3d(r.toRender.row(k))), half);
+  for (size_t k = 0; k < 3; k++) reach[k] = dot(abs(Vec3d(r.frames->toRender.row(k))), half);
   b.low = Vec3f(middle - reach);
   b.high = Vec3f(middle + reach);
   const double projected = 4 * std::max({reach.x * reach.y, reach.y * reach.z, reach.z * reach.x});
@@ -245,7 +246,7 @@ LightBounds surfaceBounds(const Record& r, double luminance) {
 // For an instance that is the normal in the instance's frame, mapped by the transpose of toRender:
 // the inverse of the map Record::kernelNormal except for the length.
 Vec3f kernelNormal(const Record& r, const Vec3f& normal) {
-  return r.instanced ? r.toRender.transposed(normal) : normal;
+  return r.instanced ? r.frames->toRender.transposed(normal) : normal;
 }
 
 EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.records.size(), none) {
@@ -369,11 +370,12 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
   }
   const Record& r = scene.records[s.record];
   const double z = 1 - 2.0 * u, round = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
-  const Vec3d l{round * std::cos(phi), round * std::sin(phi), z}, n = r.fromRender.transposed(l);
-  p.position = Vec3f(r.toRender.point(l));
+  const Vec3d l{round * std::cos(phi), round * std::sin(phi), z},
+      n = r.frames->fromRender.transposed(l);
+  p.position = Vec3f(r.frames->toRender.point(l));
   p.normal = Vec3f(n / length(n));
   // An element of area grows by |det M| |M^-T n|.
-  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length(n);
+  p.area = 4 * M_PI * std::fabs(determinantOf(r.frames->toRender)) * length(n);
   return p;
 }
 

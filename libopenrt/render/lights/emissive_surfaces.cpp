@@ -12,13 +12,13 @@ SurfacePlace placeOf(const Record& r, const Vec3d& local) {
   Vec3d gradient;
   r.surface->valueAt(local, gradient);
   const double steep = length(gradient);
-  SurfacePlace place{r.toRender.point(local), {0, 0, 1}, 0};
+  SurfacePlace place{r.frames->toRender.point(local), {0, 0, 1}, 0};
   if (!(steep > 0)) return place; // the apex of a cone
   // An element of area with the unit normal n grows by |det M| |M^-T n|.
-  const Vec3d normal = r.fromRender.transposed(gradient / steep);
+  const Vec3d normal = r.frames->fromRender.transposed(gradient / steep);
   const double stretched = length(normal);
   place.normal = normal / stretched;
-  place.area = r.surface->areaAt(local) * std::fabs(determinantOf(r.toRender)) * stretched;
+  place.area = r.surface->areaAt(local) * std::fabs(determinantOf(r.frames->toRender)) * stretched;
   return place;
 }
 
@@ -40,7 +40,8 @@ double pdfOfPlace(const SurfacePlace& place, uint8_t sides, const Vec3f& eye, Ve
 }
 
 double pdfAlong(const Record& r, uint8_t sides, const Vec3f& eye, const Vec3d& direction) {
-  const Vec3d origin = r.fromRender.point(Vec3d(eye)), along = r.fromRender.direction(direction);
+  const Vec3d origin = r.frames->fromRender.point(Vec3d(eye)),
+              along = r.frames->fromRender.direction(direction);
   const AnalyticSurface::Crossings crossings = r.surface->intersect(origin, along);
   for (int i = 0; i < crossings.count; i++) {
     const double t = crossings.t[size_t(i)];

@@ -73,7 +73,7 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
                              double u, double v, Vec3d& direction, double& distance) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
-    const SphericalEllipsoid seen(r.fromRender, r.toRender, from.position);
+    const SphericalEllipsoid seen(r.frames->fromRender, r.frames->toRender, from.position);
     if (!(shape.sides & 1) || !seen.sample(u, v, direction, distance)) return 0;
     return seen.pdf(direction);
   }
@@ -194,7 +194,7 @@ float Emitters::pdfOf(const LightSampleContext& from, uint32_t number,
   double alone = 0;
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
-    const SphericalEllipsoid seen(r.fromRender, r.toRender, from.position);
+    const SphericalEllipsoid seen(r.frames->fromRender, r.frames->toRender, from.position);
     if (shape.sides & 1) alone = seen.pdf(towards);
   } else if (shape.surface) {
     alone = pdfAlong(scene_->records[shape.record], shape.sides, from.position, towards);

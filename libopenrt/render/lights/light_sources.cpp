@@ -61,7 +61,7 @@ void LightSources::boundTargets(const RenderScene& scene) {
   for (const Record& r : scene.records) {
     if (!isTarget(scene, r, kind_)) continue;
     if (r.primitive == edit::Primitive::Sphere) {
-      const Affine& m = r.toRender;
+      const Affine& m = r.frames->toRender;
       const Vec3f half{length(m.row(0)), length(m.row(1)), length(m.row(2))};
       add(m.translation() - half);
       add(m.translation() + half);
@@ -70,7 +70,7 @@ void LightSources::boundTargets(const RenderScene& scene) {
         Vec3d p;
         for (size_t k = 0; k < 3; k++)
           p[k] = corner >> k & 1 ? r.surface->high()[k] : r.surface->low()[k];
-        add(r.toRender.point(Vec3f(p)));
+        add(r.frames->toRender.point(Vec3f(p)));
       }
     } else if (r.primitive == edit::Primitive::Triangles && r.vertices) {
       for (uint32_t t = 0; t < r.primitives; t++)

@@ -43,36 +43,37 @@ Rounding roundingOf(const EmissiveShapes::Shape& s, const Record& r, const Vec3f
   }
   double bound = roundings(24) * farthest;
   if (r.instanced)
-    bound += roundings(8) *
-             (coordinates + length(Vec3d(origin)) + length(Vec3d(r.toRender.translation())));
+    bound += roundings(8) * (coordinates + length(Vec3d(origin)) +
+                             length(Vec3d(r.frames->toRender.translation())));
   return {bound, std::fabs(cosineOf(Edges(s).normal, direction))};
 }
 
 // The centre of a sphere and both of its maps are rounded relative to their coordinates.
 Rounding roundingOfSphere(const Record& r, const Vec3f& direction, const Vec3f& origin,
                           double distance) {
-  const Vec3f center = r.toRender.translation();
+  const Vec3f center = r.frames->toRender.translation();
   const Vec3d local =
-      r.fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
-  const double size = std::sqrt(squaredNormOf(r.toRender));
+      r.frames->fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
+  const double size = std::sqrt(squaredNormOf(r.frames->toRender));
   return {roundings(24) * (distanceBetween(center, origin) + size) +
               roundings(8) * (length(Vec3d(center)) + length(Vec3d(origin))),
-          std::fabs(cosineOf(r.fromRender.transposed(local), direction))};
+          std::fabs(cosineOf(r.frames->fromRender.transposed(local), direction))};
 }
 
 // As for a sphere, whose normal is another.
 Rounding roundingOfSurface(const Record& r, const Vec3f& direction, const Vec3f& origin,
                            double distance) {
   const AnalyticSurface& surface = *r.surface;
-  const Vec3d center = r.toRender.point((surface.low() + surface.high()) / 2),
-              local =
-                  r.fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
-  const double size = std::sqrt(squaredNormOf(r.toRender)) * length(surface.high() - surface.low());
+  const Vec3d center = r.frames->toRender.point((surface.low() + surface.high()) / 2),
+              local = r.frames->fromRender.pointFromTranslation(Vec3d(origin) +
+                                                                distance * Vec3d(direction));
+  const double size =
+      std::sqrt(squaredNormOf(r.frames->toRender)) * length(surface.high() - surface.low());
   Vec3d gradient;
   surface.valueAt(local, gradient);
   return {roundings(24) * (length(center - Vec3d(origin)) + size) +
               roundings(8) * (length(center) + length(Vec3d(origin))),
-          std::fabs(cosineOf(r.fromRender.transposed(gradient), direction))};
+          std::fabs(cosineOf(r.frames->fromRender.transposed(gradient), direction))};
 }
 
 } // namespace

@@ -75,7 +75,7 @@ ColourShares sharesOf(const Vec3f& throughput) {
 float roundingAlong(const RenderScene& scene, const Wave& wave, uint32_t lane) {
   const Record& record = scene.records[wave.hits.record[lane]];
   const Vec3f kernel = load(wave.hits.ng, lane), direction = load(wave.rays.dir, lane),
-              n = normalize(record.instanced ? record.kernelNormal * kernel : kernel),
+              n = normalize(record.instanced ? record.frames->kernelNormal * kernel : kernel),
               reach = abs(load(wave.rays.org, lane)) + wave.hits.t[lane] * abs(direction);
   return 2 * gammaOf(8) * largest(reach) / std::max(std::fabs(dot(n, direction)), 0.01f);
 }

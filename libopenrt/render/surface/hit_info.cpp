@@ -48,14 +48,14 @@ void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3]
                        float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
   const Vec3f position = load(batch.points->hits.position, batch.pointOf(i));
-  const Vec3d at = r.fromRender.pointFromTranslation(Vec3d(position));
+  const Vec3d at = r.frames->fromRender.pointFromTranslation(Vec3d(position));
   if (!(length(at) > 0)) return;
   const Vec3d l = normalize(at);
   const double round = std::hypot(l.x, l.z), slope = round > 0 ? -l.y / round : 0;
   const Vec3d s{2 * M_PI * l.z, 0, -2 * M_PI * l.x},
       t{M_PI * slope * l.x, M_PI * round, M_PI * slope * l.z};
-  store(Vec3f(r.toRender.direction(s)), alongS, i);
-  store(Vec3f(r.toRender.direction(t)), alongT, i);
+  store(Vec3f(r.frames->toRender.direction(s)), alongS, i);
+  store(Vec3f(r.frames->toRender.direction(t)), alongT, i);
 }
 
 // Computes the derivatives of the position by the texture coordinates of a quadric or an asphere.
@@ -63,9 +63,9 @@ void analyticDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
                          float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
   const Vec3f position = load(batch.points->hits.position, batch.pointOf(i));
-  const auto tangents = r.surface->tangentsAt(r.fromRender.point(Vec3d(position)));
-  store(Vec3f(r.toRender.direction(tangents.alongS)), alongS, i);
-  store(Vec3f(r.toRender.direction(tangents.alongT)), alongT, i);
+  const auto tangents = r.surface->tangentsAt(r.frames->fromRender.point(Vec3d(position)));
+  store(Vec3f(r.frames->toRender.direction(tangents.alongS)), alongS, i);
+  store(Vec3f(r.frames->toRender.direction(tangents.alongT)), alongT, i);
 }
 
 } // namespace
@@ -78,7 +78,7 @@ void localOf(const RtsBatch& batch, float* const position[3], float* const norma
   }
   const RtsHits& hits = batch.points->hits;
   for (uint32_t i = 0; i < batch.hitCount(); i++) {
-    const Affine& m = recordAt(batch, i).toObject;
+    const Affine& m = *recordAt(batch, i).toObject;
     const uint32_t at = batch.pointOf(i);
     if (position) store(m.point(load(hits.position, at)), position, i);
     if (normal) store(m.normal(load(hits.geometric, at)), normal, i);

@@ -50,8 +50,8 @@ void gatherTriangle(const Record& r, const RayHits& hits, uint32_t lane, PointBl
   if (r.instanced) {
     own |= pointInstanced;
     for (int i = 0; i < 3; i++) {
-      for (int k = 0; k < 4; k++) block.toRender[i][k][to] = r.toRender.r[i][k];
-      store(r.kernelNormal[i], block.kernelNormal[i], to);
+      for (int k = 0; k < 4; k++) block.toRender[i][k][to] = r.frames->toRender.r[i][k];
+      store(r.frames->kernelNormal[i], block.kernelNormal[i], to);
     }
   }
   if (r.normals) {
@@ -80,13 +80,13 @@ void computeSphere(const Record& r, const Rays& rays, const RayHits& hits, uint3
                    PointBlock& block, uint32_t to) {
   const Vec3f origin = load(rays.org, lane), step = hits.t[lane] * load(rays.dir, lane);
   Vec3f p = origin + step, bound = gammaOf(8) * (abs(origin) + abs(step));
-  Vec3f l = r.fromRender.point(p); // in the frame of the unit sphere
+  Vec3f l = r.frames->fromRender.point(p); // in the frame of the unit sphere
   if (!makeUnit(l)) l = {0, 0, 1};
   // t is exact to its last bit, so near the ray's origin the position is known far better than to
   // the rounding error of the radius.
   if (!intersectedInDouble(r)) {
-    p = r.toRender.point(l);
-    bound = boundOfImage(r.toRender, l, {gammaOf(5), gammaOf(5), gammaOf(5)});
+    p = r.frames->toRender.point(l);
+    bound = boundOfImage(r.frames->toRender, l, {gammaOf(5), gammaOf(5), gammaOf(5)});
   }
   store(p, block.position, to);
   store(bound, block.bound, to);
@@ -106,14 +106,15 @@ void computeSphere(const Record& r, const Rays& rays, const RayHits& hits, uint3
 void computeAnalytic(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
                      PointBlock& block, uint32_t to) {
   const Vec3d origin(load(rays.org, lane)), direction(load(rays.dir, lane));
-  const Vec3d l = r.surface->settle(r.fromRender.point(origin + double(hits.t[lane]) * direction),
-                                    r.fromRender.direction(direction));
+  const Vec3d l =
+      r.surface->settle(r.frames->fromRender.point(origin + double(hits.t[lane]) * direction),
+                        r.frames->fromRender.direction(direction));
   Vec3d normal;
   r.surface->valueAt(l, normal);
   const Vec3f place(l);
   const float rounding = gammaOf(5) * largest(abs(place));
-  store(r.toRender.point(place), block.position, to);
-  store(boundOfImage(r.toRender, place, {rounding, rounding, rounding}), block.bound, to);
+  store(r.frames->toRender.point(place), block.position, to);
+  store(boundOfImage(r.frames->toRender, place, {rounding, rounding, rounding}), block.bound, to);
   store(r.normalMatrix * Vec3f(normalize(normal)), block.ng, to);
   const auto uv = r.surface->texCoordAt(l);
   for (size_t k = 0; k < 2; k++) block.uv[k][to] = float(uv[k]);

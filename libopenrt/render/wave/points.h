@@ -37,7 +37,8 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
 inline bool isBackFaceHit(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                           uint32_t lane) {
   const Record& r = scene.records[hits.record[lane]];
-  const Vec3f kernel = load(hits.ng, lane), n = r.instanced ? r.kernelNormal * kernel : kernel;
+  const Vec3f kernel = load(hits.ng, lane),
+              n = r.instanced ? r.frames->kernelNormal * kernel : kernel;
   const float d = dot(n, load(rays.dir, lane));
   return r.flip ? d < 0 : d > 0;
 }

@@ -4,9 +4,11 @@
 // from Polygonal Facets", Journal of Graphics Tools 3(1), 1998). The result does not depend on how
 // faces are cut into triangles. The cost is linear in the number of corners for any mesh.
 #include <algorithm>
+#include <atomic>
 #include <numbers>
 
 #include "geometry/polygons/face_set.h"
+#include "parallel_for.h"
 
 namespace xvrml {
 namespace {
@@ -191,34 +193,41 @@ class PointCrease {
 
 bool smoothNormals(std::span<const Vec3f> points, std::span<const uint32_t> triangles,
                    float creaseAngle, bool ccw, std::vector<Vec3f>& normals) {
-  std::vector<V3f> means(points.size(), V3f(0, 0, 0)), ofFaces(triangles.size() / 3);
-  for (size_t t = 0; t < ofFaces.size(); t++) {
-    const uint32_t* corner = &triangles[3 * t];
-    const V3f p[3] = {toV3f(points[corner[0]]), toV3f(points[corner[1]]), toV3f(points[corner[2]])};
-    const V3f normal = toV3f(toVec3f(unit((V3d(p[1]) - V3d(p[0])).cross(V3d(p[2]) - V3d(p[0])))));
-    if (normal == V3f(0, 0, 0)) return false;
-    ofFaces[t] = normal;
-    for (size_t k = 0; k < 3; k++)
-      means[corner[k]] += normal * weightOf(p[(k + 2) % 3], p[k], p[(k + 1) % 3]);
-  }
-  for (V3f& mean : means) {
-    const float length = std::sqrt(mean.dot(mean));
-    if (!(length > 1e-6f)) return false;
-    mean /= length;
-  }
-  if (creaseAngle < float(std::numbers::pi)) {
-    const float closeLimit = closeLimitOf(creaseAngle);
-    for (size_t i = 0; i < triangles.size(); i++) {
-      const V3f apart = ofFaces[i / 3] - means[triangles[i]];
-      if (!(apart.dot(apart) < closeLimit)) return false;
+  std::vector<V3f> ofFaces(triangles.size() / 3), means(points.size(), V3f(0, 0, 0));
+  std::vector<float> weights(triangles.size());
+  std::atomic<bool> good{true};
+  forRanges(ofFaces.size(), [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; t++) {
+      const auto point = [&](size_t k) { return toV3f(points[triangles[3 * t + k % 3]]); };
+      const V3d origin(point(0)), edge = V3d(point(1)) - origin;
+      ofFaces[t] = toV3f(toVec3f(unit(edge.cross(V3d(point(2)) - origin))));
+      if (ofFaces[t] == V3f(0, 0, 0)) good = false;
+      for (size_t k = 0; k < 3; k++)
+        weights[3 * t + k] = weightOf(point(k + 2), point(k), point(k + 1));
     }
-  }
+  });
+  if (!good) return false;
+  // The sums keep the order of the triangles, whatever the number of threads.
+  for (size_t i = 0; i < triangles.size(); i++) means[triangles[i]] += ofFaces[i / 3] * weights[i];
   normals.resize(points.size());
-  for (size_t i = 0; i < points.size(); i++) {
-    const V3d normal = unit(V3d(means[i]));
-    normals[i] = toVec3f(ccw ? normal : -normal);
-  }
-  return true;
+  forRanges(points.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i++) {
+      const float length = std::sqrt(means[i].dot(means[i]));
+      if (!(length > 1e-6f)) good = false;
+      means[i] /= length;
+      const V3d normal = unit(V3d(means[i]));
+      normals[i] = toVec3f(ccw ? normal : -normal);
+    }
+  });
+  if (!good || creaseAngle >= float(std::numbers::pi)) return good;
+  const float closeLimit = closeLimitOf(creaseAngle);
+  forRanges(triangles.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end && good; i++) {
+      const V3f apart = ofFaces[i / 3] - means[triangles[i]];
+      if (!(apart.dot(apart) < closeLimit)) good = false;
+    }
+  });
+  return good;
 }
 
 void creaseNormals(FaceSet& set, std::span<const Vec3f> faceNormals) {

@@ -66,6 +66,33 @@ struct FieldRange {
   }
 };
 
+// The fields of a node that few worlds set (`rare` in the .node files). They stand in a block of
+// their own, which is made when one of them is set. A node without it has their defaults.
+template <class T> class RareFields {
+ public:
+  const T& get() const {
+    static const T defaults;
+    return own_ ? *own_ : defaults;
+  }
+  T& make() {
+    if (!own_) own_ = std::make_unique<T>();
+    return *own_;
+  }
+
+ private:
+  std::unique_ptr<T> own_;
+};
+// The functions of a type's RareFields, for generic code: they return the address of the block.
+struct RareAccess {
+  const void* (*get)(const void* fields);
+  void* (*make)(void* fields);
+};
+template <class T> inline constexpr RareAccess rareAccess = {
+    [](const void* fields) -> const void* {
+      return &static_cast<const RareFields<T>*>(fields)->get();
+    },
+    [](void* fields) -> void* { return &static_cast<RareFields<T>*>(fields)->make(); }};
+
 struct FieldInfo {
   std::string name;
   FieldType type;
@@ -92,6 +119,10 @@ struct FieldInfo {
   // The node declares the field itself, beside those of its built-in type (`declaring` in the .node
   // files: Scripts and shaders).
   bool declared = false;
+  // For a rare field, whose `offset` is that of the node's RareFields: how to get at the block, and
+  // bytes from its start. Null: any other field.
+  const RareAccess* rare = nullptr;
+  uint32_t rareOffset = 0;
 };
 // Returns whether nodes store a value of the field: a field or an exposedField, not an event.
 inline bool holdsValue(const FieldInfo& field) {
@@ -151,12 +182,16 @@ class Node {
 
   const NodeType& type() const { return *type_; }
   // Returns the address of a field's or exposedField's value. Its C++ type is the alternative of
-  // Value with index field.type.
+  // Value with index field.type. For a rare field only the first function makes the block, so
+  // that it is the one to write with.
   virtual void* storage(const FieldInfo& field) {
-    return reinterpret_cast<char*>(this) + field.offset;
+    char* const at = reinterpret_cast<char*>(this) + field.offset;
+    return field.rare ? static_cast<char*>(field.rare->make(at)) + field.rareOffset : at;
   }
   const void* storage(const FieldInfo& field) const {
-    return const_cast<Node*>(this)->storage(field);
+    if (!field.rare) return const_cast<Node*>(this)->storage(field);
+    const char* const at = reinterpret_cast<const char*>(this) + field.offset;
+    return static_cast<const char*>(field.rare->get(at)) + field.rareOffset;
   }
   Value get(const FieldInfo& field) const;
   // Sets a field. Returns false, and changes nothing, if the value's type is not the field's.

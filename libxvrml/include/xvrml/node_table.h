@@ -25,6 +25,8 @@ struct FieldRow {
   FieldRange range;
   const char* nodeTypes;
   const char* text;
+  const RareAccess* rare = nullptr; // FieldInfo::rare and rareOffset
+  uint32_t rareOffset = 0;
 };
 
 // NodeType as a constant. `roles` are separated by blanks.

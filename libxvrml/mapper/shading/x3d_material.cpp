@@ -65,9 +65,11 @@ void setNoPictures(ShaderSetup& shader, const SideNames& side) {
 }
 
 void warnOfMaterialMappings(const nodes::Material& m, World& world) {
+  const auto& rare = m.rare.get();
   warnOfMappings(m,
-                 {&m.ambientTextureMapping, &m.diffuseTextureMapping, &m.emissiveTextureMapping,
-                  &m.normalTextureMapping, &m.shininessTextureMapping, &m.specularTextureMapping},
+                 {&rare.ambientTextureMapping, &rare.diffuseTextureMapping,
+                  &rare.emissiveTextureMapping, &rare.normalTextureMapping,
+                  &rare.shininessTextureMapping, &rare.specularTextureMapping},
                  world);
 }
 

@@ -133,7 +133,7 @@ class Accel final : public Intersector {
   static void rejectRecord(const RTCFilterFunctionNArguments* a);
 
   struct PlacedCluster {
-    uint32_t firstRecord = 0, firstSlot = 0;
+    uint32_t firstRecord = 0, firstSlot = 0, firstItem = 0, firstFrames = 0;
     bool shown = false, instances = false, transparent = false, culls = false;
     uint32_t rejected = 0; // visible items whose matrix is unusable
   };
@@ -142,6 +142,8 @@ class Accel final : public Intersector {
   PartScene top_;
   Level staticLevel_, topLevel_;
   std::vector<PlacedCluster> placed_; // by cluster
+  std::vector<RecordFrames> frames_;  // by cluster, of the entries that have any
+  std::vector<Affine> toObject_;      // by cluster and item: Record::toObject
   Vec3d origin_;                      // the origin of render space, in the world
   Vec3f low_, high_;                  // bounds in render space, with a margin
   double reach_ = 0;                  // the size of the scene, in the units of the kernels

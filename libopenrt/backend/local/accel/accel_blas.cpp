@@ -66,9 +66,9 @@ AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
 void AccelBuilder::evictUnused() {
   std::erase_if(blases_, [&](const auto& entry) {
     const Key& key = entry.first;
-    const bool kept =
-        entry.second.checked == buildNumber_ || (key.part && survey.partOf(key.object) != ~0u);
-    return !kept;
+    if (entry.second.checked == buildNumber_) return false;
+    const uint32_t part = key.part ? survey.partOf(key.object) : ~0u;
+    return part == ~0u || key.group >= survey.parts()[part].baked;
   });
 }
 
@@ -97,17 +97,17 @@ std::shared_ptr<const Blas> AccelBuilder::objectBlas(uint32_t object, uint32_t o
   });
 }
 
-// Returns the Embree scene of the baked geometry of a part other than the static one; null if it
-// has none.
-std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t override) {
+// Returns the Embree scene of a group of the baked geometry of a part other than the static one.
+std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t group,
+                                                   uint32_t override) {
   const ScenePart& source = input_->flat.parts[part];
   const PartInfo& info = survey.parts()[part];
-  if (!info.baked) return nullptr;
   const auto forEachBaked = [&](const auto& f) {
     for (uint32_t i = 0; i < source.items.size(); i++) {
       const Object& object = input_->scene.objects.at(source.items[i].object);
       for (uint32_t g = 0; g < object.geometries.size(); g++)
-        if (const uint32_t entry = info.firstEntry[i] + g; info.drawn[entry] == DrawnAs::baked)
+        if (const uint32_t entry = info.firstEntry[i] + g;
+            info.drawn[entry] == DrawnAs::baked && info.groupOf(entry) == group)
           f(source.items[i], object, object.geometries[g], entry);
     }
   };
@@ -125,17 +125,17 @@ std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t overr
     });
     return hash.digest<Signature>();
   };
-  return cached({source.object, true, override}, sign, [&](Blas* former) {
+  return cached({source.object, true, override, group}, sign, [&](Blas* former) {
     const bool deforms =
         info.entries() == 1 && isRefitted(input_->scene.objects.at(source.items[0].object));
-    Box box = info.bounds;
-    if (!deforms) {
-      box = {};
-      forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) {
-        box.add(boundsOf(g), item.matrix);
-      });
-    }
-    const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
+    Box box = deforms ? info.bounds : Box();
+    std::optional<Vec3d> detail;
+    forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) {
+      if (!deforms) box.add(boundsOf(g), item.matrix);
+      if (!detail && hasDetailAtOrigin(g)) detail = (item.matrix * g.matrix).translation();
+    });
+    const Matrix4d fromKernel = kernelFrame(box.low, box.high, detail),
+                   toKernel = inverse(fromKernel);
     BlasBuilder builder(*device_, spheres_, info.entries());
     forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t entry) {
       const Matrix4d matrix = toKernel * item.matrix * g.matrix;

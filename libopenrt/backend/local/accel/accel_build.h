@@ -60,8 +60,9 @@ class AccelBuilder {
   };
   struct Key {
     uint32_t object = 0;
-    bool part = false; // true: the part rooted at the object; false: the object alone
-    uint32_t mask = 0; // the mask of a shader override, 0: none
+    bool part = false;  // true: the part rooted at the object; false: the object alone
+    uint32_t mask = 0;  // the mask of a shader override, 0: none
+    uint32_t group = 0; // number in PartInfo::groups, for a part
     auto operator<=>(const Key&) const = default;
   };
 
@@ -70,7 +71,7 @@ class AccelBuilder {
   uint32_t overrideMask(uint32_t shader) const { return shader ? maskOf(shader) : 0; }
   uint32_t maskOf(const Item& item, const Geometry& geometry, uint32_t override) const;
   std::shared_ptr<const Blas> staticBlas();
-  std::shared_ptr<const Blas> partBlas(uint32_t part, uint32_t override);
+  std::shared_ptr<const Blas> partBlas(uint32_t part, uint32_t group, uint32_t override);
   std::shared_ptr<const Blas> objectBlas(uint32_t object, uint32_t override);
   template <class Sign, class Make>
   std::shared_ptr<const Blas> cached(const Key& key, const Sign& signature, const Make& make);
@@ -88,7 +89,10 @@ class AccelBuilder {
   void finish();
 
   // Records (accel_records.cpp).
+  std::vector<std::shared_ptr<const Blas>> bakedBlases(const Cluster& cluster);
   void writeRecords(uint32_t cluster);
+  void writeItem(uint32_t cluster, uint32_t item,
+                 const std::vector<std::shared_ptr<const Blas>>& baked, RecordFrames*& free);
   bool carriesParameters(const Geometry& g, uint32_t slot) const;
   Record recordOf(const Inherited& path, const Geometry& geometry, const Matrix4d& toRender);
   uint32_t bucketOf(uint32_t shaderSlot, uint32_t lightSet);

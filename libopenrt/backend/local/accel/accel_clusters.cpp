@@ -8,12 +8,12 @@
 namespace openrt {
 namespace {
 
-// The slots of a cluster, in this order: the baked scene, shared items, ellipsoids, lines, points.
+// The slots of a cluster, in this order: the baked scenes, shared items, ellipsoids, lines, points.
 // For the root part the first three are in the static scene and have no slots.
 struct Slots {
   uint32_t shared, ellipsoids, lines, points, end; // first slot of each kind
   Slots(const PartInfo& part, bool root) {
-    shared = !root && part.baked ? 1 : 0;
+    shared = root ? 0 : part.baked;
     ellipsoids = shared + (root ? 0 : uint32_t(part.sharedItems.size()));
     lines = ellipsoids + (root ? 0 : uint32_t(part.ellipsoids.size()));
     points = lines + part.lines;
@@ -81,17 +81,24 @@ void AccelBuilder::update(Accel& accel, const BuildInput& input,
 
 void AccelBuilder::layOut() {
   const auto& clusters = input_->flat.clusters;
-  uint64_t records = 0, slots = 0;
+  uint64_t records = 0, slots = 0, items = 0, frames = 0;
   accel_->placed_.resize(clusters.size());
   for (uint32_t c = 0; c < clusters.size(); c++) {
     const PartInfo& part = survey.parts()[clusters[c].part];
-    accel_->placed_[c].firstRecord = uint32_t(records);
-    accel_->placed_[c].firstSlot = uint32_t(slots);
+    Accel::PlacedCluster& placed = accel_->placed_[c];
+    placed.firstRecord = uint32_t(records);
+    placed.firstSlot = uint32_t(slots);
+    placed.firstItem = uint32_t(items);
+    placed.firstFrames = uint32_t(frames);
     records += part.entries();
     slots += Slots(part, clusters[c].part == 0).end;
+    items += part.firstEntry.size();
+    frames += part.framed;
   }
   if (records > 0xfffffff0u || slots > 0xfffffff0u) throw std::bad_alloc();
   accel_->records.resize(records);
+  accel_->toObject_.resize(items); // no more than records, as the frames
+  accel_->frames_.resize(frames);
   accel_->top_.parts.resize(slots);
   if (slots) accel_->top_.scene = newScene(*device_);
 }
@@ -132,8 +139,8 @@ void AccelBuilder::placeInstances(uint32_t c) {
   const uint32_t override = overrideMask(cluster.path.shader);
   uint32_t slot = placed.firstSlot;
   bool any = false;
-  if (info.baked) {
-    const auto blas = partBlas(cluster.part, override);
+  for (uint32_t group = 0; group < info.baked; group++) {
+    const auto blas = partBlas(cluster.part, group, override);
     any |= placeInstance(slot++, blas, placed.firstRecord, partToRender * blas->fromKernel);
   }
   for (uint32_t i : info.sharedItems) {

@@ -132,14 +132,15 @@ bool Accel::updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& bes
   Vec3d at, normal;
   double u = 0, v = 0;
   if (r.primitive == edit::Primitive::Sphere) {
-    const Vec3d s = closestOnEllipsoid(r.toRender, p - Vec3d(r.toRender.translation()));
-    at = r.toRender.point(s);
-    normal = r.fromRender.transposed(s);
+    const Vec3d s =
+        closestOnEllipsoid(r.frames->toRender, p - Vec3d(r.frames->toRender.translation()));
+    at = r.frames->toRender.point(s);
+    normal = r.frames->fromRender.transposed(s);
   } else if (r.primitive == edit::Primitive::Triangles) {
     Vec3d corner[3];
     for (int k = 0; k < 3; k++) corner[k] = Vec3d(r.corner(found.primitive, k));
     normal = cross(corner[1] - corner[0], corner[2] - corner[0]); // in the kernel's frame
-    if (r.instanced) normal = r.kernelNormal * normal;
+    if (r.instanced) normal = r.frames->kernelNormal * normal;
     if (r.flip) normal = -normal;
     for (Vec3d& c : corner) c = r.placeOf(c);
     const Weights w = closestOnTriangle(p, corner[0], corner[1], corner[2]);

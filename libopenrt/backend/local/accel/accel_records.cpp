@@ -19,10 +19,10 @@ Rows<float> normalMatrixOf(const Matrix4d& m) {
   return Rows<float>::ofColumns(Vec3f(bc * s), Vec3f(ca * s), Vec3f(ab * s));
 }
 
-void setInstance(Record& r, const Matrix4d& kernelToRender) {
+void setInstance(Record& r, RecordFrames& frames, const Matrix4d& kernelToRender) {
   r.instanced = true;
-  r.toRender = Affine::from(kernelToRender);
-  r.kernelNormal = normalMatrixOf(kernelToRender);
+  frames.toRender = Affine::from(kernelToRender);
+  frames.kernelNormal = normalMatrixOf(kernelToRender);
 }
 
 // The gradient of an analytic surface points to its front in every frame.
@@ -83,68 +83,89 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   return r;
 }
 
+// Returns the Embree scenes of the baked geometry of a cluster, by group.
+std::vector<std::shared_ptr<const Blas>> AccelBuilder::bakedBlases(const Cluster& cluster) {
+  if (cluster.part == 0) return {accel_->static_};
+  std::vector<std::shared_ptr<const Blas>> blases;
+  for (uint32_t group = 0; group < survey.parts()[cluster.part].baked; group++)
+    blases.push_back(partBlas(cluster.part, group, overrideMask(cluster.path.shader)));
+  return blases;
+}
+
 void AccelBuilder::writeRecords(uint32_t c) {
   const Cluster& cluster = input_->flat.clusters[c];
-  const ScenePart& part = input_->flat.parts[cluster.part];
+  Accel::PlacedCluster& placed = accel_->placed_[c];
+  const auto baked = bakedBlases(cluster);
+  RecordFrames* free = accel_->frames_.data() + placed.firstFrames;
+  placed.transparent = placed.culls = false;
+  placed.rejected = 0;
+  for (uint32_t i = 0; i < input_->flat.parts[cluster.part].items.size(); i++)
+    writeItem(c, i, baked, free);
+}
+
+// Writes the records of an item of a cluster. free: the first frames that no record has yet.
+void AccelBuilder::writeItem(uint32_t c, uint32_t i,
+                             const std::vector<std::shared_ptr<const Blas>>& baked,
+                             RecordFrames*& free) {
+  const Cluster& cluster = input_->flat.clusters[c];
   const PartInfo& info = survey.parts()[cluster.part];
   Accel::PlacedCluster& placed = accel_->placed_[c];
   const bool root = cluster.part == 0;
   const Matrix4d partToRender = worldToRender_ * cluster.world;
-  const std::shared_ptr<const Blas> blas =
-      root ? accel_->static_ : partBlas(cluster.part, overrideMask(cluster.path.shader));
-  placed.transparent = placed.culls = false;
-  placed.rejected = 0;
-  for (uint32_t i = 0; i < part.items.size(); i++) {
-    const Item& item = part.items[i];
-    const auto& geometries = input_->scene.objects.at(item.object).geometries;
-    const Inherited path = input_->flat.inherit(cluster.path, item.path);
-    const Matrix4d itemToRender = partToRender * item.matrix;
-    const Affine toObject = Affine::from(inverse(itemToRender));
-    bool rejected = !itemToRender.usable();
-    const auto setPlace = [&](Record& r, const Matrix4d& kernelToRender) {
-      setInstance(r, kernelToRender);
+  const Item& item = input_->flat.parts[cluster.part].items[i];
+  const auto& geometries = input_->scene.objects.at(item.object).geometries;
+  const Inherited path = input_->flat.inherit(cluster.path, item.path);
+  const Matrix4d itemToRender = partToRender * item.matrix;
+  Affine& toObject = accel_->toObject_[placed.firstItem + i];
+  toObject = Affine::from(inverse(itemToRender));
+  bool rejected = !itemToRender.usable();
+  std::shared_ptr<const Blas> shared;
+  if (info.drawn[info.firstEntry[i]] == DrawnAs::shared)
+    shared = objectBlas(item.object, overrideMask(path.shader));
+  for (uint32_t k = 0; k < geometries.size(); k++) {
+    const Geometry& g = geometries[k];
+    const uint32_t entry = info.firstEntry[i] + k;
+    const Matrix4d toRender = itemToRender * g.matrix;
+    const bool sphere = g.primitive == edit::Primitive::Sphere;
+    const Matrix4d unit = sphere ? toRender * uniformScale(g.width) : toRender;
+    Record r = recordOf(path, g, toRender);
+    r.toObject = &toObject;
+    RecordFrames* const frames = hasFrames(g, info.drawn[entry], root) ? free++ : nullptr;
+    if (frames) r.frames = frames;
+    const auto setPlace = [&](const Matrix4d& kernelToRender) {
+      setInstance(r, *frames, kernelToRender);
       rejected |= !isTraceable(uniformScale(input_->scale) * kernelToRender, input_->reach);
     };
-    std::shared_ptr<const Blas> shared;
-    if (info.drawn[info.firstEntry[i]] == DrawnAs::shared)
-      shared = objectBlas(item.object, overrideMask(path.shader));
-    for (uint32_t k = 0; k < geometries.size(); k++) {
-      const Geometry& g = geometries[k];
-      const uint32_t entry = info.firstEntry[i] + k;
-      const Matrix4d toRender = itemToRender * g.matrix;
-      const bool sphere = g.primitive == edit::Primitive::Sphere;
-      const Matrix4d unit = sphere ? toRender * uniformScale(g.width) : toRender;
-      Record r = recordOf(path, g, toRender);
-      r.toObject = toObject;
-      switch (info.drawn[entry]) {
-      case DrawnAs::baked:
-        if (!root)
-          setPlace(r, partToRender * blas->fromKernel);
-        else if (sphere && !similarity(uniformScale(input_->scale) * toRender) &&
-                 !isHugeSphere(uniformScale(input_->scale) * unit))
-          setPlace(r, unit); // baked as an instance of the unit sphere
-        r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
-        r.vertices = blas->vertices[entry];
-        break;
-      case DrawnAs::shared:
-        setPlace(r, itemToRender * shared->fromKernel);
-        r.flip = flipped(g, g.matrix);
-        r.vertices = shared->vertices[k];
-        break;
-      case DrawnAs::ellipsoid: setPlace(r, unit); break;
-      case DrawnAs::thin: break;
-      }
-      r.surface = g.surface.get();
-      if (sphere || g.surface) {
-        r.toRender = Affine::from(unit);
-        r.fromRender = Affine::from(inverse(unit));
-      }
-      placed.transparent |= (input_->shaders[r.shader].traits & RTS_TRANSPARENT) != 0;
-      placed.culls |= r.cull;
-      accel_->records[placed.firstRecord + entry] = r;
+    switch (info.drawn[entry]) {
+    case DrawnAs::baked: {
+      const Blas& blas = *baked[info.groupOf(entry)];
+      if (!root)
+        setPlace(partToRender * blas.fromKernel);
+      else if (sphere && !similarity(uniformScale(input_->scale) * toRender) &&
+               !isHugeSphere(uniformScale(input_->scale) * unit))
+        setPlace(unit); // baked as an instance of the unit sphere
+      r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
+      r.vertices = blas.vertices[entry];
+      break;
     }
-    placed.rejected += rejected;
+    case DrawnAs::shared:
+      setPlace(itemToRender * shared->fromKernel);
+      r.flip = flipped(g, g.matrix);
+      r.vertices = shared->vertices[k];
+      break;
+    case DrawnAs::ellipsoid: setPlace(unit); break;
+    case DrawnAs::thin: break;
+    }
+    r.surface = g.surface.get();
+    if (sphere || g.surface) {
+      frames->toRender = Affine::from(unit);
+      frames->fromRender = Affine::from(inverse(unit));
+    }
+    placed.transparent |= (input_->shaders[r.shader].traits & RTS_TRANSPARENT) != 0;
+    placed.culls |= r.cull;
+    accel_->records[placed.firstRecord + entry] = r;
   }
+  placed.rejected += rejected;
 }
 
 } // namespace openrt

@@ -41,7 +41,7 @@ std::vector<Accel::Surface> Accel::surfaces() const {
                       : r.surface || r.primitive == edit::Primitive::Sphere))
         continue;
       placeOf[i] = uint32_t(out.size());
-      out.push_back({uint32_t(i), triangles ? Matrix4d() : matrixOf(r.toRender)});
+      out.push_back({uint32_t(i), triangles ? Matrix4d() : matrixOf(r.frames->toRender)});
     }
   }
   const Matrix4d fromKernel = uniformScale(1 / double(scale_));

@@ -33,8 +33,8 @@ struct Packet8 {
 // Recomputes a hit at a grazing angle in double precision.
 void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hits, uint32_t lane) {
   if (r.primitive != edit::Primitive::Triangles) return;
-  const Vec3f kernel = load(hits.ng, lane), n = r.instanced ? r.kernelNormal * kernel : kernel,
-              d = load(rays.dir, lane);
+  const Vec3f kernel = load(hits.ng, lane),
+              n = r.instanced ? r.frames->kernelNormal * kernel : kernel, d = load(rays.dir, lane);
   if (!grazes(n, d)) return;
   const RaySegment ray{Vec3d(load(rays.org, lane)), Vec3d(d), rays.tnear[lane], far};
   if (const auto hit = refineHit(r, hits.primitive[lane], ray)) {

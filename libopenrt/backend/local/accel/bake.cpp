@@ -44,6 +44,8 @@ void Box::add(const Box& box, const Matrix4d& matrix) {
                       corner & 4 ? box.high.z : box.low.z}));
 }
 
+double halfDiagonal(const Box& box) { return box.empty() ? 0 : length(box.high - box.low) / 2; }
+
 Box boundsOf(const Geometry& geometry) {
   Box local, result;
   if (geometry.primitive == edit::Primitive::Sphere) {
@@ -59,6 +61,22 @@ Box boundsOf(const Geometry& geometry) {
   }
   result.add(local, geometry.matrix);
   return result;
+}
+
+bool hasDetailAtOrigin(const Geometry& g) {
+  if (g.primitive != edit::Primitive::Triangles || !g.points) return false;
+  const float* points = g.points->as<float>();
+  const size_t n = g.points->count<float>() / 3;
+  if (n == 0) return false;
+  const Box box = boundsOf(points, n);
+  const float close = float(largest(max(abs(box.low), abs(box.high))) / largestToSmallest);
+  std::atomic<size_t> count{0};
+  forRanges(n, [&](size_t begin, size_t end) {
+    size_t found = 0;
+    for (size_t i = begin; i < end; i++) found += largest(abs(vectorOf(points + 3 * i))) < close;
+    count += found;
+  });
+  return count > 1;
 }
 
 bool consistent(const Geometry& g) {

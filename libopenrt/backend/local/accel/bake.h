@@ -31,6 +31,10 @@ std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& toKernel
 // enough.
 bool consistent(const Geometry& geometry);
 
+// All that shares a frame may be this many times as large as its smallest part, of which single
+// precision then tells 2^-8 of the size apart.
+inline constexpr double largestToSmallest = 65536;
+
 struct Box {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   bool empty() const { return !(low.x <= high.x); }
@@ -38,5 +42,9 @@ struct Box {
   void add(const Box& box, const Matrix4d& matrix); // adds the transformed corners of the box
 };
 Box boundsOf(const Geometry& geometry); // transformed by the geometry's own matrix
+double halfDiagonal(const Box& box);    // 0 if the box is empty
+// Returns whether several points of a mesh lie so close to its own origin, where floats are
+// densest, that they would be one point in a frame about the middle of the mesh.
+bool hasDetailAtOrigin(const Geometry& geometry);
 
 } // namespace openrt

@@ -243,12 +243,12 @@ std::shared_ptr<Blas> BlasBuilder::finish() {
   return std::move(blas_);
 }
 
-Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high) {
+Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high, const std::optional<Vec3d>& origin) {
   const Vec3d half = (high - low) * 0.5;
   const double size = largest(half);
   Matrix4d m =
       uniformScale(size > 0 && std::isfinite(size) ? std::exp2(std::ceil(std::log2(size))) : 1.0);
-  if (size >= 0 && std::isfinite(size)) m.translate((low + high) * 0.5);
+  if (size >= 0 && std::isfinite(size)) m.translate(origin.value_or((low + high) * 0.5));
   return m;
 }
 

@@ -92,8 +92,9 @@ class BlasBuilder {
   std::vector<float> deformed_;
 };
 
-// Returns the map to the frame of the bounds from a frame in which they are centred and have a size
-// near 1.
-Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high);
+// Returns the map to the frame of the bounds from a frame in which they have a size near 1 and are
+// centred, or have this point of theirs at the origin.
+Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high,
+                     const std::optional<Vec3d>& origin = std::nullopt);
 
 } // namespace openrt

@@ -62,7 +62,8 @@ bool ClosedBodies::denies(const Rays& rays, uint32_t i, const RayHits& hits) con
   const Body& body = bodies_[hits.record[i]];
   if (body.outward == 0) return false;
   const Record& r = accel_.records[hits.record[i]];
-  const Vec3f kernel = load(hits.ng, i), normal = r.instanced ? r.kernelNormal * kernel : kernel;
+  const Vec3f kernel = load(hits.ng, i),
+              normal = r.instanced ? r.frames->kernelNormal * kernel : kernel;
   if (!(dot(normal, load(rays.dir, i)) * float(body.outward) > 0)) return false;
   const Vec3f o = load(rays.org, i);
   return o.x < body.low.x || o.y < body.low.y || o.z < body.low.z || o.x > body.high.x ||

@@ -66,7 +66,7 @@ struct Doubts {
   }
   // A hit at a grazing angle may lie elsewhere, or be none (ray_triangle.h).
   static bool isGrazing(const Record& r, const Vec3f& kernelNormal, const Vec3f& direction) {
-    return grazes(r.instanced ? r.kernelNormal * kernelNormal : kernelNormal, direction);
+    return grazes(r.instanced ? r.frames->kernelNormal * kernelNormal : kernelNormal, direction);
   }
   // Returns whether suspect() does not know the front of a record's triangles.
   static bool hidesFront(const Record& r) { return r.instanced | r.flip; }

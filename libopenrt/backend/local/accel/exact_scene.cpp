@@ -114,7 +114,8 @@ ExactScene::ExactScene(const EmbreeDevice& device, const Accel& accel, const Exa
   for (const Accel::Surface& from : accel.surfaces()) {
     const Record& r = accel.records[from.record];
     const bool triangles = r.primitive == edit::Primitive::Triangles;
-    if (r.primitive != edit::Primitive::Sphere && r.instanced && !matrixOf(r.toRender).usable())
+    if (r.primitive != edit::Primitive::Sphere && r.instanced &&
+        !matrixOf(r.frames->toRender).usable())
       continue; // Embree has it not
     std::shared_ptr<const Surface::Mesh> mesh;
     Matrix4d toRender = from.toRender;
@@ -124,7 +125,7 @@ ExactScene::ExactScene(const EmbreeDevice& device, const Accel& accel, const Exa
                              former ? former->surfaces_.get() : nullptr,
                              [&] { return std::make_shared<const Surface::Mesh>(device, r); });
       if (mesh->empty) continue;
-      toRender = (r.instanced ? matrixOf(r.toRender) : uniformScale(r.scale)) *
+      toRender = (r.instanced ? matrixOf(r.frames->toRender) : uniformScale(r.scale)) *
                  fromUnit(mesh->center, mesh->unit);
       bounds = {-mesh->half * mesh->unit, mesh->half * mesh->unit};
     } else if (r.surface) {
@@ -216,7 +217,7 @@ Vec3d ExactScene::normal(const Hit& hit, const ExactRay& ray) const {
   } else {
     const Vec3d a = cornerOf(r, hit.primitive, 0);
     n = cross(cornerOf(r, hit.primitive, 1) - a, cornerOf(r, hit.primitive, 2) - a);
-    if (r.instanced) n = r.kernelNormal * n;
+    if (r.instanced) n = r.frames->kernelNormal * n;
   }
   if (r.flip) n = -n;
   const double l = length(n);

@@ -14,10 +14,16 @@ constexpr uint64_t bakedTriangles = 50000;
 // Returns log2 of a length, clamped to the range that the kernels accept.
 int exponent(double length) { return std::ilogb(std::clamp(length, 1e-30, 1e30)); }
 
-double halfDiagonal(const Box& box) { return box.empty() ? 0 : length(box.high - box.low) / 2; }
-
 double largestColumn(const Matrix4d& m) {
   return std::max({length(m.column(0)), length(m.column(1)), length(m.column(2))});
+}
+
+// Returns a lower bound of the factor by which a matrix stretches: the determinant is the product
+// of the singular values, and the product of two is at most half the sum of all their squares.
+double leastStretch(const Matrix4d& m) {
+  const double squares =
+      dot(m.column(0), m.column(0)) + dot(m.column(1), m.column(1)) + dot(m.column(2), m.column(2));
+  return squares > 0 ? 2 * std::fabs(m.determinant()) / squares : 0;
 }
 
 } // namespace
@@ -57,6 +63,8 @@ void Survey::measure(const Scene& scene, uint32_t id) {
       info.bakeOnly = true;
     if (g.primitive == edit::Primitive::Sphere && !similarity(g.matrix)) info.bakeOnly = true;
   }
+  for (const double size : info.sizes)
+    info.bakeOnly |= size > 0 && halfDiagonal(info.bounds) > largestToSmallest * size;
 }
 
 bool Survey::isShared(uint32_t id) const {
@@ -97,11 +105,34 @@ PartInfo Survey::measurePart(const Scene& scene, const ScenePart& part, bool roo
       }
       if (shared) drawn = DrawnAs::shared;
       if (drawn == DrawnAs::ellipsoid) info.ellipsoids.emplace_back(i, g);
-      info.baked |= drawn == DrawnAs::baked;
+      if (drawn == DrawnAs::baked) info.baked = 1;
+      info.framed += hasFrames(geometries[g], drawn, root);
       info.drawn.push_back(drawn);
     }
   }
+  if (!root && info.baked) groupBaked(scene, part, info);
   return info;
+}
+
+// Splits the baked geometry of a part in which something may be too small for the part's frame.
+void Survey::groupBaked(const Scene& scene, const ScenePart& part, PartInfo& info) const {
+  const double size = halfDiagonal(info.bounds);
+  bool fits = true;
+  for (uint32_t i = 0; i < part.items.size() && fits; i++) {
+    const double stretch = leastStretch(part.items[i].matrix) * largestToSmallest;
+    for (const double its : objects_.at(part.items[i].object).sizes)
+      fits &= !(its > 0) || its * stretch >= size;
+  }
+  if (fits) return;
+  std::vector<Box> boxes(info.entries());
+  for (uint32_t i = 0; i < part.items.size(); i++) {
+    const auto& geometries = scene.objects.at(part.items[i].object).geometries;
+    for (uint32_t g = 0; g < geometries.size(); g++)
+      if (const uint32_t entry = info.firstEntry[i] + g; info.drawn[entry] == DrawnAs::baked)
+        boxes[entry].add(boundsOf(geometries[g]), part.items[i].matrix);
+  }
+  info.groups = groupBySize(boxes);
+  info.baked = *std::max_element(info.groups.begin(), info.groups.end()) + 1;
 }
 
 void Survey::take(const Scene& scene, const Flattened& flat) {
@@ -123,17 +154,28 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
   for (uint32_t c = 0; c < all.size(); c++) all[c] = c;
   place(flat, all);
 
+  measureDetail(scene, flat);
+}
+
+// The detail is that of what is static. Where nothing is, it is that of the parts, without the
+// matrices of their instances.
+void Survey::measureDetail(const Scene& scene, const Flattened& flat) {
   std::map<int, uint64_t> sizes; // number of primitives for each size (log2)
   uint64_t total = 0;
-  for (const Item& item : flat.parts[0].items) {
-    const auto& geometries = scene.objects.at(item.object).geometries;
-    const auto& itsSizes = objects_.at(item.object).sizes;
-    const double growth = largestColumn(item.matrix);
-    for (size_t g = 0; g < geometries.size(); g++) {
-      sizes[exponent(itsSizes[g] * growth)] += geometries[g].primitives();
-      total += geometries[g].primitives();
+  const auto add = [&](const ScenePart& part) {
+    for (const Item& item : part.items) {
+      const auto& geometries = scene.objects.at(item.object).geometries;
+      const auto& itsSizes = objects_.at(item.object).sizes;
+      const double growth = largestColumn(item.matrix);
+      for (size_t g = 0; g < geometries.size(); g++) {
+        sizes[exponent(itsSizes[g] * growth)] += geometries[g].primitives();
+        total += geometries[g].primitives();
+      }
     }
-  }
+  };
+  add(flat.parts[0]);
+  if (total == 0)
+    for (const ScenePart& part : flat.parts) add(part);
   detail_ = 200;
   uint64_t below = 0;
   for (const auto& [size, count] : sizes) {
@@ -152,11 +194,19 @@ bool Survey::resurveyObject(const Scene& scene, const Flattened& flat, uint32_t 
   measure(scene, object);
   PartInfo fresh = measurePart(scene, flat.parts[p], false);
   fresh.clusters = std::move(parts_[p].clusters);
-  const bool same = fresh.drawn == parts_[p].drawn && fresh.lines == parts_[p].lines &&
-                    fresh.points == parts_[p].points;
+  const bool same = fresh.drawn == parts_[p].drawn && fresh.groups == parts_[p].groups &&
+                    fresh.lines == parts_[p].lines && fresh.points == parts_[p].points;
   parts_[p] = std::move(fresh);
   place(flat, parts_[p].clusters);
   return same;
+}
+
+bool Survey::resurvey(const Scene& scene, const Flattened& flat,
+                      const std::vector<uint32_t>& objects) {
+  for (const uint32_t object : objects)
+    if (!resurveyObject(scene, flat, object)) return false;
+  if (!objects.empty() && flat.parts[0].items.empty()) measureDetail(scene, flat);
+  return true;
 }
 
 void Survey::place(const Flattened& flat, const std::vector<uint32_t>& clusters) {

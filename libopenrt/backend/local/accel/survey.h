@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "backend/local/accel/bake.h"
+#include "backend/local/accel/size_groups.h"
 #include "render/records.h"
 #include "scene/flatten.h"
 
@@ -16,18 +16,26 @@ namespace openrt {
 
 // How a geometry is built into its part.
 enum class DrawnAs : uint8_t {
-  baked,     // in the Embree scene of the part
+  baked,     // in an Embree scene of the part: the only one, unless sizes differ too much
   shared,    // in the Embree scene of its object, which has many instances
   ellipsoid, // as an instance of the unit sphere
   thin       // as lines or points, whose width in pixels depends on the camera
 };
+
+// Returns whether the records of a geometry have frames. root: in the static scene.
+inline bool hasFrames(const Geometry& g, DrawnAs drawn, bool root) {
+  if (drawn == DrawnAs::thin) return false;
+  return !root || drawn == DrawnAs::shared || g.surface || g.primitive == edit::Primitive::Sphere;
+}
 
 struct ObjectInfo {
   uint64_t version = 0;
   std::vector<double> sizes; // half the diagonal of each geometry's bounds
   Box bounds;
   uint64_t triangles = 0;
-  bool bakeOnly = false; // has lines, points or ellipsoids, which cannot be instanced
+  // It has lines, points or ellipsoids, which cannot be instanced, or sizes that do not fit into
+  // one frame.
+  bool bakeOnly = false;
 };
 
 struct PartInfo {
@@ -35,20 +43,24 @@ struct PartInfo {
   std::vector<DrawnAs> drawn;       // by entry
   Box bounds;                       // in the part's frame
   uint64_t triangles = 0;
-  bool baked = false, lines = false, points = false;
-  std::vector<uint32_t> sharedItems;                     // in order
+  bool lines = false, points = false;
+  uint32_t framed = 0;               // number of entries that have frames
+  uint32_t baked = 0;                // number of Embree scenes with baked geometry
+  std::vector<uint32_t> groups;      // which of them holds an entry; empty: the only one
+  std::vector<uint32_t> sharedItems; // in order
   std::vector<std::pair<uint32_t, uint32_t>> ellipsoids; // (item, geometry), in order
   std::vector<uint32_t> clusters;                        // ascending
   uint32_t entries() const { return uint32_t(drawn.size()); }
+  uint32_t groupOf(uint32_t entry) const { return groups.empty() ? 0 : groups[entry]; }
 };
 
 class Survey {
  public:
   // Surveys the whole scene.
   void take(const Scene& scene, const Flattened& flat);
-  // Updates the survey after an object, dynamic before and after, was redefined. Returns false if
-  // more than its Embree scene must be rebuilt.
-  bool resurveyObject(const Scene& scene, const Flattened& flat, uint32_t object);
+  // Updates the survey after objects, dynamic before and after, were redefined. Returns false if
+  // more than their Embree scenes must be rebuilt; then take() must follow.
+  bool resurvey(const Scene& scene, const Flattened& flat, const std::vector<uint32_t>& objects);
   // Updates the bounds of clusters that moved.
   void place(const Flattened& flat, const std::vector<uint32_t>& clusters);
 
@@ -71,6 +83,9 @@ class Survey {
  private:
   void measure(const Scene& scene, uint32_t object);
   PartInfo measurePart(const Scene& scene, const ScenePart& part, bool root) const;
+  bool resurveyObject(const Scene& scene, const Flattened& flat, uint32_t object);
+  void measureDetail(const Scene& scene, const Flattened& flat);
+  void groupBaked(const Scene& scene, const ScenePart& part, PartInfo& info) const;
   bool isShared(uint32_t object) const;
   Box bounds() const;
   double farthest(const Vec3d& origin) const; // largest difference of a coordinate; 0: nothing
@@ -80,7 +95,7 @@ class Survey {
   std::unordered_map<uint32_t, uint32_t> partOf_;
   std::vector<PartInfo> parts_;
   std::vector<Box> boxes_; // boxes around clusters, in the world
-  int detail_ = 0;         // log2 of the median size of static geometry
+  int detail_ = 0;         // log2 of the median size of geometry
 };
 
 // Returns whether the matrix scales all directions equally, so that a sphere stays a sphere.
