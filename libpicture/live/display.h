@@ -22,6 +22,7 @@ struct ShownFrame {
   // as in LiveFrame
   std::optional<double> falseColour;
   int shownWidth = 0, shownHeight = 0;
+  int width = 0, height = 0;
 };
 
 // Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the
@@ -36,7 +37,8 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
 class Display {
  public:
   // Fills sizes, rgb, scaleEnd, covered, samples and preview of `out`. picture: the finished part
-  // of the frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
+  // of the frame, with RT_RGBA and RT_SAMPLES; a preview may have more pixels than its frame.
+  // whole: the frame has all its samples.
   void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
   // Frees what a viewer was shown last.

@@ -50,7 +50,10 @@ enum {
    * that hit it first, 0 .. 1; the largest share first, equal shares by name. Pairs that are not
    * used are 0 0. rtUniteNames makes several names one. In a pixel with more than 1,024 names,
    * those with the smallest numbers are counted. */
-  RT_COVERAGE = 4096
+  RT_COVERAGE = 4096,
+  /* 2: where in the pixel the first sample was taken, 0 .. 1 from its left and from its upper edge.
+   * For callers that rebuild pictures from few samples. */
+  RT_PLACE = 8192
 };
 /* Values of RTchannelInfo.kind: what the floats of a channel are. */
 enum {

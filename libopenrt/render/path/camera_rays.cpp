@@ -64,6 +64,17 @@ void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& aren
   for (int k = 0; k < 2; k++) std::fill(xy[k] + n, xy[k] + padded(n), xy[k][n - 1]);
 }
 
+void recordPlaces(const FilmSamples& film, const float* const xy[2], const PixelSamples& found) {
+  float* const* const place = found.of(RT_PLACE);
+  if (!place[0]) return;
+  uint32_t path = 0;
+  for (const uint32_t pixel : film.pixels) {
+    const float corner[2] = {float(pixel % film.width), float(pixel / film.width)};
+    for (uint32_t s = 0; s < film.perPixel; s++, path++)
+      for (int k = 0; k < 2; k++) place[k][path] = xy[k][path] - corner[k];
+  }
+}
+
 void makeCameraRays(const StageContext& context, const float* const xy[2], Rays& rays) {
   const RenderScene& scene = context.scene;
   const uint32_t n = rays.count, size = padded(n);

@@ -111,6 +111,7 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   for (uint32_t i = 0; i < n; i++) wave.states.set(i, RayState{.path = i, .lightPathRatio = ratio});
   float* xy[2];
   sampleFilm(film, paths, arena, xy);
+  recordPlaces(film, xy, found);
   makeCameraRays(tracer_.context(), xy, wave.rays);
   if (!scene_.mediumLights.empty()) {
     ArenaScope inner(arena);
