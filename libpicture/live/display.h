@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libpicture/live.h"
+#include "libpicture/live/fade.h"
 #include "libpicture/live/recent_viewers.h"
 
 namespace picture::live {
@@ -25,8 +26,9 @@ struct ShownFrame {
   int width = 0, height = 0;
 };
 
-// Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the
-// preview that was shown before. It never decreases. wanted: the samples of the finished picture.
+// Returns the largest weight, 0 to 1, of a still picture with `samples` samples per pixel so far,
+// over the preview that was shown before; Fade lowers it where the picture is noisy. It never
+// decreases. wanted: the samples of the finished picture.
 // seconds: since the frame was started.
 double stillWeight(double samples, int wanted, double seconds);
 
@@ -55,6 +57,7 @@ class Display {
     Bytes last;              // the picture that was shown last
     Bytes below;             // the picture that a still frame fades over, in that frame's size
     uint64_t belowFrame = 0; // number of that frame
+    Fade fade;               // over that picture
     // The luminance that fits the last finished still picture, or the first picture in false
     // colours while there is none; 0: own colours are shown.
     double fitting = 0;
