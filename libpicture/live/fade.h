@@ -34,7 +34,7 @@ class Fade {
  private:
   // A block of pixels, whose noise and errors are taken together.
   struct Block {
-    double variance = 0; // of one sample, mean over pixels and colours
+    double variance = 0; // that one sample has, mean over pixels and colours
     double limit = 0;    // the largest weight so far
   };
   size_t blockOf(size_t x, size_t y) const { return y * columns_ + x; }
@@ -43,7 +43,7 @@ class Fade {
   int width_ = 0, height_ = 0;
   size_t columns_ = 0, rows_ = 0;
   std::vector<Block> blocks_;
-  std::vector<Neighbours> acrossBlocks_, downBlocks_; // of each column and row of pixels
+  std::vector<Neighbours> acrossBlocks_, downBlocks_; // for each column and row of pixels
   std::vector<uint8_t> earlier_;                      // an earlier state of the still picture
   double earlierSamples_ = 0;                         // 0: there is none
   bool isKnown_ = false;                              // the noise is

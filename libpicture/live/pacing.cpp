@@ -154,7 +154,7 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
 }
 
 FrameSize Pacing::shown(int width, int height) {
-  // What the next smaller and the next larger size would take follows from their pixels.
+  // The time of the next smaller and the next larger size follows from their pixels.
   const double most = mostShowing * budget_, larger = scaleOf(1) * scaleOf(1);
   int step = shownStep_;
   if (showing_ > tooLong * most)

@@ -298,7 +298,7 @@ struct Reconstruction::Impl {
   Bounds bounds;
   ShownLight shownLight, shownLightBefore;
   Shown shown, shownBefore;
-  Overlaps columns, rowsOfFrame;  // of the pixels of `shown`
+  Overlaps columns, rowsOfFrame;  // how the pixels of `shown` lie in the frame
   const Plane3* result = nullptr; // filtered illumination
   OidnImages images;
   Facts facts;

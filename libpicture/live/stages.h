@@ -106,13 +106,13 @@ struct Fresh {
   Plane3 light;  // illumination
   Plane noise;   // 0 to 1: of the illumination
   Plane sample;  // luma of the last sample, or ShownLight::noSample
-  // What was shown where the sample lies: colour and number of samples; 0: nothing that counts.
+  // Colour and number of samples that were shown where the sample lies; 0: nothing that counts.
   Plane3 oldColour;
   Plane oldFrames;
   // Whether the frame before has shown the surface.
   static constexpr float unseen = 0, seen = 1, seenAround = 2, forgotten = 3;
   Plane trust;
-  Plane tolerance;     // of the nearness where the surface was
+  Plane tolerance;     // how far the nearness may be from that where it was
   Plane front, behind; // surfaces of other depths beside the pixel (Beside), as offsets in planes
   Plane rests;         // 1: the sample's place in the shown picture has not moved
 };

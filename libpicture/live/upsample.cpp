@@ -4,8 +4,8 @@
 // pixel shows what lies around it. Samples lie at random places, so the mean over the frames
 // smooths edges and textures, too, as more samples in one frame would.
 //
-// What moves is decided for each pixel of the picture: by what it has shown, and not only by the
-// sample next to it, which may have hit something else.
+// Each pixel of the picture decides by its own history how it moves, and not only by the sample
+// next to it, which may have hit something else.
 #include "libpicture/live/stages.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -28,7 +28,7 @@ constexpr float fewestSamples = 2;
 struct Target {
   int x, y;
   size_t i;       // the place of the first one in planes
-  Indices source; // of the sample in the pixel, else of the frame's pixel around its centre
+  Indices source; // the sample in the pixel, or else the frame's pixel around its centre
   Mask hit, exists;
   Mask some; // that pixel of the frame has a sample
 };
@@ -118,7 +118,7 @@ inline Mask wasShown(const Shown& before, const Candidate& candidate, Mask asked
   return hn::Or(found, hn::And(wanted, like >= least));
 }
 
-// What was shown of some pixels.
+// Tells what was shown of some pixels.
 struct Origin {
   Past past;
   Indices at;     // in planes of what was shown

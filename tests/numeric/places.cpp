@@ -61,6 +61,30 @@ TEST_F(Places, AgreeWithThePositionsOfHits) {
   EXPECT_GT(misses, 100);
 }
 
+// Sixteen seeds in a row have one place in each sixteenth of a pixel, however that is divided.
+TEST_F(Places, OfConsecutiveSeedsFillThePixels) {
+  rtQuality(RT_JITTER, 1);
+  for (const int first : {0, 48}) {
+    std::vector<std::vector<float>> places;
+    for (int seed = first; seed < first + 16; seed++) {
+      rtQuality(RT_SEED, seed);
+      rtRender();
+      places.push_back(read(RT_PLACE, 2));
+    }
+    for (const int columns : {1, 2, 4, 8, 16})
+      for (size_t pixel = 0; pixel < width * height; pixel++) {
+        std::vector<int> counts(16);
+        for (const std::vector<float>& place : places) {
+          const int x = std::min(int(place[2 * pixel] * float(columns)), columns - 1),
+                    rows = 16 / columns,
+                    y = std::min(int(place[2 * pixel + 1] * float(rows)), rows - 1);
+          counts[size_t(y * columns + x)]++;
+        }
+        EXPECT_EQ(counts, std::vector<int>(16, 1)) << columns << ", pixel " << pixel;
+      }
+  }
+}
+
 TEST_F(Places, AreTheMiddlesWithoutJitter) {
   rtRender();
   for (const float v : read(RT_PLACE, 2)) EXPECT_EQ(v, .5f);

@@ -129,7 +129,7 @@ TEST(LiveDisplay, whatIsShownGetsBetterSteadily) {
 }
 
 // The preview is wrong in its right half. There the still picture takes its place; on the left it
-// would only bring noise. What is shown is nowhere noisier than the preview is wrong.
+// would only bring noise: nowhere does it bring more than the preview is wrong.
 TEST(LiveDisplay, aStillPictureBringsNoMoreNoiseThanThePreviewIsWrong) {
   constexpr int width = 128, height = 96;
   constexpr double truth = 128, noise = 60;

@@ -388,7 +388,7 @@ TEST(LiveCompletion, theStillPictureFadesInOverThePreview) {
     ASSERT_FALSE(picture.finished);
     weight = live::stillWeight(picture.samples, many, picture.seconds);
     if (picture.covered < 1) continue;
-    // What is noisy stays below it for longer.
+    // Noise keeps some of it for longer.
     EXPECT_TRUE(picture.preview || weight == 1) << picture.samples << ", " << picture.seconds;
     if (weight < .05) { EXPECT_LT(difference(picture.rgb, preview.rgb), 8); }
   }

@@ -143,10 +143,11 @@ TEST(Pacing, theTimeOfRebuildingCounts) {
   EXPECT_EQ(other.predicted(one), before);
 }
 
-// What is shown has the pixels of the window, and fewer where these would take more than half of a
-// frame's time. Frames have what is left of it.
+// The shown picture has the pixels of the window, and fewer where these would take more than half
+// of a frame's time. Frames have what is left of it.
 TEST(Pacing, theSizeOfWhatIsShownHasATimeOfItsOwn) {
-  for (const double whole : {0.002, 0.01, 0.04, 0.3}) { // seconds of a picture as large as the window
+  // seconds of a picture as large as the window
+  for (const double whole : {0.002, 0.01, 0.04, 0.3}) {
     Pacing pacing(30);
     double showing = 0, frame = 0;
     FrameSize shown, before;

@@ -47,10 +47,29 @@ void startSamples(const FilmSamples& film, PathSamples& samples) {
   }
 }
 
+namespace {
+
+// Draws the places in the pixels where the seed counts the points of one sequence.
+void drawInTurn(const FilmSamples& film, Arena& arena, float* xy[2]) {
+  constexpr uint32_t sequence = 0x706c6163;
+  const uint32_t n = film.count();
+  PathSamples places;
+  places.allocate(arena, n);
+  uint32_t path = 0;
+  for (const uint32_t pixel : film.pixels)
+    for (uint32_t s = 0; s < film.perPixel; s++)
+      places.set(path++, pixel, sequence, film.replicates.seed);
+  randomNumbersAtStart(places, n, arena).drawPair(0, arena, xy);
+}
+
+} // namespace
+
 void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& arena, float* xy[2]) {
   const uint32_t n = film.count();
   if (film.centred)
     for (int k = 0; k < 2; k++) std::fill_n(xy[k] = arena.take<float>(padded(n)), n, 0.5f);
+  else if (film.inTurn)
+    drawInTurn(film, arena, xy);
   else
     randomNumbersAtStart(samples, n, arena).drawPair(0, arena, xy);
   uint32_t path = 0;
