@@ -208,17 +208,20 @@ inline void keepSurfaces(const ShowPass& pass, const Target& target, const Origi
   // The old surface goes on where it is another one than that which tells the motion.
   const Mask stays = hn::And(hn::AndNot(target.hit, origin.known),
                              hn::Not(gather(old.name.data(), origin.at) == name));
-  const auto keep = [&](const Plane& now, const Plane& before, Plane& to) {
-    store(select(stays, gather(before.data(), origin.at), gather(now.data(), source)),
-          to.data() + target.i);
+  const bool any = !hn::AllFalse(LanesTag(), stays);
+  const auto keep = [&](Lanes now, const Plane& before) {
+    return any ? select(stays, gather(before.data(), origin.at), now) : now;
   };
-  keep(guides.nearness, old.nearness, surfaces.nearness);
-  keep(guides.moves, old.moves, surfaces.moves);
-  keep(guides.normal.x, old.normal.x, surfaces.normal.x);
-  keep(guides.normal.y, old.normal.y, surfaces.normal.y);
-  keep(guides.normal.z, old.normal.z, surfaces.normal.z);
-  const Lanes shown = select(stays, gather(old.name.data(), origin.at), name);
-  store(select(target.exists, shown, lanesOf(outsideName)), surfaces.name.data() + target.i);
+  const auto copy = [&](const Plane& now, const Plane& before, Plane& to) {
+    store(keep(gather(now.data(), source), before), to.data() + target.i);
+  };
+  copy(guides.nearness, old.nearness, surfaces.nearness);
+  copy(guides.moves, old.moves, surfaces.moves);
+  copy(guides.normal.x, old.normal.x, surfaces.normal.x);
+  copy(guides.normal.y, old.normal.y, surfaces.normal.y);
+  copy(guides.normal.z, old.normal.z, surfaces.normal.z);
+  store(select(target.exists, keep(name, old.name), lanesOf(outsideName)),
+        surfaces.name.data() + target.i);
 }
 
 // Returns the colours around the centres of pixels, linearly between the centres of the frame's.
@@ -303,7 +306,8 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
                               select(rests, lanesOf(framesSampled), lanesOf(framesMoving)));
     const Weights weights = weightsOf(pass, layout, target, samples, most);
     LaneVec fresh = gather(pass.fresh.colour, target.source);
-    if (!hn::AllTrue(LanesTag(), hn::Or(target.hit, hn::Not(target.exists))))
+    const Mask lent = hn::And(target.exists, hn::AndNot(target.hit, samples < one));
+    if (!hn::AllFalse(LanesTag(), lent))
       fresh = select(target.hit, fresh, coloursAround(pass, layout, target));
     const LaneVec low = gather(pass.bounds.low, target.source),
                   high = gather(pass.bounds.high, target.source);
