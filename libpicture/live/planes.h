@@ -112,6 +112,7 @@ struct Shown {
   void resize(const Layout& wanted) {
     layout = wanted;
     colour.assign(layout.size() * 4, 0);
+    level.assign(layout.size(), 0);
     surfaces.resize(layout);
   }
 
@@ -119,6 +120,8 @@ struct Shown {
   // Red, green, blue, and the number of samples in them. Before the first sample a pixel has a
   // fraction of one, which those around it have lent.
   std::vector<float> colour;
+  // Luma of the illumination that the colours are in, over the last frames; 0: unknown.
+  Plane level;
   Surfaces surfaces;
 };
 

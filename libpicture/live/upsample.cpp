@@ -195,52 +195,87 @@ inline Mask wasUncovered(const ShowPass& pass, Mask rests, Lanes nearness, size_
   return hn::And(rests, covered);
 }
 
-// Keeps which surfaces the pixels show: that of the sample in a pixel, else what it was, else that
-// of the frame's pixel around it.
-inline void keepSurfaces(const ShowPass& pass, const Target& target, const Origin& origin,
-                         Surfaces& surfaces) {
-  const Guides& guides = pass.pixels.guides;
-  const Surfaces& old = pass.before.surfaces;
+// The surfaces that pixels show: that of the sample in a pixel, else what it was, else that of the
+// frame's pixel around it.
+struct Visible {
+  Indices source; // in the frame
+  Mask stays;     // the old one goes on, which is another one than that which tells the motion
+  Lanes name;
+};
+
+inline Visible visibleAt(const ShowPass& pass, const Target& target, const Origin& origin) {
   const Indices source =
       hn::IfThenElse(hn::RebindMask(IndicesTag(), hn::Or(target.hit, hn::Not(origin.known))),
                      target.source, origin.source);
-  const Lanes name = gather(guides.name.data(), source);
-  // The old surface goes on where it is another one than that which tells the motion.
-  const Mask stays = hn::And(hn::AndNot(target.hit, origin.known),
-                             hn::Not(gather(old.name.data(), origin.at) == name));
-  const bool any = !hn::AllFalse(LanesTag(), stays);
-  const auto keep = [&](Lanes now, const Plane& before) {
-    return any ? select(stays, gather(before.data(), origin.at), now) : now;
-  };
-  const auto copy = [&](const Plane& now, const Plane& before, Plane& to) {
-    store(keep(gather(now.data(), source), before), to.data() + target.i);
-  };
-  copy(guides.nearness, old.nearness, surfaces.nearness);
-  copy(guides.moves, old.moves, surfaces.moves);
-  copy(guides.normal.x, old.normal.x, surfaces.normal.x);
-  copy(guides.normal.y, old.normal.y, surfaces.normal.y);
-  copy(guides.normal.z, old.normal.z, surfaces.normal.z);
-  store(select(target.exists, keep(name, old.name), lanesOf(outsideName)),
-        surfaces.name.data() + target.i);
+  const Lanes name = gather(pass.pixels.guides.name.data(), source),
+              old = gather(pass.before.surfaces.name.data(), origin.at);
+  const Mask stays = hn::And(hn::AndNot(target.hit, origin.known), hn::Not(old == name));
+  return {source, stays, select(stays, old, name)};
 }
 
-// Returns the colours around the centres of pixels, linearly between the centres of the frame's.
-inline LaneVec coloursAround(const ShowPass& pass, const Layout& layout, const Target& target) {
+inline void keepSurfaces(const ShowPass& pass, const Target& target, const Origin& origin,
+                         const Visible& visible, Surfaces& surfaces) {
+  const Guides& guides = pass.pixels.guides;
+  const Surfaces& old = pass.before.surfaces;
+  const bool any = !hn::AllFalse(LanesTag(), visible.stays);
+  const auto keep = [&](const Plane& now, const Plane& before, Plane& to) {
+    Lanes v = gather(now.data(), visible.source);
+    if (any) v = select(visible.stays, gather(before.data(), origin.at), v);
+    store(v, to.data() + target.i);
+  };
+  keep(guides.nearness, old.nearness, surfaces.nearness);
+  keep(guides.moves, old.moves, surfaces.moves);
+  keep(guides.normal.x, old.normal.x, surfaces.normal.x);
+  keep(guides.normal.y, old.normal.y, surfaces.normal.y);
+  keep(guides.normal.z, old.normal.z, surfaces.normal.z);
+  store(select(target.exists, visible.name, lanesOf(outsideName)), surfaces.name.data() + target.i);
+}
+
+// Where the centres of pixels lie between those of the frame's.
+struct Between {
+  Indices corner; // the frame's pixel above and to the left
+  Lanes partX, partY;
+  int32_t stride;
+
+  Indices at(int k) const { return corner + hn::Set(IndicesTag(), (k / 2) * stride + k % 2); }
+  Lanes weight(int k) const {
+    const Lanes one = lanesOf(1);
+    return (k % 2 ? partX : one - partX) * (k / 2 ? partY : one - partY);
+  }
+};
+
+inline Between betweenAt(const ShowPass& pass, const Layout& layout, const Target& target) {
   const Layout& frame = pass.pixels.layout;
   const Resampling alongX(layout.width, frame.width), alongY(layout.height, frame.height);
   const Lanes x = countFrom(target.x) * lanesOf(alongX.ratio) + lanesOf(alongX.shift);
   const float y = alongY(float(target.y)), top = std::floor(y);
   // Pixels behind the end of a row are not shown; their places are kept within the planes.
   const Lanes inside = min(x, lanesOf(float(frame.width))), left = hn::Floor(inside);
-  const Lanes partX = inside - left, partY = lanesOf(y - top), one = lanesOf(1);
-  const IndicesTag tag;
-  const Indices corner = hn::Set(tag, int32_t(frame.row(int(top)))) + hn::ConvertTo(tag, left);
-  const Plane3& colour = pass.fresh.colour;
-  const auto across = [&](Indices at) {
-    return gather(colour, at) * (one - partX) + gather(colour, at + hn::Set(tag, 1)) * partX;
-  };
-  return across(corner) * (one - partY) +
-         across(corner + hn::Set(tag, int32_t(frame.stride))) * partY;
+  const Indices row = hn::Set(IndicesTag(), int32_t(frame.row(int(top))));
+  return {row + hn::ConvertTo(IndicesTag(), left), inside - left, lanesOf(y - top),
+          int32_t(frame.stride)};
+}
+
+// Returns the colours around the centres of pixels, linearly between the centres of the frame's.
+inline LaneVec coloursAround(const ShowPass& pass, const Between& between) {
+  LaneVec sum = gather(pass.fresh.colour, between.at(0)) * between.weight(0);
+  for (int k = 1; k < 4; k++)
+    sum = sum + gather(pass.fresh.colour, between.at(k)) * between.weight(k);
+  return sum;
+}
+
+// Returns the luma of the illumination around pixels, of the shapes that they show; 0: unknown.
+inline Lanes levelAround(const ShowPass& pass, const Between& between, Lanes name) {
+  Lanes sum = lanesOf(0), weights = lanesOf(0);
+  for (int k = 0; k < 4; k++) {
+    const Indices at = between.at(k);
+    const Lanes weight =
+        hn::IfThenElseZero(gather(pass.pixels.guides.name.data(), at) == name, between.weight(k));
+    sum = sum + gather(pass.fresh.light.x.data(), at) * weight;
+    weights = weights + weight;
+  }
+  const Mask some = weights > lanesOf(0.01f);
+  return hn::IfThenElseZero(some, sum / select(some, weights, lanesOf(1)));
 }
 
 // How many samples pixels have now, and the part of their colours that is new.
@@ -248,12 +283,13 @@ struct Weights {
   Lanes samples, part;
 };
 
-inline Weights weightsOf(const ShowPass& pass, const Layout& layout, const Target& target,
-                         Lanes old, Lanes mostFrames) {
+// Returns how many samples a frame has for each pixel.
+inline float shareOf(const ShowPass& pass, const Layout& layout) {
   const Layout& frame = pass.pixels.layout;
-  // A frame has so many samples for each pixel.
-  const auto share =
-      float(double(frame.width) * frame.height / (double(layout.width) * layout.height));
+  return float(double(frame.width) * frame.height / (double(layout.width) * layout.height));
+}
+
+inline Weights weightsOf(float share, const Target& target, Lanes old, Lanes mostFrames) {
   const Lanes one = lanesOf(1);
   const Lanes most = max(mostFrames * lanesOf(share), lanesOf(fewestSamples));
   const Mask lends = hn::AndNot(target.hit, old < one);
@@ -261,6 +297,15 @@ inline Weights weightsOf(const ShowPass& pass, const Layout& layout, const Targe
       target.some, select(target.hit, one, hn::IfThenElseZero(lends, lanesOf(share))));
   const Lanes samples = min(old + added, most);
   return {samples, hn::IfThenElseZero(added > lanesOf(0), min(added / samples, one))};
+}
+
+// Returns by how much light has to change to have another level, as far as it is noisy: shadows
+// without noise are as sharp as the pixels, and levels are not.
+inline Lanes changeOf(Lanes from, Lanes to, Lanes noisy) {
+  const Lanes one = lanesOf(1), zero = lanesOf(0);
+  const Mask known = hn::And(from > zero, to > zero);
+  const Lanes ratio = clamp(to / select(known, from, one), lanesOf(0.5f), lanesOf(2));
+  return select(known, one + (ratio - one) * noisy, one);
 }
 
 inline Lanes mixed(Lanes old, Lanes fresh, Lanes low, Lanes high, Lanes part) {
@@ -290,6 +335,7 @@ inline void writeColours(const ShowPass& pass, const Layout& layout, const Targe
 void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
   const Layout &layout = shown.layout, &old = pass.before.layout;
   const Lanes zero = lanesOf(0), one = lanesOf(1);
+  const float share = shareOf(pass, layout);
   for (int x = 0; x < layout.width; x += width()) {
     const Target target = targetAt(pass, layout, x, y);
     Origin origin = originOf(pass, layout, target);
@@ -298,17 +344,33 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
     origin.known = hn::AndNot(wasUncovered(pass, rests, nearness, target.i), origin.known);
 
     Lanes samples;
-    const LaneVec before =
-        shownNumbers(old, pass.before.colour, {origin.past, origin.known}, samples);
+    LaneVec before = shownNumbers(old, pass.before.colour, {origin.past, origin.known}, samples);
     samples = samples * gather(pass.bounds.valid.data(), target.source);
-    const Mask quiet = hn::And(rests, gather(pass.fresh.noise.data(), target.source) <= zero);
+    const Lanes noise = gather(pass.fresh.noise.data(), target.source);
+    const Mask quiet = hn::And(rests, noise <= zero);
     const Lanes most = select(quiet, lanesOf(framesAtRest),
                               select(rests, lanesOf(framesSampled), lanesOf(framesMoving)));
-    const Weights weights = weightsOf(pass, layout, target, samples, most);
+    const Weights weights = weightsOf(share, target, samples, most);
+    const Between between = betweenAt(pass, layout, target);
     LaneVec fresh = gather(pass.fresh.colour, target.source);
     const Mask lent = hn::And(target.exists, hn::AndNot(target.hit, samples < one));
     if (!hn::AllFalse(LanesTag(), lent))
-      fresh = select(target.hit, fresh, coloursAround(pass, layout, target));
+      fresh = select(target.hit, fresh, coloursAround(pass, between));
+
+    // A pixel has a sample of its own now and then; the light on it changes with each frame.
+    const Visible visible = visibleAt(pass, target, origin);
+    const Lanes around = levelAround(pass, between, visible.name),
+                level =
+                    hn::IfThenElseZero(origin.known, gather(pass.before.level.data(), origin.at));
+    const Lanes frames = min(samples * lanesOf(1 / share) + one, most);
+    const Mask known = hn::And(level > zero, around > zero);
+    const Lanes now = select(known, level + (around - level) / max(frames, one),
+                             select(around > zero, around, level));
+    const Lanes noisy = min(noise + noise, one);
+    before = before * changeOf(level, now, noisy);
+    const Lanes own = gather(pass.fresh.light.x.data(), target.source);
+    fresh = fresh * changeOf(select(target.hit, own, around), now, noisy);
+    store(now, shown.level.data() + target.i);
     const LaneVec low = gather(pass.bounds.low, target.source),
                   high = gather(pass.bounds.high, target.source);
     const LaneVec accumulated{mixed(before.x, fresh.x, low.x, high.x, weights.part),
@@ -319,7 +381,7 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
     hn::StoreInterleaved4(colour.x, colour.y, colour.z,
                           select(target.some, weights.samples, min(samples, one)), LanesTag(),
                           shown.colour.data() + 4 * target.i);
-    keepSurfaces(pass, target, origin, shown.surfaces);
+    keepSurfaces(pass, target, origin, visible, shown.surfaces);
     writeColours(pass, layout, target, colour, rgba);
   }
 }
