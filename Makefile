@@ -103,7 +103,7 @@ bench: build
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
 	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
 
-## make bench-live    live pictures of five worlds beside the true ones (FLIP), frames a second, latency and stalls into
+## make bench-live    live pictures of six worlds beside the true ones (FLIP), frames a second, latency and stalls into
 ##                   build/bench/live; STEPS=60 without the clock, for a busy machine; DOCS=1 also into docs/, WORLDS=a,b,FILE.wrl,
 ##                   FULL=1 better true pictures
 bench-live:
