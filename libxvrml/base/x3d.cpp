@@ -6,138 +6,6 @@
 namespace xvrml {
 namespace {
 
-constexpr std::string_view nodes[] = {"AcousticProperties",
-                                      "Analyser",
-                                      "AudioDestination",
-                                      "BallJoint",
-                                      "BiquadFilter",
-                                      "BlendedVolumeStyle",
-                                      "BoundaryEnhancementVolumeStyle",
-                                      "BoundedPhysicsModel",
-                                      "BufferAudioSource",
-                                      "CartoonVolumeStyle",
-                                      "ChannelMerger",
-                                      "ChannelSelector",
-                                      "ChannelSplitter",
-                                      "CollidableOffset",
-                                      "CollidableShape",
-                                      "CollisionCollection",
-                                      "CollisionSensor",
-                                      "CollisionSpace",
-                                      "ComposedShader",
-                                      "ComposedTexture3D",
-                                      "ComposedVolumeStyle",
-                                      "ConeEmitter",
-                                      "Contact",
-                                      "Contour2D",
-                                      "ContourPolyline2D",
-                                      "Convolver",
-                                      "CoordinateDouble",
-                                      "DISEntityManager",
-                                      "DISEntityTypeMapping",
-                                      "Delay",
-                                      "DoubleAxisHingeJoint",
-                                      "DynamicsCompressor",
-                                      "EdgeEnhancementVolumeStyle",
-                                      "EspduTransform",
-                                      "ExplosionEmitter",
-                                      "FloatVertexAttribute",
-                                      "FogCoordinate",
-                                      "ForcePhysicsModel",
-                                      "Gain",
-                                      "GeoCoordinate",
-                                      "GeoElevationGrid",
-                                      "GeoLOD",
-                                      "GeoLocation",
-                                      "GeoMetadata",
-                                      "GeoOrigin",
-                                      "GeoPositionInterpolator",
-                                      "GeoProximitySensor",
-                                      "GeoTouchSensor",
-                                      "GeoTransform",
-                                      "GeoViewpoint",
-                                      "HAnimDisplacer",
-                                      "HAnimHumanoid",
-                                      "HAnimJoint",
-                                      "HAnimMotion",
-                                      "HAnimSegment",
-                                      "HAnimSite",
-                                      "ImageTexture3D",
-                                      "ImageTextureAtlas",
-                                      "IsoSurfaceVolumeData",
-                                      "Layer",
-                                      "LayerSet",
-                                      "Layout",
-                                      "LayoutGroup",
-                                      "LayoutLayer",
-                                      "LinePickSensor",
-                                      "LineSensor",
-                                      "ListenerPointSource",
-                                      "LocalFog",
-                                      "Matrix3VertexAttribute",
-                                      "Matrix4VertexAttribute",
-                                      "MicrophoneSource",
-                                      "MotorJoint",
-                                      "NurbsCurve",
-                                      "NurbsCurve2D",
-                                      "NurbsOrientationInterpolator",
-                                      "NurbsPatchSurface",
-                                      "NurbsPositionInterpolator",
-                                      "NurbsSet",
-                                      "NurbsSurfaceInterpolator",
-                                      "NurbsSweptSurface",
-                                      "NurbsSwungSurface",
-                                      "NurbsTextureCoordinate",
-                                      "NurbsTrimmedSurface",
-                                      "OpacityMapVolumeStyle",
-                                      "OscillatorSource",
-                                      "PackagedShader",
-                                      "ParticleSystem",
-                                      "PeriodicWave",
-                                      "PickableGroup",
-                                      "PixelTexture3D",
-                                      "PointEmitter",
-                                      "PointPickSensor",
-                                      "PolylineEmitter",
-                                      "PrimitivePickSensor",
-                                      "ProgramShader",
-                                      "ProjectionVolumeStyle",
-                                      "ReceiverPdu",
-                                      "RigidBody",
-                                      "RigidBodyCollection",
-                                      "ScreenFontStyle",
-                                      "ScreenGroup",
-                                      "SegmentedVolumeData",
-                                      "ShadedVolumeStyle",
-                                      "ShaderPart",
-                                      "ShaderProgram",
-                                      "SignalPdu",
-                                      "SilhouetteEnhancementVolumeStyle",
-                                      "SingleAxisHingeJoint",
-                                      "SliderJoint",
-                                      "SpatialSound",
-                                      "StreamAudioDestination",
-                                      "StreamAudioSource",
-                                      "SurfaceEmitter",
-                                      "TextureCoordinate3D",
-                                      "TextureCoordinate4D",
-                                      "TextureMatrixTransform",
-                                      "TextureProjector",
-                                      "TextureProjectorParallel",
-                                      "TextureProjectorPoint",
-                                      "TextureTransform3D",
-                                      "TextureTransformMatrix3D",
-                                      "ToneMappedVolumeStyle",
-                                      "TransformSensor",
-                                      "TransmitterPdu",
-                                      "UniversalJoint",
-                                      "Viewport",
-                                      "VolumeData",
-                                      "VolumeEmitter",
-                                      "VolumePickSensor",
-                                      "WaveShaper",
-                                      "WindPhysicsModel"};
-
 struct Field {
   std::string_view type, field;
 };
@@ -224,6 +92,7 @@ constexpr Renamed renamed[] = {
     {"ComposedCubeMapTexture", "topTexture", "top", neverWritten},
     {"LOD", "children", "level"},
     {"LOD", "set_children", "set_level"},
+    {"LOD", "children_changed", "level"}, // level_changed is another event in X3D
     {"LOD", "children_changed", "level_changed"},
     {"LOD", "level_changed", "activeLevel_changed"},
     {"LoadSensor", "children", "watchList", 4},
@@ -248,11 +117,6 @@ std::string_view x3dName(std::string_view type, std::string_view name, int versi
   return name;
 }
 
-const Value* x3dDefault(std::string_view type, std::string_view field) {
-  static const Value navigation = MFString{"EXAMINE", "ANY"}; // ISO/IEC 19775-1 23.4.4
-  return type == "NavigationInfo" && field == "type" ? &navigation : nullptr;
-}
-
 bool isAngleField(std::string_view type, std::string_view field) {
   constexpr std::string_view names[] = {"beamWidth", "creaseAngle", "cutOffAngle", "diskAngle",
                                         "endAngle",  "fieldOfView", "groundAngle", "maxAngle",
@@ -261,22 +125,6 @@ bool isAngleField(std::string_view type, std::string_view field) {
   if (field == "offset") return type == "CylinderSensor";
   if (field == "fieldOfView") return type != "OrthoViewpoint" && type != "TextureProjectorParallel";
   return std::find(std::begin(names), std::end(names), field) != std::end(names);
-}
-
-bool isX3dNode(std::string_view type) {
-  return std::find(std::begin(nodes), std::end(nodes), type) != std::end(nodes);
-}
-
-bool isGpuNode(std::string_view type) {
-  constexpr std::string_view programs[] = {"ComposedShader",
-                                           "FloatVertexAttribute",
-                                           "Matrix3VertexAttribute",
-                                           "Matrix4VertexAttribute",
-                                           "PackagedShader",
-                                           "ProgramShader",
-                                           "ShaderPart",
-                                           "ShaderProgram"};
-  return std::find(std::begin(programs), std::end(programs), type) != std::end(programs);
 }
 
 bool isGpuField(std::string_view field) { return field == "shaders" || field == "attrib"; }

@@ -92,6 +92,9 @@ struct FieldInfo {
   // The node declares the field itself, beside those of its built-in type (`declaring` in the .node
   // files: Scripts and shaders).
   bool declared = false;
+  // VRML97 has a field here, which `access` calls an exposedField: events change it since this
+  // version of X3D. 0: `access` holds for all.
+  uint8_t exposedSince = 0;
 };
 // Returns whether nodes store a value of the field: a field or an exposedField, not an event.
 inline bool holdsValue(const FieldInfo& field) {
