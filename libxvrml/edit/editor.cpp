@@ -148,8 +148,9 @@ void Editor::set(Node& node, std::string_view field, Value value) {
     throw EditError(fmt::format("{}: a number is not finite, which no file can say", what));
   if (hasZeroByte(value))
     throw EditError(fmt::format("{}: a text has a zero byte, which no file can say", what));
-  if (info->range.bounded() && info->type != FieldType::SFRotation && !inRange(node, *info, value))
-    throw EditError(fmt::format("{}: a number is outside of {}", what, describe(info->range)));
+  if (info->type != FieldType::SFRotation && !inRange(node, *info, value))
+    throw EditError(
+        fmt::format("{}: a number is outside of {}", what, describe(rangeIn(node, *info))));
   if (hasNormalizedAxes(*info))
     normalizeAxes(info->type, std::visit([](auto& v) -> void* { return &v; }, value));
   const FieldInfo& own = *twin.document->type().find(info->name);

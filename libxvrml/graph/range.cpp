@@ -126,7 +126,7 @@ bool enforceRange(const FieldInfo& field, const FieldRevision* revision, void* s
     normalizeAxes(field.type, storage);
     return true;
   }
-  const auto tell = [fault](const auto& given, const auto& used, size_t index) {
+  const auto tell = [fault, &range](const auto& given, const auto& used, size_t index) {
     if (fault && fault->count++ == 0) {
       fault->given = textOf(given);
       fault->used = textOf(used);

@@ -39,16 +39,21 @@ const FieldInfo* findEventOut(const Node& node, std::string_view name) {
   return ifEvent(node, node.type().findEventOut(ownName(node, name)));
 }
 
-const FieldRevision* revisionOf(const NodeType& type, const FieldInfo& field,
-                                const FileVersion& version) {
-  if (type.index < 0 || !version.isX3d()) return nullptr;
+std::span<const FieldRevision> revisionsOf(const NodeType& type) {
+  if (type.index < 0) return {};
   const auto rows =
       std::ranges::equal_range(nodes::revisions(), type.index, {}, &FieldRevision::type);
+  return {rows.begin(), rows.end()};
+}
+
+const FieldRevision* revisionOf(const NodeType& type, const FieldInfo& field,
+                                const FileVersion& version) {
   const FieldRevision* found = nullptr; // the last one counts
-  for (const FieldRevision& one : rows)
-    if (std::pair(one.major, one.minor) <= std::pair(version.major, version.minor) &&
-        one.field == field.name)
-      found = &one;
+  if (version.isX3d())
+    for (const FieldRevision& one : revisionsOf(type))
+      if (std::pair(one.major, one.minor) <= std::pair(version.major, version.minor) &&
+          one.field == field.name)
+        found = &one;
   return found;
 }
 
@@ -57,12 +62,19 @@ const Value& defaultIn(const NodeType& type, const FieldInfo& field, const FileV
   return revision ? revision->defaultValue : field.defaultValue;
 }
 
-bool inRange(const Node& node, const FieldInfo& field, const Value& value) {
+const FieldRange& rangeIn(const Node& node, const FieldInfo& field) {
   const FieldRevision* const revision = revisionOf(node.type(), field, versionOf(node));
-  if (!revision) return inRange(field, value);
+  return revision ? revision->range : field.range;
+}
+
+const Value& defaultIn(const Node& node, const FieldInfo& field) {
+  return defaultIn(node.type(), field, versionOf(node));
+}
+
+bool inRange(const Node& node, const FieldInfo& field, const Value& value) {
   FieldInfo revised;
   revised.type = field.type;
-  revised.range = revision->range;
+  revised.range = rangeIn(node, field);
   return inRange(revised, value);
 }
 

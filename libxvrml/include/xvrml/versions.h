@@ -4,6 +4,7 @@
 // that owns the node]
 #pragma once
 
+#include <span>
 #include <string_view>
 
 #include "xvrml/file_head.h"
@@ -34,13 +35,17 @@ struct FieldRevision {
   Value defaultValue;
   std::string_view clause; // of ISO/IEC 19775-1, in the edition of that version
 };
+// Returns the rows of a type, in the order of the versions.
+std::span<const FieldRevision> revisionsOf(const NodeType& type);
 // Returns how a version changes a field; null: it is as FieldInfo says.
 const FieldRevision* revisionOf(const NodeType& type, const FieldInfo& field,
                                 const FileVersion& version);
 // Returns the default of a field in files of a version.
 const Value& defaultIn(const NodeType& type, const FieldInfo& field, const FileVersion& version);
-// Returns false if a number of the value lies outside of the field's range in the version of the
-// node's file.
+// Return the range and the default of a field in the version of the node's file.
+const FieldRange& rangeIn(const Node& node, const FieldInfo& field);
+const Value& defaultIn(const Node& node, const FieldInfo& field);
+// Returns false if a number of the value lies outside of rangeIn().
 bool inRange(const Node& node, const FieldInfo& field, const Value& value);
 
 } // namespace xvrml
