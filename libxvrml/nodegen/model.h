@@ -64,7 +64,7 @@ struct TypeSpec {
 struct Revision {
   Reference node;
   int major = 0, minor = 0; // the first version of X3D that says so
-  std::string clause;       // of ISO/IEC 19775-1, in the edition of that version
+  std::string clause;       // ISO/IEC 19775-1, in the edition of that version
   std::vector<FieldSpec> fields;
 };
 

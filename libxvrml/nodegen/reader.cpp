@@ -47,6 +47,7 @@ std::string collapseSpace(std::string_view text) {
   return result;
 }
 
+// Wide because there is a function for each rule of the notation.
 class Reader {
  public:
   Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model,

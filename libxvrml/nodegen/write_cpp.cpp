@@ -182,7 +182,7 @@ std::string writeContainers(const Model& model) {
   return "std::span<const Container> containers() {\n  " + body + "\n}\n\n";
 }
 
-// What is not done of nodes that the library has.
+// Returns the table of what is not done of nodes that the library has.
 std::string writeLacks(const Model& model) {
   std::string rows;
   eachNode(model, [&](const TypeSpec& type) {
@@ -210,7 +210,7 @@ template <class Use> void eachRevision(const Model& model, Use use) {
     for (const FieldSpec& field : one->fields) use(*one, field, number);
 }
 
-// The fields that a version of X3D describes otherwise.
+// Returns the table of the fields that a version of X3D describes otherwise.
 std::string writeRevisions(const Model& model) {
   std::string rows;
   eachRevision(model, [&](const Revision& one, const FieldSpec& field, int number) {
@@ -227,7 +227,7 @@ std::string writeRevisions(const Model& model) {
   return "std::span<const FieldRevision> revisions() {\n  " + body + "\n}\n\n";
 }
 
-// The nodes of X3D that the library does not have.
+// Returns the table of the nodes of X3D that the library does not have.
 std::string writeAbsent(const Model& model) {
   std::string rows;
   for (const Component& component : model.components)

@@ -44,7 +44,8 @@ struct Container {
 };
 std::span<const Container> containers();
 
-// What is not done of nodes that the library has: a clause of a message. Written by nodegen.
+// Says what is not done of a node that the library has, as a clause of a message. Written by
+// nodegen.
 struct Lack {
   std::string_view type, text;
 };
@@ -57,7 +58,7 @@ std::span<const FieldRevision> revisions();
 // The nodes of X3D that the library does not have. Written by nodegen.
 struct AbsentNode {
   std::string_view name;
-  std::string_view clause; // of ISO/IEC 19775-1
+  std::string_view clause; // ISO/IEC 19775-1
   std::string_view kind;   // geometry, sensor, ...
   std::string_view loss;   // a clause of a message: "shapes with it are not drawn"
 };

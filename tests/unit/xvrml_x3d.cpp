@@ -166,7 +166,8 @@ TEST(X3d, NothingThatIsThereIsListedAsMissing) {
   }
 }
 
-// Groups without an implementation keep what they hold. What is not done is said once a type.
+// Groups without an implementation keep what they hold. A message for each type says
+// what is not done.
 TEST(X3d, GroupsWithoutImplementationKeepWhatTheyHold) {
   const auto world =
       load("#X3D V3.3 utf8\nLayerSet { order [ 1 ] layers Layer { children DEF A "

@@ -33,7 +33,7 @@ struct FieldRevision {
   Access access;
   FieldRange range;
   Value defaultValue;
-  std::string_view clause; // of ISO/IEC 19775-1, in the edition of that version
+  std::string_view clause; // ISO/IEC 19775-1, in the edition of that version
 };
 // Returns the rows of a type, in the order of the versions.
 std::span<const FieldRevision> revisionsOf(const NodeType& type);
