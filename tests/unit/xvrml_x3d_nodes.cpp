@@ -137,6 +137,7 @@ const Addition additions[] = {
     {"Billboard", "visible", Access::exposedField, true},
     {"Collision", "bboxDisplay", Access::exposedField, false},
     {"Collision", "visible", Access::exposedField, true},
+    {"Collision", "isActive", Access::eventOut, {}},
     {"Group", "bboxDisplay", Access::exposedField, false},
     {"Group", "visible", Access::exposedField, true},
     {"Inline", "bboxDisplay", Access::exposedField, false},
