@@ -1,6 +1,7 @@
 #include "geometry/descend.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "geometry/node_matrix.h"
 #include "nodes/registry.h"
@@ -33,13 +34,16 @@ bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Ma
 
 namespace {
 
-// Returns the fields of a type that place nodes; null: it has not the role `placing`.
+using PlacingFields = std::optional<std::vector<const FieldInfo*>>;
+
+// Returns the fields of a type that place nodes; null: it has not the role `listing`.
 const std::vector<const FieldInfo*>* placingFields(const NodeType& type) {
   static const auto& byIndex = *[] {
-    auto* const all = new std::vector<std::vector<const FieldInfo*>>();
+    auto* const all = new std::vector<PlacingFields>();
     for (const NodeType* one : nodes::builtinNodeTypes()) {
-      std::vector<const FieldInfo*>& fields = all->emplace_back();
-      if (!one->is("placing")) continue;
+      PlacingFields& placing = all->emplace_back();
+      if (!one->is("listing")) continue;
+      std::vector<const FieldInfo*>& fields = placing.emplace();
       for (const FieldInfo& field : one->fields)
         if (field.change == Change::children && holdsValue(field) &&
             (field.type == FieldType::SFNode || field.type == FieldType::MFNode))
@@ -48,7 +52,7 @@ const std::vector<const FieldInfo*>* placingFields(const NodeType& type) {
     return all;
   }();
   const auto index = size_t(type.index); // that of prototypes and Scripts is beyond the end
-  return index < byIndex.size() && !byIndex[index].empty() ? &byIndex[index] : nullptr;
+  return index < byIndex.size() && byIndex[index] ? &*byIndex[index] : nullptr;
 }
 
 } // namespace
@@ -73,6 +77,12 @@ bool appendPlaced(const Node& node, std::vector<Node*>& parts) {
       for (const NodeRef& child : *static_cast<const MFNode*>(node.storage(*field))) append(child);
   }
   return true;
+}
+
+bool isPlacedBy(const Node& parent, const Node& child) {
+  std::vector<Node*> parts;
+  return !appendPlaced(parent, parts) ||
+         std::find(parts.begin(), parts.end(), &child) != parts.end();
 }
 
 void appendShownChildren(const nodes::CADLayer& layer, std::vector<Node*>& parts) {

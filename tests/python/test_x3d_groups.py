@@ -75,3 +75,19 @@ def test_groups_move_with_events():
     assert middle_of_red(browser) == pytest.approx(1, abs=0.08)
     browser["J"].visible = False
     assert browser.render(size=(16, 16), spp=1).display[..., 0].max() == 0
+
+
+@pytest.mark.parametrize("text", [
+    "HAnimHumanoid { joints DEF J HAnimJoint { children %s } skeleton USE J }",
+    "RigidBodyCollection { bodies RigidBody { geometry DEF C CollidableShape { shape %s } } }\n"
+    "Transform { translation 1 0 0 children USE C }",
+    "LoadSensor { watchList DEF I Inline { url \"box.x3dv\" } }\nTransform { children USE I }",
+])
+def test_lists_of_nodes_are_no_second_copy(tmp_path, text):
+    """What a node only lists is neither exported nor hit by rays where the list stands."""
+    (tmp_path / "box.x3dv").write_text("#X3D V3.3 utf8\n" + RED)
+    (tmp_path / "a.x3dv").write_text("#X3D V3.3 utf8\n" + (text % RED if "%s" in text else text))
+    world = xvrml.load(tmp_path / "a.x3dv")
+    world.save(tmp_path / "a.stl")
+    facets = int.from_bytes((tmp_path / "a.stl").read_bytes()[80:84], "little")
+    assert facets == 12
