@@ -84,7 +84,7 @@ def test_groups_move_with_events():
     "LoadSensor { watchList DEF I Inline { url \"box.x3dv\" } }\nTransform { children USE I }",
 ])
 def test_lists_of_nodes_are_no_second_copy(tmp_path, text):
-    """What a node only lists is neither exported nor hit by rays where the list stands."""
+    """Nodes that another one only lists are not exported a second time."""
     (tmp_path / "box.x3dv").write_text("#X3D V3.3 utf8\n" + RED)
     (tmp_path / "a.x3dv").write_text("#X3D V3.3 utf8\n" + (text % RED if "%s" in text else text))
     world = xvrml.load(tmp_path / "a.x3dv")
