@@ -11,6 +11,7 @@
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/shader_rules.h"
 #include "objects.h"
+#include "xvrml/versions.h"
 
 using namespace xvrml;
 
@@ -132,14 +133,14 @@ std::string nearestEvent(const Node& node, const std::string& name, bool out) {
   for (const FieldInfo& field : node.type().fields)
     if (field.access == Access::exposedField ||
         field.access == (out ? Access::eventOut : Access::eventIn))
-      known.push_back(field.name);
+      known.emplace_back(fieldName(node, field));
   return didYouMean(name, known);
 }
 
 uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::string& event,
                 py::function function) {
   Node& from = own(self, object);
-  if (!from.type().findEventOut(event))
+  if (!findEventOut(from, event))
     throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event,
                                           nearestEvent(from, event, true)));
   return self->listen(object.node, event, std::move(function));
@@ -149,7 +150,7 @@ uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::strin
 bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
            const NodeObject& to, const std::string& in, bool add) {
   Node &source = own(self, from), &target = own(self, to);
-  const FieldInfo *sends = source.type().findEventOut(out), *takes = target.type().findEventIn(in);
+  const FieldInfo *sends = findEventOut(source, out), *takes = findEventIn(target, in);
   if (!sends)
     throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out,
                                           nearestEvent(source, out, true)));
@@ -173,7 +174,12 @@ bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
                  : browser->deleteRoute(source, out, target, in);
     });
   if (!add && found != written.end()) written.erase(found);
-  if (add && done && found == written.end()) written.push_back({from.node, out, to.node, in, {}});
+  if (add && done && found == written.end())
+    written.push_back({from.node,
+                       std::string(ownName(source, out)),
+                       to.node,
+                       std::string(ownName(target, in)),
+                       {}});
   return done;
 }
 

@@ -6,6 +6,7 @@
 #include "browser/state.h"
 #include "graph/field_access.h"
 #include "parse/loader.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 namespace {
@@ -194,7 +195,8 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
                                 std::string_view eventIn, const std::string& base) {
   LoadCall call{"createVrmlFromURL", urls, base.empty() ? impl_->world->path : base,
                 impl_->callerPosition()};
-  impl_->addJob([this, call = std::move(call), to = NodeRef(&node), in = std::string(eventIn)] {
+  impl_->addJob([this, call = std::move(call), to = NodeRef(&node),
+                 in = std::string(ownName(node, eventIn))] {
     World& world = *impl_->world;
     const LoadedUrl loaded = loadFirst(call, world, TemporaryCharge(world).budget());
     if (!loaded.world || !to->live) return;

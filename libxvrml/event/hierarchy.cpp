@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/descend.h"
 #include "geometry/node_matrix.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
@@ -59,7 +60,7 @@ std::vector<Path> pathsTo(const Node& node, size_t limit) {
       continue;
     }
     Node* parent = live.parents[top.next++];
-    open.push_back({parent, 0});
+    if (isPlacedBy(*parent, *top.node)) open.push_back({parent, 0});
   }
   return paths;
 }

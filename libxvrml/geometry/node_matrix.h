@@ -1,4 +1,4 @@
-// node_matrix.h: the matrix that a node gives its children: that of a Transform or a CADPart. Code
+// node_matrix.h: the matrix that a node gives its children, as a Transform does. Code
 // that walks down to what is drawn asks here, so that all of it knows the same nodes. Pure
 // functions, any thread that owns the nodes.
 #pragma once

@@ -15,6 +15,7 @@
 #include "graph/range.h"
 #include "nearest.h"
 #include "nodes/registry.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -75,6 +76,7 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
     return false;
   }
   warnOfX3d(*known, type);
+  warnOfLack(*known, type);
   if (known->name == "Script") {
     ++state_.scripts;
     frame.ownType = makeOwnType(*known);
@@ -83,8 +85,8 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
     frame.node = makeStaticNode(*known);
     if (isX3d())
       for (const FieldInfo& field : known->fields)
-        if (const Value* other = x3dDefault(known->name, field.name))
-          frame.node->set(field, *other);
+        if (const auto* revision = revisionOf(*known, field, file_.head.version))
+          frame.node->set(field, revision->defaultValue);
   }
   frame.declares = known->is("declaring");
   return true;
@@ -350,7 +352,7 @@ void Builder::closeField(bool good) {
     return;
   }
   if (!good) {
-    frame.node->set(field, field.defaultValue);
+    frame.node->set(field, defaultIn(frame.node->type(), field, file_.head.version));
     return;
   }
   if (angle_ != 1 && isAngle(*frame.node, field))
@@ -365,9 +367,12 @@ void Builder::closeField(bool good) {
                       frame.node->type().name, field.name, first.x, first.y, first.z,
                       axisLength(first),
                       outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
-  } else if (RangeFault fault;
-             field.range.bounded() && !enforceRange(field, frame.node->storage(field), &fault)) {
-    locator_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
+  } else if (field.range.bounded()) {
+    const NodeType& type = frame.node->type();
+    RangeFault fault;
+    if (!enforceRange(field, revisionOf(type, field, file_.head.version),
+                      frame.node->storage(field), &fault))
+      locator_.warn(frame.fieldAt, xvrml::describe(type, field, fault));
   }
 }
 

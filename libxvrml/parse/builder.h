@@ -134,6 +134,8 @@ class Builder : public ParseSink {
   bool isX3d() const { return file_.head.version.isX3d(); }
   bool isVrml97() const { return file_.head.version.encoding == Encoding::vrml97; }
   std::string_view spelled(const NodeType& type, std::string_view name) const;
+  const FieldInfo* eventIn(const NodeType& type, std::string_view own) const;
+  const FieldInfo* eventOut(const NodeType& type, std::string_view own) const;
   std::string_view word(Access access) const;
   bool isFirst(const std::string& name) { return reported_.insert(name).second; }
   bool lacksField(const NodeType& type, std::string_view name) const;
@@ -142,6 +144,7 @@ class Builder : public ParseSink {
   bool isMissingField(const NodeType& type, const Name& name);
   void reportGpuProgram(const Name& name);
   void reportUnknownNode(const Name& type);
+  void warnOfLack(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at);
   uint64_t expandedCount(const Node* node) const;

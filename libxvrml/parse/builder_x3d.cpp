@@ -9,6 +9,7 @@
 #include "base/x3d.h"
 #include "graph/inline_node.h"
 #include "nearest.h"
+#include "nodes/registry.h"
 #include "parse/builder.h"
 #include "parse/source.h"
 
@@ -55,18 +56,25 @@ bool Builder::isMissingField(const NodeType& type, const Name& name) {
 
 // Reports a node type that is not known. In an X3D file each type is reported once.
 void Builder::reportUnknownNode(const Name& type) {
-  if (isX3d() && isGpuNode(type.text)) return reportGpuProgram(type);
+  const nodes::AbsentNode* const absent = findAbsentNode(type.text);
+  if (isX3d() && absent && absent->kind == "program") return reportGpuProgram(type);
   if (isX3d() && !isFirst(std::string(type.text))) return;
-  const bool ofX3d = isX3dNode(type.text);
-  if (isX3d() && ofX3d) {
-    locator_.warn(type.at, fmt::format("nodes of type {} are not supported: they are left out here "
-                                       "and below, with all that they hold",
-                                       describe(type)));
+  if (isX3d() && absent) {
+    locator_.warn(type.at, fmt::format("nodes of type {} ({}) are not supported and are left out "
+                                       "here and below, with all that they hold: {}",
+                                       describe(type), absent->kind, absent->loss));
     return;
   }
   locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
-                                      ofX3d ? " (it is X3D's)" : "",
+                                      absent ? " (it is X3D's)" : "",
                                       nearest::suggestion(type.text, nodeTypes())));
+}
+
+// Warns once for a file what of a node is not done.
+void Builder::warnOfLack(const NodeType& type, const Name& at) {
+  const std::string_view lack = lackOf(type);
+  if (!lack.empty() && isFirst(fmt::format("{} lacks", type.name)))
+    locator_.warn(at.at, fmt::format("{} is not supported wholly: {}", describe(at), lack));
 }
 
 // Warns once in a file of VRML97 that a node is X3D's.

@@ -129,7 +129,7 @@ void RenderWalk::appendParts(Node& node, const Matrix& toWorld) {
     for (const NodeRef& child : collision->children) parts_.push_back(child.get());
   } else if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {
     appendShownChildren(*layer, parts_);
-  } else {
+  } else if (!appendPlaced(node, parts_)) {
     childrenInHierarchy(node, parts_);
   }
 }

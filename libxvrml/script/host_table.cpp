@@ -8,6 +8,7 @@
 
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -155,7 +156,7 @@ struct HostTable {
       return withNode(script, number, [&](Node& node) {
         if (!name || !out) return noField(script, node, "field", name);
         if (&node == script.node) return readOwn(host, script, name, out);
-        const FieldInfo* field = node.type().findEventOut(name);
+        const FieldInfo* field = findEventOut(node, name);
         if (!field) return noField(script, node, "exposedField or eventOut", name);
         *out = script.lent.lend(host.engine_.lastSent(node, *field), script.handles);
         return XS_OK;
@@ -169,7 +170,7 @@ struct HostTable {
       return withNode(script, number, [&](Node& node) {
         if (&node != script.node && !script.flag(XS_DIRECT_OUTPUT))
           return needsDirectOutput(host, script, "an event to another node");
-        const FieldInfo* in = name ? node.type().findEventIn(name) : nullptr;
+        const FieldInfo* in = name ? findEventIn(node, name) : nullptr;
         if (!in) return noField(script, node, "eventIn or exposedField", name);
         Value taken;
         if (!take(host, script, value, in->type, taken))
@@ -206,7 +207,7 @@ struct HostTable {
   static XsResult giveField(Script& script, const Node& node, const FieldInfo* field,
                             const char* name, XsField* out) {
     if (!field || !out) return noField(script, node, "field or event", name);
-    *out = {field->name.c_str(), xsType(field->type), xsAccess(field->access)};
+    *out = {fieldName(node, *field).data(), xsType(field->type), xsAccess(field->access)};
     return XS_OK;
   }
   static XsResult field(Host table, XsNode self, XsNode number, uint32_t index, XsField* out) {
@@ -222,10 +223,9 @@ struct HostTable {
                             XsField* out) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
       return withNode(script, number, [&](Node& node) {
-        const NodeType& type = node.type();
-        const FieldInfo* found = name ? type.find(name) : nullptr;
-        if (!found && name) found = type.findEventIn(name);
-        if (!found && name) found = type.findEventOut(name);
+        const FieldInfo* found = name ? xvrml::findField(node, name) : nullptr;
+        if (!found && name) found = findEventIn(node, name);
+        if (!found && name) found = findEventOut(node, name);
         return giveField(script, node, found, name, out);
       });
     });
@@ -299,7 +299,7 @@ struct HostTable {
                                     const XsString* urls, XsNode number, const char* eventIn) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       return withNode(script, number, [&](Node& node) {
-        const FieldInfo* in = eventIn ? node.type().findEventIn(eventIn) : nullptr;
+        const FieldInfo* in = eventIn ? findEventIn(node, eventIn) : nullptr;
         if (!in || in->type != FieldType::MFNode)
           return noField(script, node, "eventIn of type MFNode", eventIn);
         host.browser_.createVrmlFromUrl(texts(host, urlCount, urls), node, eventIn, baseOf(script));
@@ -328,9 +328,8 @@ struct HostTable {
           const bool own = &source == script.node && &target == script.node;
           if (!own && !script.flag(XS_DIRECT_OUTPUT))
             return needsDirectOutput(host, script, "a change of routes");
-          if (!out || !source.type().findEventOut(out))
-            return noField(script, source, "eventOut", out);
-          if (!in || !target.type().findEventIn(in)) return noField(script, target, "eventIn", in);
+          if (!out || !findEventOut(source, out)) return noField(script, source, "eventOut", out);
+          if (!in || !findEventIn(target, in)) return noField(script, target, "eventIn", in);
           return change(host.browser_, source, target)
                      ? XS_OK
                      : refuse(script, XS_FAILED, "no such route, or types differ");

@@ -12,6 +12,7 @@
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "xvrml/comments.h"
+#include "xvrml/versions.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
@@ -38,10 +39,9 @@ size_t lastPrototypeOf(Node* root,
   return last;
 }
 
-// x3d: the file is X3D, which has other defaults for some fields.
-bool hasOwnValue(Node& node, const FieldInfo& field, bool x3d) {
-  const Value* standard = x3d ? x3dDefault(node.type().name, field.name) : nullptr;
-  if (!standard) standard = &field.defaultValue;
+// version: that of the file that is written.
+bool hasOwnValue(Node& node, const FieldInfo& field, const FileVersion& version) {
+  const Value* standard = &defaultIn(node.type(), field, version);
   if (const auto* instance = nodeCast<ProtoInstance>(&node)) {
     // A default of the prototype's file that a program has assigned again stays a default.
     if (instance->isGiven(field) && instance->hasOwnUrlBase(field)) return true;
@@ -195,8 +195,8 @@ Writer::Field Writer::fieldOf(Node& node, const FieldInfo& info) const {
   Field field{&info, info.declared, nullptr, nullptr, {}};
   for (const IsConnection* connection : connectionsOf(node))
     if (connection->field == info.name) field.interfaces.push_back(connection->interfaceName);
-  const bool value = holdsValue(info) &&
-                     (field.declared ? field.interfaces.empty() : hasOwnValue(node, info, isX3d()));
+  const bool value = holdsValue(info) && (field.declared ? field.interfaces.empty()
+                                                         : hasOwnValue(node, info, version_));
   if (!value) return field;
   field.value = node.storage(info);
   if (hasNormalizedAxes(info)) { // a program may have written to the struct

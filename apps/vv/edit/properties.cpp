@@ -11,6 +11,7 @@
 #include "edit/shader_parameters.h"
 #include "xvrml/numbers.h"
 #include "xvrml/value_text.h"
+#include "xvrml/versions.h"
 
 namespace vv {
 
@@ -56,9 +57,9 @@ void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
 PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field) {
   PropertyRow row;
   row.field = &field;
-  row.defaultValue = field.defaultValue;
-  row.range = field.range;
-  row.help = helpOf(field, field.text, field.range);
+  row.defaultValue = defaultIn(node, field);
+  row.range = rangeIn(node, field);
+  row.help = helpOf(field, field.text, row.range);
   row.choices = choicesOf(field);
   if (holdsNodes(field)) {
     row.addable = typesFor(field);
