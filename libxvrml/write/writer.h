@@ -25,6 +25,8 @@ class Writer {
   virtual ~Writer() = default;
   // Returns the text. Throws std::length_error if nodes are nested too deep. Called once.
   std::string write();
+  // Returns the text of one node with its descendants, without a head. Called once.
+  std::string writeAlone(Node& root);
 
  protected:
   // A field of a node, an argument of an instance, or a field that a node or prototype declares.
