@@ -20,6 +20,10 @@ constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
 // Keeps the paths by way of glossy surfaces apart from the others.
 constexpr uint32_t glossySeed = 0x676c6f73u;
 
+bool takesIrradiance(const RtsBatch& batch, uint32_t i) {
+  return batch.irradiance && batch.irradiance[i];
+}
+
 } // namespace
 
 LightTracer::LightTracer(const RenderScene& scene)
@@ -283,6 +287,8 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays
   if (sample.pdf) {
     departures_.applyAttenuation(state);
     weight = weight / radianceScale(lobe, i, direction);
+    weight *= departures_.irradianceFactor(state.path, takesIrradiance(batch, i));
+    departures_.setScattered(state.path);
   }
   const float correction =
       sample.deflected ? adjointCorrection(lobe, points.hits, i, direction) : 1.0f;
@@ -334,7 +340,9 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
     const float x = to.xy[0][i], y = to.xy[1][i];
     if (!isInPicture(to, i)) continue;
     const RayState state = (*batch.states)[batch.order[hits[i]]];
-    const Vec3f& attenuation = departures_.attenuation(state.path);
+    const Vec3f attenuation =
+        departures_.attenuation(state.path) *
+        departures_.irradianceFactor(state.path, takesIrradiance(batch, hits[i]));
     float* pixel = &picture_[3 * (size_t(y) * width + size_t(x))];
     for (int k = 0; k < 3; k++) {
       const double light =
