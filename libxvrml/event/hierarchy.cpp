@@ -31,6 +31,14 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
   if (const Scope* content = inlineScope(node)) appendRoots(*content, out);
 }
 
+static bool placesNothing(const Node& node) {
+  return node.type().index == nodes::LoadSensor::typeIndex;
+}
+
+void childrenInScene(Node& node, std::vector<Node*>& out) {
+  if (!placesNothing(node)) childrenInHierarchy(node, out);
+}
+
 void holdersOf(const Node& node, std::vector<Node*>& holders) {
   if (!node.live) return;
   const Parents& parents = liveOf(node)->parents;
@@ -59,7 +67,7 @@ std::vector<Path> pathsTo(const Node& node, size_t limit) {
       continue;
     }
     Node* parent = live.parents[top.next++];
-    open.push_back({parent, 0});
+    if (!placesNothing(*parent)) open.push_back({parent, 0});
   }
   return paths;
 }
@@ -68,7 +76,8 @@ bool isInScene(const Node& node) {
   if (!node.live) return false;
   return !walk(std::vector<const Node*>{&node}, [](const Node& one, auto& open) {
     const Live& live = *liveOf(one);
-    open.insert(open.end(), live.parents.begin(), live.parents.end());
+    for (Node* parent : live.parents)
+      if (!placesNothing(*parent)) open.push_back(parent);
     return !live.root;
   });
 }

@@ -317,16 +317,20 @@ std::string writeWorld(const World& world, const std::string& path) {
   return writeWorld(world, path, writtenEncoding(path));
 }
 
+FileVersion writtenVersion(const World& world, Encoding encoding) {
+  const FileVersion& own = world.head.version;
+  if (encoding == Encoding::vrml97) return {encoding, 2, 0};
+  // version 3.3 is what most programs read
+  return {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
+}
+
 namespace {
 
 // Calls `write` with the writer for an encoding, on a stack that is deep enough.
 template <class Write> std::string writeAs(const World& world, const std::string& path,
                                            Encoding encoding, const Write& write) {
   constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
-  const FileVersion& own = world.head.version;
-  FileVersion version{encoding, 2, 0};
-  if (encoding != Encoding::vrml97) // version 3.3 is what most programs read
-    version = {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
+  const FileVersion version = writtenVersion(world, encoding);
   return onStackOf(deepestStack, [&] {
     if (encoding == Encoding::vrml97 || encoding == Encoding::x3dClassic)
       return write(*makeVrmlWriter(world, path, version));

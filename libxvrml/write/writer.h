@@ -105,6 +105,8 @@ std::unique_ptr<Writer> makeVrmlWriter(const World& world, const std::string& ta
 std::unique_ptr<Writer> makeXmlWriter(const World& world, const std::string& target,
                                       const FileVersion& version);
 
+// Returns the version that a file of the world in an encoding follows.
+FileVersion writtenVersion(const World& world, Encoding encoding);
 // Returns the units that a file of X3D names: those of the world's own file, but for angles, which
 // are written in radians.
 std::vector<FileHead::Unit> unitsOf(const FileHead& head);
