@@ -9,7 +9,7 @@
 namespace xvrml {
 namespace {
 
-// What is different, counted over the nodes of the world's own file.
+// Nodes of the world's own file that mean something else in the written one.
 struct Counts {
   size_t textured = 0, inlines = 0, limited = 0, bright = 0;
 };
