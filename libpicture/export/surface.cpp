@@ -263,6 +263,7 @@ void usePhysical(const ShaderValues& v, Surface& s, Remarks&) {
   const float strength = clamped(v.number("emissiveStrength"), 0, 1e6f);
   const Color e = notNegative(v.color("emissiveColor"));
   s.lit = v.number("lit") > 0;
+  s.takesIrradiance = v.number("irradiance") > 0;
   s.color = clamped(v.color("baseColor"));
   s.metallic = between0And1(v.number("metallic"));
   s.roughness = between0And1(v.number("roughness"));
