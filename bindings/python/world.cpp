@@ -103,6 +103,8 @@ void save(const WorldPtr& self, const py::object& file) {
         for (const std::string& remark : exported.remarks) world.diagnostics.warn({}, remark);
       } else {
         picture::writeFile(path, writeWorld(world, path));
+        for (const std::string& change : changesByWriting(world, writtenEncoding(path)))
+          world.diagnostics.warn({}, change);
       }
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }

@@ -32,6 +32,10 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
   if (const Scope* content = inlineScope(node)) appendRoots(*content, out);
 }
 
+void childrenInScene(Node& node, std::vector<Node*>& out) {
+  if (!appendPlaced(node, out)) childrenInHierarchy(node, out);
+}
+
 void holdersOf(const Node& node, std::vector<Node*>& holders) {
   if (!node.live) return;
   const Parents& parents = liveOf(node)->parents;
@@ -69,7 +73,8 @@ bool isInScene(const Node& node) {
   if (!node.live) return false;
   return !walk(std::vector<const Node*>{&node}, [](const Node& one, auto& open) {
     const Live& live = *liveOf(one);
-    open.insert(open.end(), live.parents.begin(), live.parents.end());
+    for (Node* parent : live.parents)
+      if (isPlacedBy(*parent, one)) open.push_back(parent);
     return !live.root;
   });
 }

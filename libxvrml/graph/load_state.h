@@ -2,6 +2,7 @@
 // and work still to be done.
 #pragma once
 
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -28,6 +29,8 @@ struct LoadState {
   // For createVrmlFromString: roots of any type are accepted, because they may be added to any
   // field.
   bool anyRoots = false;
+  // Prototypes that the world's own file may use without a declaration.
+  std::span<const ProtoPtr> known = {};
   // Not null: the reader of the world's own file records there where everything stands.
   TextLayout* layout = nullptr;
   bool full = false; // the budget has refused a node; reported once

@@ -175,9 +175,10 @@ std::string describe(const NodeType& type, const FieldInfo& field, const RangeFa
   const bool list = isMultiple(field.type);
   const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index)
                                  : type.name + "." + field.name;
-  const std::string done = fault.given == fault.used
-                               ? "is kept, and parts that cannot be drawn are skipped"
-                               : fmt::format("becomes {}", fault.used);
+  const std::string done = fault.given != fault.used ? fmt::format("becomes {}", fault.used)
+                           : field.change == Change::none
+                               ? "is kept; no picture depends on it"
+                               : "is kept, and parts that cannot be drawn are skipped";
   return fmt::format(
       "{}: {} is outside of its range {} and {}{}", where, fault.given, describe(fault.range), done,
       fault.count > 1 ? fmt::format(", as do {} further elements", fault.count - 1) : "");

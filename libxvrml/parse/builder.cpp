@@ -22,6 +22,8 @@ namespace xvrml {
 Builder::Builder(Locator& locator, LoadState& state, ParsedFile& file)
     : locator_(locator), state_(state), file_(file) {
   pushScope(&file.scope, nullptr, nullptr);
+  for (const ProtoPtr& prototype : state.known)
+    scope().types.emplace(prototype->type->name, prototype);
 }
 
 Builder::Mark Builder::mark() const {

@@ -97,7 +97,7 @@ class Builder : public ParseSink {
     std::shared_ptr<NodeType> protoType; // interface of the open prototype, which is still growing
     std::unique_ptr<Scope> own;          // the scope of a default value
     std::unordered_map<std::string_view, ProtoPtr> types;
-    std::unordered_set<std::string_view> lost;
+    std::unordered_set<std::string_view> lost, lostTold;
     std::vector<std::string_view> defined;
     // Names of nodes to which a USE or ROUTE has given a place.
     std::unordered_set<std::string_view> placed;

@@ -136,7 +136,8 @@ NodeRef Builder::findName(const Name& name) {
     return {};
   }
   if (scope().lost.contains(name.text)) {
-    locator_.warn(name.at, fmt::format("{} was left out above", describe(name)));
+    if (scope().lostTold.insert(name.text).second)
+      locator_.warn(name.at, fmt::format("{} was left out above", describe(name)));
     return {};
   }
   std::string hint = nearest::suggestion(name.text, namesOf(*scope().scope));
@@ -274,12 +275,12 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
     // An inputOutput of a Script was read as initializeOnly, and reported there.
     const bool reported =
         isX3d() && nodeCast<ScriptNode>(frame.node) && access == Access::field && !meant.empty();
-    if (!reported)
-      locator_.error(interfaceName.at,
-                     fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
-                                 word(access), describe(name), type.name, word(declared->access),
-                                 describe(interfaceName), meant.empty() ? "" : ": ", meant));
-    if (meant.empty()) return;
+    const std::string text =
+        fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}", word(access),
+                    describe(name), type.name, word(declared->access), describe(interfaceName),
+                    meant.empty() ? "" : ": ", meant);
+    if (meant.empty()) return locator_.error(interfaceName.at, text);
+    if (!reported) locator_.warn(interfaceName.at, text);
   }
   proto->proto->is.push_back({frame.node, std::string(own), std::string(interfaceName.text)});
 }

@@ -129,8 +129,8 @@ void RenderWalk::appendParts(Node& node, const Matrix& toWorld) {
     for (const NodeRef& child : collision->children) parts_.push_back(child.get());
   } else if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {
     appendShownChildren(*layer, parts_);
-  } else if (!appendPlaced(node, parts_)) {
-    childrenInHierarchy(node, parts_);
+  } else {
+    childrenInScene(node, parts_);
   }
 }
 

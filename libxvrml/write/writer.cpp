@@ -73,6 +73,15 @@ std::string Writer::write() {
   return std::move(text_);
 }
 
+std::string Writer::writeAlone(Node& root) {
+  Names names({&root}, {});
+  names_ = &names;
+  node(&root, "");
+  names_ = nullptr;
+  text_.erase(0, text_.find_first_not_of(" \n"));
+  return std::move(text_);
+}
+
 void Writer::line() {
   text_ += '\n';
   text_.append(indent_, ' ');
@@ -308,19 +317,37 @@ std::string writeWorld(const World& world, const std::string& path) {
   return writeWorld(world, path, writtenEncoding(path));
 }
 
-std::string writeWorld(const World& world, const std::string& path, Encoding encoding) {
-  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
+FileVersion writtenVersion(const World& world, Encoding encoding) {
   const FileVersion& own = world.head.version;
-  FileVersion version{encoding, 2, 0};
-  if (encoding != Encoding::vrml97) // version 3.3 is what most programs read
-    version = {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
+  if (encoding == Encoding::vrml97) return {encoding, 2, 0};
+  // version 3.3 is what most programs read
+  return {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
+}
+
+namespace {
+
+// Calls `write` with the writer for an encoding, on a stack that is deep enough.
+template <class Write> std::string writeAs(const World& world, const std::string& path,
+                                           Encoding encoding, const Write& write) {
+  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
+  const FileVersion version = writtenVersion(world, encoding);
   return onStackOf(deepestStack, [&] {
     if (encoding == Encoding::vrml97 || encoding == Encoding::x3dClassic)
-      return makeVrmlWriter(world, path, version)->write();
-    if (encoding == Encoding::x3dXml) return makeXmlWriter(world, path, version)->write();
+      return write(*makeVrmlWriter(world, path, version));
+    if (encoding == Encoding::x3dXml) return write(*makeXmlWriter(world, path, version));
     throw std::invalid_argument(
         fmt::format("worlds cannot be written as {}", encodingName(encoding)));
   });
+}
+
+} // namespace
+
+std::string writeWorld(const World& world, const std::string& path, Encoding encoding) {
+  return writeAs(world, path, encoding, [](Writer& writer) { return writer.write(); });
+}
+
+std::string writeNode(const World& world, Node& node, Encoding encoding) {
+  return writeAs(world, "", encoding, [&](Writer& writer) { return writer.writeAlone(node); });
 }
 
 } // namespace xvrml

@@ -32,6 +32,10 @@ void addPassages(const ConnectedSurfaces& surfaces, const PathStates& states, ui
   }
 }
 
+bool takesIrradiance(const RtsBatch& batch, uint32_t i) {
+  return batch.irradiance && batch.irradiance[i];
+}
+
 } // namespace
 
 LightTracer::LightTracer(const RenderScene& scene)
@@ -330,6 +334,8 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays
   if (sample.pdf) {
     departures_.applyAttenuation(state);
     weight = weight / radianceScale(lobe, i, direction);
+    weight *= departures_.irradianceFactor(state.path, takesIrradiance(batch, i));
+    departures_.setScattered(state.path);
   }
   const float correction =
       sample.deflected ? adjointCorrection(lobe, points.hits, i, direction) : 1.0f;
@@ -409,7 +415,9 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
     const float x = to.xy[0][i], y = to.xy[1][i];
     if (!isInPicture(to, i)) continue;
     const RayState state = (*batch.states)[batch.order[hits[i]]];
-    const Vec3f& attenuation = departures_.attenuation(state.path);
+    const Vec3f attenuation =
+        departures_.attenuation(state.path) *
+        departures_.irradianceFactor(state.path, takesIrradiance(batch, hits[i]));
     float* pixel = &picture_[3 * (size_t(y) * width + size_t(x))];
     for (int k = 0; k < 3; k++) {
       const double light =

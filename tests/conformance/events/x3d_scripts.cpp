@@ -245,7 +245,8 @@ TEST_F(EcmaScript, BrowserHasPropertiesOfX3d) {
                   "Browser.getVersion(), Browser.currentSpeed, Browser.currentFrameRate);"
                   "Browser.description = 'said'; print(Browser.description);"
                   "var made = Browser.createX3DFromString('Transform { translation 1 2 3 }');"
-                  "print(made.length, made[0].translation.z); Browser.println('ln'); }"));
+                  "print(made.rootNodes.length, made.rootNodes[0].translation.z); "
+                  "Browser.println('ln'); }"));
   r.set("S", "go", true);
   EXPECT_EQ(r.takeOutput(), "true true 0 0\nsaid\n1 3\nln");
   EXPECT_EQ(r.browser.description(), "said");
