@@ -7,7 +7,6 @@
 
 #include "base/lexer.h"
 #include "base/rotation.h"
-#include "base/visit_storage.h"
 #include "edit/declaration.h"
 #include "edit/in_place_writer.h"
 #include "edit/node_edits.h"
@@ -16,6 +15,7 @@
 #include "graph/field_access.h"
 #include "graph/range.h"
 #include "xvrml/edit.h"
+#include "xvrml/visit_storage.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "base/visit_storage.h"
 #include "xvrml/appearance.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 namespace {

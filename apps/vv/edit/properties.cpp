@@ -11,6 +11,7 @@
 #include "edit/shader_parameters.h"
 #include "xvrml/numbers.h"
 #include "xvrml/value_text.h"
+#include "xvrml/visit_storage.h"
 
 namespace vv {
 
@@ -20,15 +21,29 @@ namespace {
 
 constexpr size_t mostUsable = 40; // nodes of the file that are offered
 
-size_t sizeOf(const Value& value) {
-  return std::visit(
-      [](const auto& one) -> size_t {
-        if constexpr (isList<std::remove_cvref_t<decltype(one)>>)
-          return one.size();
-        else
-          return 0;
-      },
-      value);
+// Return the bytes of a text or a picture, or of all in a list; 0 for other values.
+size_t bytesOf(const std::string& text) { return text.size(); }
+size_t bytesOf(const Image& image) { return image.pixels.size(); }
+template <class T> size_t bytesOf(const T& value) {
+  size_t sum = 0;
+  if constexpr (isList<T>)
+    for (const auto& one : value) sum += bytesOf(one);
+  return sum;
+}
+
+// A value is read where it stands, and not copied if it is long: it may have millions of elements.
+void readValue(WorldEditor& editor, Node& node, PropertyRow& row) {
+  visitStorage(row.field->type, node.storage(*row.field), [&row](const auto& value) {
+    using T = std::remove_cvref_t<decltype(value)>;
+    const T* const byDefault = std::get_if<T>(&row.defaultValue);
+    row.isDefault = byDefault && value == *byDefault;
+    if constexpr (isList<T>) row.size = value.size();
+    row.isLong =
+        row.size > PropertySheet::mostElements || bytesOf(value) > PropertySheet::mostBytes;
+    row.value = row.isLong ? Value() : Value(std::in_place_type<T>, value);
+    row.shown = isList<T> ? row.value : Value();
+  });
+  row.edits = editor.editor().editsOf(node, row.field->name);
 }
 
 bool holdsNodes(const FieldInfo& field) {
@@ -43,17 +58,7 @@ std::string helpOf(const FieldInfo& field, const std::string& text, const FieldR
   return help;
 }
 
-void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
-  row.value = node.get(*row.field);
-  row.size = sizeOf(row.value);
-  row.isDefault = row.value == row.defaultValue;
-  row.isLong = row.size > PropertySheet::mostElements;
-  row.edits = editor.editor().editsOf(node, row.field->name);
-  if (row.isLong) row.value = Value();
-  row.shown = isMultiple(row.field->type) ? row.value : Value();
-}
-
-PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field) {
+PropertyRow rowOf(WorldEditor& editor, Node& node, const FieldInfo& field) {
   PropertyRow row;
   row.field = &field;
   row.defaultValue = field.defaultValue;

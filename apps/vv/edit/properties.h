@@ -15,12 +15,12 @@ struct PropertyRow {
   // A row of the node's type, or the field that its ORTShader could declare for a parameter.
   const xvrml::FieldInfo* field = nullptr;
   std::shared_ptr<const xvrml::FieldInfo> parameter; // keeps the latter
-  xvrml::Value value; // empty for lists that are too long to be shown
+  xvrml::Value value;                                // empty if it is too long to be shown
   xvrml::Value shown; // a list as it was read, which a face does not change
   xvrml::Value defaultValue;
   size_t size = 0; // elements of a list
   bool isDefault = false;
-  bool isLong = false;      // the list has more than `mostElements`
+  bool isLong = false;      // it has more than `mostElements`, or more than `mostBytes`
   bool isDeclared = true;   // false: the shader gets the field when it is changed
   bool isInOptions = false; // the options of the shader set the parameter, which is not shown
   uint64_t edits = 0;       // Editor::editsOf() when the value was read
@@ -34,7 +34,8 @@ struct PropertyRow {
 };
 
 struct PropertySheet {
-  static constexpr size_t mostElements = 200;
+  static constexpr size_t mostElements = 200; // of a list
+  static constexpr size_t mostBytes = 32'768; // in texts and pictures
 
   xvrml::NodeRef node; // null: nothing is selected
   std::string title;   // "LAMP  PointLight"

@@ -225,8 +225,12 @@ void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
     menu.end();
   }
   if (row.isLong) {
+    const std::string type(fieldTypeName(field.type));
     ImGui::SameLine();
-    ImGui::TextDisabled("%s of %zu", std::string(fieldTypeName(field.type)).c_str(), row.size);
+    if (isMultiple(field.type))
+      ImGui::TextDisabled("%s of %zu", type.c_str(), row.size);
+    else
+      ImGui::TextDisabled("%s, too long to be shown", type.c_str());
   }
   if (row.isInOptions) {
     ImGui::SameLine();
