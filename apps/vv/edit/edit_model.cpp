@@ -119,7 +119,7 @@ void EditModel::finishDrag() {
   if (std::optional<Value> value = std::exchange(undeclared_, std::nullopt))
     return request([dragged, value = std::move(*value)](WorldEditor& editor) {
       refuseWithinStep(editor);
-      declareParameter(editor, dragged.node, dragged.field, value);
+      setParameter(editor, dragged.node, dragged.field, value);
     });
   requestValue([this, dragged](WorldEditor& editor) {
     if (std::exchange(isRefused_, false)) return;

@@ -78,6 +78,7 @@ PropertyRow rowOf(WorldEditor& editor, Node& node, const FieldInfo& field) {
 void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, PropertySheet& sheet) {
   const picture::ShaderClass* const known = classOf(editor, shader);
   if (!known) return;
+  const std::map<std::string, ShaderOption> options = optionsOf(shader);
   for (const picture::ShaderParameter& parameter : known->parameters) {
     const std::optional<FieldInfo> field = fieldFor(parameter);
     if (!field) continue;
@@ -101,7 +102,14 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
     row.help = helpOf(*field, field->text, field->range);
     row.isDefault = true;
     row.isDeclared = false;
-    row.isInOptions = isInOptions(shader, field->name);
+    if (const auto option = options.find(field->name); option != options.end()) {
+      const std::optional<Value> set = valueOf(option->second, parameter);
+      row.isInOptions = true;
+      row.isLong = !set;
+      if (set) row.value = *set;
+      row.isDefault = row.value == row.defaultValue && set;
+      row.help += "\nset by the options of the shader";
+    }
     sheet.rows.push_back(std::move(row));
   }
 }
@@ -119,6 +127,8 @@ std::string noteOf(const Node& node, size_t places) {
   if (const auto* instance = nodeCast<ProtoInstance>(&node))
     note = fmt::format("an instance of PROTO {}: its body is edited by these fields",
                        instance->declaration->type->name);
+  if (nodeCast<nodes::Inline>(&node))
+    note = "its content belongs to another file, which is edited by itself";
   if (places == 0) return "not in the world's file: it belongs to an Inline, a PROTO or a Script";
   if (places > 1)
     note += fmt::format("{}stands in {} places: an edit changes all of them",

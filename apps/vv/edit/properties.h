@@ -20,9 +20,9 @@ struct PropertyRow {
   xvrml::Value defaultValue;
   size_t size = 0; // elements of a list
   bool isDefault = false;
-  bool isLong = false;      // it has more than `mostElements`, or more than `mostBytes`
+  bool isLong = false;      // it is not shown: it has more than `mostElements` or `mostBytes`
   bool isDeclared = true;   // false: the shader gets the field when it is changed
-  bool isInOptions = false; // the options of the shader set the parameter, which is not shown
+  bool isInOptions = false; // the options of the shader set it; what is no number is not shown
   uint64_t edits = 0;       // Editor::editsOf() when the value was read
   xvrml::FieldRange range;  // the range of each number
   std::string help;         // type, range and what the field does

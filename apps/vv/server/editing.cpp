@@ -258,7 +258,7 @@ void Editing::endDrag(uint64_t page, Face& face) {
   const std::optional<Face::Parameter> parameter = std::exchange(face.parameter, std::nullopt);
   if (!parameter) return;
   try {
-    declareParameter(editor(), parameter->shader, parameter->name, parameter->value);
+    setParameter(editor(), parameter->shader, parameter->name, parameter->value);
   } catch (const std::exception& error) {
     say(page, error.what(), true);
     face.told.erase("sheet");

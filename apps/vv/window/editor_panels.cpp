@@ -271,7 +271,8 @@ void EditorPanels::drawSheet() {
     watchWidth(sheetWidth_, widths_.sheet);
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
-      ImGui::TextWrapped("Click on something in the picture or in the outline to select it.");
+      ImGui::TextWrapped("Click on something in the picture or in the outline to select it. "
+                         "F1 lists what keys do.");
     } else {
       ImGui::PushID(sheet.node.get());
       ImGui::TextUnformatted(sheet.title.c_str());

@@ -345,7 +345,7 @@ class Editor {
   }
 
   on_sheet(message) {
-    const none = "Click on something in the picture or in the outline to select it.";
+    const none = "Click on something in the picture or in the outline to select it. F1 lists what keys do.";
     $("title").textContent = message.title;
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);
