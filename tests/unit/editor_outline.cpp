@@ -43,7 +43,7 @@ std::string textOf(const std::vector<OutlineRow>& rows) {
 }
 
 TEST(Outline, RowsThatAreChangedAreThoseThatAreRead) {
-  const EditedWorld edited(groups(400));
+  EditedWorld edited(groups(400));
   const World& world = edited.browser.world();
   Outline outline;
   std::vector<OutlineRow> rows = outline.rows(world);

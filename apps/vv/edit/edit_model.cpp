@@ -67,30 +67,38 @@ void EditModel::edit(Command command) {
 
 void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
   const Dragged dragged{node, field.name};
+  const PropertyRow* const row = sheet_.node == node ? sheet_.find(field.name) : nullptr;
+  const bool isDeclared = node->type().find(field.name), isOption = row && row->isOption();
   if (dragged_ != dragged) {
     finishDrag();
     dragged_ = dragged;
     touched_.clear();
-    if (node->type().find(field.name)) begin(dragged);
+    if (isDeclared || isOption) begin(dragged);
   }
-  if (!node->type().find(field.name)) {
+  if (isOption)
+    return requestValue([this, dragged, value = std::move(value)](WorldEditor& editor) {
+      if (!isRefused_) setParameter(editor, dragged.node, dragged.field, value);
+    });
+  if (!isDeclared) {
     undeclared_ = std::move(value);
     return;
   }
-  const PropertyRow* const row = sheet_.node == node ? sheet_.find(field.name) : nullptr;
   ChangedList change{row ? row->shown : Value(), std::move(value), {}};
   noteTouched(change.shown, change.wanted, touched_);
   change.touched = touched_;
   requestValue([this, dragged, change = std::move(change)](WorldEditor& editor) {
-    if (isRefused_) return;
-    const Node& node = *dragged.node;
-    const FieldInfo& info = *node.type().find(dragged.field);
-    const Value now = node.get(info);
-    const bool isOwn = set_ == std::pair(dragged, now);
-    editor.editor().set(*dragged.node, dragged.field,
-                        mergedList(change, now, isOwn, nameOf(dragged)));
-    set_ = {dragged, node.get(info)};
+    if (!isRefused_) setField(editor, dragged, change);
   });
+}
+
+void EditModel::setField(WorldEditor& editor, const Dragged& dragged, const ChangedList& change) {
+  const Node& node = *dragged.node;
+  const FieldInfo& info = *node.type().find(dragged.field);
+  const Value now = node.get(info);
+  const bool isOwn = set_ == std::pair(dragged, now);
+  editor.editor().set(*dragged.node, dragged.field,
+                      mergedList(change, now, isOwn, nameOf(dragged)));
+  set_ = {dragged, node.get(info)};
 }
 
 std::string EditModel::nameOf(const Dragged& dragged) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "edit/hiding.h"
+#include "edit/merged_list.h"
 #include "edit/outline.h"
 #include "edit/problems.h"
 #include "edit/properties.h"
@@ -86,7 +87,7 @@ class EditModel {
   // Sets a field. All values until no widget is active any more are one step. It is refused if
   // another program has edited the field since it was shown. In a list those elements count that
   // differ from what was shown: others may have changed since. A parameter of a shader that is not
-  // declared yet gets its last value then.
+  // declared yet gets its last value then, unless the options of the shader have it.
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
   void setActive(bool active);
@@ -130,6 +131,7 @@ class EditModel {
   void note(Stale stale) { stale_ = std::max(stale_, stale); }
   Stale anyChange() const;
   void begin(const Dragged& dragged);
+  void setField(WorldEditor& editor, const Dragged& dragged, const ChangedList& change);
   void finishDrag();
   void reveal(WorldEditor& editor, xvrml::Node& node);
   void changeRowsOf(const xvrml::Node& node);

@@ -31,6 +31,9 @@ struct PropertyRow {
   std::vector<size_t> places;                  // in how many places each node of the value stands
   std::vector<const xvrml::NodeType*> addable; // what may be added
   std::vector<xvrml::NodeRef> usable;          // nodes of the file that may stand here, too
+
+  // Returns whether a change of the value changes the options of the shader.
+  bool isOption() const { return isInOptions && !isLong; }
 };
 
 struct PropertySheet {
