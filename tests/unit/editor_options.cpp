@@ -1,5 +1,7 @@
 // editor_options.cpp: Tests how the sheet shows and sets the parameters that the options of a
 // shader set.
+#include <fmt/format.h>
+
 #include "edit/edit_model.h"
 #include "unit/editor_support.h"
 
@@ -59,7 +61,23 @@ TEST_F(EditorOptions, AreSetInTheirPlaces) {
   EXPECT_EQ(row("index").value, Value(1.2f));
 }
 
-// What is no number stays in the options, and the field that is declared takes its place.
+// The picture follows the number while it is dragged, which is one step.
+TEST_F(EditorOptions, FollowADrag) {
+  model.setActive(true);
+  for (const float value : {1.3f, 1.4f, 1.5f}) {
+    model.drag(world.node("S"), *row("index").field, value);
+    model.update(world.editor, front(), false, 0);
+    EXPECT_TRUE(has(fmt::format("1f index {}, color", value)));
+  }
+  model.setActive(false);
+  EXPECT_EQ(row("index").value, Value(1.5f));
+  EXPECT_TRUE(row("index").isDefault);
+  world.editor.undo();
+  EXPECT_TRUE(has("1f index 1.20, color"));
+  EXPECT_EQ(world.editor.editor().undoName(), "");
+}
+
+// A text stays in the options, and the field that is declared takes its place.
 TEST_F(EditorOptions, OthersAreDeclared) {
   set("scattering", Color{1, 1, 1});
   EXPECT_TRUE(has("exposedField SFColor scattering 1 1 1"));

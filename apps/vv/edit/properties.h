@@ -37,8 +37,8 @@ struct PropertyRow {
 };
 
 struct PropertySheet {
-  static constexpr size_t mostElements = 200; // of a list
-  static constexpr size_t mostBytes = 32'768; // in texts and pictures
+  // Longer lists, texts and pictures are not shown.
+  static constexpr size_t mostElements = 200, mostBytes = 32'768;
 
   xvrml::NodeRef node; // null: nothing is selected
   std::string title;   // "LAMP  PointLight"

@@ -335,7 +335,9 @@ void EditorPanels::drawProbes() {
 
 // Draws the menu of a probe, whose line is the last item.
 void EditorPanels::drawProbeMenu(const Probe& probe) {
-  hint(canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "");
+  const char* const menuHint =
+      canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "";
+  hint(probe.seen + (probe.seen.empty() ? "" : "\n") + menuHint);
   ImGui::PushID(probe.number);
   if (Menu menu; menu.beginContext("##probe")) {
     if (menu.item("Keep in the world", "Add an ORTSensor that reads the same",
