@@ -3,9 +3,11 @@ looks, handles, probes, A and B, problems and reports."""
 import base64
 import io
 
+from conftest import HEADER
 from page_client import Image, serve, wait_for  # noqa: F401
 from serve_edit_tools import (
-    SIZE, WORLD, drag, field, history, node, opened, paint, select, text_of, until, value)
+    SIZE, WORLD, drag, field, history, node, opened, paint, select, select_row, text_of, until,
+    value)
 from window_driver import green, red
 
 

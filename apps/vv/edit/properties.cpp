@@ -76,7 +76,7 @@ PropertyRow rowOf(WorldEditor& editor, Node& node, const FieldInfo& field) {
 // Adds the parameters of a shader's class that the node does not declare, and says of the others
 // what the class says.
 void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, PropertySheet& sheet) {
-  const picture::ShaderClass* const known = classOf(editor, shader);
+  const picture::ShaderClass* const known = classOf(editor, shader.name, shader.file);
   if (!known) return;
   const std::map<std::string, ShaderOption> options = optionsOf(shader);
   for (const picture::ShaderParameter& parameter : known->parameters) {

@@ -40,10 +40,10 @@ std::optional<Value> valueOf(const ShaderParameter& parameter) {
 
 } // namespace
 
-const ShaderClass* classOf(WorldEditor& editor, const nodes::ORTShader& shader) {
+const ShaderClass* classOf(WorldEditor& editor, const std::string& name, const std::string& file) {
   const std::vector<ShaderClass>& classes = editor.shaderClasses();
   const auto found = std::find_if(classes.begin(), classes.end(), [&](const ShaderClass& one) {
-    return one.name == shader.name && (shader.file.empty() || shader.file == one.library);
+    return one.name == name && (file.empty() || file == one.library);
   });
   return found == classes.end() ? nullptr : &*found;
 }

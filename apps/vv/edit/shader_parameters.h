@@ -12,8 +12,10 @@
 
 namespace vv {
 
-// Returns the class of a shader; null: no plug-in that is installed has it.
-const picture::ShaderClass* classOf(WorldEditor& editor, const xvrml::nodes::ORTShader& shader);
+// Returns the class that an ORTShader names; null: no plug-in that is installed has it. file: ""
+// for any plug-in.
+const picture::ShaderClass* classOf(WorldEditor& editor, const std::string& name,
+                                    const std::string& file);
 
 // Returns the field that an ORTShader declares for a parameter, with the default of the class, its
 // range and what it does. Nothing for matrices.
