@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "edit/edit_model.h"
+#include "libpicture/shader_text.h"
 #include "unit/editor_support.h"
 
 namespace {
@@ -82,6 +83,34 @@ TEST_F(EditorOptions, OthersAreDeclared) {
   set("scattering", Color{1, 1, 1});
   EXPECT_TRUE(has("exposedField SFColor scattering 1 1 1"));
   EXPECT_TRUE(has("string scattering x"));
+}
+
+// --- The option of vv ---
+
+std::string optionOf(const std::string& shape) {
+  EditedWorld world("#VRML V2.0 utf8\n" + shape + "\n");
+  return shaderOption(*world.browser.world().scope.roots.at(0));
+}
+std::string shapeOf(const std::string& shader, const std::string& name = "DEF Lens") {
+  return name + " Shape { appearance ORTAppearance { shader ORTShader { " + shader + " } } }";
+}
+
+TEST(EditorShaderOption, IsReadAsTheSameShader) {
+  const std::string option =
+      optionOf(shapeOf("name \"Glass\" options \"1f index 1.80, 1i shadow 1\" "
+                       "exposedField SFColor tint 1 .50 0"));
+  EXPECT_EQ(option, "--shader Lens=Glass:index=1.8:shadow=1:tint=1,0.5,0");
+  const std::string text = option.substr(option.find('=') + 1);
+  const NodeRef read = picture::readShader(text, "--shader", RT_SURFACE, "");
+  EXPECT_EQ(picture::shaderText(*nodeCast<nodes::ORTShader>(read)), text);
+}
+
+TEST(EditorShaderOption, IsNoneWhereItCannotSayAll) {
+  EXPECT_EQ(optionOf(shapeOf("name \"Glass\"", "")), "") << "the Shape has no name";
+  EXPECT_EQ(optionOf(shapeOf("name \"Diffuse\" options \"texture texture a.png\"")), "");
+  EXPECT_EQ(optionOf(shapeOf("name \"Diffuse;rm\"")), "") << "a shell would read it";
+  EXPECT_EQ(optionOf("DEF A Shape { appearance Appearance { material Material { } } }"), "");
+  EXPECT_EQ(optionOf(shapeOf("name \"Glass\"")), "--shader Lens=Glass");
 }
 
 } // namespace

@@ -154,7 +154,10 @@ PropertySheet sheetOf(WorldEditor& editor, const NodeRef& node) {
   if (const auto* const shader = nodeCast<nodes::ORTShader>(node))
     addParameters(editor, *shader, sheet);
   sheet.hasLook = nodeCast<nodes::Shape>(node) != nullptr;
-  if (sheet.hasLook) sheet.look = lookOf(*node);
+  if (sheet.hasLook) {
+    sheet.look = lookOf(*node);
+    sheet.shaderOption = shaderOption(*node);
+  }
   const auto places = [&editor](const NodeRef& one) { return placesOf(editor, one); };
   sheet.note = noteOf(*node, places(node));
   sheet.look.places = places(sheet.look.appearance);
@@ -182,6 +185,7 @@ bool refresh(WorldEditor& editor, PropertySheet& sheet) {
     const size_t places = sheet.look.places;
     sheet.look = lookOf(*sheet.node);
     sheet.look.places = places;
+    sheet.shaderOption = shaderOption(*sheet.node);
   }
   return isSame;
 }

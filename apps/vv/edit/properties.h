@@ -46,6 +46,7 @@ struct PropertySheet {
   std::vector<PropertyRow> rows;
   bool hasLook = false; // the node is a Shape
   ShapeLook look;
+  std::string shaderOption; // as of shaderOption()
 
   // Returns the row of a field; null: there is none.
   const PropertyRow* find(const std::string& field) const;

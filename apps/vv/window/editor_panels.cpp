@@ -272,7 +272,7 @@ void EditorPanels::drawSheet() {
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
       ImGui::TextWrapped("Click on something in the picture or in the outline to select it. "
-                         "F1 lists what keys do.");
+                         "V or U measures the light where the pointer is. F1 lists all keys.");
     } else {
       ImGui::PushID(sheet.node.get());
       ImGui::TextUnformatted(sheet.title.c_str());
