@@ -7,7 +7,6 @@
 
 #include "base/lexer.h"
 #include "base/rotation.h"
-#include "base/visit_storage.h"
 #include "edit/declaration.h"
 #include "edit/in_place_writer.h"
 #include "edit/node_edits.h"
@@ -17,6 +16,7 @@
 #include "graph/range.h"
 #include "xvrml/edit.h"
 #include "xvrml/versions.h"
+#include "xvrml/visit_storage.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {

@@ -96,3 +96,16 @@ def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv
         "+DEF LAMP Transform { translation 0 0 -1 # moved by hand"
     ]
     assert w.end() == 0
+
+
+def test_a_jump_of_the_pointer_from_a_panel_counts(window, vv):
+    w = window(WORLD, "--size", "600x400", "--spp", "1")
+    w.key("e")
+    reports = Reports(w, vv.folder)
+    assert reports.probe() is None  # the pointer is at a button then
+    w.move(.2, .1)
+    w.key("u")
+    row = reports.until(lambda r: r["x"])
+    # The wall is 15 m away, and half as high as the tangent of half the field of view says.
+    assert (float(row["x"]), float(row["y"]), float(row["z"])) == pytest.approx((1.864, .621, -5), abs=.05)
+    assert w.end() == 0

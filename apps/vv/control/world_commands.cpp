@@ -143,6 +143,7 @@ std::string WorldCommands::perform(const Command& command) {
              [this](const ListParents& c) { return listParents(c); },
              [this](const Select& c) { return select(c); },
              [this](const ListSelection&) { return listSelection(); },
+             [this](const ListParameters& c) { return listParameters(c); },
              [this](const Pick& c) { return pick(c); },
              [this](const Recover&) { return throwLeftAway(); }, other),
       command.action);

@@ -125,7 +125,7 @@ std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers&
   appendRange(out, row.range);
   if (isLinear(node, row)) out += ",\"linear\":true";
   if (!row.choices.empty()) out += ",\"choices\":" + jsonLine(row.choices);
-  if (row.isLong || row.isInOptions || roughSize(row.value) > size_t(maxValueBytes)) {
+  if (row.isLong || roughSize(row.value) > size_t(maxValueBytes)) {
     out += ",\"long\":true";
   } else if (field.type == FieldType::SFNode || field.type == FieldType::MFNode) {
     appendLinks(out, row, numbers);

@@ -345,7 +345,9 @@ class Editor {
   }
 
   on_sheet(message) {
-    const none = "Click on something in the picture or in the outline to select it.";
+    const none =
+      "Click on something in the picture or in the outline to select it. V or U measures the " +
+      "light where the pointer is. F1 lists all keys.";
     $("title").textContent = message.title;
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);
