@@ -118,7 +118,7 @@ struct RenderResult {
   bool interrupted = false; // the picture holds what was finished when it was interrupted
   double mapSeconds = 0, renderSeconds = 0;
   double denoiseSeconds = 0;        // the time of whoever has denoised the picture; 0: nobody
-  std::optional<DoubtCounts> doubt; // of a denoised picture that was audited
+  std::optional<DoubtCounts> doubt; // only for a denoised picture that was audited
   std::vector<RTworker> workers;    // workers of the cluster at the end of the picture
   xvrml::CameraSettings camera{};   // camera of the picture; its shader is null
   bool hasCameraShader = false;     // a camera shader generated the rays

@@ -32,7 +32,7 @@ template <class T> T medianOf(std::vector<T> values) {
   return *middle;
 }
 
-constexpr int side = 32;  // of tiles
+constexpr int side = 32;  // edge of a tile in pixels
 constexpr int reach = 2;  // how far away neighbours are compared
 constexpr int fewest = 8; // the smallest tile, at the edge of the picture
 
@@ -87,7 +87,7 @@ bool hasErrors(const Picture& picture) {
 }
 
 Differences::Differences(const Picture& a, const Picture& b) : width(a.width), height(a.height) {
-  constexpr double step = 1.001 / 255; // of display colours, which may be rounded either way
+  constexpr double step = 1.001 / 255; // display colours may be rounded either way
   const double rounding = std::max(roundingOf(a), roundingOf(b));
   const std::vector<float>&first = rgbaOf(a), &second = rgbaOf(b);
   const size_t pixels = first.size() / 4;

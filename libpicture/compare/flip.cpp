@@ -15,7 +15,8 @@ namespace picture {
 namespace {
 
 using Colour = std::array<float, 3>;
-using Kernel = std::vector<float>; // of odd length, the middle is for the pixel itself
+using Kernel =
+    std::vector<float>; // an odd number of weights; the middle one is for the pixel itself
 
 // Pixels a degree of a 4K screen, .7 m wide, seen from .7 m.
 constexpr double pixelsPerDegree = 67.0206;
@@ -175,7 +176,7 @@ Plane blurred(const Plane& in, std::initializer_list<Sensitivity> terms) {
 
 // --- LDR-FLIP ---
 
-// What the eye makes of a picture.
+// A picture as the eye takes it in.
 struct Seen {
   Planes lab;
   Plane edges, points; // how strong they are

@@ -13,7 +13,7 @@ namespace picture {
 struct Flip {
   double mean = 0;        // 0: they look the same, 1: the most
   int exposures = 0;      // exposures at which radiance was compared; 0: display colours
-  std::vector<float> map; // of each pixel, first row at the top
+  std::vector<float> map; // FLIP for each pixel, first row at the top
 };
 
 // Returns FLIP at 67.02 pixels a degree, which the papers assume. The pictures have rgba, one size,

@@ -18,7 +18,7 @@ namespace {
 // Fewer pixels cannot differ for sure (see chanceOf).
 constexpr int fewestPixels = fewestSide * fewestSide;
 constexpr size_t mostPlaces = 5;
-constexpr int edge = 4; // of the smallest cells, in pixels
+constexpr int edge = 4; // edge of the smallest cells in pixels
 
 // The sums over the pixels of a cell, for each colour.
 struct Cell {
@@ -113,10 +113,10 @@ class Squares {
  private:
   struct Square {
     int pixels;
-    float variance; // of the differences of its pixels
+    float variance; // variance among the differences of its pixels
   };
   struct Level {
-    int width, height; // of its squares, in pixels
+    int width, height; // pixels of its squares
     std::vector<Square> squares;
   };
 

@@ -26,7 +26,7 @@ struct ChangedPlace {
   int x = 0, y = 0, width = 0, height = 0; // pixels, from the left upper corner
   int colour = 0;                          // 0 red, 1 green, 2 blue, 3 luminance
   double before = 0, change = 0; // mean of the first picture, and what the second has more
-  double chance = 1;             // of such a difference by noise
+  double chance = 1;             // probability of such a difference by noise
 };
 
 // The mean change of a square of pixels that would have been found in half of all squares.
@@ -54,7 +54,7 @@ struct NoiseTest {
 // Compares the means of squares of 8x8 pixels and more. If both pictures have the channels error
 // and trust, single pixels are judged by them, too. The pictures have rgba, one size, and both
 // radiance or both display colours; their samples are independent.
-// rate: of false alarms.
+// rate: that of false alarms.
 NoiseTest testNoise(const Picture& a, const Picture& b, Noise noise, double rate = falseAlarmRate);
 
 // Returns the difference of each colour of each pixel in standard errors, from -99 to 99: from the

@@ -84,7 +84,7 @@ struct ServeOptions {
   bool edit = false; // those who have a second token may edit the world
 };
 
-// What vv compare reads.
+// The pictures of vv compare.
 struct CompareOptions {
   std::vector<std::string> files;            // two
   std::optional<std::array<int, 2>> samples; // samples per pixel of each

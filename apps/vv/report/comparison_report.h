@@ -1,4 +1,4 @@
-// comparison_report.h: What vv compare says of two pictures. [main thread]
+// comparison_report.h: Says how two pictures differ (vv compare). [main thread]
 #pragma once
 
 #include <array>

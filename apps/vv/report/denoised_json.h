@@ -1,4 +1,4 @@
-// denoised_json.h: What --stats says of denoised pictures. [main thread]
+// denoised_json.h: Makes the part of --stats about denoised pictures. [main thread]
 #pragma once
 
 #include <optional>
