@@ -15,6 +15,7 @@
 #include "report/node_list.h"
 #include "report/shader_list.h"
 #include "run/checkpoint.h"
+#include "run/compare.h"
 #include "run/headless.h"
 #include "run/inputs.h"
 #include "run/inspect.h"
@@ -54,6 +55,7 @@ int printKeys(const Run&) {
   return print(listKeys() + "\nWhile the editor is open:\n" + listEditorKeys());
 }
 int merge(const Run& run) { return runMerge(run.options, run.commandLine()); }
+int compare(const Run& run) { return runCompare(run.options); }
 
 int serve(const Run& run) {
   prepare(run.options);
@@ -97,6 +99,7 @@ constexpr JobRow rows[] = {
     {Job::help, help},
     {Job::version, printVersion},
     {Job::merge, merge},
+    {Job::compare, compare},
     {Job::serve, serve},
     {Job::edit, showWorld},
     {Job::listKeys, printKeys},

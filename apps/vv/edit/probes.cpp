@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "holm.h"
+
 namespace vv {
 
 namespace {
@@ -200,7 +202,8 @@ std::vector<std::optional<Difference>> Probes::differences() const {
     chances.push_back(all[i]->chance);
     judged.push_back(i);
   }
-  for (const size_t i : significantOf(chances)) all[judged[i]]->isSignificant = true;
+  for (const size_t i : holm::significantOf(chances, changeLevel))
+    all[judged[i]]->isSignificant = true;
   return all;
 }
 

@@ -239,6 +239,7 @@ template <Job job> void ask(Options& o, const std::string&) { o.jobs.push_back(j
 
 constexpr const char *sequenceNeeds =
                          "--frames and --turntable need -o (or --check, to test a world)",
+                     *samplesNeed = "--samples is for {}; --spp N sets the samples per pixel",
                      *pageNeeds = "--port, --address, --token and --edit need {}";
 
 const OptionInfo table[] = {
@@ -324,6 +325,18 @@ const OptionInfo table[] = {
      with(repeatable,
           needs("--denoise",
                 "--raw needs {}: without it, -o writes the picture as it was rendered"))},
+    {"--audit-denoise", "[PERCENT]", "Picture",
+     "With --denoise: count the pixels whose denoised colour leaves the 99 % interval of the "
+     "picture "
+     "before, for --stats, and show them in the channel doubt of EXR files (above 1: doubtful). "
+     "The "
+     "exit code is 4 if they are more than PERCENT of the pixels that have intervals. Needs --spp "
+     "32 "
+     "or more.",
+     [](Options& o, const std::string& v) {
+       o.mostDoubt = v.empty() ? 1 : readNumber(v, -1e-9, 100 + 1e-9) / 100;
+     },
+     with(needs("--denoise"))},
     {"--preview-raster", "", "Picture",
      "Draw the pictures of -o by a z-buffer instead of rays, for a first look at a large world: "
      "without shadows, reflections, refractions and samples. Files say so.",
@@ -613,7 +626,7 @@ const OptionInfo table[] = {
      "Print the light transport algorithm and why it was chosen, and the objects that the world is "
      "rendered as: each with the reason, its triangles, bytes and instances.",
      ask<Job::explain>},
-    {"--json", "", "Inspect", "Print --info, --explain and the lists as JSON.",
+    {"--json", "", "Inspect", "Print --info, --explain, the lists and vv compare as JSON.",
      [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect",
      "Write statistics as JSON, one file for a whole sequence; - is standard output. image.spp is "
@@ -663,6 +676,16 @@ const OptionInfo table[] = {
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
      "interrupted. In the window, reload the world and keep the view.",
      [](Options& o, const std::string&) { o.watch = true; }, with(needs("-o,the window,vv serve"))},
+    {"--samples", "N,M", "Compare",
+     "Samples per pixel of the two pictures of vv compare. With the same number twice they "
+     "have equal noise, and small changes are found best; with --variance, the variances are "
+     "divided by them.",
+     [](Options& o, const std::string& v) { o.compared.samples = readSamplesOfTwo(v); },
+     with(needs("vv compare", samplesNeed))},
+    {"--variance", "", "Compare",
+     "Judge single pixels by the channel variance of both files, which is that of "
+     "the pixel, or of its samples if a channel or --samples has their number.",
+     nullptr, with(needs("vv compare"))},
     {"--write", "FILE", "Write",
      "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, .glb and "
      ".gltf "

@@ -121,7 +121,7 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
-// Returns the job of a command without dashes, `vv serve` or `vv merge`; null for other command
+// Returns the job of a command without dashes, such as `vv serve`; null for other command
 // lines. Worlds of these names are ./serve, ./merge.
 const JobInfo* commandOf(int argc, char** argv) {
   for (const JobInfo& info : jobTable)
@@ -135,13 +135,19 @@ bool takesNext(std::string_view word) {
   return option && *option->argument && option->argument[0] != '[';
 }
 
-// Takes the files of vv merge, and refuses options that say how to render.
+// Refuses options that a command without a world does not know. given: their names.
+void refuseOthers(const char* command, std::initializer_list<std::string_view> allowed,
+                  const std::vector<std::string>& given) {
+  for (const std::string& name : given)
+    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
+      throw UsageError(
+          fmt::format("vv {} renders nothing: {} cannot be used with it", command, name));
+}
+
+// Takes the files of vv merge.
 void readMerge(Options& options, const std::vector<std::string>& files,
                const std::vector<std::string>& given) {
-  constexpr std::string_view allowed[] = {"-o", "--sums", "--stats", "--compare", "-q", "-v"};
-  for (const std::string& name : given)
-    if (std::find(std::begin(allowed), std::end(allowed), name) == std::end(allowed))
-      throw UsageError(fmt::format("vv merge renders nothing: {} cannot be used with it", name));
+  refuseOthers("merge", {"-o", "--sums", "--stats", "--compare", "-q", "-v"}, given);
   if (files.empty())
     throw UsageError("vv merge: files were expected: EXR files that were written with --sums, or "
                      "files of --resume");
@@ -152,6 +158,22 @@ void readMerge(Options& options, const std::vector<std::string>& files,
     if (output.film != picture::FilmKind::none)
       throw UsageError(output.path + ": vv merge makes one picture, not a film");
   options.merge = files;
+  checkTogether(options);
+}
+
+// Takes the files of vv compare.
+void readCompare(Options& options, const std::vector<std::string>& files,
+                 const std::vector<std::string>& given) {
+  refuseOthers("compare", {"-o", "--samples", "--variance", "--json", "-q", "-v"}, given);
+  if (files.size() != 2)
+    throw UsageError(fmt::format("vv compare: two pictures were expected, not {}", files.size()));
+  for (const Output& output : options.outputs) {
+    if (output.film != picture::FilmKind::none)
+      throw UsageError(output.path + ": vv compare makes one picture, not a film");
+    if (output.path == "-")
+      throw UsageError("vv compare writes to standard output: -o needs a file name");
+  }
+  options.compared.files = files;
   checkTogether(options);
 }
 
@@ -239,9 +261,10 @@ Options readCommandLine(int argc, char** argv) {
   const JobInfo* const command = commandOf(argc, argv);
   if (command) options.jobs.push_back(command->job);
   const bool merges = options.has(Job::merge);
+  const bool takesFiles = merges || options.has(Job::compare);
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
-  if (!inputs.empty() && !merges) options.input = inputs[0];
+  if (!inputs.empty() && !takesFiles) options.input = inputs[0];
   std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
@@ -256,20 +279,21 @@ Options readCommandLine(int argc, char** argv) {
                        {},
                        false});
   }
-  if (inputs.size() > 1 && !merges) {
+  if (inputs.size() > 1 && !takesFiles) {
     // The second file may stand behind an option with an empty value: --spp= 64.
     Options unused;
     for (const Setting& setting : given)
       if (setting.value.empty() && *setting.option->argument) apply(setting, unused);
     throw UsageError(secondFileHint(inputs[0], inputs[1]));
   }
-  if (merges) {
+  if (takesFiles) {
     std::vector<std::string> names;
     for (const Setting& setting : given) {
       names.push_back(shownName(*setting.option));
       apply(setting, options);
     }
-    if (!options.has(Job::help) && !options.has(Job::version)) readMerge(options, inputs, names);
+    if (!options.has(Job::help) && !options.has(Job::version))
+      (merges ? readMerge : readCompare)(options, inputs, names);
     return options;
   }
   for (const Setting& setting : withPresets(std::move(given), options.input))

@@ -41,6 +41,7 @@ constexpr Condition conditions[] = {
     {"-o", [](const Options& o) { return o.makesPictures(); }},
     {"the window", [](const Options& o) { return o.opensWindow(); }},
     {"vv serve", [](const Options& o) { return o.has(Job::serve); }},
+    {"vv compare", [](const Options& o) { return o.has(Job::compare); }},
     {"--viewpoint all", [](const Options& o) { return o.severalViews(); }},
     {"several sides of --from", [](const Options& o) { return o.severalViews(); }},
     {"--error", [](const Options& o) { return o.render.error > 0; }},
@@ -92,8 +93,8 @@ const Rule rules[] = {
      },
      "only one of --environment, which shows all around, and --background can be used"},
     {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
-    {[](const Options& o) { return o.json && inspectionsOf(o) == 0; },
-     "--json needs " + joined(inspections(), "or")},
+    {[](const Options& o) { return o.json && inspectionsOf(o) == 0 && !o.has(Job::compare); },
+     "--json needs " + joined(inspections(), "or") + ", or vv compare"},
     {[](const Options& o) { return inspectionsOf(o) > 1; },
      fmt::format("only one of {} can be used", joined(inspections(), "and"))},
     // sequences of pictures

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "denoised_json.h"
 #include "describe.h"
 #include "libpicture/transport.h"
 #include "libpicture/worker_facts.h"
@@ -151,9 +152,7 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
     json["image"]["seeds"] = options.seeds.count();
   }
   if (r.preview) json["image"]["preview"] = true;
-  if (!result.picture.denoisedBy.empty())
-    json["image"]["denoised"] = {
-        {"by", result.picture.denoisedBy}, {"channels", Json::array({"rgba"})}, {"biased", true}};
+  if (!result.picture.denoisedBy.empty()) json["image"]["denoised"] = denoisedJson(result);
   return json;
 }
 
@@ -257,6 +256,7 @@ void SequenceStats::add(const PictureName& name, double worldTime,
                    {"render", result.renderSeconds},
                    {"write", writeSeconds}};
   if (result.denoiseSeconds > 0) frame["time"]["denoise"] = result.denoiseSeconds;
+  if (result.doubt) frame["doubt"] = doubtJson(*result.doubt);
   if (sum.frames.empty()) sum.first = result.renderSeconds;
   sum.frames.push_back(std::move(frame));
   sum.map += result.mapSeconds;

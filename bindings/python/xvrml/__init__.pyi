@@ -536,7 +536,10 @@ class Picture:
     def note(self) -> str:
         ...
 
-    def denoised(self, *, threads: int = ...) -> Picture:
+    def denoised(self, *, threads: int = ..., audit: bool = ...) -> Picture:
+        ...
+
+    def doubt(self, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
         ...
 
     @property
