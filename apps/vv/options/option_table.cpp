@@ -481,7 +481,7 @@ const OptionInfo table[] = {
     {"--preset", "studio|product|technical|pcb|NAME", "Change",
      "Use the options of a preset, unless others are given: studio (soft light, grey backdrop), "
      "product (the same before white), technical (the light of the camera, white), pcb (a "
-     "studio for KiCad's boards, with materials by their names), or one of a vv.toml."},
+     "studio for KiCad's boards, with materials by names and colours), or one of a vv.toml."},
     {"--config", "FILE|none", "Change",
      "Take presets and options from FILE, or from none, instead of the vv.toml beside the world "
      "(docs/presets.md)."},
@@ -519,12 +519,17 @@ const OptionInfo table[] = {
      "Replace the surface shader of shapes: Ball=Glass:index=1.33, material:PIN-*=Metal. SELECTOR "
      "is a DEF name (of a shape, an appearance, a Material or a group), or material:GLOB, "
      "appearance:GLOB or shape:GLOB for all nodes with such DEF names, also in Inlines and "
-     "prototypes, or colour:R,G,B[,SHININESS] for Materials of about this diffuseColor (and "
-     "shininess), or * for all shapes that have no shader yet. CLASS is LIBRARY/CLASS for a "
+     "prototypes, or kicad:GLOB for materials of KiCad's parts (kicad:PIN-*), which need no names, "
+     "or colour:R,G,B[,SHININESS] for Materials of about this diffuseColor (and shininess), or * "
+     "for all shapes that have no shader yet. CLASS is LIBRARY/CLASS for a "
      "class of a plug-in. The VALUE of a texture is a file name; @FILE as VALUE reads a text from "
      "a file. --shader @FILE reads rules, one a line. May be given several times; the last rule "
      "that selects a shape wins.",
      addShader, with(repeatable, inPresets)},
+    {"--placeholders", "", "Change",
+     "Draw a clear grey box in the place of each Inline that cannot be read, if its size is known: "
+     "by its bboxSize, or by the name of a KiCad part (SOIC-8_3.9x4.9mm.wrl).",
+     [](Options& o, const std::string&) { o.placeholders = true; }, with(inPresets)},
     {"--studio", "COLOUR", "Change",
      "Light a model as in a studio: soft boxes that stand where the camera stands, a ground that "
      "catches its shadow, and a backdrop of COLOUR (as for --background), instead of the world's "
@@ -610,7 +615,8 @@ const OptionInfo table[] = {
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
      ask<Job::listKeys>},
     {"--explain", "", "Inspect",
-     "Print the light transport algorithm and why it was chosen, and the objects that the world is "
+     "Print the light transport algorithm and why it was chosen, the materials with the rule of "
+     "--shader or a preset that each gets its shader from, and the objects that the world is "
      "rendered as: each with the reason, its triangles, bytes and instances.",
      ask<Job::explain>},
     {"--json", "", "Inspect", "Print --info, --explain and the lists as JSON.",

@@ -104,6 +104,7 @@ struct Options {
   int turntable = 0; // number of pictures around the world; 0: none
   std::vector<std::string> definitions; // texts of the form DEF.field=value
   std::vector<picture::ShaderRule> shaders;
+  bool placeholders = false;       // boxes stand for Inlines that cannot be read
   std::string cameraShader;        // text of the form Class:param=value
   std::string cameraShaderFolder;  // confines the files that it names; empty: anywhere
   std::vector<picture::Side> from; // sides that the model is seen from
