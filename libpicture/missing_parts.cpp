@@ -16,7 +16,7 @@ namespace {
 using namespace xvrml;
 
 constexpr float millimetre = 1 / 2.54f;         // in units of KiCad's models
-constexpr float smallest = 0.1f, largest = 300; // of a part, in millimetres
+constexpr float smallest = 0.1f, largest = 300; // sides of parts, in millimetres
 constexpr size_t longestPath = 12;              // names
 constexpr uint64_t longestWay = 1000;           // nodes above a part that are asked for names
 

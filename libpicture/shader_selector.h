@@ -20,7 +20,7 @@ struct Selector {
   Kind kind = Kind::rest;
   std::string pattern;
   std::vector<float> colour;            // red, green, blue, and the shininess if it counts
-  std::set<const xvrml::Node*> below{}; // of a name: its node and all nodes below it
+  std::set<const xvrml::Node*> below{}; // a name selects its node and all nodes below
 };
 
 // Returns a text without the blanks at its ends.

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "libpicture/renderer.h"
 #include "options/options.h"
-#include "xvrml/mapper.h"
 #include "xvrml/world.h"
 
 namespace vv {

@@ -1,5 +1,5 @@
-// material_list.h: What the shapes of a world are made of by the rules for shaders, with their
-// area: a part of --explain. [main thread]
+// material_list.h: The materials of a world with their area, and the rules for shaders that they get:
+// a part of --explain. [main thread]
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct MaterialUse {
   std::string colour; // R,G,B as a selector writes it; empty: the material has none
   std::string rule;   // empty: no rule knows the material
   uint64_t shapes = 0;
-  double area = 0; // of triangles as placed, in units of the world
+  double area = 0; // the triangles as placed, in units of the world
 };
 
 // Returns the materials, those with the largest area first. Throws std::length_error for a world
