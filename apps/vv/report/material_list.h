@@ -1,5 +1,5 @@
-// material_list.h: The materials of a world with their area, and the rules for shaders that they get:
-// a part of --explain. [main thread]
+// material_list.h: The materials of a world with their area, and the rules for shaders that they
+// get: a part of --explain. [main thread]
 #pragma once
 
 #include <cstdint>
