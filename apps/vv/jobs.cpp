@@ -69,7 +69,7 @@ int printFeatures(const Run& run) {
 // Loads the world, inspects it, and makes the pictures that are asked for.
 int withoutWindow(const Run& run) {
   prepare(run.options);
-  return runHeadless(run.options, run.commandLine(), run.inspection);
+  return runHeadless(run.options, run.words, run.inspection);
 }
 
 int showWorld(const Run& run) {

@@ -430,6 +430,17 @@ const OptionInfo table[] = {
      with(excludes("--time", "only one of {} and --frames can be used"),
           excludes("--turntable", "only one of --frames and {} can be used"),
           needs("-o,--check", sequenceNeeds))},
+    {"--missing", "", "Time",
+     "Make only those frames of --frames whose files are absent or damaged.",
+     [](Options& o, const std::string&) { o.missing = true; },
+     with(needs("--frames"), needs("-o"),
+          excludes("--viewpoint all,several sides of --from,--preview"))},
+    {"--jobs", "N", "Time",
+     "Make no pictures, but print N commands, each for a part of --frames, for the machines of a "
+     "farm (docs/farms.md). They cost about the same, by a few frames that are drawn in small.",
+     [](Options& o, const std::string& v) { o.farmJobs = int(readInteger(v, 1, 1000000)); },
+     with(needs("--frames"), needs("-o"),
+          excludes("--check,--measure,--compare,--stats,--input,--preview,--watch,--resume"))},
     {"--fps", "F", "Time",
      "Frames per second of sequences, films and the window, and steps per second of the world's "
      "clock (default 30).",

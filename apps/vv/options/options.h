@@ -100,8 +100,10 @@ struct Options {
   // window.
   std::optional<double> epoch;
   std::optional<FrameRange> frames;
-  double fps = 30;   // rate of frames and films; also the step of the world's clock
-  int turntable = 0; // number of pictures around the world; 0: none
+  bool missing = false; // only the frames that are absent or damaged
+  int farmJobs = 0;     // commands that the sequence is cut into; 0: its pictures are made here
+  double fps = 30;      // rate of frames and films; also the step of the world's clock
+  int turntable = 0;    // number of pictures around the world; 0: none
   std::vector<std::string> definitions; // texts of the form DEF.field=value
   std::vector<picture::ShaderRule> shaders;
   bool placeholders = false;       // boxes stand for Inlines that cannot be read

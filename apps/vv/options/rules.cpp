@@ -99,6 +99,17 @@ const Rule rules[] = {
     // sequences of pictures
     {[](const Options& o) { return o.isSequence() && writesToStandardOutput(o); },
      "a sequence needs file names, not standard output"},
+    {[](const Options& o) {
+       return (o.missing || o.farmJobs > 0) &&
+              std::any_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.film != picture::FilmKind::none;
+              });
+     },
+     "--missing and --jobs are for files of single frames, such as .png: they cannot be used with "
+     "a "
+     "film"},
+    {[](const Options& o) { return o.farmJobs > 0 && o.input == "-"; },
+     "--jobs needs a file, not standard input: each job reads it"},
     {[](const Options& o) { return o.watch && o.input == "-"; },
      "--watch needs a file, not standard input"},
     // values of pictures
