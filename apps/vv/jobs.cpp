@@ -15,6 +15,7 @@
 #include "report/node_list.h"
 #include "report/shader_list.h"
 #include "run/checkpoint.h"
+#include "run/film_join.h"
 #include "run/headless.h"
 #include "run/inputs.h"
 #include "run/inspect.h"
@@ -54,6 +55,8 @@ int printKeys(const Run&) {
   return print(listKeys() + "\nWhile the editor is open:\n" + listEditorKeys());
 }
 int merge(const Run& run) { return runMerge(run.options, run.commandLine()); }
+
+int film(const Run& run) { return joinFilm(run.options); }
 
 int serve(const Run& run) {
   prepare(run.options);
@@ -97,6 +100,7 @@ constexpr JobRow rows[] = {
     {Job::help, help},
     {Job::version, printVersion},
     {Job::merge, merge},
+    {Job::film, film},
     {Job::serve, serve},
     {Job::edit, showWorld},
     {Job::listKeys, printKeys},

@@ -124,3 +124,33 @@ def test_jobs_run_in_a_shell_with_xargs(film):
     (film.folder / "jobs.txt").write_text("\n".join(lines) + "\n")
     run(film, "xargs -d '\\n' -n 1 -P 2 sh -c < jobs.txt")
     assert len(list(film.folder.glob("f-*.png"))) == 8
+
+
+@pytest.mark.parametrize("suffix", ["gif", "mp4"])
+def test_pictures_are_joined_to_the_film_that_vv_makes(film, suffix):
+    made = film("film.wrl", *FILM, "-o", "direct." + suffix, "--frames", "25-35")
+    if "ffmpeg" in made.talk:
+        pytest.skip("this build writes no " + suffix)
+    assert made.returncode == 0, made.talk
+    pictures = sorted(path.name for path in film.folder.glob("f-*.png"))
+    done = film("film", "--join", *pictures, "-o", "joined." + suffix)
+    assert done.returncode == 0 and "joined 11 pictures" in done.talk, done.talk
+    direct, joined = ((film.folder / f"{name}.{suffix}").read_bytes() for name in ("direct", "joined"))
+    assert len(direct) > 100 and direct == joined
+
+
+def test_what_cannot_be_joined_is_refused(film):
+    assert film("film.wrl", *FILM, "--frames", "0-1").returncode == 0
+    assert film("film.wrl", *FILM, "--size", "8x8", "--frames", "2").returncode == 0
+    (film.folder / "bad.png").write_bytes(b"no picture")
+    names = [f"f-{n:03}.png" for n in range(3)]
+    for words, code, text in ((names, 3, "f-002.png has 8x8 pixels, but f-000.png has 32x24"),
+                              ([names[0], "bad.png"], 3, "bad.png"), ([names[0], "none.png"], 3, "none.png"),
+                              ([], 2, "vv film --join")):
+        done = film("film", "--join", *words, "-o", "x.gif")
+        assert done.returncode == code and text in done.talk, done.talk
+    assert not (film.folder / "x.gif").exists()
+    assert film("film", "--join", names[0], "-o", "x.png").returncode == 2
+    assert film("film", "--join", names[0], "-o", "x.gif", "--spp", "4").returncode == 2
+    assert film("film", names[0], "-o", "x.gif").returncode == 2
+    assert film("film.wrl", "--join").returncode == 2

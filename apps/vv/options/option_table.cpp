@@ -441,6 +441,11 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.farmJobs = int(readInteger(v, 1, 1000000)); },
      with(needs("--frames"), needs("-o"),
           excludes("--check,--measure,--compare,--stats,--input,--preview,--watch,--resume"))},
+    {"--join", "", "Time",
+     "Make a film of pictures that are there: vv film --join f-*.png -o film.mp4, in the order of "
+     "the "
+     "command line. All must have one size.",
+     [](Options&, const std::string&) {}, with(needs("vv film"))},
     {"--fps", "F", "Time",
      "Frames per second of sequences, films and the window, and steps per second of the world's "
      "clock (default 30).",

@@ -121,8 +121,8 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
-// Returns the job of a command without dashes, `vv serve` or `vv merge`; null for other command
-// lines. Worlds of these names are ./serve, ./merge.
+// Returns the job of a command without dashes, `vv serve`, `vv merge` or `vv film`; null for other
+// command lines. Worlds of these names are ./serve, ./merge, ./film.
 const JobInfo* commandOf(int argc, char** argv) {
   for (const JobInfo& info : jobTable)
     if (info.name[0] != '-' && argc > 1 && std::string_view(argv[1]) == info.name) return &info;
@@ -153,6 +153,25 @@ void readMerge(Options& options, const std::vector<std::string>& files,
       throw UsageError(output.path + ": vv merge makes one picture, not a film");
   options.merge = files;
   checkTogether(options);
+}
+
+// Takes the pictures of vv film --join, and refuses options that say how to render.
+void readFilm(Options& options, const std::vector<std::string>& files,
+              const std::vector<std::string>& given) {
+  constexpr std::string_view allowed[] = {"-o", "--join", "--fps", "-q", "-v"};
+  for (const std::string& name : given)
+    if (std::find(std::begin(allowed), std::end(allowed), name) == std::end(allowed))
+      throw UsageError(fmt::format("vv film renders nothing: {} cannot be used with it", name));
+  if (files.empty() || !options.isGiven("--join"))
+    throw UsageError("vv film --join FILE... -o FILM was expected, with pictures in their order");
+  if (options.outputs.empty())
+    throw UsageError(
+        fmt::format("vv film: -o FILM was expected, one of {}", picture::filmSuffixes));
+  for (const Output& output : options.outputs)
+    if (output.film == picture::FilmKind::none)
+      throw UsageError(
+          fmt::format("{}: vv film makes a film, one of {}", output.path, picture::filmSuffixes));
+  options.joined = files;
 }
 
 // Refuses --NAME=VALUE of an option without a value, and --NAME= of one whose value is optional.
@@ -238,7 +257,7 @@ Options readCommandLine(int argc, char** argv) {
   inputs.insert(inputs.end(), files.begin(), files.end());
   const JobInfo* const command = commandOf(argc, argv);
   if (command) options.jobs.push_back(command->job);
-  const bool merges = options.has(Job::merge);
+  const bool merges = options.has(Job::merge) || options.has(Job::film);
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty() && !merges) options.input = inputs[0];
@@ -269,7 +288,8 @@ Options readCommandLine(int argc, char** argv) {
       names.push_back(shownName(*setting.option));
       apply(setting, options);
     }
-    if (!options.has(Job::help) && !options.has(Job::version)) readMerge(options, inputs, names);
+    if (options.has(Job::help) || options.has(Job::version)) return options;
+    (options.has(Job::film) ? readFilm : readMerge)(options, inputs, names);
     return options;
   }
   for (const Setting& setting : withPresets(std::move(given), options.input))

@@ -40,6 +40,7 @@ enum class Job : uint8_t {
   help,
   version,
   merge,
+  film,
   serve,
   edit,
   listKeys,
@@ -61,6 +62,7 @@ inline constexpr JobInfo jobTable[] = {
     {Job::help, "--help", false, false},
     {Job::version, "--version", false, false},
     {Job::merge, "merge", false, false},
+    {Job::film, "film", false, false},
     {Job::serve, "serve", false, true},
     {Job::edit, "edit", false, true},
     {Job::listKeys, "--list-keys", false, false},
@@ -139,10 +141,11 @@ struct Options {
   bool sums = false;              // EXR files get the sums of their pictures
   SeedRange seeds;                // the first one is also in render.quality
   std::vector<std::string> merge; // files whose sums are added (vv merge)
-  bool denoise = false;           // files and films of -o hold denoised pictures
-  std::string poseFile;           // the file of --pose; empty: none
-  bool posed = false;             // view.lookAt is that of --pose
-  bool fitExposure = false;       // render.view.exposure is chosen by the first picture
+  std::vector<std::string> joined; // pictures that become a film (vv film --join)
+  bool denoise = false;            // files and films of -o hold denoised pictures
+  std::string poseFile;            // the file of --pose; empty: none
+  bool posed = false;              // view.lookAt is that of --pose
+  bool fitExposure = false;        // render.view.exposure is chosen by the first picture
   std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
   std::vector<const OptionInfo*> given; // options that the command line or a preset sets
 
@@ -159,7 +162,7 @@ struct Options {
   bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
     return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
-           !has(Job::merge) && !has(Job::serve) && !has(Job::listKeys);
+           !has(Job::merge) && !has(Job::film) && !has(Job::serve) && !has(Job::listKeys);
   }
   // Tells whether the world runs and somebody looks at it, in the window or on a page.
   bool showsWorld() const { return opensWindow() || has(Job::serve); }

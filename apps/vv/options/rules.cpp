@@ -41,6 +41,7 @@ constexpr Condition conditions[] = {
     {"-o", [](const Options& o) { return o.makesPictures(); }},
     {"the window", [](const Options& o) { return o.opensWindow(); }},
     {"vv serve", [](const Options& o) { return o.has(Job::serve); }},
+    {"vv film", [](const Options& o) { return o.has(Job::film); }},
     {"--viewpoint all", [](const Options& o) { return o.severalViews(); }},
     {"several sides of --from", [](const Options& o) { return o.severalViews(); }},
     {"--error", [](const Options& o) { return o.render.error > 0; }},
