@@ -20,7 +20,7 @@ constexpr double longestProbe = 60;    // seconds; frames after it cost as much 
 constexpr int shrink = 4;              // a probe's picture is smaller by this factor
 constexpr int probeSamples = 4;        // at most
 constexpr int samplesOfError = 64;     // for --error, which says no number
-constexpr size_t mostFrames = 1000000; // of a sequence that is cut
+constexpr size_t mostFrames = 1000000; // the longest sequence that is cut
 
 // Returns the settings of a small picture for a probe; `factor` is what the true one costs more.
 picture::RenderSettings probeSettings(const Options& options, double& factor) {

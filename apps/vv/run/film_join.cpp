@@ -28,7 +28,7 @@ xvrml::Image read(const std::string& path) {
   }
 }
 
-// Returns the red, green and blue of a picture, the first row at the top. What is clear is black.
+// Returns the red, green and blue of a picture, the first row at the top. A clear pixel is black.
 std::vector<uint8_t> rgbOf(const xvrml::Image& image) {
   const size_t parts = size_t(image.components), width = size_t(image.width),
                height = size_t(image.height);
