@@ -16,6 +16,7 @@
 #include "report/shader_list.h"
 #include "run/checkpoint.h"
 #include "run/compare.h"
+#include "run/film_join.h"
 #include "run/headless.h"
 #include "run/inputs.h"
 #include "run/inspect.h"
@@ -57,6 +58,8 @@ int printKeys(const Run&) {
 int merge(const Run& run) { return runMerge(run.options, run.commandLine()); }
 int compare(const Run& run) { return runCompare(run.options); }
 
+int film(const Run& run) { return joinFilm(run.options); }
+
 int serve(const Run& run) {
   prepare(run.options);
   checkInputs(run.options);
@@ -71,7 +74,7 @@ int printFeatures(const Run& run) {
 // Loads the world, inspects it, and makes the pictures that are asked for.
 int withoutWindow(const Run& run) {
   prepare(run.options);
-  return runHeadless(run.options, run.commandLine(), run.inspection);
+  return runHeadless(run.options, run.words, run.inspection);
 }
 
 int showWorld(const Run& run) {
@@ -100,6 +103,7 @@ constexpr JobRow rows[] = {
     {Job::version, printVersion},
     {Job::merge, merge},
     {Job::compare, compare},
+    {Job::film, film},
     {Job::serve, serve},
     {Job::edit, showWorld},
     {Job::listKeys, printKeys},

@@ -9,7 +9,6 @@
 #include "arrays.h"
 #include "libpicture/export/export.h"
 #include "libpicture/files/atomic_file.h"
-#include "libpicture/shader_rules.h"
 #include "objects.h"
 #include "xvrml/versions.h"
 
@@ -266,31 +265,37 @@ void setAttribute(const py::object& self, const py::str& name, const py::object&
 
 } // namespace
 
-size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader,
-                 bool mayMatchNothing) {
+size_t applyRules(const WorldPtr& self, const std::vector<picture::ShaderRule>& rules) {
   const auto lock = self->lock();
   World& world = self->graph();
-  const picture::ShaderRule rule{selector + "=" + shader, "set_shader:", {}, mayMatchNothing};
-  if (selector.empty() || selector.find('=') != selector.npos)
-    throw py::value_error(fmt::format(
-        "selector: a DEF name, material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B or * was "
-        "expected, not {}",
-        std::string(py::repr(py::str(selector)))));
   size_t given = 0;
   try {
     if (Browser* browser = self->browser())
       self->change([&] {
-        given = picture::applyShaderRules({rule}, "", world,
+        given = picture::applyShaderRules(rules, "", world,
                                           [&](Node& shape, const NodeRef& appearance) {
                                             browser->set(shape, "appearance", appearance);
                                           });
       });
     else
-      given = picture::applyShaderRules({rule}, "", world);
+      given = picture::applyShaderRules(rules, "", world);
   } catch (const picture::ShaderError& error) { throw py::value_error(error.what()); }
   self->shadersGiven = self->shadersGiven || given > 0;
   return given;
 }
+
+namespace {
+
+size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader) {
+  if (selector.empty() || selector.find('=') != selector.npos)
+    throw py::value_error(
+        fmt::format("selector: a DEF name, material:GLOB, appearance:GLOB, shape:GLOB, kicad:GLOB, "
+                    "colour:R,G,B or * was expected, not {}",
+                    std::string(py::repr(py::str(selector)))));
+  return applyRules(self, {{selector + "=" + shader, "set_shader:", {}, false}});
+}
+
+} // namespace
 
 void defineWorld(py::module_& module) {
   py::class_<Diagnostic>(module, "Diagnostic",
@@ -395,15 +400,11 @@ void defineWorld(py::module_& module) {
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
           "Removes a route. Returns False if it did not exist.")
       .def(
-          "set_shader",
-          [](const WorldPtr& self, const std::string& selector, const std::string& shader) {
-            return setShader(self, selector, shader, false);
-          },
-          py::arg("selector"), py::arg("shader"),
+          "set_shader", setShader, py::arg("selector"), py::arg("shader"),
           "Gives shapes another surface shader, as --shader of vv does: "
           "set_shader('material:PIN-*', 'Metal:roughness=.22'). The selector is a DEF name, "
-          "material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B, or '*' for shapes without a "
-          "shader. Returns the number of shapes; 0 is also a warning of the world.")
+          "material:GLOB, appearance:GLOB, shape:GLOB, kicad:GLOB, colour:R,G,B, or '*' for shapes "
+          "without a shader. Returns the number of shapes; 0 is also a warning of the world.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
       .def("to_x3d", toX3d, py::arg("encoding") = "xml",
            "Returns the world as X3D text, in the encoding 'xml' or 'classic' (ClassicVRML).")

@@ -177,6 +177,36 @@ void readCompare(Options& options, const std::vector<std::string>& files,
   checkTogether(options);
 }
 
+// Takes the pictures of vv film --join.
+void readFilm(Options& options, const std::vector<std::string>& files,
+              const std::vector<std::string>& given) {
+  refuseOthers("film", {"-o", "--join", "--fps", "-q", "-v"}, given);
+  if (files.empty() || !options.isGiven("--join"))
+    throw UsageError("vv film --join FILE... -o FILM was expected, with pictures in their order");
+  if (options.outputs.empty())
+    throw UsageError(
+        fmt::format("vv film: -o FILM was expected, one of {}", picture::filmSuffixes));
+  for (const Output& output : options.outputs)
+    if (output.film == picture::FilmKind::none)
+      throw UsageError(
+          fmt::format("{}: vv film makes a film, one of {}", output.path, picture::filmSuffixes));
+  options.joined = files;
+}
+
+// Reads the files of a command that takes no world. given: the names of its options.
+using ReadFiles = void (*)(Options&, const std::vector<std::string>& files,
+                           const std::vector<std::string>& given);
+
+// Returns the reader of a command that takes no world; null for others.
+ReadFiles filesReaderOf(Job command) {
+  switch (command) {
+  case Job::merge: return readMerge;
+  case Job::compare: return readCompare;
+  case Job::film: return readFilm;
+  default: return nullptr;
+  }
+}
+
 // Refuses --NAME=VALUE of an option without a value, and --NAME= of one whose value is optional.
 void refuseUselessEquals(std::string_view word) {
   const size_t equals = word.find('=');
@@ -260,11 +290,10 @@ Options readCommandLine(int argc, char** argv) {
   inputs.insert(inputs.end(), files.begin(), files.end());
   const JobInfo* const command = commandOf(argc, argv);
   if (command) options.jobs.push_back(command->job);
-  const bool merges = options.has(Job::merge);
-  const bool takesFiles = merges || options.has(Job::compare);
+  const ReadFiles readFiles = command ? filesReaderOf(command->job) : nullptr;
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
-  if (!inputs.empty() && !takesFiles) options.input = inputs[0];
+  if (!inputs.empty() && !readFiles) options.input = inputs[0];
   std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
@@ -279,21 +308,20 @@ Options readCommandLine(int argc, char** argv) {
                        {},
                        false});
   }
-  if (inputs.size() > 1 && !takesFiles) {
+  if (inputs.size() > 1 && !readFiles) {
     // The second file may stand behind an option with an empty value: --spp= 64.
     Options unused;
     for (const Setting& setting : given)
       if (setting.value.empty() && *setting.option->argument) apply(setting, unused);
     throw UsageError(secondFileHint(inputs[0], inputs[1]));
   }
-  if (takesFiles) {
+  if (readFiles) {
     std::vector<std::string> names;
     for (const Setting& setting : given) {
       names.push_back(shownName(*setting.option));
       apply(setting, options);
     }
-    if (!options.has(Job::help) && !options.has(Job::version))
-      (merges ? readMerge : readCompare)(options, inputs, names);
+    if (!options.has(Job::help) && !options.has(Job::version)) readFiles(options, inputs, names);
     return options;
   }
   for (const Setting& setting : withPresets(std::move(given), options.input))

@@ -42,6 +42,7 @@ constexpr Condition conditions[] = {
     {"the window", [](const Options& o) { return o.opensWindow(); }},
     {"vv serve", [](const Options& o) { return o.has(Job::serve); }},
     {"vv compare", [](const Options& o) { return o.has(Job::compare); }},
+    {"vv film", [](const Options& o) { return o.has(Job::film); }},
     {"--viewpoint all", [](const Options& o) { return o.severalViews(); }},
     {"several sides of --from", [](const Options& o) { return o.severalViews(); }},
     {"--error", [](const Options& o) { return o.render.error > 0; }},
@@ -100,6 +101,17 @@ const Rule rules[] = {
     // sequences of pictures
     {[](const Options& o) { return o.isSequence() && writesToStandardOutput(o); },
      "a sequence needs file names, not standard output"},
+    {[](const Options& o) {
+       return (o.missing || o.farmJobs > 0) &&
+              std::any_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.film != picture::FilmKind::none;
+              });
+     },
+     "--missing and --jobs are for files of single frames, such as .png: they cannot be used with "
+     "a "
+     "film"},
+    {[](const Options& o) { return o.farmJobs > 0 && o.input == "-"; },
+     "--jobs needs a file, not standard input: each job reads it"},
     {[](const Options& o) { return o.watch && o.input == "-"; },
      "--watch needs a file, not standard input"},
     // values of pictures

@@ -57,7 +57,7 @@ __all__ = [
     *nodes.__all__
 ]
 
-_SUBMODULES = ("control", "dask", "interop", "notebook", "rt")
+_SUBMODULES = ("control", "dask", "interop", "notebook", "ray", "rt")
 
 
 def __getattr__(name):
