@@ -12,8 +12,8 @@ namespace xvrml {
 // twice.
 void childrenInHierarchy(Node& node, std::vector<Node*>& out);
 
-// Appends those of these children that have a place in the scene below the node. A node of the role
-// `listing` only names some of them (appendPlaced): a LoadSensor watches nodes that stand elsewhere.
+// Appends those of these children that have a place in the scene below the node. A node of the
+// role `listing` only names others (appendPlaced): a LoadSensor watches nodes that stand elsewhere.
 void childrenInScene(Node& node, std::vector<Node*>& out);
 
 // The nodes from a root of the world to a node, prototype instances and Inlines included.
