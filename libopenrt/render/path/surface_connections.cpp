@@ -53,8 +53,9 @@ Connections startConnections(const ConnectedSurfaces& surfaces, const LightVerti
     out.square[j] = distance * distance;
     out.connections[j] = connectionsAt(camera.scene, camera.states->flagsOf(lane),
                                        load(camera.states->throughput, lane));
-    store(way / distance, out.toVertex, j);
-    store(-way / distance, out.toSurface, j);
+    const Vec3f direction = distance > 0 ? way / distance : Vec3f{0, 0, 1};
+    store(direction, out.toVertex, j);
+    store(-direction, out.toSurface, j);
   }
   return out;
 }
