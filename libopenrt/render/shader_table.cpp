@@ -131,14 +131,16 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
       const int32_t number = value ? value->integer : int32_t(param.defaultValue[0]);
       std::memcpy(at, &number, sizeof number);
     } else if (param.type == RTS_FLOATS) {
-      block.lists.emplace_back();
-      if (value) block.lists.back().assign(value->floats.begin(), value->floats.end());
-      const RtsFloats list{block.lists.back().data(), uint32_t(block.lists.back().size())};
+      if (!block.pointed) block.pointed = std::make_unique<Pointed>();
+      std::vector<float>& floats = block.pointed->lists.emplace_back();
+      if (value) floats.assign(value->floats.begin(), value->floats.end());
+      const RtsFloats list{floats.data(), uint32_t(floats.size())};
       std::memcpy(at, &list, sizeof list);
     } else if (param.type == RTS_STRING) {
-      block.strings.push_back(
-          std::make_unique<std::string>(value ? value->text : std::string_view()));
-      const char* text = block.strings.back()->c_str();
+      if (!block.pointed) block.pointed = std::make_unique<Pointed>();
+      auto& strings = block.pointed->strings;
+      strings.push_back(std::make_unique<std::string>(value ? value->text : std::string_view()));
+      const char* text = strings.back()->c_str();
       std::memcpy(at, &text, sizeof text);
     } else if (param.type == RTS_TEXTURE) {
       RtsTexture texture = 0;

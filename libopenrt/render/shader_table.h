@@ -49,10 +49,13 @@ class ShaderTable {
   ShaderSlot role(uint32_t shaderId, RtsKind kind) const;
 
  private:
-  struct Block { // the parameter struct and the lists and strings it points to
-    std::unique_ptr<std::byte[]> bytes;
+  struct Pointed { // lists and strings that a parameter struct points to
     std::vector<std::vector<float>> lists;
     std::vector<std::unique_ptr<std::string>> strings;
+  };
+  struct Block { // the parameter struct
+    std::unique_ptr<std::byte[]> bytes;
+    std::unique_ptr<Pointed> pointed;   // most classes have neither lists nor strings
     const RtsClass* prepared = nullptr; // class whose `release` must be called
     Block() = default;
     Block(const Block&) = delete;

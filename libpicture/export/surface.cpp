@@ -48,9 +48,9 @@ void setPhong(Surface& surface, const Color& specular, float shininess) {
 void setAlpha(const xvrml::nodes::Appearance* appearance, bool transparent, Surface& surface) {
   surface.alpha = transparent ? Surface::Alpha::blend : Surface::Alpha::opaque;
   if (!appearance) return;
-  if (appearance->alphaMode == "OPAQUE") surface.alpha = Surface::Alpha::opaque;
-  if (appearance->alphaMode == "MASK") surface.alpha = Surface::Alpha::mask;
-  surface.alphaCutoff = between0And1(appearance->alphaCutoff);
+  if (appearance->rare.get().alphaMode == "OPAQUE") surface.alpha = Surface::Alpha::opaque;
+  if (appearance->rare.get().alphaMode == "MASK") surface.alpha = Surface::Alpha::mask;
+  surface.alphaCutoff = between0And1(appearance->rare.get().alphaCutoff);
 }
 
 } // namespace
@@ -113,7 +113,8 @@ bool alphaMultiplies(const AppearanceParts& parts, const MaterialValues& values)
   return values.colorTexture || values.emissiveTexture || values.normalTexture ||
          values.specularTexture || values.ambientTexture || values.shininessTexture ||
          xvrml::backValues(parts) ||
-         (plain && (plain->alphaMode == "OPAQUE" || plain->alphaMode == "MASK")) ||
+         (plain &&
+          (plain->rare.get().alphaMode == "OPAQUE" || plain->rare.get().alphaMode == "MASK")) ||
          nodeCast<xvrml::nodes::MultiTexture>(parts.texture) ||
          nodeCast<xvrml::nodes::TwoSidedMaterial>(parts.material);
 }

@@ -1,4 +1,7 @@
-// box.cpp: Box (clause 6.7): six flat rectangles, each with the whole texture.
+// box.cpp: Box (clause 6.7): six flat rectangles, each with the whole texture. Without a texture
+// they share their corners, because worlds have millions of boxes.
+#include <array>
+
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 
@@ -21,7 +24,7 @@ const Side sides[] = {
 
 } // namespace
 
-Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
+Mesh buildBox(const nodes::Box& node, const MeshOptions& options, Faults& faults) {
   Mesh mesh;
   V3f half(std::abs(node.size.x) / 2, std::abs(node.size.y) / 2, std::abs(node.size.z) / 2);
   if (!isFinite(node.size)) {
@@ -30,19 +33,26 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
   }
   if (!(node.size.x > 0 && node.size.y > 0 && node.size.z > 0))
     faults.note("size must be positive");
-  mesh.ownPoints.reserve(24);
-  mesh.ownTexCoords.reserve(24);
+  const bool textured = options.needTexCoords;
+  mesh.ownPoints.reserve(textured ? 24 : 8);
   mesh.ownIndices.reserve(36);
+  for (int corner = 0; corner < 8 && !textured; corner++)
+    mesh.ownPoints.push_back(toVec3f(
+        V3f(corner & 1 ? 1.f : -1.f, corner & 2 ? 1.f : -1.f, corner & 4 ? 1.f : -1.f) * half));
   for (const Side& side : sides) {
-    uint32_t first = uint32_t(mesh.ownPoints.size());
-    for (auto [s, t] : {std::pair{0.f, 0.f}, {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {
-      mesh.ownPoints.push_back(toVec3f((side.corner + side.right * s + side.up * t) * half));
+    std::array<uint32_t, 4> v{};
+    for (size_t k = 0; k < 4; k++) {
+      const float s = k == 1 || k == 2, t = k >= 2;
+      const V3f at = side.corner + side.right * s + side.up * t;
+      v[k] =
+          textured ? uint32_t(mesh.ownPoints.size()) : (at.x > 0) + 2 * (at.y > 0) + 4 * (at.z > 0);
+      if (!textured) continue;
+      mesh.ownPoints.push_back(toVec3f(at * half));
       mesh.ownTexCoords.push_back({s, t});
     }
     const auto& p = mesh.ownPoints;
-    if (hasArea(p[first], p[first + 1], p[first + 2])) // a box of height zero has only two sides
-      mesh.ownIndices.insert(mesh.ownIndices.end(),
-                             {first, first + 1, first + 2, first, first + 2, first + 3});
+    if (hasArea(p[v[0]], p[v[1]], p[v[2]])) // a box of height zero has only two sides
+      mesh.ownIndices.insert(mesh.ownIndices.end(), {v[0], v[1], v[2], v[0], v[2], v[3]});
   }
   if (mesh.ownIndices.empty()) return Mesh();
   mesh.kind = Mesh::Kind::triangles;

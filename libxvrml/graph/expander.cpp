@@ -50,7 +50,7 @@ uint64_t valueBytes(FieldType type, const void* storage) {
   });
 }
 
-uint64_t nodeBytes(Node& node) {
+uint64_t nodeBytes(const Node& node) {
   const bool dynamic = node.type().index < 0;
   uint64_t bytes = dynamic ? 600 : 300;
   for (const FieldInfo& field : node.type().fields) {
@@ -228,7 +228,7 @@ void Expander::copyFields(const Node& original, Node& copy,
     return found == index.end() ? node : copies[found->second];
   };
   for (const FieldInfo& field : original.type().fields) {
-    if (!holdsValue(field)) continue;
+    if (!holdsValue(field) || original.isUnset(field)) continue;
     visitStorage(field.type, copy.storage(field), [&](auto& target) {
       using T = std::remove_reference_t<decltype(target)>;
       const T& source = *static_cast<const T*>(original.storage(field));

@@ -75,7 +75,7 @@ class Expander {
 void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes,
                   std::unordered_map<const Node*, uint32_t>& index);
 // Returns the estimated size of a node in memory, with the values of its fields.
-uint64_t nodeBytes(Node& node);
+uint64_t nodeBytes(const Node& node);
 // Returns the estimated size of a field's value outside of its node: elements of lists, long
 // strings, pixels.
 uint64_t valueBytes(FieldType type, const void* storage);

@@ -190,9 +190,8 @@ int32_t Meshes::newGroup(uint64_t hash) {
   } else {
     freeGroup_ = groups_[size_t(id)].next;
   }
-  const auto [it, fresh] = byContent_.try_emplace(hash, id);
-  groups_[size_t(id)] = Group{hash, 0, none_, fresh ? none_ : it->second};
-  it->second = id;
+  groups_[size_t(id)] = Group{hash, 0, none_, none_};
+  byContent_.insert(hash, uint32_t(id));
   return id;
 }
 
@@ -200,12 +199,10 @@ int32_t Meshes::newGroup(uint64_t hash) {
 void Meshes::join(int32_t mesh) {
   Entry& entry = entries_[size_t(mesh)];
   const uint64_t hash = contentHash(*entry.mesh);
-  if (byContent_.empty()) byContent_.reserve(entries_.size());
-  const auto known = byContent_.find(hash);
-  int32_t id = known == byContent_.end() ? none_ : known->second;
-  while (id != none_ && !sameContent(mesh, groups_[size_t(id)].first))
-    id = groups_[size_t(id)].next;
-  if (id == none_) id = newGroup(hash);
+  const uint32_t known = byContent_.find(hash, [&](uint32_t group) {
+    return groups_[group].hash == hash && sameContent(mesh, groups_[group].first);
+  });
+  const int32_t id = known == IndexTable::none ? newGroup(hash) : int32_t(known);
   Group& group = groups_[size_t(id)];
   if (group.first == none_) {
     group.first = mesh;
@@ -228,10 +225,7 @@ void Meshes::leave(int32_t mesh) {
   if (entry.previous != none_) entries_[size_t(entry.previous)].next = entry.next;
   if (group.first == mesh) group.first = entry.next;
   if (group.first == none_) {
-    int32_t* link = &byContent_[group.hash];
-    while (*link != entry.group) link = &groups_[size_t(*link)].next;
-    *link = group.next;
-    if (byContent_[group.hash] == none_) byContent_.erase(group.hash);
+    byContent_.erase(group.hash, uint32_t(entry.group));
     group.next = freeGroup_;
     freeGroup_ = entry.group;
   }

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
+#include "base/index_table.h"
 #include "geometry/half_space.h"
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
@@ -91,7 +91,7 @@ class Meshes {
     uint64_t hash = 0;
     uint32_t users = 0;
     int32_t first = none_; // the member that stands for all
-    int32_t next = none_;  // next group with the same hash, or next free group
+    int32_t next = none_;  // next free group
   };
   bool sameContent(int32_t a, int32_t b);
   void join(int32_t mesh); // joins the group of equal content
@@ -114,8 +114,8 @@ class Meshes {
   NodeMap<int32_t> index_;
   std::vector<Group> groups_;
   int32_t freeGroup_ = none_;
-  std::unordered_map<uint64_t, int32_t> byContent_; // first group of each hash
-  int32_t cornersOf_ = none_;                       // the mesh that corners_ belongs to
+  IndexTable byContent_;      // groups by their hash
+  int32_t cornersOf_ = none_; // the mesh that corners_ belongs to
   std::vector<Vec3f> corners_;
 };
 

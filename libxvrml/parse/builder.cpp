@@ -133,12 +133,14 @@ bool Builder::openNode(const Name& type, const Name* def) {
     if (!fresh) scope().earlier.emplace(&node, std::exchange(named->second, frame.node));
     scope().defined.push_back(def->text);
   }
+  frame.firstGiven = given_.size();
   nodes_.push_back(std::move(frame));
   return true;
 }
 
 void Builder::closeNode(bool good) {
   NodeFrame frame = std::move(nodes_.back());
+  given_.resize(nodes_.back().firstGiven);
   nodes_.pop_back();
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
@@ -285,6 +287,12 @@ bool Builder::hasField(std::string_view name) const {
   return type.find(spelled(type, name)) || lacksField(type, name);
 }
 
+// Returns whether the field of the innermost open node has been read before.
+bool Builder::isGiven(const Name& name) const {
+  const auto first = given_.begin() + ptrdiff_t(nodes_.back().firstGiven);
+  return std::find(first, given_.end(), name.text) != given_.end();
+}
+
 FieldTarget Builder::openField(const Name& name) {
   NodeFrame& frame = nodes_.back();
   Node& node = *frame.node;
@@ -305,11 +313,11 @@ FieldTarget Builder::openField(const Name& name) {
                                         describe(name), word(field->access), node.type().name));
     return {};
   }
-  if (std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end()) {
+  if (isGiven(name)) {
     locator_.warn(name.at,
                   fmt::format("field {} is given twice; the last one counts", describe(name)));
   } else {
-    frame.given.push_back(name.text);
+    given_.push_back(name.text);
   }
   frame.fieldAt = name.at;
   return targetOf(*field, false);
@@ -319,9 +327,7 @@ FieldTarget Builder::resumeField(const Name& name) {
   NodeFrame& frame = nodes_.back();
   const NodeType& type = frame.node->type();
   const FieldInfo* field = type.find(spelled(type, name.text));
-  const bool given =
-      std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end();
-  if (!field || !given || !isMultiple(field->type)) return openField(name);
+  if (!field || !isGiven(name) || !isMultiple(field->type)) return openField(name);
   frame.fieldAt = name.at;
   return targetOf(*field, true);
 }

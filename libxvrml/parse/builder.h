@@ -71,8 +71,8 @@ class Builder : public ParseSink {
     Mark mark;
     // Number of nodes in the open node, shared ones counted at each use.
     uint64_t expanded = 1;
-    std::vector<std::string_view> given; // fields read so far
-    const FieldInfo* field = nullptr;    // the field that is being read
+    size_t firstGiven = 0;            // its fields in given_
+    const FieldInfo* field = nullptr; // the field that is being read
     const char* fieldAt = nullptr;
     bool declares = false; // the node may declare fields
   };
@@ -139,6 +139,7 @@ class Builder : public ParseSink {
   std::string_view word(Access access) const;
   bool isFirst(const std::string& name) { return reported_.insert(name).second; }
   bool lacksField(const NodeType& type, std::string_view name) const;
+  bool isGiven(const Name& name) const;
   FieldTarget targetOf(const FieldInfo& field, bool resumed);
   const NodeType* typeOf(std::string_view name, bool use) const;
   bool isMissingField(const NodeType& type, const Name& name);
@@ -163,6 +164,7 @@ class Builder : public ParseSink {
   std::deque<ScopeFrame> scopes_; // deques do not move their elements
   std::deque<Declaration> declarations_;
   std::vector<NodeFrame> nodes_;
+  std::vector<std::string_view> given_; // fields read so far, of the open nodes one after the other
   std::vector<NodeTarget> nodeTargets_;
   std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1 of named nodes
   std::unordered_set<std::string> reported_;           // nodes and fields of X3D that were reported

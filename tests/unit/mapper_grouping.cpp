@@ -36,7 +36,8 @@ TEST_F(MapGrouping, InstancesMustReplaceMuchMoreThanThemselves) {
 TEST_F(MapGrouping, StaticGeometryIsOneObjectAlsoWhenTheWorldRuns) {
   load(repeat("Transform { translation 1 0 0 children " + box + " }\n", 20) +
        "DEF Clock TimeSensor { }");
-  EXPECT_EQ(reasons(), "world | merged static geometry of 20 shapes | 240 20 1\n");
+  EXPECT_EQ(reasons(),
+            "world | merged static geometry of 20 shapes, each with its own material | 240 20 1\n");
 }
 
 TEST_F(MapGrouping, WhatARouteReachesStandsAlone) {
@@ -117,9 +118,8 @@ TEST_F(MapGrouping, OrtStaticMergesWhatEventsReach) {
 TEST_F(MapGrouping, OrtInstanceIsAnObjectHoweverSmall) {
   load("DEF B ORTInstance { children " + box + " }\n" +
        repeat("Transform { translation 2 0 0 children USE B }\n", 3));
-  EXPECT_EQ(
-      reasons(),
-      "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 shapes | 0 0 1\n");
+  EXPECT_EQ(reasons(), "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 "
+                       "shapes, each with its own material | 0 0 1\n");
   EXPECT_EQ(frame().scene.uniqueTriangles, 12u);
 }
 

@@ -16,6 +16,7 @@ TEST(GeometryBox, IsClosedAndFacesOutwards) {
   EXPECT_NEAR(signedVolume(built.mesh), 8, 1e-9);
   EXPECT_NEAR(area(built.mesh), 24, 1e-9);
   EXPECT_TRUE(built.mesh.normals.empty()) << "flat";
+  EXPECT_EQ(built.mesh.points.size(), 8u) << "sides share corners where there is no texture";
   EXPECT_TRUE(built.mesh.solid);
   EXPECT_EQ(built.diagnostics.warnings(), 0u);
   box->size = {1, 2, 3};

@@ -56,9 +56,11 @@ TEST(RareFields, TakeNoRoomBeforeOneIsSet) {
   const FieldInfo& another = *material.type().find("normalTextureMapping");
   ASSERT_TRUE(field.rare);
   const Node& read = material;
+  EXPECT_TRUE(read.isUnset(field));
   EXPECT_EQ(read.storage(field), std::as_const(other).storage(field)) << "the shared default";
   EXPECT_EQ(material.get(field), Value(SFString()));
   EXPECT_TRUE(material.set(field, SFString("picture")));
+  EXPECT_FALSE(read.isUnset(field) || read.isUnset(*material.type().find("shininess")));
   EXPECT_EQ(material.get(field), Value(SFString("picture")));
   EXPECT_EQ(material.rare.get().diffuseTextureMapping, "picture");
   EXPECT_EQ(read.storage(field), material.storage(field));

@@ -382,9 +382,14 @@ size_t sizeOf(const FieldInfo& field) {
 TEST(Nodes, StorageDoesNotOverlap) {
   constexpr size_t padding = alignof(Node); // a member may start in the tail padding of its base
   for (const NodeType* type : nodeTypes()) {
-    size_t end = sizeof(Node) - padding;
+    size_t end = sizeof(Node) - padding, endOfRare = 0;
     for (const FieldInfo& field : type->fields) {
       if (!stored(field)) continue;
+      if (field.rare) {
+        EXPECT_GE(field.rareOffset, endOfRare) << type->name << '.' << field.name;
+        endOfRare = field.rareOffset + sizeOf(field);
+        continue;
+      }
       EXPECT_GE(field.offset, end) << type->name << '.' << field.name;
       end = field.offset + sizeOf(field);
     }

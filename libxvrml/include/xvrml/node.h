@@ -78,6 +78,7 @@ template <class T> class RareFields {
     if (!own_) own_ = std::make_unique<T>();
     return *own_;
   }
+  bool isMade() const { return own_ != nullptr; }
 
  private:
   std::unique_ptr<T> own_;
@@ -86,12 +87,14 @@ template <class T> class RareFields {
 struct RareAccess {
   const void* (*get)(const void* fields);
   void* (*make)(void* fields);
+  bool (*isMade)(const void* fields);
 };
 template <class T> inline constexpr RareAccess rareAccess = {
     [](const void* fields) -> const void* {
       return &static_cast<const RareFields<T>*>(fields)->get();
     },
-    [](void* fields) -> void* { return &static_cast<RareFields<T>*>(fields)->make(); }};
+    [](void* fields) -> void* { return &static_cast<RareFields<T>*>(fields)->make(); },
+    [](const void* fields) { return static_cast<const RareFields<T>*>(fields)->isMade(); }};
 
 struct FieldInfo {
   std::string name;
@@ -195,6 +198,11 @@ class Node {
     if (!field.rare) return const_cast<Node*>(this)->storage(field);
     const char* const at = reinterpret_cast<const char*>(this) + field.offset;
     return static_cast<const char*>(field.rare->get(at)) + field.rareOffset;
+  }
+  // Returns whether the field is a rare one of a node that has set none of these: it has its
+  // default.
+  bool isUnset(const FieldInfo& field) const {
+    return field.rare && !field.rare->isMade(reinterpret_cast<const char*>(this) + field.offset);
   }
   Value get(const FieldInfo& field) const;
   // Sets a field. Returns false, and changes nothing, if the value's type is not the field's.

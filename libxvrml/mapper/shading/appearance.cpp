@@ -97,20 +97,32 @@ bool Surfaces::take(const Entry& entry, uint64_t bytes) {
 // Gives the entry the shared shader of these values. Returns false if there is none yet: then the
 // entry is its first user, and the caller makes the shader.
 bool Surfaces::share(Entry& entry, const Key& key) {
-  const auto [it, fresh] = shared_.try_emplace(key);
-  it->second.key = key;
-  entry.shared = &it->second;
-  ++entry.shared->users;
-  entry.surface.shader = entry.shared->shader;
+  uint32_t at = sharedByKey_.find(key.low, [&](uint32_t i) { return shared_[i].key == key; });
+  const bool fresh = at == IndexTable::none;
+  if (fresh && freeShared_.empty()) {
+    at = uint32_t(shared_.size());
+    shared_.emplace_back();
+  } else if (fresh) {
+    at = freeShared_.back();
+    freeShared_.pop_back();
+  }
+  if (fresh) {
+    shared_[at] = {0, 0, key};
+    sharedByKey_.insert(key.low, at);
+  }
+  entry.shared = at;
+  ++shared_[at].users;
+  entry.surface.shader = shared_[at].shader;
   return !fresh;
 }
 
 // Takes the entry away from its shared shader. The last user keeps the shader as its own.
 void Surfaces::leaveShared(Entry& entry) {
-  Shared& shared = *std::exchange(entry.shared, nullptr);
-  if (--shared.users > 0) return;
-  entry.own = shared.shader;
-  shared_.erase(Key(shared.key));
+  const uint32_t at = std::exchange(entry.shared, IndexTable::none);
+  if (--shared_[at].users > 0) return;
+  entry.own = shared_[at].shader;
+  sharedByKey_.erase(shared_[at].key.low, at);
+  freeShared_.push_back(at);
 }
 
 Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
@@ -187,18 +199,18 @@ void Surfaces::makeSurface(Entry& entry) {
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
   const bool multiplied = multiplies(entry);
-  const bool first = entry.own == 0 && !entry.shared;
-  if (entry.shared || (first && mayShare(entry))) {
+  const bool first = entry.own == 0 && !isShared(entry);
+  if (isShared(entry) || (first && mayShare(entry))) {
     const Key key = keyOf(parts, texture, multiplied, entry.use.vertexAlpha);
-    if (entry.shared && entry.shared->key == key) {
-      entry.surface.shader = entry.shared->shader;
+    if (isShared(entry) && shared_[entry.shared].key == key) {
+      entry.surface.shader = shared_[entry.shared].shader;
       return;
     }
-    if (entry.shared) leaveShared(entry);
+    if (isShared(entry)) leaveShared(entry);
     if (first && share(entry, key)) return;
   }
   if (entry.own == 0 && !take(entry, bytesOfShader)) {
-    if (entry.shared) leaveShared(entry);
+    if (isShared(entry)) leaveShared(entry);
     entry.surface = Surface();
     return;
   }
@@ -211,7 +223,7 @@ void Surfaces::makeSurface(Entry& entry) {
   ShaderSetup& shader = *setup;
   shader.leaveOutDefaults();
   entry.surface.shader = shader.id();
-  (entry.shared ? entry.shared->shader : entry.own) = shader.id();
+  (isShared(entry) ? shared_[entry.shared].shader : entry.own) = shader.id();
   const auto* material = nodeCast<nodes::Material>(parts.material);
   // If the custom shader is unavailable, the surface is shaded as a default Material.
   if (!material && parts.shader) {
@@ -236,7 +248,7 @@ void Surfaces::makeSurface(Entry& entry) {
 // false, and leaves the appearance out, if the world's budget does not allow the shader.
 bool Surfaces::setUp(Entry& entry, RTid Entry::*own, RTid shaderClass,
                      std::optional<ShaderSetup>& setup) {
-  if (entry.shared) leaveShared(entry);
+  if (isShared(entry)) leaveShared(entry);
   if (entry.*own == 0 && !take(entry, bytesOfShader)) {
     entry.surface = Surface();
     return false;
@@ -306,7 +318,7 @@ void Surfaces::clear() {
 
 void Surfaces::forget(Entry& entry) {
   quota_.give(entry.bytes);
-  if (entry.shared) leaveShared(entry);
+  if (isShared(entry)) leaveShared(entry);
   if (entry.own != 0) {
     rtDeleteShader(entry.own);
     quota_.give(bytesOfShader);

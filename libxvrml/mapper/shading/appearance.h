@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
+#include "base/index_table.h"
 #include "mapper/ration.h"
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
@@ -75,22 +77,20 @@ class Surfaces {
     uint64_t low = 0, high = 0;
     bool operator==(const Key&) const = default;
   };
-  struct HashOfKey {
-    size_t operator()(const Key& key) const { return key.low; }
-  };
   // A shader of the class VRML97 for all appearances whose values have the hash `key`.
   struct Shared {
     RTid shader = 0;
-    uint32_t users = 0;
+    uint32_t users = 0; // 0: the place is free
     Key key;
   };
   struct Entry {
     NodeRef appearance;
     Surface surface;
-    RTid own = 0;             // own shader of the class VRML97
-    RTid physical = 0;        // own shader of the class Physical
-    RTid x3d = 0;             // own shader of the class X3DMaterial
-    Shared* shared = nullptr; // shader shared with equal appearances; then `own` is 0
+    RTid own = 0;      // own shader of the class VRML97
+    RTid physical = 0; // own shader of the class Physical
+    RTid x3d = 0;      // own shader of the class X3DMaterial
+    // Index into shared_, of a shader shared with equal appearances; then `own` is 0.
+    uint32_t shared = IndexTable::none;
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
     bool textured = false;
@@ -109,6 +109,7 @@ class Surfaces {
   bool multiplies(const Entry& entry) const;
   bool mayShare(const Entry& entry) const;
   Key keyOf(const AppearanceParts& parts, RTid texture, bool multiply, bool vertexAlpha) const;
+  bool isShared(const Entry& entry) const { return entry.shared != IndexTable::none; }
   bool share(Entry& entry, const Key& key);
   void leaveShared(Entry& entry);
   bool take(const Entry& entry, uint64_t bytes);
@@ -123,7 +124,9 @@ class Surfaces {
   CustomShaders& custom_;
   Quota quota_;
   Entries entries_[8]; // by placeOf()
-  std::unordered_map<Key, Shared, HashOfKey> shared_;
+  std::vector<Shared> shared_;
+  std::vector<uint32_t> freeShared_;
+  IndexTable sharedByKey_;
   uint64_t sets_ = 0;
 };
 

@@ -14,12 +14,13 @@ enum AlphaMode { opaque, mask, blend };
 
 // AUTO blends: an opaque surface then has an alpha of 1 everywhere (ISO/IEC 19775-1:2023 12.4.2).
 int alphaModeOf(const nodes::Appearance* appearance, World& world) {
-  if (!appearance || appearance->alphaMode == "AUTO" || appearance->alphaMode == "BLEND")
+  if (!appearance || appearance->rare.get().alphaMode == "AUTO" ||
+      appearance->rare.get().alphaMode == "BLEND")
     return blend;
-  if (appearance->alphaMode == "OPAQUE") return opaque;
-  if (appearance->alphaMode == "MASK") return mask;
+  if (appearance->rare.get().alphaMode == "OPAQUE") return opaque;
+  if (appearance->rare.get().alphaMode == "MASK") return mask;
   world.diagnostics.warn(appearance->source,
-                         "alphaMode is \"" + appearance->alphaMode +
+                         "alphaMode is \"" + appearance->rare.get().alphaMode +
                              "\", expected AUTO, OPAQUE, MASK or BLEND: AUTO is used");
   return blend;
 }
@@ -36,7 +37,7 @@ template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
   shader.number("normalScale", m.normalScale, 0, 100);
   shader.number("transparency", m.transparency, 0, 1);
   shader.integer("alphaMode", alphaModeOf(parts.plain, world));
-  shader.number("alphaCutoff", parts.plain ? parts.plain->alphaCutoff : 0.5f, 0, 1);
+  shader.number("alphaCutoff", parts.plain ? parts.plain->rare.get().alphaCutoff : 0.5f, 0, 1);
   const nodes::TextureTransform* t = firstTransform(parts.textureTransform);
   shader.matrix("textureTransform",
                 t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());

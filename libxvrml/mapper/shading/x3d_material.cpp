@@ -89,7 +89,8 @@ void setBack(ShaderSetup& shader, const nodes::Material& m, const AppearancePart
 }
 
 bool isTransparentMode(const nodes::Appearance* appearance) {
-  return !appearance || appearance->alphaMode == "AUTO" || appearance->alphaMode == "BLEND";
+  return !appearance || appearance->rare.get().alphaMode == "AUTO" ||
+         appearance->rare.get().alphaMode == "BLEND";
 }
 
 } // namespace
@@ -118,7 +119,7 @@ void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse us
   shader.integer("filled", isUnfilled(parts.plain) ? 0 : 1);
   shader.integer("lit", parts.material ? 1 : 0);
   shader.integer("alphaMode", alphaModeOf(parts.plain, world));
-  shader.number("alphaCutoff", parts.plain ? parts.plain->alphaCutoff : 0.5f, 0, 1);
+  shader.number("alphaCutoff", parts.plain ? parts.plain->rare.get().alphaCutoff : 0.5f, 0, 1);
   Node* texture = parts.texture;
   bool twoSided = false;
   setNoPictures(shader, front);

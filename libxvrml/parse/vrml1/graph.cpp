@@ -15,7 +15,8 @@ NodeRef Graph::finish(NodeRef node) {
     RangeFault fault;
     // A Transform may mirror what it holds: negative scales are meant.
     if (!field.range.bounded() || field.type == FieldType::SFRotation || field.name == "scale" ||
-        !holdsValue(field) || enforceRange(field, nullptr, node->storage(field), &fault))
+        !holdsValue(field) || node->isUnset(field) ||
+        enforceRange(field, nullptr, node->storage(field), &fault))
       continue;
     if (reported_.insert(node->type().name + '.' + field.name).second)
       state_.diagnostics.warn(node->source, describe(node->type(), field, fault));
