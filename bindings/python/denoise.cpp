@@ -68,48 +68,22 @@ py::object denoised(const PictureObject& self, long long threads, bool audit) {
   return py::cast(std::move(made));
 }
 
-// Returns the numbers of an array of shape (height, width, 3), or with alpha (height, width, 4).
-py::array_t<float> imageOf(const py::object& given, const char* name, bool mayHaveAlpha) {
-  const std::string expected = mayHaveAlpha
-                                   ? "numbers of shape (height, width, 3) or (height, width, 4)"
-                                   : "numbers of shape (height, width, 3)";
-  const py::array any = numberArray(given, name, expected);
-  const auto image = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(any);
-  constexpr py::ssize_t most = 65536;
-  if (!image || image.ndim() != 3 || image.shape(0) < 1 || image.shape(1) < 1 ||
-      image.shape(0) > most || image.shape(1) > most ||
-      (image.shape(2) != 3 && !(mayHaveAlpha && image.shape(2) == 4)))
-    throw py::value_error(fmt::format("{}: {} expected, not {}", name, expected,
-                                      std::string(py::str(any.attr("shape")))));
-  return image;
-}
-
-// Returns the numbers of such an array with alpha, which is 1 if it has none.
-std::vector<float> rgbaOf(const py::array_t<float>& image) {
-  const auto components = size_t(image.shape(2));
-  std::vector<float> rgba(size_t(image.size()) / components * 4, 1);
-  const float* from = image.data();
-  for (size_t i = 0; i < rgba.size(); i += 4, from += components)
-    std::copy_n(from, components, &rgba[i]);
-  return rgba;
-}
-
 py::array doubt(const PictureObject& self, const py::object& colours) {
   needErrorBars(self.picture);
-  const py::array_t<float> image = imageOf(colours, "colours", true);
+  const py::array_t<float> image = imageArray(colours, "colours", true);
   const picture::Picture& raw = self.picture;
   if (image.shape(0) != raw.height || image.shape(1) != raw.width)
     throw py::value_error(fmt::format("colours: an array of the size of the picture expected, "
                                       "{}x{}, not {}x{}",
                                       raw.width, raw.height, image.shape(1), image.shape(0)));
-  const std::vector<float> made = picture::doubtOf(raw, rgbaOf(image));
+  const std::vector<float> made = picture::doubtOf(raw, rgbaOfImage(image));
   py::array_t<float> out({raw.height, raw.width});
   std::copy(made.begin(), made.end(), out.mutable_data());
   return out;
 }
 
 void addGuide(picture::Picture& picture, const char* name, const py::object& given) {
-  const py::array_t<float> image = imageOf(given, name, false);
+  const py::array_t<float> image = imageArray(given, name, false);
   if (image.shape(0) != picture.height || image.shape(1) != picture.width)
     throw py::value_error(fmt::format("{}: an array of the size of colour expected, {}x{}, not "
                                       "{}x{}",
@@ -122,7 +96,7 @@ void addGuide(picture::Picture& picture, const char* name, const py::object& giv
 
 py::array denoise(const py::object& colour, const py::object& albedo, const py::object& normal,
                   long long threads) {
-  const py::array_t<float> image = imageOf(colour, "colour", true);
+  const py::array_t<float> image = imageArray(colour, "colour", true);
   if (albedo.is_none() != normal.is_none())
     throw py::value_error("albedo and normal: both or none expected");
   const auto components = size_t(image.shape(2));
@@ -130,7 +104,7 @@ py::array denoise(const py::object& colour, const py::object& albedo, const py::
   noisy.transparent = components == 4;
   noisy.height = int(image.shape(0));
   noisy.width = int(image.shape(1));
-  noisy.planes[RT_RGBA] = rgbaOf(image);
+  noisy.planes[RT_RGBA] = rgbaOfImage(image);
   refuseInfinite(noisy.planes[RT_RGBA], "colour");
   if (!albedo.is_none()) {
     addGuide(noisy, "albedo", albedo);

@@ -235,6 +235,7 @@ void defineBrowser(py::module_& module);
 void defineViewer(py::module_& module);
 void definePicture(py::module_& module);
 void defineDenoise(py::module_& module); // after definePicture()
+void defineCompare(py::module_& module); // after definePicture()
 void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);
 void defineRenderer(py::module_& module);   // after defineShapes()

@@ -104,27 +104,25 @@ float distance(const Colour& a, const Colour& b) {
 
 // --- Filters ---
 
-// Returns the plane filtered by a kernel along the rows and one along the columns; its edges are
-// continued.
+// Returns the plane filtered by a kernel along the rows and one along the columns, of one length;
+// its edges are continued.
 Plane filtered(const Plane& in, const Kernel& across, const Kernel& down) {
-  const int radius = int(across.size() / 2), below = int(down.size() / 2);
+  const int radius = int(across.size() / 2);
+  const auto width = size_t(in.width);
   Plane rows(in.width, in.height), out(in.width, in.height);
+  const auto add = [width](float weight, const float* from, float* to) {
+    for (size_t x = 0; x < width; ++x) to[x] += weight * from[x];
+  };
   forRows(in.height, [&](int y) {
     const float* const from = in.row(y);
-    for (int x = 0; x < in.width; ++x) {
-      float sum = 0;
-      for (int k = -radius; k <= radius; ++k)
-        sum += across[size_t(k + radius)] * from[std::clamp(x + k, 0, in.width - 1)];
-      rows.row(y)[x] = sum;
-    }
+    std::vector<float> longer(width + 2 * size_t(radius), from[0]);
+    std::copy_n(from, width, longer.begin() + radius);
+    std::fill_n(longer.end() - radius, radius, from[width - 1]);
+    for (size_t k = 0; k < across.size(); ++k) add(across[k], &longer[k], rows.row(y));
   });
   forRows(in.height, [&](int y) {
-    float* const to = out.row(y);
-    for (int k = -below; k <= below; ++k) {
-      const float* const from = rows.row(std::clamp(y + k, 0, in.height - 1));
-      const float weight = down[size_t(k + below)];
-      for (int x = 0; x < in.width; ++x) to[x] += weight * from[x];
-    }
+    for (int k = -radius; k <= radius; ++k)
+      add(down[size_t(k + radius)], rows.row(std::clamp(y + k, 0, in.height - 1)), out.row(y));
   });
   return out;
 }

@@ -203,6 +203,11 @@ bool overlap(const ChangedPlace& a, const ChangedPlace& b) {
 
 } // namespace
 
+const char* changedColour(const ChangedPlace& place) {
+  constexpr const char* names[] = {"red", "green", "blue", "luminance"};
+  return names[place.colour];
+}
+
 NoiseTest testNoise(const Picture& a, const Picture& b, Noise noise, double rate) {
   const Differences differences(a, b);
   NoiseTest test;

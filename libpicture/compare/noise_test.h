@@ -29,6 +29,9 @@ struct ChangedPlace {
   double chance = 1;             // probability of such a difference by noise
 };
 
+// Returns "red", "green", "blue" or "luminance".
+const char* changedColour(const ChangedPlace& place);
+
 // The mean change of a square of pixels that would have been found in half of all squares.
 struct SmallestChange {
   int width = 0, height = 0; // pixels

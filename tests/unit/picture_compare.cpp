@@ -2,6 +2,7 @@
 // are found, and FLIP is that of the paper.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -277,6 +278,32 @@ TEST(Flips, OfGreenAndBlueAreOne) {
           blue = made([&] { return j++ % 3 == 2 ? 1.0f : 0.0f; }, 32, 32);
   green.linear = blue.linear = false;
   EXPECT_NEAR(flipOf(green, blue).mean, 1, 1e-4);
+}
+
+// The numbers are those of the authors' program (flip-evaluator 1.7).
+TEST(Flips, AreThoseOfTheAuthors) {
+  constexpr int width = 60, height = 40;
+  Picture pictures[2];
+  for (Picture& picture : pictures) {
+    picture.width = width;
+    picture.height = height;
+    picture.linear = false;
+    for (int i = 0; i < width * height * 4; ++i) {
+      const int x = i / 4 % width, y = i / 4 / width, k = i % 4;
+      const float plain = float((x / 4 * 7 + y / 5 * 13 + k * 29) % 32) / 31,
+                  noise = (float((x * 31 + y * 17 + k * 11) % 23) / 23 - .5f) * .3f;
+      const float value = &picture == pictures ? plain : std::clamp(plain + noise, 0.0f, 1.0f);
+      picture.planes[RT_RGBA].push_back(k < 3 ? value : 1);
+    }
+  }
+  EXPECT_NEAR(flipOf(pictures[0], pictures[1]).mean, .127718, 2e-6);
+  for (Picture& picture : pictures) {
+    picture.linear = true;
+    for (float& v : picture.planes[RT_RGBA]) v = v * v * 20;
+  }
+  const Flip flip = flipOf(pictures[0], pictures[1]);
+  EXPECT_NEAR(flip.mean, .135840, 2e-6);
+  EXPECT_EQ(flip.exposures, 2);
 }
 
 } // namespace

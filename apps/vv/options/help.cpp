@@ -22,8 +22,8 @@ constexpr std::string_view exitCodes = "exit codes", everything = "all";
 
 // The options of the short text.
 constexpr std::string_view usual[] = {
-    "--output",   "--size", "--spp",    "--error", "--preset",  "--from",  "--viewpoint", "--fit",
-    "--exposure", "--time", "--shader", "--check", "--explain", "--stats", "--help"};
+    "--output", "--size",     "--spp",  "--error",  "--preset", "--from",    "--viewpoint",
+    "--fit",    "--exposure", "--time", "--shader", "--check",  "--explain", "--stats"};
 
 // Breaks `text` into lines of at most `columns`; all lines except the first are indented by
 // `indent` blanks.

@@ -698,13 +698,13 @@ const OptionInfo table[] = {
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
      "interrupted. In the window, reload the world and keep the view.",
      [](Options& o, const std::string&) { o.watch = true; }, with(needs("-o,the window,vv serve"))},
-    {"--samples", "N,M", "Compare",
+    {"--samples", "N,M", "Inspect",
      "Samples per pixel of the two pictures of vv compare. With the same number twice they "
      "have equal noise, and small changes are found best; with --variance, the variances are "
      "divided by them.",
      [](Options& o, const std::string& v) { o.compared.samples = readSamplesOfTwo(v); },
      with(needs("vv compare", samplesNeed))},
-    {"--variance", "", "Compare",
+    {"--variance", "", "Inspect",
      "Judge single pixels by the channel variance of both files, which is that of "
      "the pixel, or of its samples if a channel or --samples has their number.",
      nullptr, with(needs("vv compare"))},

@@ -1134,6 +1134,16 @@ def denoise(
     ...
 
 
+def compare(
+    a: Union[_Path, Picture, npt.ArrayLike],
+    b: Union[_Path, Picture, npt.ArrayLike],
+    *,
+    samples: Optional[Tuple[int, int]] = ...,
+    variance: bool = ...,
+) -> Dict[str, Any]:
+    ...
+
+
 def merge(
     files: Iterable[_Path],
     output: Optional[_Path] = ...,
