@@ -70,6 +70,7 @@ constexpr Interface interfaces[] = {
     {"25.3.4", "GeoLOD", 0, 2, 12, 1},
     {"25.3.6", "GeoOrigin", 0, 1, 2, 0},
     {"25.3.10", "GeoTransform", 2, 8, 4, 0},
+    {"25.3.11", "GeoViewpoint", 1, 11, 3, 2},
     {"26.3.1", "HAnimDisplacer", 0, 5, 0, 0},
     {"26.3.2", "HAnimHumanoid", 0, 28, 2, 0},
     {"26.3.3", "HAnimJoint", 2, 17, 2, 0},
