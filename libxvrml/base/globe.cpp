@@ -132,6 +132,8 @@ Vec3d toGeocentric(const Geodetic& place, const Ellipsoid& ellipsoid) {
 
 } // namespace
 
+bool comesEastFirst(const MFString& geoSystem) { return systemOf(geoSystem).swapped; }
+
 std::optional<GlobePlace> placeOnGlobe(const MFString& geoSystem, const Vec3d& coordinates) {
   const System system = systemOf(geoSystem);
   constexpr double degree = std::numbers::pi / 180;

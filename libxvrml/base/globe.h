@@ -20,12 +20,16 @@ struct GlobePlace {
 // zone), or "GC" (geocentric metres). None for another system and for numbers that name no place.
 std::optional<GlobePlace> placeOnGlobe(const MFString& geoSystem, const Vec3d& coordinates);
 
+// Returns whether the coordinates of a geoSystem begin with the longitude or the easting.
+bool comesEastFirst(const MFString& geoSystem);
+
 // The place that the coordinates of a world count from: that of its first geospatial node or
 // GeoOrigin. Floats keep less than a metre at 6,400 km from the origin. All files of a world share
 // one.
 struct GlobeOrigin {
   std::optional<GlobePlace> place;
-  bool turns = false; // rotateYUp of the GeoOrigin: the axes are those of the place
+  bool turns = false;    // rotateYUp of the GeoOrigin: the axes are those of the place
+  bool isCorner = false; // the place is the corner of a grid; a better one replaces it
 };
 using GlobeOriginPtr = std::shared_ptr<GlobeOrigin>;
 // Returns the origin of the world whose file holds the node; null: the centre of the globe.

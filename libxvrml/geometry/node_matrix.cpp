@@ -30,16 +30,10 @@ Matrix frameOf(const GlobePlace& place) {
   return matrix;
 }
 
-// Returns the matrix of a place on the globe, as the world counts (GlobeOrigin).
+// Returns the matrix of a place on the globe, as the world counts.
 Matrix placeIn(const Node& node, const MFString& system, const Vec3d& coordinates) {
   const std::optional<GlobePlace> place = placeOnGlobe(system, coordinates);
-  if (!place) return {};
-  const GlobeOrigin* const origin = globeOriginOf(node);
-  if (!origin || !origin->place) return frameOf(*place);
-  GlobePlace base = *origin->place;
-  if (!origin->turns) base = {base.center, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  Matrix toBase;
-  return invert(frameOf(base), toBase) ? compose(toBase, frameOf(*place)) : Matrix();
+  return place ? compose(globeToWorld(node), frameOf(*place)) : Matrix();
 }
 Matrix locationMatrix(const Node& node) {
   const auto& location = static_cast<const nodes::GeoLocation&>(node);
@@ -82,6 +76,15 @@ MatrixFunction functionFor(int index) {
 }
 
 } // namespace
+
+Matrix globeToWorld(const Node& node) {
+  const GlobeOrigin* const origin = globeOriginOf(node);
+  if (!origin || !origin->place) return {};
+  GlobePlace base = *origin->place;
+  if (!origin->turns) base = {base.center, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Matrix toBase;
+  return invert(frameOf(base), toBase) ? toBase : Matrix();
+}
 
 bool hasMatrix(const Node& node) { return functionFor(node.type().index) != nullptr; }
 

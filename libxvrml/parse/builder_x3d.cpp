@@ -78,18 +78,19 @@ void Builder::noteGlobe(const NodeFrame& frame) {
   const auto* origin = nodeCast<nodes::GeoOrigin>(&node);
   const auto* location = nodeCast<nodes::GeoLocation>(&node);
   const auto* viewpoint = nodeCast<nodes::GeoViewpoint>(&node);
-  if ((!origin && !location && !viewpoint) || inTemplate()) return;
-  const auto place = origin     ? placeOnGlobe(origin->geoSystem, origin->geoCoords)
-                     : location ? placeOnGlobe(location->geoSystem, location->geoCoords)
-                                : placeOnGlobe(viewpoint->geoSystem, viewpoint->position);
+  const auto* grid = nodeCast<nodes::GeoElevationGrid>(&node);
+  if ((!origin && !location && !viewpoint && !grid) || inTemplate()) return;
+  const auto place = origin      ? placeOnGlobe(origin->geoSystem, origin->geoCoords)
+                     : location  ? placeOnGlobe(location->geoSystem, location->geoCoords)
+                     : viewpoint ? placeOnGlobe(viewpoint->geoSystem, viewpoint->position)
+                                 : placeOnGlobe(grid->geoSystem, grid->geoGridOrigin);
   if (!place) {
     locator_.warn(frame.type.at,
                   fmt::format("{} names no place: expected the geoSystem GD, UTM with a zone such "
                               "as Z10, or GC, and coordinates within it (ISO/IEC 19775-1 25.2.3)",
                               describe(frame.type)));
-  } else if (!state_.globe->place) {
-    state_.globe->place = place;
-    state_.globe->turns = origin && origin->rotateYUp;
+  } else if (!state_.globe->place || (state_.globe->isCorner && !grid)) {
+    *state_.globe = {place, origin && origin->rotateYUp, grid != nullptr};
   }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/globe.h"
+#include "geometry/mesh.h"
 #include "geometry/node_matrix.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
@@ -100,6 +101,31 @@ TEST(Globe, AWorldCountsFromItsFirstPlace) {
   EXPECT_NEAR(north.x[3][0], 0, 1e-3);
   EXPECT_NEAR(north.x[3][1], 5, 0.01);
   EXPECT_NEAR(north.x[3][2], -111.17, 0.05); // north is -z
+}
+
+// A grid of 3 x 2 points faces away from the globe, with rows to the north (25.3.2).
+TEST(Globe, AGridLiesOnTheGlobe) {
+  const auto world = loadWorldFromMemory(
+      "#X3D V3.3 utf8\nShape { geometry GeoElevationGrid { geoGridOrigin 47 11 100 xDimension 3 "
+      "zDimension 2 xSpacing 0.001 zSpacing 0.001 yScale 2 height [ 0 0 0 10 10 10 ] } }",
+      "a.x3dv");
+  EXPECT_EQ(world->diagnostics.list().size(), 0u);
+  const auto& shape = *nodeCast<nodes::Shape>(world->scope.roots[0]);
+  const Mesh mesh = buildMesh(*shape.geometry, {});
+  ASSERT_EQ(mesh.indices.size(), 12u);
+  const GlobePlace corner = *placeOnGlobe({"GD"}, {47, 11, 100});
+  double up = 0, north = 0;
+  for (const Vec3f& p : mesh.points) { // the corner is the origin of the world
+    up = std::max(up, dot({p.x, p.y, p.z}, corner.up));
+    north = std::max(north, -dot({p.x, p.y, p.z}, corner.south));
+  }
+  EXPECT_NEAR(up, 20, 0.01);
+  EXPECT_NEAR(north, 111.17, 0.05);
+  const auto at = [&](size_t i) { return mesh.points[mesh.indices[i]]; };
+  const Vec3f a = at(0), b = at(1), c = at(2);
+  const Vec3d u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
+  const Vec3d normal{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  EXPECT_EQ(dot(normal, corner.up) > 0, mesh.ccw);
 }
 
 TEST(Globe, AnUnknownSystemIsSaid) {

@@ -66,6 +66,7 @@ constexpr Interface interfaces[] = {
     {"23.4.5", "OrthoViewpoint", 1, 11, 0, 2},
     {"23.4.7", "ViewpointGroup", 0, 6, 0, 0},
     {"24.4.5", "TextureBackground", 1, 11, 0, 2},
+    {"25.3.2", "GeoElevationGrid", 1, 4, 13, 0},
     {"25.3.3", "GeoLocation", 2, 4, 4, 0},
     {"25.3.4", "GeoLOD", 0, 2, 12, 1},
     {"25.3.6", "GeoOrigin", 0, 1, 2, 0},
