@@ -13,4 +13,8 @@ bool hasMatrix(const Node& node);
 // Returns the matrix of a node; the identity if hasMatrix is false.
 Matrix matrixOf(const Node& node);
 
+// Returns the matrix from geocentric metres to the coordinates of the world that holds the node
+// (GlobeOrigin).
+Matrix globeToWorld(const Node& node);
+
 } // namespace xvrml

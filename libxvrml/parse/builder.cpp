@@ -142,6 +142,7 @@ void Builder::closeNode(bool good) {
   NodeFrame frame = std::move(nodes_.back());
   given_.resize(nodes_.back().firstGiven);
   nodes_.pop_back();
+  if (good) noteGlobe(frame);
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
     locator_.error(frame.type.at, fmt::format("{} contains {} nodes, shared ones counted at each "

@@ -145,6 +145,7 @@ class Builder : public ParseSink {
   bool isMissingField(const NodeType& type, const Name& name);
   void reportGpuProgram(const Name& name);
   void reportUnknownNode(const Name& type);
+  void noteGlobe(const NodeFrame& frame);
   void warnOfLack(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at);

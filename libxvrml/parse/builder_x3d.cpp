@@ -12,6 +12,7 @@
 #include "nodes/registry.h"
 #include "parse/builder.h"
 #include "parse/source.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 
@@ -68,6 +69,29 @@ void Builder::reportUnknownNode(const Name& type) {
   locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
                                       absent ? " (it is X3D's)" : "",
                                       nearest::suggestion(type.text, nodeTypes())));
+}
+
+// Notes the first place on a globe that the world names, and warns of systems that are not known.
+// Nodes in prototypes get their places with the instances.
+void Builder::noteGlobe(const NodeFrame& frame) {
+  const Node& node = *frame.node;
+  const auto* origin = nodeCast<nodes::GeoOrigin>(&node);
+  const auto* location = nodeCast<nodes::GeoLocation>(&node);
+  const auto* viewpoint = nodeCast<nodes::GeoViewpoint>(&node);
+  const auto* grid = nodeCast<nodes::GeoElevationGrid>(&node);
+  if ((!origin && !location && !viewpoint && !grid) || inTemplate()) return;
+  const auto place = origin      ? placeOnGlobe(origin->geoSystem, origin->geoCoords)
+                     : location  ? placeOnGlobe(location->geoSystem, location->geoCoords)
+                     : viewpoint ? placeOnGlobe(viewpoint->geoSystem, viewpoint->position)
+                                 : placeOnGlobe(grid->geoSystem, grid->geoGridOrigin);
+  if (!place) {
+    locator_.warn(frame.type.at,
+                  fmt::format("{} names no place: expected the geoSystem GD, UTM with a zone such "
+                              "as Z10, or GC, and coordinates within it (ISO/IEC 19775-1 25.2.3)",
+                              describe(frame.type)));
+  } else if (!state_.globe->place || (state_.globe->isCorner && !grid)) {
+    *state_.globe = {place, origin && origin->rotateYUp, grid != nullptr};
+  }
 }
 
 // Warns once for a file what of a node is not done.

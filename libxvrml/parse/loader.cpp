@@ -70,12 +70,14 @@ void Loader::load(const Source& source, const std::string& name,
 
 void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing) {
   for (const std::string& file : enclosing) inlined_[canonical(file)].reading = true;
+  if (const GlobeOriginPtr origin = globeOrigin(node.source.file)) state_.globe = origin;
   loadInline(node, std::max<uint64_t>(enclosing.size(), fileDepth(node.source.file) + 1));
 }
 
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
+  setGlobeOrigin(name, state_.globe);
   // Nodes of VRML 1.0 are counted when the world is complete.
   composed_ = composed_ || file.head.version.encoding == Encoding::vrml1;
   readWorldFile({source.text(), name, state_, file, budget_});

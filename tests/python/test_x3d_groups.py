@@ -24,7 +24,8 @@ GROUPS = {
     "HAnimJoint { center 0.5 0 0 rotation 0 0 1 3.14159265 children %s }": 1,
     "HAnimSite { translation 1 0 0 children HAnimSegment { children %s } }": 1,
     "GeoLocation { geoCoords 37 -122 0 children %s }": 0,
-    "GeoTransform { translation 1 0 0 children %s }": 1,
+    # At 0 0 of the globe, up is the x axis.
+    "GeoTransform { translation 0 1 0 children %s }": 1,
     "GeoLOD { rootNode %s }": 0,
     "CollidableShape { translation 1 0 0 shape %s }": 1,
     "CollidableOffset { translation 1 0 0 collidable CollidableShape { shape %s } }": 1,
@@ -91,3 +92,22 @@ def test_lists_of_nodes_are_no_second_copy(tmp_path, text):
     world.save(tmp_path / "a.stl")
     facets = int.from_bytes((tmp_path / "a.stl").read_bytes()[80:84], "little")
     assert facets == 12
+
+
+def test_a_viewpoint_on_the_globe_sees_what_stands_below_it():
+    text = ("GeoViewpoint { position 47 11 20 orientation 1 0 0 -1.5707963 }\n"
+            "NavigationInfo { headlight FALSE }\nGeoLocation { geoCoords 47 11 0 children Shape { "
+            "appearance Appearance { material Material { emissiveColor 1 0 0 diffuseColor 0 0 0 } } "
+            "geometry Box { size 10 1 10 } } }")
+    classic = xvrml.loads(("#X3D V3.3 utf8\nPROFILE Full\n" + text).encode())
+    for world in (classic, xvrml.loads(classic.to_x3d(encoding="xml").encode())):
+        assert not world.diagnostics
+        red = world.render(size=(64, 64), spp=4).display[..., 0] > 128
+        # 10 of 16.15 units that are seen at a distance of 19.5.
+        assert red.mean() == pytest.approx((10 / 16.15)**2, abs=0.03)
+        rows, columns = np.nonzero(red)
+        assert rows.mean() == pytest.approx(31.5, abs=0.5)
+        assert columns.mean() == pytest.approx(31.5, abs=0.5)
+    # A running world has the same view.
+    browser = xvrml.Browser(("#X3D V3.3 utf8\n" + text).encode())
+    assert (browser.render(size=(64, 64), spp=4).display[..., 0] > 128).mean() > 0.3

@@ -3,6 +3,7 @@ the control channel, edits (docs/versions.md)."""
 import pytest
 
 from conftest import SMALL
+from control_server import start, until  # noqa: F401
 
 xvrml = pytest.importorskip("xvrml")
 
@@ -89,3 +90,22 @@ def test_ranges_follow_the_version(vv):
         else:
             loaded["L"].intensity = 5
             assert loaded["L"].intensity == 5
+
+
+def test_the_control_channel(start, tmp_path):
+    (tmp_path / "w.x3dv").write_text(WORLD)
+    vv = start("w.x3dv", *SMALL).connect()
+    assert len(vv.get("W", "children")) == 2
+    assert vv.get("C", "enabled") is True
+    heard = []
+    vv.subscribe("C", "enabled", lambda value, time: heard.append(value))
+    vv.set("C", "enabled", False)
+    until(vv, lambda: heard == [False])
+    vv.route("W", "children_changed", "X", "set_children")
+    vv.set("W", "addChildren", ["D"])
+    assert len(vv.get("X", "children")) == 3
+    names = {field["name"] for field in vv.call("describe", node="W")["fields"]}
+    assert "children" in names and "choice" not in names
+    with vv.edit("names") as edit:
+        edit.insert("Group { }", "L", "children")
+    assert len(vv.get("L", "children")) == 3

@@ -170,8 +170,8 @@ TEST(X3d, NothingThatIsThereIsListedAsMissing) {
 TEST(X3d, GroupsWithoutImplementationKeepWhatTheyHold) {
   const auto world =
       load("#X3D V3.3 utf8\nLayerSet { order [ 1 ] layers Layer { children DEF A "
-           "Group { } } }\nGeoLocation { children DEF B Group { } }\n"
-           "GeoLocation { children USE A }\n"
+           "Group { } } }\nPickableGroup { children DEF B Group { } }\n"
+           "PickableGroup { children USE A }\n"
            "HAnimHumanoid { skinCoord DEF C Coordinate { } skin Shape { geometry "
            "PointSet { coord USE C } } joints USE J skeleton DEF K HAnimJoint { } }\n"
            "RigidBodyCollection { bodies RigidBody { geometry DEF D CollidableShape "
@@ -182,8 +182,8 @@ TEST(X3d, GroupsWithoutImplementationKeepWhatTheyHold) {
                 "in the space of the world, in one picture",
                 "test.x3dv:2:31: warning: 'Layer' is not supported wholly: it is drawn in the "
                 "space of the world, without a viewport or a viewpoint of its own",
-                "test.x3dv:3:1: warning: 'GeoLocation' is not supported wholly: its children stand "
-                "at the origin of the group, not at their place of the globe",
+                "test.x3dv:3:1: warning: 'PickableGroup' is not supported wholly: all picking "
+                "sensors see its children",
                 "test.x3dv:5:1: warning: 'HAnimHumanoid' is not supported wholly: its skin stays "
                 "as it is at rest",
                 "test.x3dv:5:107: error: no node is named 'J' by a DEF above; did you mean 'A'?",
