@@ -449,12 +449,13 @@ static const XsEngine engine = {sizeof(XsEngine),
                                 processed,
                                 shutdown,
                                 tick,
+                                NULL,
                                 NULL};
 static const XsEngine trusted = {
     sizeof(XsEngine),   XS_NEEDS_TRUST, "trusted", "the same for trusted worlds",
     trustedSchemes,     NULL,           NULL,      createInterpreter,
     destroyInterpreter, initialize,     event,     processed,
-    shutdown,           NULL,           NULL};
+    shutdown,           NULL,           NULL,      NULL};
 static const XsEngine* const engines[] = {&engine, &trusted};
 XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
                                      2,        engines};
