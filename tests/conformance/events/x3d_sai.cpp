@@ -11,8 +11,8 @@ const std::string rest = "PROTO Ball [ inputOutput SFFloat size 2 ] { Transform 
                          "DEF T Transform { translation 1 2 3 children DEF Leaf Group { } }\n"
                          "DEF P Ball { size 5 }";
 
-class SaiRows : public EcmaRows {};
-class Sai : public EcmaScript {};
+class EcmaSaiRows : public EcmaRows {};
+class EcmaSai : public EcmaScript {};
 
 std::string world(const std::string& program) {
   return header +
@@ -20,7 +20,7 @@ std::string world(const std::string& program) {
                            "var s = Browser.currentScene; function go() { " + program + " }", rest);
 }
 
-TEST_P(SaiRows, Prints) {
+TEST_P(EcmaSaiRows, Prints) {
   EcmaWorld r(world(GetParam().program));
   r.set("S", "go", true);
   EXPECT_EQ(r.takeOutput(), GetParam().printed);
@@ -101,9 +101,9 @@ constexpr EcmaRow rows[] = {
      "var n = new SFNode('Script { inputOutput SFMatrix4f m 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 }');"
      "n.m.setTransform(new SFVec3f(7, 8, 9)); print(n.m[12], n.m[13], n.m[14]);",
      "7 8 9"}};
-INSTANTIATE_TEST_SUITE_P(All, SaiRows, testing::ValuesIn(rows), rowName);
+INSTANTIATE_TEST_SUITE_P(All, EcmaSaiRows, testing::ValuesIn(rows), rowName);
 
-TEST_F(Sai, WorksInAProcess) {
+TEST_F(EcmaSai, WorksInAProcess) {
   BrowserOptions options;
   options.scriptPath = XVRML_SCRIPTS;
   options.scriptIsolation = BrowserOptions::Isolation::always;
@@ -123,7 +123,7 @@ TEST_F(Sai, WorksInAProcess) {
 }
 
 // prepareEvents is called before the events of each time, and never for programs without it.
-TEST_F(Sai, PreparesEvents) {
+TEST_F(EcmaSai, PreparesEvents) {
   EcmaWorld r(header + EcmaWorld::script("outputOnly SFInt32 frame",
                                          "var n = 0; function prepareEvents() { frame = ++n; }"));
   r.log("S", "frame");
@@ -133,7 +133,7 @@ TEST_F(Sai, PreparesEvents) {
 }
 
 // A program that is newer than the engine's language says so, and where.
-TEST_F(Sai, NewerProgramsSaySo) {
+TEST_F(EcmaSai, NewerProgramsSaySo) {
   struct Row {
     const char *program, *message; // the program begins in line 3
   };
