@@ -1,6 +1,6 @@
 // appearance.h: appearance nodes as surface shaders, made on first use. In a world with many
-// appearances, equal ones share a shader as long as no event reaches them; the first change gives
-// an appearance a shader of its own. [the mapper's thread]
+// appearances, equal ones, also with an ORTShader, share a shader as long as no event reaches them;
+// the first change gives an appearance a shader of its own. [the mapper's thread]
 #pragma once
 
 #include <optional>
@@ -78,11 +78,13 @@ class Surfaces {
   struct HashOfKey {
     size_t operator()(const Key& key) const { return key.low; }
   };
-  // A shader of the class VRML97 for all appearances whose values have the hash `key`.
+  // A shader for all appearances whose values have the hash `key`: of the class VRML97, or that of
+  // an ORTShader.
   struct Shared {
     RTid shader = 0;
     uint32_t users = 0;
     Key key;
+    NodeRef customUser; // stands for the users in custom_; null: the class is VRML97
   };
   struct Entry {
     NodeRef appearance;
@@ -90,7 +92,7 @@ class Surfaces {
     RTid own = 0;             // own shader of the class VRML97
     RTid physical = 0;        // own shader of the class Physical
     RTid x3d = 0;             // own shader of the class X3DMaterial
-    Shared* shared = nullptr; // shader shared with equal appearances; then `own` is 0
+    Shared* shared = nullptr; // shader shared with equal appearances; then it has none of its own
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
     bool textured = false;
@@ -107,12 +109,13 @@ class Surfaces {
   void makePhysical(Entry& entry);
   void makeX3d(Entry& entry);
   bool multiplies(const Entry& entry) const;
-  bool mayShare(const Entry& entry) const;
+  bool mayShare(const Entry& entry, const AppearanceParts& parts) const;
   Key keyOf(const AppearanceParts& parts, RTid texture, bool multiply, bool vertexAlpha) const;
+  bool joinCustom(Entry& entry, const AppearanceParts& parts);
   bool share(Entry& entry, const Key& key);
   void leaveShared(Entry& entry);
   bool take(const Entry& entry, uint64_t bytes);
-  RTid customSurface(Node& appearance, nodes::ORTShader& shader);
+  RTid customSurface(Entry& entry, const AppearanceParts& parts);
   void forget(Entry& entry);
 
   World& world_;
