@@ -210,9 +210,12 @@ bench-parts: build
 	@$(PYTHON) tools/bench_parts.py --vv $(R)/bin/vv --parts $(PARTS)
 
 ## make bench-board   seconds of one picture of a KiCad board, and FLIP to its picture of 1,024 samples, into build/bench/board;
-##                   needs flip-evaluator on PYTHONPATH and an idle machine
+##                   needs flip-evaluator on PYTHONPATH and an idle machine. Then the same for a board of 200 parts in the manner
+##                   of KiCad 10; PARTS=FOLDER takes the models of kicad-packages3d
 bench-board: build
 	@$(PYTHON) tools/bench_board.py --vv $(R)/bin/vv --out build/bench/board
+	@$(PYTHON) tools/make_kicad_board.py build/bench/board-200 $(if $(PARTS),--parts $(PARTS))
+	@$(PYTHON) tools/bench_board.py --vv $(R)/bin/vv --out build/bench/board-200 --board build/bench/board-200/board.wrl
 
 ## make bench-fast-view  seconds to the first picture of a world, by the z-buffer and by rays
 bench-fast-view: build
