@@ -2,11 +2,12 @@
 measured, a lamp is moved, the change is significant, undone, done again and saved."""
 import csv
 import difflib
+import re
 import time
 
 import pytest
 
-from conftest import HEADER
+from conftest import HEADER, ROOT
 from editor_window import changed, needs_the_editor, press  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
@@ -33,6 +34,14 @@ Transform { translation 0 -4 0 children Shape {
   geometry Box { size 30 1 30 } } }
 """
 REPORT = (32, 118)  # the button, in pixels
+LAMP_ROW = 203  # the third row of the outline
+
+
+def changes(before, now):
+    return [
+        line for line in difflib.unified_diff(before.split("\n"), now.split("\n"), n=0)
+        if line[0] in "+-" and line[:3] not in ("+++", "---")
+    ]
 
 
 class Reports:
@@ -87,11 +96,7 @@ def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv
     w.key("ctrl+y")
     w.key("ctrl+s")
     now = changed(w, vv, lambda t: t != WORLD)
-    changes = [
-        line for line in difflib.unified_diff(WORLD.split("\n"), now.split("\n"), n=0)
-        if line[0] in "+-" and line[:3] not in ("+++", "---")
-    ]
-    assert changes == [
+    assert changes(WORLD, now) == [
         "-DEF LAMP Transform { translation 0 0 0 # moved by hand",
         "+DEF LAMP Transform { translation 0 0 -1 # moved by hand"
     ]
@@ -108,4 +113,29 @@ def test_a_jump_of_the_pointer_from_a_panel_counts(window, vv):
     row = reports.until(lambda r: r["x"])
     # The wall is 15 m away, and half as high as the tangent of half the field of view says.
     assert (float(row["x"]), float(row["y"]), float(row["z"])) == pytest.approx((1.864, .621, -5), abs=.05)
+    assert w.end() == 0
+
+
+def test_the_first_session_of_the_page(window, vv):
+    """The steps of "A first session" in docs/editor.md, and the difference that it shows."""
+    page = (ROOT / "docs/editor.md").read_text()
+    desk, told = (re.search(pattern, page, re.S)[1]
+                  for pattern in (r"```vrml file=desk\.wrl\n(.*?)```", r"```diff\n(.*?)\n```"))
+    w = window(desk, "--size", "600x400", "--spp", "32")
+    w.key("e")
+    w.click(0, -.03)  # the top of the desk
+    reports = Reports(w, vv.folder)
+    assert reports.probe() is None
+    w.move(.02, -.05)
+    w.key("u")
+    before = reports.until(lambda r: r["now"])
+    assert 6 < float(before["now"]) < 8 and before["remark"] == "trusted"
+    w.key("b")
+    press(w, 60, LAMP_ROW)
+    w.key("g", "y", "minus", "period", "3", "Return")
+    row = reports.until(lambda r: r["difference"])
+    assert row["remark"] == "significant, trusted" and 6 < float(row["difference"]) < 9
+    w.key("ctrl+s")
+    now = changed(w, vv, lambda t: t != desk)
+    assert changes(desk, now) == told.split("\n")
     assert w.end() == 0
