@@ -6,7 +6,8 @@
 prints for each number of nodes (1,000, 100,000 and 1,000,000 if none is given) the seconds until the
 editor shows its first rows, and the median milliseconds from a message of the page to the sheet that
 shows it: a selection, a value that is dragged, and undo; beside it the processor time of vv for each
-message of a drag. The last number is that from a node of the outline that is opened or closed to its rows. Half of the nodes are roots, each with a Group. Needs pytest and Pillow.
+message of a drag. The last number is that from a node of the outline that is opened or closed to its
+rows. Half of the nodes are roots, each with a Group. Needs pytest and Pillow.
 """
 import argparse
 import pathlib

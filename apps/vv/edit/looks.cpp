@@ -247,7 +247,10 @@ std::string shaderOption(const Node& shape) {
   const std::string rule = shape.defName + "=" + picture::shaderText(*shader, &isWhole);
   // A shell takes these letters as they are.
   const bool isPlain = rule.find_first_not_of(plain) == rule.npos;
-  return shape.defName.empty() || !isWhole || !isPlain ? "" : "--shader " + rule;
+  constexpr size_t longest = 1024; // bytes of a command line that people read
+  return shape.defName.empty() || !isWhole || !isPlain || rule.size() > longest
+             ? ""
+             : "--shader " + rule;
 }
 
 } // namespace vv

@@ -39,7 +39,7 @@ class Editor {
     const edit = (command, members) => this.edit(command, members);
     this.layOut();
     this.chooser = new Chooser();
-    this.nodes = new Nodes(this.chooser, edit);
+    this.nodes = new Nodes(this.chooser, edit, (text) => page.on_command({ text }));
     this.outline = new Outline($("rows"), edit, (row, item) => this.openRow(row, item));
     this.fields = new Fields($("fields"), {
       drag: (drag, ends) => this.dragTo(drag, ends),
