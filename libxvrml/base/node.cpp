@@ -117,10 +117,12 @@ bool Node::set(const FieldInfo& field, Value value) {
   return true;
 }
 
+std::atomic<void (*)(LiveBase* live) noexcept> LiveBase::forget = nullptr;
+
 // A node's destructor releases its children. Children whose last reference goes meanwhile wait in a
 // list until it returns; a chain of a million nodes would otherwise need a million stack frames.
 void Node::destroy(Node* node) noexcept {
-  if (node->live) node->live->forget(node->live); // its fields still exist
+  if (node->live) LiveBase::forget.load(std::memory_order_relaxed)(node->live); // has its fields
   thread_local std::vector<Node*>* waiting = nullptr;
   if (waiting) {
     try {

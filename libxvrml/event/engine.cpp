@@ -10,7 +10,9 @@
 namespace xvrml {
 
 Engine::Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser)
-    : observer(makeObserver(*this)), diagnostics_(diagnostics), browser_(browser) {}
+    : observer(makeObserver(*this)), diagnostics_(diagnostics), browser_(browser) {
+  LiveBase::forget.store(forget, std::memory_order_relaxed);
+}
 
 // An eventOut sends once per cascade (4.10.3, 4.10.4). If nothing receives the event, only its last
 // value is stored.

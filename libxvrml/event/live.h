@@ -63,8 +63,12 @@ struct Participant {
 // memory of its own.
 class Parents {
  public:
-  size_t size() const { return more_ ? more_->size() : one_ ? 1 : 0; }
-  Node* const* begin() const { return more_ ? more_->data() : &one_; }
+  Parents() = default;
+  Parents(const Parents&) = delete;
+  Parents& operator=(const Parents&) = delete;
+  ~Parents();
+  size_t size() const { return hasList() ? list()->size() : one_ ? 1 : 0; }
+  Node* const* begin() const { return hasList() ? list()->data() : &one_; }
   Node* const* end() const { return begin() + size(); }
   Node* operator[](size_t index) const { return begin()[index]; }
   void push_back(Node* parent);
@@ -72,23 +76,28 @@ class Parents {
   void removeAll(const Node* parent) noexcept;
 
  private:
-  Node* one_ = nullptr; // unused if `more_` is set
-  std::unique_ptr<std::vector<Node*>> more_;
+  bool hasList() const { return bits_ & 1; }
+  std::vector<Node*>* list() const { return reinterpret_cast<std::vector<Node*>*>(bits_ - 1); }
+  union {
+    Node* one_ = nullptr; // the only parent
+    uintptr_t bits_;      // with bit 0: the address of the list of parents, and 1
+  };
 };
 
+// Its members stand so that a million take as few bytes as they can.
 struct Live : LiveBase {
   Engine* engine;
   Node* node;
-  size_t slot;        // index in Engine's list
-  uint32_t order;     // position in the order in which nodes became part of the world
-  uint16_t reach = 0; // kinds of change that events may bring (xvrml/change.h)
-  bool root = false;  // the node is a root of the world
   // Bit set of the fields already in the list of changes, by index in the type.
   uint64_t changed = 0;
   // Nodes that have it among their children, once for each time. Includes prototype instances and
   // Inlines.
   Parents parents;
   std::unique_ptr<Participant> part;
+  uint32_t slot;      // index in Engine's list
+  uint32_t order;     // position in the order in which nodes became part of the world
+  uint16_t reach = 0; // kinds of change that events may bring (xvrml/change.h)
+  bool root = false;  // the node is a root of the world
 };
 
 inline Live* liveOf(const Node& node) { return static_cast<Live*>(node.live); }

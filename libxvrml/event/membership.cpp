@@ -43,10 +43,9 @@ struct Engine::AdoptedNodes {
 
 Live& Engine::makeLive(Node& node) {
   auto made = std::make_unique<Live>();
-  made->forget = forget;
   made->engine = this;
   made->node = &node;
-  made->slot = lives_.size();
+  made->slot = uint32_t(lives_.size());
   made->order = order_;
   lives_.push_back(made.get());
   ++order_;
@@ -104,27 +103,36 @@ void Engine::destroyLater(std::unique_ptr<Participant> part) noexcept {
   destroying_ = false;
 }
 
+Parents::~Parents() {
+  if (hasList()) delete list();
+}
+
 void Parents::push_back(Node* parent) {
-  if (!more_ && !one_) {
+  if (!one_) {
     one_ = parent;
-    return;
+  } else if (hasList()) {
+    list()->push_back(parent);
+  } else {
+    auto more = std::make_unique<std::vector<Node*>>(1, one_);
+    more->push_back(parent);
+    bits_ = reinterpret_cast<uintptr_t>(more.release()) | 1;
   }
-  if (!more_) more_ = std::make_unique<std::vector<Node*>>(1, one_);
-  more_->push_back(parent);
 }
 
 void Parents::removeLast(const Node* parent) {
-  if (!more_) {
+  if (!hasList()) {
     if (one_ == parent) one_ = nullptr;
     return;
   }
-  const auto found = std::find(more_->rbegin(), more_->rend(), parent);
-  if (found != more_->rend()) more_->erase(std::next(found).base());
+  const auto found = std::find(list()->rbegin(), list()->rend(), parent);
+  if (found != list()->rend()) list()->erase(std::next(found).base());
 }
 
 void Parents::removeAll(const Node* parent) noexcept {
-  if (one_ == parent) one_ = nullptr;
-  if (more_) std::erase(*more_, parent);
+  if (hasList())
+    std::erase(*list(), parent);
+  else if (one_ == parent)
+    one_ = nullptr;
 }
 
 void Engine::linkChild(Node& parent, Node& child) {

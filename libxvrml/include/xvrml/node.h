@@ -176,7 +176,9 @@ using NodeTypePtr = std::shared_ptr<const NodeType>;
 // The part of a running world's node data that Node knows (event/live.h). Nodes of worlds that do
 // not run have none.
 struct LiveBase {
-  void (*forget)(LiveBase* live) noexcept; // called when the node is destroyed
+  // Called when a node with such data is destroyed. It is one for all, because worlds have millions
+  // of nodes; the event engine sets it.
+  static std::atomic<void (*)(LiveBase* live) noexcept> forget;
 };
 
 class Node {
