@@ -103,7 +103,7 @@ bench: build
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
 	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
 
-## make bench-live    live pictures of five worlds beside the true ones (FLIP), frames a second, latency and stalls into
+## make bench-live    live pictures of six worlds beside the true ones (FLIP), frames a second, latency and stalls into
 ##                   build/bench/live; STEPS=60 without the clock, for a busy machine; DOCS=1 also into docs/, WORLDS=a,b,FILE.wrl,
 ##                   FULL=1 better true pictures
 bench-live:
@@ -210,9 +210,12 @@ bench-parts: build
 	@$(PYTHON) tools/bench_parts.py --vv $(R)/bin/vv --parts $(PARTS)
 
 ## make bench-board   seconds of one picture of a KiCad board, and FLIP to its picture of 1,024 samples, into build/bench/board;
-##                   needs flip-evaluator on PYTHONPATH and an idle machine
+##                   needs flip-evaluator on PYTHONPATH and an idle machine. Then the same for a board of 200 parts in the manner
+##                   of KiCad 10; PARTS=FOLDER takes the models of kicad-packages3d
 bench-board: build
 	@$(PYTHON) tools/bench_board.py --vv $(R)/bin/vv --out build/bench/board
+	@$(PYTHON) tools/make_kicad_board.py build/bench/board-200 $(if $(PARTS),--parts $(PARTS))
+	@$(PYTHON) tools/bench_board.py --vv $(R)/bin/vv --out build/bench/board-200 --board build/bench/board-200/board.wrl
 
 ## make bench-fast-view  seconds to the first picture of a world, by the z-buffer and by rays
 bench-fast-view: build

@@ -13,7 +13,6 @@
 #include "libpicture/files/picture.h"
 #include "libpicture/files/radiance.h"
 #include "lower_case.h"
-#include "xvrml/image.h"
 
 namespace picture {
 
@@ -112,24 +111,15 @@ void BackgroundLayer::read(const std::string& file, bool linear) {
       std::copy_n(read.rgb.data() + y * row, row, rgb_.data() + (size_t(height_) - 1 - y) * row);
     return;
   }
-  xvrml::Image read;
-  try {
-    read = xvrml::loadImage(file);
-  } catch (const std::runtime_error& error) { throw InputError(file, error.what()); }
+  const Picture read = readPicture(file, 0);
   width_ = read.width;
   height_ = read.height;
-  const size_t components = size_t(read.components), w = size_t(width_), h = size_t(height_);
-  if (w == 0 || h == 0) throw InputError(file, "the picture has no pixels");
-  rgb_.resize(w * h * 3);
-  for (size_t y = 0; y < h; ++y)
-    for (size_t x = 0; x < w; ++x) {
-      const uint8_t* from = read.pixels.data() + ((h - 1 - y) * w + x) * components;
-      const float alpha = components % 2 == 0 ? float(from[components - 1]) / 255 : 1;
-      for (size_t c = 0; c < 3; ++c) {
-        const float v = float(from[components > 2 ? c : 0]) / 255;
-        rgb_[(y * w + x) * 3 + c] = alpha * (linear ? linearOf(v) : v);
-      }
-    }
+  const std::vector<float>& rgba = rgbaOf(read);
+  rgb_.resize(rgba.size() / 4 * 3);
+  for (size_t k = 0; k < rgb_.size(); ++k) {
+    const float v = rgba[k / 3 * 4 + k % 3], alpha = rgba[k / 3 * 4 + 3];
+    rgb_[k] = alpha * (linear && !read.linear ? linearOf(v) : v);
+  }
 }
 
 void BackgroundLayer::colourAt(double x, double y, float rgb[3]) const {

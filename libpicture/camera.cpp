@@ -156,15 +156,51 @@ xvrml::CameraSettings around(const xvrml::OpenRTMapper& mapper, const View& view
                     : mapper.cameraAround(axes, fovy, aspect);
 }
 
+// Turns a view to one from behind, or to one from below, whose picture has its up side up as well.
+void turnBehind(const double up[3], double view[16]) {
+  for (int column = 0; column < 3; ++column) {
+    double* const v = view + 4 * column;
+    const double along = v[0] * up[0] + v[1] * up[1] + v[2] * up[2];
+    for (int i = 0; i < 3; ++i) v[i] = 2 * along * up[i] - v[i];
+  }
+}
+void turnBelow(const double up[3], double view[16]) {
+  double* const z = view + 8;
+  const double above = z[0] * up[0] + z[1] * up[1] + z[2] * up[2];
+  for (int i = 0; i < 3; ++i) z[i] -= 2 * above * up[i];
+  const Vec y = cross({z[0], z[1], z[2]}, {view[0], view[1], view[2]});
+  view[4] = y.x;
+  view[5] = y.y;
+  view[6] = y.z;
+}
+
+// Looks at a model from behind or from below where it turns nothing but backs to the view, which
+// are not drawn.
+void avoidBacks(const xvrml::OpenRTMapper& mapper, xvrml::Axis axis, double view[16]) {
+  if (!mapper.facesAway(view)) return;
+  double up[3], other[16];
+  xvrml::upVector(axis, up);
+  for (const auto turned : {turnBehind, turnBelow}) {
+    std::copy_n(view, 16, other);
+    turned(up, other);
+    if (mapper.facesAway(other)) continue;
+    std::copy_n(other, 16, view);
+    return;
+  }
+}
+
 // Shows a model from three quarters, or a figure in the x-y plane from the front.
 xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy,
                                   double aspect) {
   double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  xvrml::Axis up = view.up.value_or(xvrml::Axis::y);
   if (view.up) {
-    xvrml::threeQuarterView(*view.up, axes);
+    xvrml::threeQuarterView(up, axes);
   } else if (const xvrml::UpGuess guess = mapper.guessUp(); !guess.frontal) {
-    xvrml::threeQuarterView(guess.axis, axes);
+    up = guess.axis;
+    xvrml::threeQuarterView(up, axes);
   }
+  avoidBacks(mapper, up, axes);
   return around(mapper, view, axes, fovy, aspect);
 }
 

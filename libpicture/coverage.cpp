@@ -161,27 +161,31 @@ Coverage countCoverage(const std::vector<Shot>& shots, const Reference& referenc
 Difference compare(const std::vector<float>& rgba, const std::vector<float>& reference) {
   Difference d;
   std::vector<double> off, relative;
-  double sum = 0, square = 0;
+  double sum = 0, square = 0, squareOfPixels = 0;
   for (size_t i = 0; i < rgba.size() / 4; i++) {
     bool finite = true;
+    double ofPixel = 0;
     for (size_t k = 4 * i; k < 4 * i + 3; k++)
       finite = finite && std::isfinite(rgba[k]) && std::isfinite(reference[k]);
     d.notFinite += !finite;
     for (size_t k = 4 * i; finite && k < 4 * i + 3; k++) {
       const double r = double(reference[k]), e = double(rgba[k]) - r;
-      sum += e;
+      ofPixel += e / 3;
       square += e * e;
       off.push_back(std::fabs(e));
       relative.push_back(e * e / (r * r + .01));
     }
+    sum += ofPixel;
+    squareOfPixels += ofPixel * ofPixel;
   }
   if (off.empty()) return d;
-  const double n = double(off.size());
+  const double n = double(off.size()), pixels = n / 3;
   d.rmse = std::sqrt(square / n);
-  d.bias = sum / n;
-  d.biasInterval = n > 1 ? student::quantile95(n - 1) *
-                               std::sqrt(std::max(0.0, square / n - d.bias * d.bias) / (n - 1))
-                         : 0;
+  d.bias = sum / pixels;
+  // The colours of a pixel share their samples, so that its mean counts once.
+  const double spread = std::max(0.0, squareOfPixels / pixels - d.bias * d.bias);
+  d.biasInterval =
+      pixels > 1 ? student::quantile95(pixels - 1) * std::sqrt(spread / (pixels - 1)) : 0;
   for (double r : relative) d.relMse += r / n;
   const double limit = at(relative, .999);
   double kept = 0, count = 0;

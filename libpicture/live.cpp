@@ -83,10 +83,11 @@ struct FrameInFlight {
 // A frame that has finished or was cancelled.
 struct EndedFrame {
   live::ShownFrame facts;
-  Picture picture;                               // a preview: the rebuilt picture
-  RenderResult result;                           // the picture in it is empty
-  double seconds = 0, alone = 0, rebuilding = 0; // see LivePicture
-  std::string denoisedBy;                        // see LivePicture
+  Picture picture;     // a preview: the rebuilt picture
+  RenderResult result; // the picture in it is empty
+  // see LivePicture
+  double seconds = 0, alone = 0, rebuilding = 0, showing = 0;
+  std::string denoisedBy; // see LivePicture
   bool whole = false;
 };
 
@@ -421,13 +422,15 @@ void LiveRenderer::Impl::rebuild(const FrameInFlight& flight, EndedFrame& frame)
   const Clock::time_point begin = Clock::now();
   const std::string wrong = failureOf([&] {
     Picture rebuilt = previews.rebuild(flight.facts.viewer, frame.picture, flight.camera,
-                                       flight.facts.lightStride, flight.step, flight.denoising);
+                                       flight.facts.lightStride, flight.step, flight.denoising,
+                                       {flight.facts.shownWidth, flight.facts.shownHeight});
     frame.denoisedBy = previews.denoisedBy();
+    frame.showing = previews.showing();
     // Every pixel is covered, also where no sample has been taken.
-    std::vector<float>& samples = rebuilt.planes[RT_SAMPLES];
-    samples = std::move(frame.picture.planes[RT_SAMPLES]);
+    const std::vector<float>& samples = frame.picture.planes[RT_SAMPLES];
     const double sum = std::accumulate(samples.begin(), samples.end(), 0.0);
-    std::fill(samples.begin(), samples.end(), float(sum / double(samples.size())));
+    rebuilt.planes[RT_SAMPLES].assign(size_t(rebuilt.width) * size_t(rebuilt.height),
+                                      float(sum / double(samples.size())));
     frame.picture = std::move(rebuilt);
   });
   frame.rebuilding = secondsSince(begin);
@@ -469,7 +472,8 @@ uint64_t LiveRenderer::Impl::start(const LiveFrame& frame) {
   if (now() != State::idle && now() != State::ready) throw std::logic_error("a frame is in flight");
   stage.reportMessages();
   current = {current.number + 1, frame.purpose,     frame.viewer,     frame.samples,
-             frame.lightStride,  frame.falseColour, frame.shownWidth, frame.shownHeight};
+             frame.lightStride,  frame.falseColour, frame.shownWidth, frame.shownHeight,
+             frame.width,        frame.height};
   again = measures = false;
   stage.settings = settingsOf(given, frame);
   if (frame.purpose != Purpose::still)
@@ -549,6 +553,8 @@ void LiveRenderer::Impl::show(const Picture& picture, const live::ShownFrame& fr
   out.seconds = seconds;
   out.finished = whole;
   display.show(picture, frame, whole, seconds, out);
+  out.width = frame.width;
+  out.height = frame.height;
 }
 
 bool LiveRenderer::Impl::takeFastView(LivePicture& out) {
@@ -582,6 +588,7 @@ bool LiveRenderer::Impl::look(LivePicture& out) {
   out.alone = finished->alone;
   out.ended = true;
   out.rebuilding = finished->rebuilding;
+  out.showing = finished->showing;
   out.denoisedBy = finished->denoisedBy;
   out.overhead =
       std::max(0.0, finished->seconds - finished->rebuilding - finished->result.stats.time.render);

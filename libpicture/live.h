@@ -44,14 +44,15 @@ struct LiveFrame {
   // How the picture is shown: none: in its own colours; otherwise its luminance in false colours,
   // up to this end of the scale in cd/m2, or to one that fits the picture (0).
   std::optional<double> falseColour;
-  // The size that previews in false colours are shown in, so that isolines are as fine as the
-  // pixels of the screen; 0: that of the frame.
+  // The size that previews are shown in, which may be larger than the frame: rebuilt ones take
+  // their pixels from the frames before, and isolines of false colours are as fine as these pixels;
+  // 0: that of the frame.
   int shownWidth = 0, shownHeight = 0;
 };
 
 // The state of a frame when it was polled.
 struct LivePicture {
-  int width = 0, height = 0;
+  int width = 0, height = 0; // those of the frame
   // Display bytes, first row at the top. Pixels without a sample yet show the viewer's previous
   // picture. A still picture with few samples is mixed with the preview before it.
   std::vector<uint8_t> rgb;
@@ -76,6 +77,7 @@ struct LivePicture {
   double scaleEnd = 0;    // the luminance at the end of the scale of false colours; 0: own colours
   std::string denoisedBy; // the library that has filtered a preview; "": none has
   double rebuilding = 0;  // part of `seconds` after tracing: the time of the Reconstruction
+  double showing = 0;     // part of `rebuilding` that the size of the shown picture takes
   xvrml::MapStats map{};
   RTstats stats{};
 };

@@ -1,8 +1,10 @@
-// pixel_reading.h: Reads the light of one pixel of a picture, with its error bars. A pure function.
-// [any thread]
+// pixel_reading.h: Reads the light of pixels of a picture, with their error bars, and judges
+// changes between two pictures. Pure functions. [any thread]
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "libpicture/files/picture.h"
 #include "openrt/openrt.h"
@@ -23,5 +25,30 @@ struct PixelReading {
 
 // picture: has readingChannels, and linear light. x, y: from the left upper corner.
 PixelReading readPixel(const Picture& picture, int x, int y);
+
+// The luminances of all pixels of a picture that has rgba, error and trust. The picture must live
+// as long.
+class PixelLights {
+ public:
+  explicit PixelLights(const Picture& picture);
+  bool isTrusted(size_t pixel) const { return trust_[pixel] > 0; }
+  PixelReading luminance(size_t pixel) const; // has only the luminance and its interval
+
+ private:
+  const std::vector<float>&rgba_, &error_, &trust_;
+};
+
+// The change of the luminance from one reading to another.
+struct LightDifference {
+  double value = 0, halfWidth = 0; // cd/m2, with half of the 95 % interval
+  // The probability of a change that is at least as large, if nothing has changed; 1 if the
+  // interval contains 0.
+  double chance = 1;
+  bool isSignificant = false; // among all that were judged together
+};
+
+// Returns the change between readings of two pictures (B. L. Welch, Biometrika 34, 1947). The
+// pictures are taken as independent; where they share random numbers, the interval is too wide.
+LightDifference differenceBetween(const PixelReading& before, const PixelReading& now);
 
 } // namespace picture

@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "libpicture/background.h"
 #include "libpicture/camera.h"
+#include "libpicture/doubt.h"
 #include "libpicture/files/picture.h"
 #include "libpicture/quality.h"
 #include "libpicture/studio.h"
@@ -115,10 +117,11 @@ struct RenderResult {
   bool missing = false;
   bool interrupted = false; // the picture holds what was finished when it was interrupted
   double mapSeconds = 0, renderSeconds = 0;
-  double denoiseSeconds = 0;      // the time of whoever has denoised the picture; 0: nobody
-  std::vector<RTworker> workers;  // workers of the cluster at the end of the picture
-  xvrml::CameraSettings camera{}; // camera of the picture; its shader is null
-  bool hasCameraShader = false;   // a camera shader generated the rays
+  double denoiseSeconds = 0;        // the time of whoever has denoised the picture; 0: nobody
+  std::optional<DoubtCounts> doubt; // only for a denoised picture that was audited
+  std::vector<RTworker> workers;    // workers of the cluster at the end of the picture
+  xvrml::CameraSettings camera{};   // camera of the picture; its shader is null
+  bool hasCameraShader = false;     // a camera shader generated the rays
   // If hasNames(): the Shape nodes, indexed by the channels' numbers; [0] is null. Release them
   // while no thread uses the world.
   std::vector<xvrml::NodeRef> nodes;

@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 
 #include "nearest.h"
+#include "xvrml/appearance.h"
 #include "xvrml/mapper.h"
-#include "xvrml/nodes.h"
 
 namespace picture {
 
@@ -267,6 +267,29 @@ xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum ro
   } catch (const ShaderError& error) {
     throw ShaderError(fmt::format("{} {}: {}", option, text, error.what()));
   }
+}
+
+std::string shaderText(const xvrml::nodes::ORTShader& shader, bool* isWhole) {
+  using Type = xvrml::ShaderOption::Type;
+  std::string text = shader.file.empty() ? shader.name : shader.file + "/" + shader.name;
+  bool isAll = true;
+  for (const xvrml::ShaderOption& option : xvrml::shaderOptions(shader)) {
+    std::string value;
+    if (option.type == Type::integer || option.type == Type::boolean)
+      value = std::to_string(option.integer);
+    else if (option.type == Type::text &&
+             option.text.find_first_of(" \t\r\n,:'") == option.text.npos)
+      value = option.text;
+    else
+      for (const float number : option.numbers)
+        value += fmt::format("{}{}", value.empty() ? "" : ",", number);
+    if (value.empty())
+      isAll = false;
+    else
+      text += ":" + option.name + "=" + value;
+  }
+  if (isWhole) *isWhole = isAll;
+  return text;
 }
 
 } // namespace picture

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "openrt/openrt.h"
-#include "xvrml/node.h"
+#include "xvrml/nodes.h"
 
 namespace picture {
 
@@ -23,6 +23,11 @@ struct ShaderError : std::runtime_error {
 xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
                           const std::string& shaderPath, const std::string& folder = "",
                           bool* showsColor = nullptr);
+
+// Returns the text that readShader() reads as this shader, with the fields that it declares.
+// Pictures, files, and texts with blanks, commas or colons are left out; isWhole, if given, tells
+// whether nothing is.
+std::string shaderText(const xvrml::nodes::ORTShader& shader, bool* isWhole = nullptr);
 
 // Returns "surface", "light" and so on for RT_SURFACE, RT_LIGHT and so on.
 const char* roleName(RTenum role);

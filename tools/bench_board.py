@@ -2,7 +2,7 @@
 """Measures the picture of a KiCad board that a CI job waits for: seconds of one cold run, and its
 difference (FLIP) from its own picture with many samples.
 
-bench_board.py --vv PROGRAM --out FOLDER [--preset NAME] [--size WxH] [--threads N]
+bench_board.py --vv PROGRAM --out FOLDER [--board FILE] [--preset NAME] [--size WxH] [--threads N]
                [--reference-spp N] [--keep] [OPTIONS OF VV...]
 
 Needs numpy, Pillow and flip-evaluator (pip install --target FOLDER flip-evaluator, then
@@ -30,7 +30,7 @@ BOARD = ROOT / "examples/kicad/blinker.wrl"
 def draw(options, more, target):
     """Draws the board; returns the seconds from the start of the process to its end."""
     command = [
-        options.vv, BOARD, "--preset", options.preset, "--size", options.size, "--threads",
+        options.vv, options.board, "--preset", options.preset, "--size", options.size, "--threads",
         options.threads, "-o", target, *more
     ]
     begin = time.monotonic()
@@ -49,6 +49,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--vv", required=True, type=pathlib.Path)
     parser.add_argument("--out", required=True, type=pathlib.Path)
+    parser.add_argument("--board", type=pathlib.Path, default=BOARD)
     parser.add_argument("--preset", default="pcb")
     parser.add_argument("--size", default="800x600")
     parser.add_argument("--threads", default=2, type=int)

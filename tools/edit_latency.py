@@ -6,7 +6,8 @@
 prints for each number of nodes (1,000, 100,000 and 1,000,000 if none is given) the seconds until the
 editor shows its first rows, and the median milliseconds from a message of the page to the sheet that
 shows it: a selection, a value that is dragged, and undo; beside it the processor time of vv for each
-message of a drag. Half of the nodes are roots, each with a Group. Needs pytest and Pillow.
+message of a drag. The last number is that from a node of the outline that is opened or closed to its
+rows. Half of the nodes are roots, each with a Group. Needs pytest and Pillow.
 """
 import argparse
 import pathlib
@@ -29,7 +30,7 @@ def world_of(nodes):
 
 
 class Editor:
-    """A page with the editor open. Waits are for its sheet."""
+    """A page with the editor open. Waits are for its sheet, but for rows() for the outline."""
 
     def __init__(self, folder):
         begin = time.monotonic()
@@ -40,19 +41,25 @@ class Editor:
         rows = self.page.of("rows")[-1]["rows"]
         self.nodes = {row["label"].split()[0]: row["node"] for row in rows}
 
-    def until(self, test):
+    def until(self, test, kind):
         texts = self.page.texts
         page_client.wait_for(
-            lambda: next((t for t in reversed(texts) if t["type"] == "sheet" and test(t)), None),
+            lambda: next((t for t in reversed(texts) if t["type"] == kind and test(t)), None),
             lambda: self.page.of("said"), PATIENCE)
 
-    def time(self, test, command, **members):
-        """Returns the seconds from a command to a sheet for which `test` holds."""
+    def time(self, test, command, kind="sheet", **members):
+        """Returns the seconds from a command to a message for which `test` holds."""
         del self.page.texts[:]
         begin = time.monotonic()
         self.page.edit(command, **members)
-        self.until(test)
+        self.until(test, kind)
         return time.monotonic() - begin
+
+    def rows(self, name, is_open):
+        def shows(text):
+            return any(r["label"].startswith(name + " ") and r.get("open") == is_open for r in text["rows"])
+
+        return self.time(shows, "open", "rows", node=self.nodes[name], open=is_open)
 
     def select(self, name):
         return self.time(lambda t: t["title"].startswith(name), "select", node=self.nodes[name])
@@ -82,10 +89,11 @@ def measure(nodes, times):
         cpu = (editor.server.cpu() - cpu) / times
         editor.page.edit("end_drag")
         undo = editor.time(lambda t: intensity(t) == 0.25, "undo")
+        rows = [editor.rows(f"T{i // 2}", i % 2 == 0) for i in range(times // 2 * 2)]
         editor.server.kill()
-    text = [f"{1000 * statistics.median(one):.0f}" for one in (selects, drags, [undo])]
+    text = [f"{1000 * statistics.median(one):.0f}" for one in (selects, drags, [undo], rows)]
     print(f"{nodes} nodes: open {editor.open_seconds:.2f} s; select {text[0]} ms, drag {text[1]} ms "
-          f"({1000 * cpu:.0f} ms of processor time), undo {text[2]} ms", flush=True)
+          f"({1000 * cpu:.0f} ms of processor time), undo {text[2]} ms, open or close a node {text[3]} ms", flush=True)
 
 
 def main():

@@ -21,7 +21,7 @@ MATERIALS = {  # materials of the models, named as in KiCad's libraries
     "CAP-CERAMIC-05": "ambientIntensity 0.179 diffuseColor 0.273 0.273 0.273 specularColor 0.203 0.188 0.176 shininess 0.07",
     "RES-SMD-01": "ambientIntensity 0.25 diffuseColor 0.082 0.086 0.094 specularColor 0.066 0.063 0.063 shininess 0.3",
     "LED-RED": "ambientIntensity 0.789 diffuseColor 0.7 0.1 0.05 specularColor 0.33 0.24 0.2 shininess 0.5 transparency 0.1",
-    "MET-ALUMINUM": "ambientIntensity 0.256 diffuseColor 0.372 0.322 0.373 specularColor 0.556 0.554 0.556 shininess 0.127",
+    "MET-ALUMINUM": "ambientIntensity 0.256 diffuseColor 0.372 0.372 0.373 specularColor 0.556 0.554 0.556 shininess 0.127",
 }
 # The layers of the board have colours and no names. These are the numbers of KiCad 6 to 9.
 LAYERS = {

@@ -1,7 +1,7 @@
 #!/bin/bash
 # run-tsan.sh FOLDER JOBS: runs the tests of a build with ThreadSanitizer (preset tsan): first those
 # in C++, with ctest, then those in Python whose programs share a world among threads: the page, the
-# control channel, the window, and clusters. TESTS="test_control ..." names other ones.
+# control channel, the window, their editor, and clusters. TESTS="test_control ..." names other ones.
 #
 # Anything that the sanitizer reports about programs that the Python tests start goes to
 # FOLDER/races, because a test need not notice how its program ends. One report ends the run with
@@ -13,6 +13,8 @@ folder=$(realpath "$1") jobs=$2
 tests=${TESTS:-test_vv_serve test_vv_serve_access test_vv_serve_files test_control
   test_control_clients test_vv_window test_vv_window_input test_vv_window_previews
   test_vv_window_cluster test_vv_cluster
+  test_control_edit test_vv_edit test_vv_edit_hostile test_vv_edit_compare test_vv_serve_edit
+  test_vv_serve_edit_tools
   test_cluster_faults test_vv_time}
 races=$folder/races
 rm -rf "$races"

@@ -15,6 +15,8 @@
 #include "report/node_list.h"
 #include "report/shader_list.h"
 #include "run/checkpoint.h"
+#include "run/compare.h"
+#include "run/film_join.h"
 #include "run/headless.h"
 #include "run/inputs.h"
 #include "run/inspect.h"
@@ -54,6 +56,9 @@ int printKeys(const Run&) {
   return print(listKeys() + "\nWhile the editor is open:\n" + listEditorKeys());
 }
 int merge(const Run& run) { return runMerge(run.options, run.commandLine()); }
+int compare(const Run& run) { return runCompare(run.options); }
+
+int film(const Run& run) { return joinFilm(run.options); }
 
 int serve(const Run& run) {
   prepare(run.options);
@@ -69,7 +74,7 @@ int printFeatures(const Run& run) {
 // Loads the world, inspects it, and makes the pictures that are asked for.
 int withoutWindow(const Run& run) {
   prepare(run.options);
-  return runHeadless(run.options, run.commandLine(), run.inspection);
+  return runHeadless(run.options, run.words, run.inspection);
 }
 
 int showWorld(const Run& run) {
@@ -97,6 +102,8 @@ constexpr JobRow rows[] = {
     {Job::help, help},
     {Job::version, printVersion},
     {Job::merge, merge},
+    {Job::compare, compare},
+    {Job::film, film},
     {Job::serve, serve},
     {Job::edit, showWorld},
     {Job::listKeys, printKeys},

@@ -14,6 +14,7 @@
 #include "objects.h"
 #include "xvrml/numbers.h"
 #include "xvrml/value_words.h"
+#include "xvrml/versions.h"
 #include "xvrml/viewed.h"
 #include "xvrml/walk.h"
 
@@ -45,7 +46,7 @@ struct Target {
   // Compares with the range limits rounded to float, so that every value read from a node can be
   // written back.
   void checkRange(double v) const {
-    const FieldRange& r = field.range;
+    const FieldRange& r = rangeIn(*owner.node, field);
     checkFinite(v);
     const bool wide = hasWideNumbers(field.type);
     const auto rounded = [wide](double number) { return wide ? number : double(float(number)); };

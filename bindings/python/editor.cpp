@@ -6,6 +6,7 @@
 #include "libpicture/files/save_edits.h"
 #include "objects.h"
 #include "xvrml/edit.h"
+#include "xvrml/versions.h"
 
 using namespace xvrml;
 
@@ -49,7 +50,9 @@ NodeSlot placeOf(const EditorObject& self, const NodeObject& node, const NodeObj
   const auto lock = self.world->lockGraph();
   std::vector<NodeSlot> places = editorOf(self.world).placesOf(wanted);
   std::erase_if(places, [&](const NodeSlot& place) {
-    return (within && place.parent != within) || (!field.empty() && place.field != field);
+    return (within && place.parent != within) ||
+           (!field.empty() &&
+            place.field != (place.parent ? ownName(*place.parent, field) : field));
   });
   if (places.size() == 1) return places.front();
   throw EditError(places.empty()
@@ -61,12 +64,13 @@ NodeSlot placeOf(const EditorObject& self, const NodeObject& node, const NodeObj
 // Returns the place that a node is put to. index: none appends.
 NodeSlot targetOf(const EditorObject& self, const NodeObject* parent, const std::string& field,
                   std::optional<size_t> index) {
-  NodeSlot slot{parent ? &own(self, *parent) : nullptr, parent ? field : "", index.value_or(0)};
+  NodeSlot slot{parent ? &own(self, *parent) : nullptr, "", index.value_or(0)};
+  if (slot.parent) slot.field = ownName(*slot.parent, field);
   if (index) return slot;
   const auto lock = self.world->lockGraph();
   if (!slot.parent) {
     slot.index = self.world->graph().scope.roots.size();
-  } else if (const FieldInfo* info = slot.parent->type().find(field);
+  } else if (const FieldInfo* info = slot.parent->type().find(slot.field);
              info && info->type == FieldType::MFNode && holdsValue(*info)) {
     slot.index = static_cast<const MFNode*>(slot.parent->storage(*info))->size();
   }
@@ -195,11 +199,12 @@ void defineEditor(py::module_& module, py::object worldClass) {
           [](const EditorObject& self, const NodeObject& node, const std::string& field,
              const py::object& value) {
             Node& target = own(self, node);
-            const FieldInfo* const info = target.type().find(field);
+            const FieldInfo* const info = findField(target, field);
             if (!info)
               throw EditError(fmt::format("there is no field {}.{}", target.type().name, field));
             Value converted = fromPython(value, *info, node);
-            edit(self, [&](Editor& editor) { editor.set(target, field, std::move(converted)); });
+            edit(self,
+                 [&](Editor& editor) { editor.set(target, info->name, std::move(converted)); });
           },
           py::arg("node"), py::arg("field"), py::arg("value"), "Sets a field that holds no nodes.")
       .def("insert", insert, py::arg("text"), parent, children, index,

@@ -184,6 +184,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineNode(module);
   definePicture(module);
   defineDenoise(module);
+  defineCompare(module);
   defineMerge(module);
   defineFilm(module);
   defineMeasurement(module);

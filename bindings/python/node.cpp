@@ -8,13 +8,14 @@
 #include "objects.h"
 #include "xvrml/build.h"
 #include "xvrml/set_field.h"
+#include "xvrml/versions.h"
 
 using namespace xvrml;
 
 namespace {
 
 const FieldInfo* findValue(const Node& node, const std::string& name) {
-  const FieldInfo* field = node.type().find(name);
+  const FieldInfo* field = findField(node, name);
   return field && holdsValue(*field) ? field : nullptr;
 }
 
@@ -22,7 +23,7 @@ const FieldInfo* findValue(const Node& node, const std::string& name) {
 [[noreturn]] void noField(const Node& node, const std::string& name, bool events) {
   std::vector<std::string> names;
   for (const FieldInfo& field : node.type().fields)
-    if (holdsValue(field) || events) names.push_back(field.name);
+    if (holdsValue(field) || events) names.emplace_back(fieldName(node, field));
   throw py::attribute_error(
       fmt::format("{} has no field {}{}", node.type().name, name, didYouMean(name, names)));
 }
@@ -39,7 +40,7 @@ py::object getAttribute(const NodeObject& self, const std::string& name) {
   if (const FieldInfo* field = findValue(*self.node, name)) return value(self, *field);
   const WorldPtr world = self.world();
   Browser* browser = world->browser();
-  const FieldInfo* out = browser ? self.node->type().findEventOut(name) : nullptr;
+  const FieldInfo* out = browser ? findEventOut(*self.node, name) : nullptr;
   if (!out) noField(*self.node, name, browser);
   const auto lock = world->lockGraph();
   return toPython(browser->get(*self.node, name), world);
@@ -84,7 +85,7 @@ void setAttribute(const NodeObject& self, const std::string& name, const py::han
   const WorldPtr world = self.world();
   Browser* browser = world->browser();
   const FieldInfo* field = findValue(*self.node, name);
-  if (!field && browser) field = self.node->type().findEventIn(name);
+  if (!field && browser) field = findEventIn(*self.node, name);
   if (!field) noField(*self.node, name, browser);
   if (browser && scriptAssigns(self, field->name, object)) return;
   if (const char* why = world->frozen()) throw py::value_error(why);
@@ -124,7 +125,8 @@ py::object fieldTypes(const NodeObject& self) {
   py::dict types;
   for (const FieldInfo& field : self.node->type().fields)
     if (holdsValue(field))
-      types[toText(field.name)] = py::str(std::string(fieldTypeName(field.type)));
+      types[toText(std::string(fieldName(*self.node, field)))] =
+          py::str(std::string(fieldTypeName(field.type)));
   return types;
 }
 
@@ -132,7 +134,7 @@ py::list directory(const NodeObject& self) {
   py::list names;
   for (const char* name : {"node_type", "type", "fields", "def_name"}) names.append(name);
   for (const FieldInfo& field : self.node->type().fields)
-    if (holdsValue(field)) names.append(toText(field.name));
+    if (holdsValue(field)) names.append(toText(std::string(fieldName(*self.node, field))));
   return names;
 }
 

@@ -1,5 +1,6 @@
 #include "numbers.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -38,4 +39,28 @@ py::array numberArray(const py::object& given, const std::string& name, const st
     }
   }
   return array;
+}
+
+py::array_t<float> imageArray(const py::object& given, const std::string& name, bool mayHaveAlpha) {
+  const std::string expected = mayHaveAlpha
+                                   ? "numbers of shape (height, width, 3) or (height, width, 4)"
+                                   : "numbers of shape (height, width, 3)";
+  const py::array any = numberArray(given, name, expected);
+  const auto image = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(any);
+  constexpr py::ssize_t most = 65536;
+  if (!image || image.ndim() != 3 || image.shape(0) < 1 || image.shape(1) < 1 ||
+      image.shape(0) > most || image.shape(1) > most ||
+      (image.shape(2) != 3 && !(mayHaveAlpha && image.shape(2) == 4)))
+    throw py::value_error(fmt::format("{}: {} expected, not {}", name, expected,
+                                      std::string(py::str(any.attr("shape")))));
+  return image;
+}
+
+std::vector<float> rgbaOfImage(const py::array_t<float>& image) {
+  const auto components = size_t(image.shape(2));
+  std::vector<float> rgba(size_t(image.size()) / components * 4, 1);
+  const float* from = image.data();
+  for (size_t i = 0; i < rgba.size(); i += 4, from += components)
+    std::copy_n(from, components, &rgba[i]);
+  return rgba;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -20,3 +21,9 @@ std::string typeName(const py::handle& value);
 // the message, such as "numbers of shape (n, 3)".
 py::array numberArray(const py::object& given, const std::string& name, const std::string& expected,
                       bool whole = false);
+
+// Returns the numbers of an array of shape (height, width, 3), or with alpha (height, width, 4).
+// Raises TypeError and ValueError.
+py::array_t<float> imageArray(const py::object& given, const std::string& name, bool mayHaveAlpha);
+// Returns the numbers of such an array with alpha, which is 1 if it has none.
+std::vector<float> rgbaOfImage(const py::array_t<float>& image);

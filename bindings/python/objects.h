@@ -15,6 +15,7 @@
 #include "gil.h"
 #include "libpicture/live.h"
 #include "libpicture/renderer.h"
+#include "libpicture/shader_rules.h"
 #include "xvrml/browser.h"
 #include "xvrml/edit.h"
 #include "xvrml/world.h"
@@ -227,14 +228,14 @@ void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
 void defineRender(py::object worldClass);
 void defineEditor(py::module_& module, py::object worldClass);
-// Gives shapes a surface shader, and returns how many. mayMatchNothing: no warning if it is none.
-size_t setShader(const WorldPtr& world, const std::string& selector, const std::string& shader,
-                 bool mayMatchNothing);
+// Gives shapes surface shaders by rules, and returns how many.
+size_t applyRules(const WorldPtr& world, const std::vector<picture::ShaderRule>& rules);
 void defineMeasurement(py::module_& module); // before defineWorld()
 void defineBrowser(py::module_& module);
 void defineViewer(py::module_& module);
 void definePicture(py::module_& module);
 void defineDenoise(py::module_& module); // after definePicture()
+void defineCompare(py::module_& module); // after definePicture()
 void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);
 void defineRenderer(py::module_& module);   // after defineShapes()

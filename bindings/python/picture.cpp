@@ -71,10 +71,10 @@ py::object item(const py::object& self, const py::object& key) {
   if (!py::isinstance<py::str>(key)) return rgba(self)[key];
   const picture::Picture& p = self.cast<const PictureObject&>().picture;
   const std::string name = fromText(key);
-  const picture::Channel* channel = picture::findChannel(name);
+  const picture::Channel* channel = picture::findPictureChannel(name);
   if (!channel || !p.planes.count(channel->bit)) {
     std::string known;
-    for (const picture::Channel& one : picture::channelTable())
+    for (const picture::Channel& one : picture::pictureChannels())
       if (p.planes.count(one.bit)) known += (known.empty() ? "" : ", ") + std::string(one.name);
     throw py::key_error(fmt::format("no channel {}; the picture has {}", name, known));
   }
@@ -155,7 +155,7 @@ py::object camera(PictureObject& self) {
 
 py::tuple channels(const PictureObject& self) {
   py::list out;
-  for (const picture::Channel& channel : picture::channelTable())
+  for (const picture::Channel& channel : picture::pictureChannels())
     if (self.picture.planes.count(channel.bit)) out.append(py::str(std::string(channel.name)));
   return py::tuple(out);
 }
@@ -235,7 +235,7 @@ py::tuple pickled(const py::object& self) {
   const py::tuple facts = std::apply(
       [](const auto&... member) { return py::make_tuple(toPickle(member)...); }, membersOf(made));
   py::dict planes;
-  for (const picture::Channel& channel : picture::channelTable())
+  for (const picture::Channel& channel : picture::pictureChannels())
     if (object.picture.planes.count(channel.bit))
       planes[py::str(std::string(channel.name))] = floats(self, channel);
   return py::make_tuple(pickleVersion, facts, planes, object.time, object.stats, camera(object));
@@ -249,7 +249,7 @@ picture::Picture unpickledPicture(const py::tuple& facts, const py::dict& planes
   std::apply([&](auto&... member) { (fromPickle(facts[next++], member), ...); }, members);
   checkFacts(made);
   for (const auto& [name, numbers] : planes) {
-    const picture::Channel* const channel = picture::findChannel(fromText(name));
+    const picture::Channel* const channel = picture::findPictureChannel(fromText(name));
     const auto plane =
         py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(numbers);
     const auto pixels = size_t(made.width) * size_t(made.height);

@@ -13,7 +13,8 @@ void setNumber(picture::QualityValues& quality, RTenum setting, double value) {
   if (quality[setting] == picture::QualityValues()[setting]) quality.set(setting, value);
 }
 
-// Sets one argument. A preset of the table has no others (test_presets_of_python).
+// Sets one argument. A preset of the table has no others (test_presets_of_python), but for the
+// placeholders of vv: a world of Python is drawn as it is.
 void apply(std::string_view name, const toml::node& value, RenderArguments& given) {
   const std::string text = value.value_or(std::string());
   const bool looksFromElsewhere =

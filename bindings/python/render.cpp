@@ -112,10 +112,9 @@ py::object Making::picture() {
 void giveShaders(const WorldPtr& self, const std::string& preset,
                  const std::vector<std::string>& rules) {
   if (rules.empty() || self->presetGiven == preset) return;
-  for (const std::string& rule : rules) {
-    const size_t equals = rule.find('=');
-    setShader(self, rule.substr(0, equals), rule.substr(equals + 1), true);
-  }
+  std::vector<picture::ShaderRule> all;
+  for (const std::string& rule : rules) all.push_back({rule, "preset:", {}, true});
+  applyRules(self, all);
   self->presetGiven = preset;
 }
 

@@ -157,6 +157,9 @@ bool Viewer::start(bool moving, bool raw) {
   frame.height = frame_.height;
   frame.samples = frame_.samples;
   frame.lightStride = frame_.lightStride;
+  const picture::FrameSize shown = pacing_.shown(width_, height_);
+  frame.shownWidth = shown.width;
+  frame.shownHeight = shown.height;
   frame.denoising = picture::live::denoisingInMotion(framesPerSecond);
   viewers_->changes += browser().hasChanges();
   frameChanges_ = viewers_->changes;
@@ -193,7 +196,8 @@ py::object Viewer::look() {
   if (!found) return py::none();
   if (picture->finished) {
     pacing_.took({picture->width, picture->height, 1, picture->lightStride}, picture->seconds,
-                 picture->alone, picture->overhead, picture->samples, picture->rebuilding);
+                 picture->alone, picture->overhead, picture->samples, picture->rebuilding,
+                 picture->showing);
     light_ = picture::lightOf(picture->stats, true);
   }
   // The world may still be read while the fast view is shown.
@@ -213,7 +217,8 @@ py::object Viewer::look() {
   auto* bytes = new std::vector<uint8_t>(std::move(picture->rgb));
   const py::capsule owner(bytes, [](void* all) { delete static_cast<std::vector<uint8_t>*>(all); });
   return py::make_tuple(
-      py::array_t<uint8_t>({picture->height, picture->width, 3}, bytes->data(), owner), facts);
+      py::array_t<uint8_t>({picture->shownHeight, picture->shownWidth, 3}, bytes->data(), owner),
+      facts);
 }
 
 namespace {

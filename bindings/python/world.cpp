@@ -9,8 +9,8 @@
 #include "arrays.h"
 #include "libpicture/export/export.h"
 #include "libpicture/files/atomic_file.h"
-#include "libpicture/shader_rules.h"
 #include "objects.h"
+#include "xvrml/versions.h"
 
 using namespace xvrml;
 
@@ -102,6 +102,8 @@ void save(const WorldPtr& self, const py::object& file) {
         for (const std::string& remark : exported.remarks) world.diagnostics.warn({}, remark);
       } else {
         picture::writeFile(path, writeWorld(world, path));
+        for (const std::string& change : changesByWriting(world, writtenEncoding(path)))
+          world.diagnostics.warn({}, change);
       }
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }
@@ -132,14 +134,14 @@ std::string nearestEvent(const Node& node, const std::string& name, bool out) {
   for (const FieldInfo& field : node.type().fields)
     if (field.access == Access::exposedField ||
         field.access == (out ? Access::eventOut : Access::eventIn))
-      known.push_back(field.name);
+      known.emplace_back(fieldName(node, field));
   return didYouMean(name, known);
 }
 
 uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::string& event,
                 py::function function) {
   Node& from = own(self, object);
-  if (!from.type().findEventOut(event))
+  if (!findEventOut(from, event))
     throw py::attribute_error(fmt::format("{} has no eventOut {}{}", from.type().name, event,
                                           nearestEvent(from, event, true)));
   return self->listen(object.node, event, std::move(function));
@@ -149,7 +151,7 @@ uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::strin
 bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
            const NodeObject& to, const std::string& in, bool add) {
   Node &source = own(self, from), &target = own(self, to);
-  const FieldInfo *sends = source.type().findEventOut(out), *takes = target.type().findEventIn(in);
+  const FieldInfo *sends = findEventOut(source, out), *takes = findEventIn(target, in);
   if (!sends)
     throw py::attribute_error(fmt::format("{} has no eventOut {}{}", source.type().name, out,
                                           nearestEvent(source, out, true)));
@@ -173,7 +175,12 @@ bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
                  : browser->deleteRoute(source, out, target, in);
     });
   if (!add && found != written.end()) written.erase(found);
-  if (add && done && found == written.end()) written.push_back({from.node, out, to.node, in, {}});
+  if (add && done && found == written.end())
+    written.push_back({from.node,
+                       std::string(ownName(source, out)),
+                       to.node,
+                       std::string(ownName(target, in)),
+                       {}});
   return done;
 }
 
@@ -258,31 +265,37 @@ void setAttribute(const py::object& self, const py::str& name, const py::object&
 
 } // namespace
 
-size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader,
-                 bool mayMatchNothing) {
+size_t applyRules(const WorldPtr& self, const std::vector<picture::ShaderRule>& rules) {
   const auto lock = self->lock();
   World& world = self->graph();
-  const picture::ShaderRule rule{selector + "=" + shader, "set_shader:", {}, mayMatchNothing};
-  if (selector.empty() || selector.find('=') != selector.npos)
-    throw py::value_error(fmt::format(
-        "selector: a DEF name, material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B or * was "
-        "expected, not {}",
-        std::string(py::repr(py::str(selector)))));
   size_t given = 0;
   try {
     if (Browser* browser = self->browser())
       self->change([&] {
-        given = picture::applyShaderRules({rule}, "", world,
+        given = picture::applyShaderRules(rules, "", world,
                                           [&](Node& shape, const NodeRef& appearance) {
                                             browser->set(shape, "appearance", appearance);
                                           });
       });
     else
-      given = picture::applyShaderRules({rule}, "", world);
+      given = picture::applyShaderRules(rules, "", world);
   } catch (const picture::ShaderError& error) { throw py::value_error(error.what()); }
   self->shadersGiven = self->shadersGiven || given > 0;
   return given;
 }
+
+namespace {
+
+size_t setShader(const WorldPtr& self, const std::string& selector, const std::string& shader) {
+  if (selector.empty() || selector.find('=') != selector.npos)
+    throw py::value_error(
+        fmt::format("selector: a DEF name, material:GLOB, appearance:GLOB, shape:GLOB, kicad:GLOB, "
+                    "colour:R,G,B or * was expected, not {}",
+                    std::string(py::repr(py::str(selector)))));
+  return applyRules(self, {{selector + "=" + shader, "set_shader:", {}, false}});
+}
+
+} // namespace
 
 void defineWorld(py::module_& module) {
   py::class_<Diagnostic>(module, "Diagnostic",
@@ -387,15 +400,11 @@ void defineWorld(py::module_& module) {
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
           "Removes a route. Returns False if it did not exist.")
       .def(
-          "set_shader",
-          [](const WorldPtr& self, const std::string& selector, const std::string& shader) {
-            return setShader(self, selector, shader, false);
-          },
-          py::arg("selector"), py::arg("shader"),
+          "set_shader", setShader, py::arg("selector"), py::arg("shader"),
           "Gives shapes another surface shader, as --shader of vv does: "
           "set_shader('material:PIN-*', 'Metal:roughness=.22'). The selector is a DEF name, "
-          "material:GLOB, appearance:GLOB, shape:GLOB, colour:R,G,B, or '*' for shapes without a "
-          "shader. Returns the number of shapes; 0 is also a warning of the world.")
+          "material:GLOB, appearance:GLOB, shape:GLOB, kicad:GLOB, colour:R,G,B, or '*' for shapes "
+          "without a shader. Returns the number of shapes; 0 is also a warning of the world.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
       .def("to_x3d", toX3d, py::arg("encoding") = "xml",
            "Returns the world as X3D text, in the encoding 'xml' or 'classic' (ClassicVRML).")

@@ -4,7 +4,7 @@
 #
 #   board-pictures.sh BOARD OUTPUT [OPTIONS OF VV...]
 #
-# BOARD is a .wrl that KiCad has exported with relative models, or a .kicad_pcb, which kicad-cli
+# BOARD is a .wrl that KiCad has exported with relative models, a .glb, or a .kicad_pcb, which kicad-cli
 # (KiCad 8 or later) exports first. OUTPUT is a .png; its folder is made if it is missing. Change
 # VIEWS, SIZE and TURNTABLE (number of pictures; 0: none) in the environment.
 set -euo pipefail

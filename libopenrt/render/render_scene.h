@@ -73,6 +73,14 @@ struct RenderScene {
   // Light paths that a glossy surface scatters first (lights/light_path_weights.h); null: camera
   // paths make all of these.
   std::shared_ptr<const LightSources> glossySources;
+  // Where these light paths are connected: to the camera, and to the first non-specular surfaces of
+  // camera paths behind mirrors and glass.
+  bool showsGlossy = false, connectsGlossy = false;
+  // Camera paths share the light of emissive shapes that lightSources send by way of mirrors and
+  // glass; else light paths make all of it.
+  bool sharesMirrors = false;
+  // Returns whether camera paths count how often light paths make them.
+  bool countsLightPaths() const { return glossySources || sharesMirrors; }
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
   // scene fills space (fillsSpace()).
   std::vector<MediumLights> mediumLights;

@@ -169,6 +169,7 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
       }
     }
     if (shaderClass.traits) slot.traits = shaderClass.traits(&host, slot.params);
+    allTraits_ |= slot.traits;
     if (shaderClass.medium) setMedium(slot, host);
   }
   slots_[number] = slot;

@@ -40,6 +40,8 @@ class ShaderTable {
   // Media with equal parameters are one, however many shaders have it, unless it scatters: then it
   // has the lights of its own shader's surfaces.
   std::span<const RtsMedium> media() const { return media_; }
+  // Returns the traits that any shader has had since the table was first made.
+  uint32_t allTraits() const { return allTraits_; }
   // Returns whether more than one shader has a medium.
   bool severalBodies() const { return bodies_ > 1; }
   // Returns the slot of a light, camera or environment shader; shaderClass is null if the id is not
@@ -73,7 +75,8 @@ class ShaderTable {
   std::vector<RtsMedium> media_;
   std::vector<uint32_t> users_;             // by medium: number of slots that have it
   std::map<std::string, uint16_t> numbers_; // by the bytes of a medium that slots may share
-  uint32_t bodies_ = 0;                     // number of slots that have a medium
+  uint32_t allTraits_ = 0;
+  uint32_t bodies_ = 0; // number of slots that have a medium
   std::shared_ptr<const Slots> slotOf_;
   uint32_t defaultShader_ = 0; // the shader that slot 0 takes its values from
 };

@@ -80,6 +80,11 @@ inline constexpr auto channelTable = [] {
        .firstHit = true,
        .kind = RT_CHANNEL_SHARES,
        .text = "tells which Shapes cover a pixel, and how much of it each"},
+      {.bit = RT_PLACE,
+       .name = "place",
+       .planes = "place.X place.Y",
+       .source = firstSample,
+       .text = "is where in the pixel its first sample was taken"},
   });
   uint32_t used[3] = {};
   for (ChannelInfo& row : table) {

@@ -141,6 +141,7 @@ void Surfaces::setColorPicture(const AppearanceParts& parts, const MaterialValue
 void Surfaces::setMaterial(const AppearanceParts& parts, Surface& surface) {
   const MaterialValues values = xvrml::materialValues(parts.material);
   surface.lit = values.model == Model::phong || values.model == Model::physical;
+  surface.takesIrradiance = values.model == Model::physical;
   surface.color = linearOf(values.color);
   surface.opacity = 1 - between0And1(values.transparency);
   surface.emission = linearOf(values.emissiveColor);
@@ -263,6 +264,7 @@ void usePhysical(const ShaderValues& v, Surface& s, Remarks&) {
   const float strength = clamped(v.number("emissiveStrength"), 0, 1e6f);
   const Color e = notNegative(v.color("emissiveColor"));
   s.lit = v.number("lit") > 0;
+  s.takesIrradiance = v.number("irradiance") > 0;
   s.color = clamped(v.color("baseColor"));
   s.metallic = between0And1(v.number("metallic"));
   s.roughness = between0And1(v.number("roughness"));

@@ -26,7 +26,10 @@ struct SurfacePicture {
 struct Surface {
   std::string name; // the DEF name of the appearance or of its material; may be empty
   bool visible = true;
-  bool lit = true;               // false: the surface shows its colour in any light
+  bool lit = true; // false: the surface shows its colour in any light
+  // The intensity of a light is its irradiance at the surface, as in X3D 4 (17.2.2), and not pi
+  // times as much, as a white Material that reflects all light takes it.
+  bool takesIrradiance = false;
   xvrml::Color color{1, 1, 1};   // diffuse reflectance, or F0 for a metal
   bool showsVertexColors = true; // the colours of vertices multiply `color`, which is white then
   enum class Alpha : uint8_t { opaque, mask, blend } alpha = Alpha::opaque;

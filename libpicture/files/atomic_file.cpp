@@ -85,12 +85,12 @@ template <class Write> void writeDirectly(const std::string& path, const Write& 
 class Temporary {
  public:
   // path: the file as the caller calls it, for messages; target: the file that is replaced.
-  Temporary(const std::string& path, const std::string& target, mode_t mode) : path_(path) {
+  Temporary(const std::string& path, const std::string& target) : path_(path) {
     const std::string base = folderOf(target) + "/.vv-" + std::to_string(::getpid()) + "-";
     for (int i = 0; i < 1000 && descriptor_ < 0; ++i) {
       name_ = base + std::to_string(i);
       if (name_.size() >= PATH_MAX) fail(path, ENAMETOOLONG);
-      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+      descriptor_ = openNew(name_, 0666);
       if (descriptor_ < 0 && errno != EEXIST) fail(path, errno);
     }
     if (descriptor_ < 0) fail(path, EEXIST);
@@ -154,6 +154,10 @@ std::string followLinks(const std::string& path) {
   return at.string();
 }
 
+int openNew(const std::string& path, unsigned rights) {
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, rights);
+}
+
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name) {
   while (!bytes.empty()) {
     // Linux writes at most 2 GiB in one call.
@@ -187,7 +191,7 @@ void replaceFile(const std::string& path, const Write& write, Wait wait, Targets
       throw std::runtime_error(why);
   if (exists && ::access(target.c_str(), W_OK) != 0) fail(path, errno);
 
-  Temporary temporary(path, target, 0666);
+  Temporary temporary(path, target);
   if (exists) (void)!::fchmod(temporary.descriptor(), info.st_mode & 0777);
   write(temporary.descriptor());
   if (wait == Wait::disk) temporary.sync();

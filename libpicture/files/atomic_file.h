@@ -36,6 +36,11 @@ std::string whyNotRegular(const std::string& path);
 // Returns the file that a path leads to through symbolic links, whether it exists or not.
 std::string followLinks(const std::string& path);
 
+// Makes a new file with these rights, less those that the process withholds (umask), and opens it
+// for writing. Nothing that has this name already is opened, also no link. Returns the descriptor;
+// -1: errno says why, EEXIST for a name that is taken.
+int openNew(const std::string& path, unsigned rights);
+
 // Writes all bytes to an open descriptor; `name` is for the message. Throws std::runtime_error.
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name);
 

@@ -83,7 +83,7 @@ std::string encodeExr(const Picture& picture) {
     Imf::Header header = makeHeader(picture);
     Imf::FrameBuffer frame;
     std::vector<float> layers; // the layers of Cryptomatte
-    for (const Channel& channel : channelTable()) {
+    for (const Channel& channel : pictureChannels()) {
       auto plane = picture.planes.find(channel.bit);
       if (plane == picture.planes.end()) continue;
       if (channel.bit == RT_COVERAGE) layers = cryptomatteLayers(picture);

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "libpicture/doubt.h"
 #include "openrt/openrt.h"
 #include "srgb.h"
 
@@ -81,11 +82,33 @@ const std::vector<Channel>& channelTable() {
   return table;
 }
 
-const Channel* findChannel(std::string_view name) {
-  for (const Channel& channel : channelTable())
+const std::vector<Channel>& pictureChannels() {
+  static const std::vector<Channel> table = [] {
+    std::vector<Channel> rows = channelTable();
+    rows.push_back({.name = "doubt",
+                    .bit = doubtBit,
+                    .components = 1,
+                    .exr = {"doubt"},
+                    .isWhole = false,
+                    .hasNames = false,
+                    .text = ""});
+    return rows;
+  }();
+  return table;
+}
+
+namespace {
+
+const Channel* find(const std::vector<Channel>& table, std::string_view name) {
+  for (const Channel& channel : table)
     if (channel.name == name) return &channel;
   return nullptr;
 }
+
+} // namespace
+
+const Channel* findChannel(std::string_view name) { return find(channelTable(), name); }
+const Channel* findPictureChannel(std::string_view name) { return find(pictureChannels(), name); }
 
 bool hasNames(uint32_t channels) {
   for (const Channel& channel : channelTable())
@@ -108,7 +131,7 @@ Picture withChannels(const Picture& picture, uint32_t channels) {
 }
 
 void cut(Picture& picture, int x, int y, int width, int height) {
-  for (const Channel& channel : channelTable()) {
+  for (const Channel& channel : pictureChannels()) {
     const auto found = picture.planes.find(channel.bit);
     if (found == picture.planes.end()) continue;
     const std::vector<float> whole = std::move(found->second);

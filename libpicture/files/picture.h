@@ -27,6 +27,10 @@ struct Channel {
 };
 const std::vector<Channel>& channelTable();
 const Channel* findChannel(std::string_view name);
+// The same, with those that are made of finished pictures: doubt (libpicture/doubt.h). Pictures and
+// files may have them, and no frame can be asked for them.
+const std::vector<Channel>& pictureChannels();
+const Channel* findPictureChannel(std::string_view name);
 // Returns whether one of the channels has numbers of Shapes.
 bool hasNames(uint32_t channels);
 
@@ -93,5 +97,12 @@ struct InputError : std::runtime_error {
 
 // Reads rgba of an OpenEXR file, and error and trust if it has them. Throws InputError.
 Picture readExr(const std::string& path);
+// Reads rgba, and those of the channels that the file has. Names of channels may be in any case.
+Picture readExr(const std::string& path, uint32_t channels);
+
+// Reads a picture in any format that worlds may name, or any OpenEXR file with the channels R, G
+// and B. Colours of 8 bits are display values (Picture::linear is false) and are not premultiplied.
+// channels: those that an OpenEXR file may have besides rgba. Throws InputError.
+Picture readPicture(const std::string& path, uint32_t channels);
 
 } // namespace picture

@@ -74,7 +74,7 @@ struct Samples {
 };
 
 Samples::Samples(const CellPass& pass, size_t pixel) {
-  std::fill_n(at, 9, Shown::noSample);
+  std::fill_n(at, 9, ShownLight::noSample);
   const float pastX = pass.reading.pastX[pixel], pastY = pass.reading.pastY[pixel];
   const Layout& old = pass.shown.layout;
   if (!(pastX >= 0 && pastY >= 0 && pastX < float(old.width) && pastY < float(old.height))) return;

@@ -20,15 +20,21 @@ constexpr double fadeBegins = 0.5, fadeEnds = 4, leastSamples = 4;
 // Returns a mixture of two bytes; weight: that of the second one, 0 to 256.
 int mix(int a, int b, int weight) { return (a * (256 - weight) + b * weight + 128) >> 8; }
 
-// Mixes a picture over another one of the same size. Pixels without a sample show the lower one.
-void fadeIn(const std::vector<uint8_t>& below, const std::vector<float>& samples, double weight,
-            std::vector<uint8_t>& rgb) {
-  const int w = int(std::lround(weight * 256));
-  for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
-    const int own = samples[pixel] > 0 ? w : 0;
-    if (own == 256) continue;
-    for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) rgb[i] = uint8_t(mix(below[i], rgb[i], own));
+// Mixes a picture over another one of the same size, with at most the weights of `fade`. Pixels
+// without a sample show the lower one. Returns whether anything of the lower one is left.
+bool fadeIn(const std::vector<uint8_t>& below, const std::vector<float>& samples, double weight,
+            const Fade& fade, int width, std::vector<uint8_t>& rgb) {
+  bool left = false;
+  for (size_t pixel = 0; pixel < samples.size();) {
+    const Fade::Row limits(fade, int(pixel / size_t(width)));
+    for (int x = 0; x < width; ++x, ++pixel) {
+      const int w = samples[pixel] > 0 ? int(std::lround(std::min(weight, limits(x)) * 256)) : 0;
+      if (w == 256) continue;
+      left = true;
+      for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) rgb[i] = uint8_t(mix(below[i], rgb[i], w));
+    }
   }
+  return left;
 }
 
 // Sets `samples` and `covered`.
@@ -117,17 +123,20 @@ void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, 
           out.width, out.height,
           scaled(viewer.last.rgb, viewer.last.width, viewer.last.height, out.width, out.height),
           viewer.last.preview};
+    if (!viewer.below.rgb.empty()) viewer.fade.begin(out.width, out.height);
   }
   if (!whole && !viewer.below.rgb.empty()) {
     const bool fades = frame.purpose == LiveFrame::Purpose::still && viewer.below.preview;
     const double weight = fades ? stillWeight(out.samples, frame.samples, seconds) : 1;
-    if (weight < 1 || out.covered < 1) {
-      fadeIn(viewer.below.rgb, samples, weight, out.rgb);
+    if (fades && out.covered == 1) viewer.fade.learn(viewer.below.rgb, out.rgb, out.samples);
+    if (fadeIn(viewer.below.rgb, samples, weight, viewer.fade, out.width, out.rgb))
       out.preview = viewer.below.preview;
-    }
   }
   viewer.last = {out.shownWidth, out.shownHeight, out.rgb, out.preview};
-  if (whole) viewer.below = {};
+  if (whole) {
+    viewer.below = {};
+    viewer.fade = {};
+  }
 }
 
 } // namespace picture::live

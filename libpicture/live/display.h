@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libpicture/live.h"
+#include "libpicture/live/fade.h"
 #include "libpicture/live/recent_viewers.h"
 
 namespace picture::live {
@@ -22,10 +23,12 @@ struct ShownFrame {
   // as in LiveFrame
   std::optional<double> falseColour;
   int shownWidth = 0, shownHeight = 0;
+  int width = 0, height = 0;
 };
 
-// Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the
-// preview that was shown before. It never decreases. wanted: the samples of the finished picture.
+// Returns the largest weight, 0 to 1, of a still picture with `samples` samples per pixel so far,
+// over the preview that was shown before; Fade lowers it where the picture is noisy. It never
+// decreases. wanted: the samples of the finished picture.
 // seconds: since the frame was started.
 double stillWeight(double samples, int wanted, double seconds);
 
@@ -36,7 +39,8 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
 class Display {
  public:
   // Fills sizes, rgb, scaleEnd, covered, samples and preview of `out`. picture: the finished part
-  // of the frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
+  // of the frame, with RT_RGBA and RT_SAMPLES; a preview may have more pixels than its frame.
+  // whole: the frame has all its samples.
   void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
   // Frees what a viewer was shown last.
@@ -53,6 +57,7 @@ class Display {
     Bytes last;              // the picture that was shown last
     Bytes below;             // the picture that a still frame fades over, in that frame's size
     uint64_t belowFrame = 0; // number of that frame
+    Fade fade;               // over that picture
     // The luminance that fits the last finished still picture, or the first picture in false
     // colours while there is none; 0: own colours are shown.
     double fitting = 0;

@@ -16,9 +16,9 @@ constexpr float mostNames = 1 << 24;
 bool isNumber(float name) { return name >= 0 && name < mostNames; }
 
 // Calls use(name, begin, end) for each run of pixels in a row that have one name.
-template <class Use> void forEachRun(const Moment& moment, int y, const Use& use) {
-  const size_t row = moment.layout.row(y), end = row + size_t(moment.layout.width);
-  const float* const names = moment.guides.name.data();
+template <class Use>
+void forEachRun(const Layout& layout, const Plane& names, int y, const Use& use) {
+  const size_t row = layout.row(y), end = row + size_t(layout.width);
   for (size_t i = row; i < end;) {
     const size_t begin = i;
     while (i < end && names[i] == names[begin]) i++;
@@ -31,7 +31,7 @@ template <class Use> void forEachRun(const Moment& moment, int y, const Use& use
 void countNames(const Moment& moment, std::vector<uint32_t>& pixels) {
   std::fill(pixels.begin(), pixels.end(), 0);
   for (int y = 0; y < moment.layout.height; y++)
-    forEachRun(moment, y, [&](size_t name, size_t begin, size_t end) {
+    forEachRun(moment.layout, moment.guides.name, y, [&](size_t name, size_t begin, size_t end) {
       if (name >= pixels.size()) pixels.resize(name + 1);
       pixels[name] += uint32_t(end - begin);
     });
@@ -39,19 +39,22 @@ void countNames(const Moment& moment, std::vector<uint32_t>& pixels) {
 
 } // namespace
 
-void NamesSeen::markGone(Moment& before, const Moment& now) {
+void NamesSeen::markGone(const Moment& before, const Moment& now, Shown& shown) {
   countNames(before, before_);
   countNames(now, now_);
   now_.resize(std::max(now_.size(), before_.size()));
+  const auto isGoneNow = [this](size_t name) {
+    return name < before_.size() && before_[name] >= leastPixels && now_[name] == 0;
+  };
   bool any = false;
-  for (size_t name = 0; name < before_.size(); name++)
-    any |= before_[name] >= leastPixels && now_[name] == 0;
+  for (size_t name = 0; name < before_.size(); name++) any |= isGoneNow(name);
   if (!any) return;
-  for (int y = 0; y < before.layout.height; y++)
-    forEachRun(before, y, [&](size_t name, size_t begin, size_t end) {
-      if (before_[name] < leastPixels || now_[name] > 0) return;
-      std::fill(before.guides.moves.begin() + ptrdiff_t(begin),
-                before.guides.moves.begin() + ptrdiff_t(end), isGone);
+  Surfaces& surfaces = shown.surfaces;
+  for (int y = 0; y < shown.layout.height; y++)
+    forEachRun(shown.layout, surfaces.name, y, [&](size_t name, size_t begin, size_t end) {
+      if (isGoneNow(name))
+        std::fill(surfaces.moves.begin() + ptrdiff_t(begin),
+                  surfaces.moves.begin() + ptrdiff_t(end), isGone);
     });
 }
 

@@ -51,6 +51,18 @@ inline Lanes loadSome(const float* from, int i, int n) {
   std::copy(from + std::min(i, n), from + n, some);
   return load(some);
 }
+// The same for an array of n times two numbers; y receives the second.
+inline Lanes loadPairs(const float* from, int i, int n, Lanes& y) {
+  Lanes x;
+  if (i + width() <= n) {
+    hn::LoadInterleaved2(LanesTag(), from + 2 * i, x, y);
+    return x;
+  }
+  float some[2 * Layout::widest] = {};
+  std::copy(from + 2 * std::min(i, n), from + 2 * n, some);
+  hn::LoadInterleaved2(LanesTag(), some, x, y);
+  return x;
+}
 // The same for an array of n times three numbers.
 inline LaneVec loadTriples(const float* from, int i, int n) {
   LaneVec v;

@@ -37,6 +37,12 @@ constexpr double inTime = 0.7;
 
 constexpr double leastSide = 64; // shortest side of a picture, in pixels
 
+constexpr double mostShowing =
+    0.5;                          // part of a frame's time that the size of what is shown may take
+constexpr int smallestShown = -8; // a quarter of the window in each direction
+// Returns the scale of a size in each direction.
+double scaleOf(int step) { return std::exp2(step / 4.0); }
+
 } // namespace
 
 Pacing::Pacing(double framesPerSecond) : budget_(fill / std::clamp(framesPerSecond, 0.1, 1000.0)) {}
@@ -46,8 +52,7 @@ FrameSize Pacing::at(int step, int width, int height) const {
   if (step >= strides) return {width, height, 1 << (step - strides)};
   if (step >= 0) return {width, height, 1, strides + 1 - step};
   // Both sides have the same scale, so the aspect ratio is kept.
-  const double scale =
-      std::min(1.0, std::max(std::exp2(step / 4.0), leastSide / std::min(width, height)));
+  const double scale = std::min(1.0, std::max(scaleOf(step), leastSide / std::min(width, height)));
   return {int(std::ceil(width * scale)), int(std::ceil(height * scale)), 1, strides + 1};
 }
 
@@ -59,15 +64,15 @@ double Pacing::costOf(const FrameSize& f) const {
 }
 
 double Pacing::seconds(const FrameSize& f) const {
-  return overhead_ + (rebuilt_ + pixel_ * costOf(f)) * f.width * f.height;
+  return overhead_ + showing_ + (rebuilt_ + pixel_ * costOf(f)) * f.width * f.height;
 }
 
 double Pacing::predicted(const FrameSize& f) const { return pixel_ > 0 ? seconds(f) : 0; }
 
 void Pacing::took(const FrameSize& frame, double seconds, double alone, double overhead,
-                  double samples, double rebuilding) {
+                  double samples, double rebuilding, double showing) {
   if (!(seconds >= 0) || !(alone >= 0) || !(overhead >= 0) || !(rebuilding >= 0) ||
-      overhead + rebuilding > seconds * (1 + 1e-9))
+      !(showing >= 0) || showing > rebuilding || overhead + rebuilding > seconds * (1 + 1e-9))
     return;
   if (alone < seconds) {
     // Two frames in flight that follow each other closely end half of a frame's time apart. If
@@ -91,7 +96,10 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
   measured_ = true;
   const double pixels = double(frame.width) * frame.height,
                work = pixels * (frame.lightStride > 1 ? costOf(frame) : samples);
-  if (rebuilding > 0 && pixels > 0) follow(rebuilt_, rebuilding / pixels);
+  if (rebuilding > 0 && pixels > 0) {
+    follow(rebuilt_, (rebuilding - showing) / pixels);
+    follow(showing_, showing);
+  }
   if (work > 0 && std::isfinite(work))
     follow(pixel_, std::max(0.0, seconds - overhead - rebuilding) / work);
 }
@@ -143,6 +151,20 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
   FrameSize frame = at(step_, width, height);
   frame.samples = std::min(frame.samples, std::max(samples, 1));
   return frame;
+}
+
+FrameSize Pacing::shown(int width, int height) {
+  // The time of the next smaller and the next larger size follows from their pixels.
+  const double most = mostShowing * budget_, larger = scaleOf(1) * scaleOf(1);
+  int step = shownStep_;
+  if (showing_ > tooLong * most)
+    step = std::max(smallestShown, step - 1);
+  else if (showing_ * larger < roomFor * most)
+    step = std::min(0, step + 1);
+  if (step != shownStep_) showing_ *= step > shownStep_ ? larger : 1 / larger;
+  shownStep_ = step;
+  return {std::max(1, int(std::ceil(width * scaleOf(step)))),
+          std::max(1, int(std::ceil(height * scaleOf(step))))};
 }
 
 FrameSize Pacing::settle(int width, int height, int samples) const {

@@ -36,8 +36,9 @@ class Pacing {
   //   samples:    samples taken, mean over the pixels; 0: the cost of a pixel is unknown. Not used
   //               where frame.lightStride is more than 1
   //   rebuilding: part of `seconds` after tracing, in which the picture was rebuilt
+  //   showing:    part of `rebuilding` that belongs to the size of shown(), whatever the frame has
   void took(const FrameSize& frame, double seconds, double alone, double overhead, double samples,
-            double rebuilding = 0);
+            double rebuilding = 0, double showing = 0);
 
   // Returns the next frame for a window of this size. moving: the viewer or something in the world
   // moves. A moving frame takes at most a frame's time, as predicted from earlier frames. Where
@@ -53,6 +54,10 @@ class Pacing {
   // take a tenth of a second, if the cost of a pixel is known.
   FrameSize settle(int width, int height, int samples) const;
 
+  // Returns the pixels of the picture that previews make for a window of this size: those of the
+  // window, or fewer where they would take more than half of a frame's time.
+  FrameSize shown(int width, int height);
+
   double predicted(const FrameSize& frame) const; // in seconds; 0: unknown
 
  private:
@@ -64,11 +69,13 @@ class Pacing {
   double seconds(const FrameSize& frame) const; // as predicted(); the cost of a pixel is known
 
   double budget_; // seconds per frame
-  // seconds per sample of a pixel, to rebuild a pixel, and per frame; all smoothed
-  double pixel_ = 0, rebuilt_ = 0, overhead_ = 0;
+  // seconds per sample of a pixel, to rebuild a pixel, to show a picture, and per frame; all
+  // smoothed
+  double pixel_ = 0, rebuilt_ = 0, showing_ = 0, overhead_ = 0;
   double lastOverhead_ = 0; // overhead of the last frame
   Light light_ = Light::sampled;
   int step_ = 0;
+  int shownStep_ = 0;      // that of shown(): 0 is the window, -4 half of it in each direction
   bool growing_ = true;    // the frames of the first motion have not found their size yet
   bool measured_ = false;  // a frame has ended since the last one of a motion was chosen
   int framesWithRoom_ = 0; // consecutive frames that left enough time for a better step

@@ -35,7 +35,7 @@ struct Expected {
   Lanes name, nearness, tolerance;
   LaneVec normal;
 
-  Mask matches(const Guides& guides, Indices at) const {
+  Mask matches(const Surfaces& guides, Indices at) const {
     const Mask near = abs(gather(guides.nearness.data(), at) - nearness) <= tolerance;
     const Mask same = gather(guides.name.data(), at) == name;
     return hn::And(hn::And(near, same), dot(gather(guides.normal, at), normal) > lanesOf(0.6f));

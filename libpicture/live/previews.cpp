@@ -5,7 +5,8 @@
 namespace picture::live {
 
 Picture Previews::rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera,
-                          int lightStride, const WorldStep& step, double denoising) {
+                          int lightStride, const WorldStep& step, double denoising,
+                          ShownSize shown) {
   Viewer& own = viewers_.of(viewer);
   try {
     if (!own.reconstruction)
@@ -16,8 +17,9 @@ Picture Previews::rebuild(uint32_t viewer, const Picture& frame, const FrameCame
     const double cells = std::ceil(double(frame.width) / lightStride) *
                          std::ceil(double(frame.height) / lightStride);
     OidnFilter* const filter = oidn_.filterFor(own.denoised, cells, denoising);
-    Picture rebuilt = own.reconstruction->add(frame, camera, lightStride, filter);
+    Picture rebuilt = own.reconstruction->add(frame, camera, lightStride, filter, shown);
     const Reconstruction::Facts& facts = own.reconstruction->facts();
+    showing_ = facts.showing;
     denoisedBy_ = facts.denoised ? filter->name() : "";
     if (facts.denoised) oidn_.took(cells, facts.denoising);
     if (!facts.problem.empty()) oidn_.failed(facts.problem);

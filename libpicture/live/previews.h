@@ -51,9 +51,11 @@ class Previews {
   // Adds a frame to what its viewer has accumulated and returns the rebuilt picture. Begins anew if
   // the world has changed since the viewer's last preview by more than the frame's RT_MOTION says.
   // If an exception leaves it, the viewer's accumulated frames are gone.
-  // denoising: seconds that Denoiser::automatic may take.
+  // denoising: seconds that Denoiser::automatic may take. shown: as in Reconstruction::add().
   Picture rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera, int lightStride,
-                  const WorldStep& step, double denoising = 0);
+                  const WorldStep& step, double denoising = 0, ShownSize shown = {});
+  // Returns the seconds of the last preview that the size of the shown picture took.
+  double showing() const { return showing_; }
   // Returns the name of the library that has filtered the last preview; "": none has.
   const std::string& denoisedBy() const { return denoisedBy_; }
   // Returns, once, why a denoiser that was asked for is not used.
@@ -74,6 +76,7 @@ class Previews {
   int threads_;
   OidnLender oidn_;
   std::string denoisedBy_;
+  double showing_ = 0;
   RecentViewers<Viewer> viewers_;
 };
 

@@ -77,6 +77,14 @@ inline LaneVec unitNormal(const LaneVec& v) {
   return select(known, unit, LaneVec{zero, zero, lanesOf(1)});
 }
 
+// Returns the pixel of the shown picture that a place within a pixel of a frame lies in, along one
+// axis. frame, shown: their pixels.
+inline Lanes shownPixel(Lanes pixel, Lanes within, int frame, int shown) {
+  const Lanes ratio = lanesOf(float(double(shown) / frame)), one = lanesOf(1);
+  const Lanes inside = clamp(within, lanesOf(0), one);
+  return min(hn::Floor((pixel + inside) * ratio), hn::Ceil((pixel + one) * ratio) - one);
+}
+
 void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
   const FramePlanes& frame = pass.frame;
   const Moment& before = pass.before;
@@ -127,16 +135,26 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     const Lanes wide = lanesOf(float(before.layout.width)),
                 high = lanesOf(float(before.layout.height));
     const Lanes stayX = centerX * lanesOf(alongX.ratio) + lanesOf(alongX.shift);
-    Lanes pastX = nan, pastY = nan;
+    Lanes moveX = nan, moveY = nan;
     if (projects) {
-      pastX = select(moved, stayX + (past.x - place.x) * wide,
-                     select(environment, stayX + (far.x - filmX) * wide, nan));
-      pastY = select(moved, lanesOf(stayY) + (past.y - place.y) * high,
-                     select(environment, lanesOf(stayY) + (far.y - filmY) * high, nan));
+      moveX = select(moved, past.x - place.x, select(environment, far.x - filmX, nan));
+      moveY = select(moved, past.y - place.y, select(environment, far.y - filmY, nan));
     }
     const Mask stays = pass.rests ? hn::Or(still, hn::Not(some)) : hn::Not(some);
-    store(select(stays, stayX, pastX), reading.pastX.data() + i);
-    store(select(stays, lanesOf(stayY), pastY), reading.pastY.data() + i);
+    moveX = select(stays, zero, moveX);
+    moveY = select(stays, zero, moveY);
+    store(moveX, reading.moveX.data() + i);
+    store(moveY, reading.moveY.data() + i);
+    store(stayX + moveX * wide, reading.pastX.data() + i);
+    store(lanesOf(stayY) + moveY * high, reading.pastY.data() + i);
+
+    Lanes withinY;
+    const Lanes withinX = loadPairs(frame.place + 2 * first, x, w, withinY);
+    const Mask lies = hn::And(some, hn::And(isFinite(withinX), isFinite(withinY)));
+    store(select(lies, shownPixel(centerX, withinX, w, pass.shown.width), lanesOf(-1)),
+          reading.hitX.data() + i);
+    store(select(lies, shownPixel(centerY, withinY, h, pass.shown.height), lanesOf(-1)),
+          reading.hitY.data() + i);
 
     // Without a projection that can be inverted, the depth of the frame itself must do.
     const Lanes none = lanesOf(p.parallel ? environmentFar : 0);

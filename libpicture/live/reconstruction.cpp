@@ -39,11 +39,11 @@ FramePlanes planesOf(const Picture& frame) {
   if (frame.width < 1 || frame.height < 1 || frame.width > 65536 || frame.height > 65536)
     throw std::invalid_argument("a preview needs a frame of 1 to 65536 pixels each way, not " +
                                 std::to_string(frame.width) + " x " + std::to_string(frame.height));
-  return {planeOf(frame, RT_RGBA, 4),      planeOf(frame, RT_DEPTH, 1),
-          planeOf(frame, RT_NORMAL, 3),    planeOf(frame, RT_ALBEDO, 3),
-          planeOf(frame, RT_POSITION, 3),  planeOf(frame, RT_NAME, 1),
-          planeOf(frame, RT_MOTION, 3),    planeOf(frame, RT_SAMPLES, 1),
-          planeOf(frame, RT_REFLECTION, 3)};
+  return {planeOf(frame, RT_RGBA, 4),       planeOf(frame, RT_DEPTH, 1),
+          planeOf(frame, RT_NORMAL, 3),     planeOf(frame, RT_ALBEDO, 3),
+          planeOf(frame, RT_POSITION, 3),   planeOf(frame, RT_NAME, 1),
+          planeOf(frame, RT_MOTION, 3),     planeOf(frame, RT_SAMPLES, 1),
+          planeOf(frame, RT_REFLECTION, 3), planeOf(frame, RT_PLACE, 2)};
 }
 
 } // namespace
@@ -53,22 +53,23 @@ struct Reconstruction::Impl {
 
   // Calls stage(y) for each row of pixels or cells.
   template <class Stage> void rows(const Moment& grid, const Stage& stage) {
+    rows(grid.layout, stage);
+  }
+  template <class Stage> void rows(const Layout& layout, const Stage& stage) {
     constexpr int together = 4; // rows that are worth a task
-    parallelFor(tbb::blocked_range<int>(0, grid.layout.height, together),
+    parallelFor(tbb::blocked_range<int>(0, layout.height, together),
                 [&](const tbb::blocked_range<int>& range) {
                   for (int y = range.begin(); y < range.end(); y++) stage(y);
                 });
   }
 
-  // Prepares the planes of a frame of width x height pixels. `now` and `reading` are those of
-  // cells.
-  void start(const FrameCamera& camera, int width, int height, int block) {
+  // Prepares the planes of a frame. `now` and `reading` are those of cells.
+  void start(const FrameCamera& camera, const Layout& picture, int block) {
     std::swap(now, before);
     std::swap(pixels, pixelsBefore);
-    std::swap(shown, shownBefore);
+    std::swap(shownLight, shownLightBefore);
     std::swap(coats.now, coats.before);
-    const Layout picture(width, height),
-        cells((width + block - 1) / block, (height + block - 1) / block);
+    const Layout cells((picture.width + block - 1) / block, (picture.height + block - 1) / block);
     now.block = block;
     now.projection = Projection(camera);
     if (!(now.layout == cells)) now.resize(cells);
@@ -79,8 +80,11 @@ struct Reconstruction::Impl {
       workLayout = cells;
     }
     if (coats.now.light.x.size() != now.layout.size()) coats.now.resize(now.layout);
-    if (!(shown.layout == picture)) shown.resize(picture);
-    if (!(freshLayout == picture)) fresh.resize(freshLayout = picture);
+    if (!(shownLight.layout == picture)) shownLight.resize(picture);
+    if (!(freshLayout == picture)) {
+      fresh.resize(freshLayout = picture);
+      bounds.resize(picture);
+    }
     // Pixels and cells are the same planes if all cells are pixels, in the frame before, too.
     sparse = block > 1 || before.block > 1;
     if (!sparse) return;
@@ -89,19 +93,31 @@ struct Reconstruction::Impl {
     if (!(pixelLayout == picture)) pixelReading.resize(pixelLayout = picture);
   }
 
+  // Prepares the planes of the picture that is shown of a frame.
+  void startShowing(const Layout& picture, ShownSize size) {
+    const int width = std::max(picture.width, size.width),
+              height = std::max(picture.height, size.height);
+    std::swap(shown, shownBefore);
+    if (const Layout wanted(width, height); !(shown.layout == wanted)) shown.resize(wanted);
+    if (columns.frame != picture.width || columns.picture != width)
+      columns = Overlaps(picture.width, width);
+    if (rowsOfFrame.frame != picture.height || rowsOfFrame.picture != height)
+      rowsOfFrame = Overlaps(picture.height, height);
+  }
+
   // The surfaces of the frame before, by pixel.
   Moment& pixelsOfBefore() { return before.block > 1 ? pixelsBefore : before; }
 
   void read(const FramePlanes& planes) {
     const Moment& old = pixelsOfBefore();
     const ReadPass pass{planes, old, areEqual(now.projection.camera, before.projection.camera),
-                        now.block > 1};
+                        now.block > 1, shown.layout};
     if (!sparse) {
       rows(now, [&](int y) { readRow(pass, y, now, reading); });
       return;
     }
     rows(pixels, [&](int y) { readRow(pass, y, pixels, pixelReading); });
-    const CellPass cells{planes, pixels, old, pixelReading, before, shownBefore};
+    const CellPass cells{planes, pixels, old, pixelReading, before, shownLightBefore};
     rows(now, [&](int y) { cellRow(cells, y, now, reading, work); });
   }
 
@@ -203,35 +219,57 @@ struct Reconstruction::Impl {
   // Writes `fresh` from the filtered illumination.
   void colour(const FramePlanes& planes) {
     const Moment& grid = sparse ? pixels : now;
-    const ColourPass pass{
-        planes,       grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
-        now,          reading.albedo, *result,          coats.result,
-        work.verdict, shownBefore};
+    const ColourPass pass{planes,
+                          grid,
+                          pixelsOfBefore(),
+                          sparse ? pixelReading : reading,
+                          now,
+                          reading.albedo,
+                          *result,
+                          coats.result,
+                          work.verdict,
+                          shownLightBefore,
+                          shownBefore,
+                          shown.layout};
     rows(grid,
          [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
   }
 
+  // Returns the picture after this frame, in its own size.
+  Picture show(const Picture& frame, const FramePlanes& planes) {
+    const auto begin = Clock::now();
+    const Moment& grid = sparse ? pixels : now;
+    rows(grid, [&](int y) { boundColourRow(grid.layout, y, fresh, bounds, shownLight); });
+    Picture picture = withChannels(frame, 0);
+    picture.width = shown.layout.width;
+    picture.height = shown.layout.height;
+    const size_t numbers = 4 * size_t(picture.width);
+    std::vector<float>& rgba = picture.planes[RT_RGBA];
+    rgba.resize(numbers * size_t(picture.height));
+    const ShowPass pass{planes,      grid,       sparse ? pixelReading : reading,
+                        fresh,       bounds,     columns,
+                        rowsOfFrame, shownBefore};
+    rows(shown.layout, [&](int y) { showRow(pass, y, shown, rgba.data() + size_t(y) * numbers); });
+    facts.showing = secondsSince(begin);
+    return picture;
+  }
+
   Picture add(const Picture& frame, const FrameCamera& camera, int lightStride,
-              OidnFilter* denoiser) {
+              OidnFilter* denoiser, ShownSize size) {
     facts = {};
     const FramePlanes planes = planesOf(frame);
-    start(camera, frame.width, frame.height, lightStride);
+    const Layout layout(frame.width, frame.height);
+    start(camera, layout, lightStride);
+    startShowing(layout, size);
     read(planes);
-    names.markGone(pixelsOfBefore(), sparse ? pixels : now);
+    names.markGone(pixelsOfBefore(), sparse ? pixels : now, shownBefore);
     coats.result = nullptr;
     rebuildReflections();
     rebuild();
     facts.denoised = denoiser && isNoisy() && denoise(*denoiser);
     colour(planes);
 
-    Picture picture = withChannels(frame, 0);
-    std::vector<float>& rgba = picture.planes[RT_RGBA];
-    rgba.resize(size_t(frame.width) * size_t(frame.height) * 4);
-    const Moment& grid = sparse ? pixels : now;
-    rows(grid, [&](int y) {
-      showRow(planes, y, shownBefore.layout, grid, fresh, shown,
-              rgba.data() + size_t(y) * size_t(frame.width) * 4);
-    });
+    Picture picture = show(frame, planes);
     const double cells = double(now.layout.width) * now.layout.height;
     facts.reprojected = std::accumulate(work.found.begin(), work.found.end(), 0.0) / cells;
     facts.history = meanHistory();
@@ -257,7 +295,10 @@ struct Reconstruction::Impl {
   NamesSeen names;
   Fresh fresh;
   Layout freshLayout;
+  Bounds bounds;
+  ShownLight shownLight, shownLightBefore;
   Shown shown, shownBefore;
+  Overlaps columns, rowsOfFrame;  // how the pixels of `shown` lie in the frame
   const Plane3* result = nullptr; // filtered illumination
   OidnImages images;
   Facts facts;
@@ -269,18 +310,22 @@ Reconstruction::~Reconstruction() = default;
 void Reconstruction::reset() {
   impl_->now = Moment();
   impl_->before = Moment();
+  impl_->shownLight = ShownLight();
   impl_->shown = Shown();
   impl_->coats.some = false;
 }
 
 Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride,
-                            OidnFilter* denoiser) {
+                            OidnFilter* denoiser, ShownSize shown) {
   if (lightStride < 1 || lightStride > mostLightStride)
     throw std::invalid_argument("a preview cannot have light in one of " +
                                 std::to_string(lightStride) + " pixels each way");
+  if (shown.width > 65536 || shown.height > 65536)
+    throw std::invalid_argument("a preview has at most 65536 pixels each way, not " +
+                                std::to_string(shown.width) + " x " + std::to_string(shown.height));
   const Clock::time_point begin = Clock::now();
   Picture picture =
-      impl_->arena.execute([&] { return impl_->add(frame, camera, lightStride, denoiser); });
+      impl_->arena.execute([&] { return impl_->add(frame, camera, lightStride, denoiser, shown); });
   impl_->facts.seconds = secondsSince(begin);
   return picture;
 }

@@ -25,7 +25,7 @@ namespace picture::live {
 // The channels that a frame must have for a preview, besides RT_RGBA and RT_SAMPLES. The frame must
 // be rendered with quality RT_FOLLOW_IMAGES 1.
 constexpr uint32_t previewChannels =
-    RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION | RT_REFLECTION;
+    RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION | RT_REFLECTION | RT_PLACE;
 
 class OidnFilter;
 
@@ -40,6 +40,11 @@ struct FrameCamera {
 
 // The largest RT_LIGHT_STRIDE.
 constexpr int mostLightStride = 4;
+
+// The pixels of a picture that is made from frames of fewer pixels; 0: those of the frame.
+struct ShownSize {
+  int width = 0, height = 0;
+};
 
 class Reconstruction {
  public:
@@ -66,8 +71,12 @@ class Reconstruction {
   //
   // denoiser: filters the illumination beside the filter of this class, where there is noise; null:
   // none does. The bytes then depend on its library and on this machine, too.
+  //
+  // shown: the size of the picture, which may have up to 65536 pixels each way. Where it has more
+  // pixels than the frame, each sample counts for the pixel that it lies in, so what rests is sharp
+  // after a few frames. It is never smaller than the frame, and may differ from frame to frame.
   Picture add(const Picture& frame, const FrameCamera& camera, int lightStride = 1,
-              OidnFilter* denoiser = nullptr);
+              OidnFilter* denoiser = nullptr, ShownSize shown = {});
 
   // Facts about the last add(), for reports and tests.
   struct Facts {
@@ -76,6 +85,7 @@ class Reconstruction {
     double history = 0;     // accumulated frames, mean over the pixels
     bool denoised = false;  // the denoiser has filtered the frame
     double denoising = 0;   // part of `seconds`: time of the denoiser
+    double showing = 0;     // part of `seconds`: time of the stages at the size of the picture
     std::string problem; // why it has failed and this class has filtered the frame; "": it has not
   };
   const Facts& facts() const;

@@ -1,7 +1,5 @@
-// show.cpp: Turns illumination into colours again and accumulates the colours over time. Samples
-// lie at random places in their pixels, so the mean over the frames smooths edges and textures, as
-// more samples in one frame would. The accumulated colour is bounded by the colours around the
-// pixel now, so that it cannot show what is gone.
+// show.cpp: Turns illumination into colours again, and finds which colours the pixels around allow
+// what was shown to have, so that it cannot show what is gone.
 #include "libpicture/live/stages.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -13,10 +11,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
-
-// Frames that are accumulated: where nothing moves; where nothing moves but light is sampled, which
-// may change; and elsewhere, where each frame blurs a little what was accumulated.
-constexpr float framesAtRest = 256, framesSampled = 16, framesMoving = 4;
 
 // Returns where the surface was seen in the frame before, or those of most pixels around it: thin
 // things are met by few samples, and what was hidden appears in larger parts.
@@ -32,6 +26,7 @@ inline Mask wasSeen(const Plane& frames, size_t i, ptrdiff_t stride) {
 
 void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
   const Layout& layout = pass.pixels.layout;
+  const Guides& guides = pass.pixels.guides;
   const size_t row = layout.row(y);
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
@@ -39,10 +34,15 @@ void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
     if (pass.reflection)
       light = light + asIllumination(load(*pass.reflection, i), load(pass.reading.albedo, i));
     storeColour(light, pass.reading, i, fresh);
-    const Mask seen = wasSeen(pass.cells.accumulated.frames, i, ptrdiff_t(layout.stride));
+    const Plane& frames = pass.cells.accumulated.frames;
+    const Mask seen = wasSeen(frames, i, ptrdiff_t(layout.stride)),
+               found = load(frames.data() + i) > lanesOf(1);
     store(load(pass.cells.accumulated.noise.data() + i), fresh.noise.data() + i);
-    store(lanesOf(Shown::noSample), fresh.sample.data() + i);
-    keepShown(pass, recalledAt(pass, seen, x, i), x, y, i, fresh);
+    store(lanesOf(ShownLight::noSample), fresh.sample.data() + i);
+    const Beside beside = besideOf(pass.pixels, i);
+    const Lanes slope = abs(load(guides.slopeX.data() + i)) + abs(load(guides.slopeY.data() + i));
+    keepShown(pass, recalledAt(pass, beside, seen, x, y, i), beside, found, slope, {x, y, i},
+              fresh);
   }
   continueBorder(layout, y, fresh.colour);
 }
@@ -93,7 +93,7 @@ inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask r
 
 // At rest the samples of an edge or a texture differ from what was shown in both directions. Where
 // they agree, as behind a shadow or in a texture that changes, what was shown is out of date.
-// Returns the part of its frames that still counts: with independent differences d around a pixel,
+// Returns the part of its samples that still counts: with independent differences d around a pixel,
 // the square of their sum is as large as the sum of their squares, and `agreeing` times it one time
 // in seventy.
 inline Lanes stillValid(const Fresh& fresh, size_t i, ptrdiff_t stride) {
@@ -116,54 +116,29 @@ inline Lanes stillValid(const Fresh& fresh, size_t i, ptrdiff_t stride) {
   return select(whole > most, part * part, lanesOf(1));
 }
 
-inline Lanes mixed(Lanes old, Lanes fresh, const Range& range, Lanes part) {
-  const Lanes kept = clamp(old, range.low, range.high);
-  return max(select(part < lanesOf(1), kept + (fresh - kept) * part, fresh), lanesOf(0));
-}
-
-void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment& now,
-             const Fresh& fresh, Shown& shown, float* rgba) {
-  const Layout& layout = now.layout;
-  const size_t row = layout.row(y), first = size_t(y) * size_t(layout.width);
+void boundColourRow(const Layout& layout, int y, const Fresh& fresh, Bounds& bounds,
+                    ShownLight& shown) {
+  const size_t row = layout.row(y);
   const auto stride = ptrdiff_t(layout.stride);
-  const Lanes half = lanesOf(0.5f), one = lanesOf(1), zero = lanesOf(0);
-  const Mask same = before == layout ? half < one : one < half;
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
-    const Mask some = load(now.guides.name.data() + i) >= zero;
-    const LaneVec old = load(fresh.oldColour, i);
-    Lanes oldFrames = load(fresh.oldFrames.data() + i);
-    const Mask rests = hn::And(same, hn::And(load(fresh.pastX.data() + i) == countFrom(x),
-                                             load(fresh.pastY.data() + i) == lanesOf(float(y))));
     // Where light is sampled, what was shown is filtered light, and may lag behind it.
-    const Mask quiet = hn::And(rests, load(fresh.noise.data() + i) <= zero);
-    if (!hn::AllFalse(LanesTag(), quiet))
-      oldFrames = oldFrames * select(quiet, stillValid(fresh, i, stride), one);
-    const Lanes most = select(quiet, lanesOf(framesAtRest),
-                              select(rests, lanesOf(framesSampled), lanesOf(framesMoving)));
-    const Lanes frames = min(oldFrames + one, most);
-    const Lanes part = one / frames;
-    const LaneVec own = load(fresh.colour, i), light = load(fresh.light, i);
-    const Plane3& colours = fresh.colour;
-    const LaneVec bounded{mixed(old.x, own.x, rangeAround(colours.x, i, stride, quiet), part),
-                          mixed(old.y, own.y, rangeAround(colours.y, i, stride, quiet), part),
-                          mixed(old.z, own.z, rangeAround(colours.z, i, stride, quiet), part)};
-    const LaneVec kept{max(old.x, zero), max(old.y, zero), max(old.z, zero)};
-    const LaneVec colour = select(some, bounded, kept);
-    hn::StoreInterleaved4(colour.x, colour.y, colour.z, select(some, frames, min(oldFrames, one)),
-                          LanesTag(), shown.colour.data() + 4 * i);
+    const Mask quiet =
+        hn::And(load(fresh.rests.data() + i) > zero, load(fresh.noise.data() + i) <= zero);
+    Lanes valid = one;
+    if (!hn::AllFalse(LanesTag(), quiet)) valid = select(quiet, stillValid(fresh, i, stride), one);
+    const Mask forgotten = load(fresh.trust.data() + i) >= lanesOf(Fresh::forgotten);
+    store(hn::IfThenElseZero(hn::Not(forgotten), valid), bounds.valid.data() + i);
+    const Range red = rangeAround(fresh.colour.x, i, stride, quiet),
+                green = rangeAround(fresh.colour.y, i, stride, quiet),
+                blue = rangeAround(fresh.colour.z, i, stride, quiet);
+    store(LaneVec{red.low, green.low, blue.low}, bounds.low, i);
+    store(LaneVec{red.high, green.high, blue.high}, bounds.high, i);
+
+    const LaneVec light = load(fresh.light, i);
     hn::StoreInterleaved4(light.x, light.y, light.z, load(fresh.sample.data() + i), LanesTag(),
                           shown.light.data() + 4 * i);
-
-    // Pixels without light of their own have no alpha of their own.
-    const Mask lit = loadSome(frame.samples + first, x, layout.width) > zero;
-    Lanes alpha;
-    loadQuadruples(frame.rgba + 4 * first, x, layout.width, alpha);
-    float out[4 * Layout::widest];
-    hn::StoreInterleaved4(colour.x, colour.y, colour.z,
-                          select(hn::And(lit, isFinite(alpha)), clamp(alpha, zero, one), one),
-                          LanesTag(), out);
-    std::copy_n(out, 4 * std::min(width(), layout.width - x), rgba + 4 * x);
   }
 }
 
@@ -174,13 +149,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace picture::live {
 HWY_EXPORT(colourRow);
-HWY_EXPORT(showRow);
+HWY_EXPORT(boundColourRow);
 void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
   HWY_DYNAMIC_DISPATCH(colourRow)(pass, y, fresh);
 }
-void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment& now,
-             const Fresh& fresh, Shown& shown, float* rgba) {
-  HWY_DYNAMIC_DISPATCH(showRow)(frame, y, before, now, fresh, shown, rgba);
+void boundColourRow(const Layout& layout, int y, const Fresh& fresh, Bounds& bounds,
+                    ShownLight& shown) {
+  HWY_DYNAMIC_DISPATCH(boundColourRow)(layout, y, fresh, bounds, shown);
 }
 } // namespace picture::live
 #endif

@@ -1,4 +1,4 @@
-// shown-inl.h: Finds what was shown of this frame's surfaces in the frame before.
+// shown-inl.h: Finds what the frame before has shown of the surfaces of a frame's pixels.
 
 #if defined(PICTURE_LIVE_SHOWN_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PICTURE_LIVE_SHOWN_INL_H
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libpicture/live/lanes-inl.h"
+#include "libpicture/live/past-inl.h"
 #include "libpicture/live/stages.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,28 +25,53 @@ struct Past {
   Lanes x, y;
 };
 
-// At the edge of something in front, its motion counts for the pixels beside it, too: the colours
-// of an edge move with what is in front.
-inline Past pastOf(const Moment& before, const Moment& now, const Reading& reading, size_t i) {
+// Surfaces of other depths among the 3 x 3 pixels around a pixel: where the nearest one in front of
+// it lies in planes, counted from the pixel, and the farthest one behind it; 0: there is none.
+struct Beside {
+  Lanes front, behind;
+};
+
+inline Beside besideOf(const Moment& now, size_t i) {
   const Guides& guides = now.guides;
   const auto stride = ptrdiff_t(now.layout.stride);
-  const float ratioX = float(before.layout.width) / float(now.layout.width),
-              ratioY = float(before.layout.height) / float(now.layout.height);
-  const Lanes own = load(guides.nearness.data() + i);
-  const Mask some = load(guides.name.data() + i) >= lanesOf(0);
-  Lanes nearest = own + lanesOf(nearer) * (now.projection.parallel ? lanesOf(1) : own);
-  Past past{load(reading.pastX.data() + i), load(reading.pastY.data() + i)};
+  const Lanes own = load(guides.nearness.data() + i), zero = lanesOf(0);
+  const Mask some = load(guides.name.data() + i) >= zero;
+  const Lanes apart = lanesOf(nearer) * (now.projection.parallel ? lanesOf(1) : own);
+  Lanes nearest = own + apart, farthest = own - apart;
+  Beside beside{zero, zero};
   for (ptrdiff_t dy = -1; dy <= 1; dy++)
     for (ptrdiff_t dx = -1; dx <= 1; dx++) {
-      const size_t j = i + size_t(dy * stride + dx);
+      const ptrdiff_t away = dy * stride + dx;
+      const size_t j = i + size_t(away);
       const Lanes other = load(guides.nearness.data() + j);
-      const Mask front =
-          hn::And(hn::And(some, load(guides.name.data() + j) >= lanesOf(0)), other > nearest);
-      nearest = select(front, other, nearest);
-      past.x = select(front, load(reading.pastX.data() + j) - lanesOf(float(dx) * ratioX), past.x);
-      past.y = select(front, load(reading.pastY.data() + j) - lanesOf(float(dy) * ratioY), past.y);
+      const Mask exists = hn::And(some, load(guides.name.data() + j) >= zero);
+      const Mask before = hn::And(exists, other > nearest),
+                 after = hn::And(exists, other < farthest);
+      nearest = select(before, other, nearest);
+      farthest = select(after, other, farthest);
+      beside.front = select(before, lanesOf(float(away)), beside.front);
+      beside.behind = select(after, lanesOf(float(away)), beside.behind);
     }
-  return past;
+  return beside;
+}
+
+inline Indices indicesFrom(size_t i) { return hn::Iota(IndicesTag(), int32_t(i)); }
+inline Indices indicesFrom(size_t i, Lanes away) {
+  return indicesFrom(i) + hn::ConvertTo(IndicesTag(), away);
+}
+
+// At the edge of something in front, its motion counts for the pixels beside it, too: the colours
+// of an edge move with what is in front.
+inline Past pastOf(const Moment& before, const Moment& now, const Reading& reading,
+                   const Beside& beside, int x, int y, size_t i) {
+  const Layout &layout = now.layout, &old = before.layout;
+  const Resampling alongX(layout.width, std::max(1, old.width)),
+      alongY(layout.height, std::max(1, old.height));
+  const Indices at = indicesFrom(i, beside.front);
+  return {countFrom(x) * lanesOf(alongX.ratio) + lanesOf(alongX.shift) +
+              gather(reading.moveX.data(), at) * lanesOf(float(old.width)),
+          lanesOf(alongY(float(y))) +
+              gather(reading.moveY.data(), at) * lanesOf(float(old.height))};
 }
 
 // Weights of four pixels in a row for a place `part` behind the second (E. Catmull, R. Rom, "A
@@ -92,24 +117,34 @@ inline void shownAt(const Layout& layout, const float* shown, float x, float y, 
   out[3] = row(top + (partY >= 0.5f))[4 * columns[partX >= 0.5f ? 2 : 1] + 3];
 }
 
-// Holds what was shown of some pixels.
+// Pixels of a row from x on, i being the place of the first one in planes.
+struct Pixels {
+  int x, y;
+  size_t i;
+};
+
+// Holds where some pixels were.
 struct Recalled {
   Past past;
   Mask known; // the surface was to be seen
 };
 
+// Tells which places lie in a picture.
+inline Mask isInside(const Layout& layout, const Past& past) {
+  return hn::And(hn::And(past.x > lanesOf(-0.5f), past.x < lanesOf(float(layout.width) - 0.5f)),
+                 hn::And(past.y > lanesOf(-0.5f), past.y < lanesOf(float(layout.height) - 0.5f)));
+}
+
 // Tells where pixels were. seen: their surfaces were found in the frame before.
-inline Recalled recalledAt(const ColourPass& pass, Mask seen, int x, size_t i) {
-  const Layout &layout = pass.pixels.layout, &old = pass.shown.layout;
+inline Recalled recalledAt(const ColourPass& pass, const Beside& beside, Mask seen, int x, int y,
+                           size_t i) {
   const Mask some = load(pass.pixels.guides.name.data() + i) >= lanesOf(0);
-  const Past past = pastOf(pass.before, pass.pixels, pass.reading, i);
-  const Mask inside =
-      hn::And(hn::And(past.x > lanesOf(-0.5f), past.x < lanesOf(float(old.width) - 0.5f)),
-              hn::And(past.y > lanesOf(-0.5f), past.y < lanesOf(float(old.height) - 0.5f)));
+  const Past past = pastOf(pass.before, pass.pixels, pass.reading, beside, x, y, i);
   // A surface that is seen for the first time has no colours yet. A pixel without a sample takes
   // what was there.
-  return {past,
-          hn::And(hn::And(inside, presentFrom(x, layout.width)), hn::Or(hn::Not(some), seen))};
+  return {past, hn::And(hn::And(isInside(pass.shownLight.layout, past),
+                                presentFrom(x, pass.pixels.layout.width)),
+                        hn::Or(hn::Not(some), seen))};
 }
 
 // Returns numbers that were shown; 0 where nothing is known. `last` receives the fourth ones.
@@ -144,30 +179,6 @@ inline Lanes lastNumbers(const Layout& layout, const std::vector<float>& shown,
   return load(numbers);
 }
 
-// Returns where a pixel that rests was covered, or its neighbours were, by something in front that
-// has moved away since, or by something that is gone: what was shown there is not its own colour.
-inline Mask wasUncovered(const ColourPass& pass, const Recalled& recalled, int x, int y, size_t i) {
-  const Mask none = lanesOf(1) < lanesOf(0);
-  if (!(pass.before.layout == pass.pixels.layout)) return none;
-  const Mask rests = hn::And(recalled.known, hn::And(recalled.past.x == countFrom(x),
-                                                     recalled.past.y == lanesOf(float(y))));
-  const Guides& old = pass.before.guides;
-  const auto stride = ptrdiff_t(pass.before.layout.stride);
-  const Lanes own = load(pass.pixels.guides.nearness.data() + i);
-  const Lanes front = own + lanesOf(nearer) * (pass.pixels.projection.parallel ? lanesOf(1) : own);
-  Mask covered = none;
-  for (ptrdiff_t dy = -1; dy <= 1; dy++)
-    for (ptrdiff_t dx = -1; dx <= 1; dx++) {
-      const size_t j = i + size_t(dy * stride + dx);
-      const Mask ahead =
-          hn::And(load(old.name.data() + j) >= lanesOf(0), load(old.nearness.data() + j) > front);
-      const Lanes moves = load(old.moves.data() + j);
-      covered =
-          hn::Or(covered, hn::Or(hn::And(ahead, moves > lanesOf(0)), moves >= lanesOf(isGone)));
-    }
-  return hn::And(rests, covered);
-}
-
 // Continues a row of colours by the widest range of showRow on both sides, the first and the last
 // one upwards and downwards, too: beyond the border of the picture is nothing else to be seen.
 inline void continueBorder(const Layout& layout, int y, Plane& colours) {
@@ -186,16 +197,36 @@ inline void continueBorder(const Layout& layout, int y, Plane3& colours) {
   for (Plane* plane : {&colours.x, &colours.y, &colours.z}) continueBorder(layout, y, *plane);
 }
 
-// Keeps for showRow what was shown.
-inline void keepShown(const ColourPass& pass, Recalled recalled, int x, int y, size_t i,
-                      Fresh& fresh) {
-  const Lanes nowhere = lanesOf(std::numeric_limits<float>::quiet_NaN());
-  recalled.known = hn::AndNot(wasUncovered(pass, recalled, x, y, i), recalled.known);
+// Keeps for the stages at full size whether surfaces were seen, and what was shown where their
+// samples lie. found: they were found themselves, and not those around them. slope: change of
+// nearness from pixel to pixel.
+inline void keepShown(const ColourPass& pass, const Recalled& recalled, const Beside& beside,
+                      Mask found, Lanes slope, const Pixels& at, Fresh& fresh) {
+  const Layout &now = pass.showing, &old = pass.shown.layout;
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
+  const size_t i = at.i;
+  store(beside.front, fresh.front.data() + i);
+  store(beside.behind, fresh.behind.data() + i);
+  store(expectedAt(pass.pixels, pass.before, pass.reading, slope, i).tolerance,
+        fresh.tolerance.data() + i);
+  const Mask some = load(pass.pixels.guides.name.data() + i) >= zero;
+  const Lanes how = select(hn::And(some, found), lanesOf(Fresh::seen), lanesOf(Fresh::seenAround));
+  store(select(recalled.known, how, lanesOf(Fresh::unseen)), fresh.trust.data() + i);
+
+  const Resampling alongX(now.width, old.width), alongY(now.height, old.height);
+  const Lanes hitX = load(pass.reading.hitX.data() + i), hitY = load(pass.reading.hitY.data() + i);
+  const Indices mover = indicesFrom(i, beside.front);
+  const Past past{hitX * lanesOf(alongX.ratio) + lanesOf(alongX.shift) +
+                      gather(pass.reading.moveX.data(), mover) * lanesOf(float(old.width)),
+                  hitY * lanesOf(alongY.ratio) + lanesOf(alongY.shift) +
+                      gather(pass.reading.moveY.data(), mover) * lanesOf(float(old.height))};
+  const Mask known = hn::And(hn::And(recalled.known, hitX >= zero), isInside(old, past));
   Lanes frames;
-  store(shownNumbers(pass.shown.layout, pass.shown.colour, recalled, frames), fresh.oldColour, i);
+  store(shownNumbers(old, pass.shown.colour, {past, known}, frames), fresh.oldColour, i);
   store(frames, fresh.oldFrames.data() + i);
-  store(select(recalled.known, recalled.past.x, nowhere), fresh.pastX.data() + i);
-  store(select(recalled.known, recalled.past.y, nowhere), fresh.pastY.data() + i);
+  const Mask same = old == now ? zero < one : one < zero;
+  const Mask stays = hn::And(hn::And(known, same), hn::And(past.x == hitX, past.y == hitY));
+  store(hn::IfThenElseZero(stays, one), fresh.rests.data() + i);
 }
 
 // Returns the illumination that would bring as much light as coats reflect.

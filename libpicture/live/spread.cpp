@@ -197,22 +197,22 @@ struct RecalledSurfaces : Recalled {
   Taps taps;
 };
 
-// Tells where the surfaces of pixels were shown. slope: change of nearness from cell to cell.
-inline RecalledSurfaces recalledSurfaces(const ColourPass& pass, Lanes slope, int x, size_t i) {
-  const Expected expected = expectedAt(pass.pixels, pass.before, pass.reading,
-                                       slope * lanesOf(1 / float(pass.cells.block)), i);
-  const Lanes pastX = load(pass.reading.pastX.data() + i),
-              pastY = load(pass.reading.pastY.data() + i);
+// Tells where the surfaces of pixels were shown. slope: change of nearness from pixel to pixel.
+inline RecalledSurfaces recalledSurfaces(const ColourPass& pass, const Beside& beside, Lanes slope,
+                                         const Pixels& at) {
+  const Expected expected = expectedAt(pass.pixels, pass.before, pass.reading, slope, at.i);
+  const Lanes pastX = load(pass.reading.pastX.data() + at.i),
+              pastY = load(pass.reading.pastY.data() + at.i);
   Taps taps = tapsAround(pass.before, expected, pastX, pastY);
   searchAround(pass.before, expected, pastX, pastY, taps);
-  return {recalledAt(pass, taps.found, x, i), taps};
+  return {recalledAt(pass, beside, taps.found, at.x, at.y, at.i), taps};
 }
 
 // Returns the illumination that was shown of the pixels' own surfaces. A spline across the edges of
 // something thin would swing below and above the light of what is beside it, and more with each
 // frame.
 inline LaneVec lightOfSurfaces(const ColourPass& pass, const Taps& taps) {
-  const float* light = pass.shown.light.data();
+  const float* light = pass.shownLight.light.data();
   LaneVec sum{lanesOf(0), lanesOf(0), lanesOf(0)};
   for (int k = 0; k < 4; k++) {
     const Indices at = hn::ShiftLeft<2>(taps.index[k]);
@@ -221,12 +221,6 @@ inline LaneVec lightOfSurfaces(const ColourPass& pass, const Taps& taps) {
   }
   return sum;
 }
-
-// Pixels of a row from x on, i being the place of the first one in planes.
-struct Pixels {
-  int x, y;
-  size_t i;
-};
 
 // Pixels that have a sample of light, and those of them that see the environment directly.
 struct Lit {
@@ -248,11 +242,11 @@ inline Lit litPixels(const ColourPass& pass, const Pixels& at) {
 inline LaneVec ownLight(const ColourPass& pass, const Around& around,
                         const RecalledSurfaces& recalled, Mask lit, const Pixels& at) {
   Lanes unused;
-  LaneVec shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
+  LaneVec shown = shownNumbers(pass.shownLight.layout, pass.shownLight.light, recalled, unused);
   // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
   // for the cells.
-  const Mask same =
-      pass.shown.layout == pass.pixels.layout ? lanesOf(0) < lanesOf(1) : lanesOf(1) < lanesOf(0);
+  const Mask same = pass.shownLight.layout == pass.pixels.layout ? lanesOf(0) < lanesOf(1)
+                                                                 : lanesOf(1) < lanesOf(0);
   const Mask rests =
       hn::And(hn::And(recalled.known, same),
               hn::And(recalled.past.x == countFrom(at.x), recalled.past.y == lanesOf(float(at.y))));
@@ -280,8 +274,10 @@ inline void forgetLent(Mask unsampled, Mask lit, Mask found, Lanes noise, size_t
   const Mask quiet = hn::Or(hn::Not(found), noise < lanesOf(1 / noiseFall));
   const Mask first = hn::And(hn::And(lit, unsampled), hn::Or(quiet, frames <= lanesOf(1)));
   const Mask settles = hn::And(noise > lanesOf(0), noise <= lanesOf(almostNoNoise));
-  store(hn::IfThenElseZero(hn::Not(hn::Or(lent, hn::Or(first, settles))), frames),
-        fresh.oldFrames.data() + i);
+  const Mask forgets = hn::Or(lent, hn::Or(first, settles));
+  store(hn::IfThenElseZero(hn::Not(forgets), frames), fresh.oldFrames.data() + i);
+  const Lanes trust = load(fresh.trust.data() + i);
+  store(select(forgets, lanesOf(Fresh::forgotten), trust), fresh.trust.data() + i);
 }
 
 inline LaneVec spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
@@ -292,7 +288,8 @@ inline LaneVec spreadLight(const ColourPass& pass, const Columns& columns, const
   const Mask some =
       hn::And(surface.name >= lanesOf(0), presentFrom(at.x, pass.pixels.layout.width));
   const Mask found = hn::AndNot(lit.environment, around.found());
-  const Lanes last = lastNumbers(pass.shown.layout, pass.shown.light, recalled, Shown::noSample);
+  const Lanes last =
+      lastNumbers(pass.shownLight.layout, pass.shownLight.light, recalled, ShownLight::noSample);
   // Nobody knows about the noise of something thin that no cell shows: its samples are kept.
   const Lanes nameNoise = select(around.nameNoise >= lanesOf(0), around.nameNoise,
                                  hn::IfThenElseZero(last < lanesOf(0), one));
@@ -333,10 +330,13 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
                           lanesOf(partY) + load(guides.offsetY.data() + i) * lanesOf(1 / block),
                           load(guides.normal, i)};
     const Around around = cellsAround(pass, columns, surface, y);
-    const RecalledSurfaces recalled = recalledSurfaces(pass, around.slope, x, i);
-    keepShown(pass, recalled, x, y, i, fresh);
-    storeColour(spreadLight(pass, columns, surface, around, recalled, {x, y, i}, fresh),
-                pass.reading, i, fresh);
+    const Pixels at{x, y, i};
+    const Beside beside = besideOf(pass.pixels, i);
+    const Lanes slope = around.slope * lanesOf(1 / block);
+    const RecalledSurfaces recalled = recalledSurfaces(pass, beside, slope, at);
+    keepShown(pass, recalled, beside, recalled.taps.found, slope, at, fresh);
+    storeColour(spreadLight(pass, columns, surface, around, recalled, at, fresh), pass.reading, i,
+                fresh);
   }
   continueBorder(layout, y, fresh.colour);
 }

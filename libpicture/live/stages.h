@@ -13,7 +13,8 @@ namespace picture::live {
 
 // The planes of a frame, width * height times their number of floats.
 struct FramePlanes {
-  const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples, *reflection;
+  const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples, *reflection,
+      *place;
 };
 
 // The surfaces of a frame, by pixel or by cell, and what is kept of them for the next frame.
@@ -42,8 +43,15 @@ constexpr float lonelyWeight = 5;
 struct Reading {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&albedo, &light, &reflection}) planes->assign(layout.size(), 0);
-    for (Plane* plane : {&pastX, &pastY, &pastNearness}) plane->assign(layout.size(), 0);
+    for (Plane* plane : {&moveX, &moveY, &pastX, &pastY, &pastNearness, &hitX, &hitY})
+      plane->assign(layout.size(), 0);
   }
+
+  // By pixel: how far the surface has moved in the picture since the frame before, in widths and
+  // heights of the picture: exactly 0 if it rests, not a number if it was nowhere.
+  Plane moveX, moveY;
+  // By pixel: the pixel of the shown picture that the sample lies in; -1: there is no sample.
+  Plane hitX, hitY;
 
   // Where the surface was in the frame before, in its pixels or cells (0: centre of the first one),
   // and its nearness there. Not a number: nowhere.
@@ -85,39 +93,57 @@ struct Work {
   std::vector<double> found, frames;
 };
 
-// The picture of this frame before it is accumulated over time, and what was shown at its places.
+// The picture of this frame before it is accumulated over time, by pixel of the frame, and what was
+// shown of it.
 struct Fresh {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&colour, &light, &oldColour}) planes->assign(layout.size(), 0);
-    for (Plane* plane : {&noise, &sample, &pastX, &pastY, &oldFrames})
+    for (Plane* plane : {&noise, &sample, &oldFrames, &trust, &tolerance, &front, &behind, &rests})
       plane->assign(layout.size(), 0);
   }
 
   Plane3 colour; // red, green and blue
   Plane3 light;  // illumination
   Plane noise;   // 0 to 1: of the illumination
-  Plane sample;  // luma of the last sample, or Shown::noSample
-  // These planes hold where the thing that moves here was, not a number if it was not to be seen;
-  // and what was shown there.
-  Plane pastX, pastY, oldFrames;
+  Plane sample;  // luma of the last sample, or ShownLight::noSample
+  // Colour and number of samples that were shown where the sample lies; 0: nothing that counts.
   Plane3 oldColour;
+  Plane oldFrames;
+  // Whether the frame before has shown the surface.
+  static constexpr float unseen = 0, seen = 1, seenAround = 2, forgotten = 3;
+  Plane trust;
+  Plane tolerance;     // how far the nearness may be from that where it was
+  Plane front, behind; // surfaces of other depths beside the pixel (Beside), as offsets in planes
+  Plane rests;         // 1: the sample's place in the shown picture has not moved
+};
+
+// The colours that the pixels around allow what was shown to have, by pixel of the frame.
+struct Bounds {
+  void resize(const Layout& layout) {
+    for (Plane3* planes : {&low, &high}) planes->assign(layout.size(), 0);
+    valid.assign(layout.size(), 0);
+  }
+
+  Plane3 low, high;
+  Plane valid; // part of the accumulated samples that still counts
 };
 
 // Reads a row of pixels: guides, illumination, and where the surfaces were in the frame before.
 // rests: no number of the camera has changed since then. sparse: pixels without a sample of light
-// have guides.
+// have guides. shown: the size of the picture that is shown.
 struct ReadPass {
   const FramePlanes& frame;
   const Moment& before;
   bool rests, sparse;
+  const Layout& shown;
 };
 void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading);
-// Finds shapes that the frame before showed and this one shows nowhere, and marks their pixels
-// there as gone, so that nothing of them stays at their edges (wasUncovered). Shapes of a few
-// pixels are left alone.
+// Finds shapes that the frame before showed and this one shows nowhere, and marks their pixels in
+// what was shown as gone, so that nothing of them stays at their edges (wasUncovered). Shapes of a
+// few pixels are left alone.
 class NamesSeen {
  public:
-  void markGone(Moment& before, const Moment& now);
+  void markGone(const Moment& before, const Moment& now, Shown& shown);
 
  private:
   std::vector<uint32_t> before_, now_; // pixels of each shape
@@ -128,7 +154,7 @@ struct CellPass {
   const Moment &pixels, &pixelsBefore; // surfaces by pixel
   const Reading& reading;              // by pixel
   const Moment& before;                // cells
-  const Shown& shown;                  // by the frame before
+  const ShownLight& shown;             // by the frame before
 };
 void cellRow(const CellPass& pass, int y, Moment& now, Reading& reading, Work& work);
 
@@ -169,16 +195,34 @@ struct ColourPass {
   const Plane3& light;      // illumination by cell, filtered
   const Plane3* reflection; // radiance that coats reflect, by cell, filtered; null: none
   const Plane& verdict;
-  const Shown& shown; // by the frame before
+  // By the frame before, and the size of the picture that is shown now.
+  const ShownLight& shownLight;
+  const Shown& shown;
+  const Layout& showing;
 };
 // Multiplies the illumination by albedo again where cells are pixels, and finds what was shown.
 void colourRow(const ColourPass& pass, int y, Fresh& fresh);
 // The same where cells have several pixels: each pixel takes its illumination from the cells around
 // it that show its surface, or from what was shown.
 void spreadRow(const ColourPass& pass, int y, Fresh& fresh);
-// Accumulates the colours over time, which smooths edges and textures, and writes width * 4 floats
-// with the alpha of the frame.
-void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment& now,
-             const Fresh& fresh, Shown& shown, float* rgba);
+// Finds which colours the pixels around allow, and keeps the illumination for the next frame.
+void boundColourRow(const Layout& layout, int y, const Fresh& fresh, Bounds& bounds,
+                    ShownLight& shown);
+
+// Holds what the stage of the shown picture reads.
+struct ShowPass {
+  const FramePlanes& frame;
+  // By pixel of the frame.
+  const Moment& pixels;
+  const Reading& reading;
+  const Fresh& fresh;
+  const Bounds& bounds;
+  const Overlaps &columns, &rows;
+  const Shown& before; // what the frame before has shown
+};
+// Accumulates the colours over time, which smooths edges and textures, in a row of the shown
+// picture: each sample counts for the pixel that it lies in. Writes width * 4 floats with the alpha
+// of the frame.
+void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba);
 
 } // namespace picture::live

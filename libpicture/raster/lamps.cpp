@@ -49,8 +49,9 @@ template <class T> void Lamp::setPlaced(const T& light, bool linear) {
   radius_ = light.radius;
 }
 
-Lamp Lamp::along(const Vec& direction) {
+Lamp Lamp::along(const Vec& direction, bool asNode) {
   Lamp lamp;
+  lamp.isNode_ = asNode;
   lamp.kind_ = Kind::directional;
   lamp.axis_ = direction;
   return lamp;
@@ -58,6 +59,7 @@ Lamp Lamp::along(const Vec& direction) {
 
 Lamp Lamp::at(const Vec& place) {
   Lamp lamp;
+  lamp.isNode_ = false;
   lamp.location_ = place;
   lamp.radius_ = INFINITY;
   return lamp;

@@ -2,6 +2,7 @@
 // shadows. [lists: the thread that owns the world; lit(): any thread]
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "libpicture/raster/affine.h"
@@ -17,9 +18,10 @@ struct Incident {
 
 class Lamp {
  public:
-  // Returns a parallel light, as a headlight is.
-  static Lamp along(const Vec& direction);
-  // Returns a light at a point that does not grow weaker with distance.
+  // Returns a parallel light, as a headlight is. asNode: it shines as a light node does.
+  static Lamp along(const Vec& direction, bool asNode);
+  // Returns a light at a point that does not grow weaker with distance, and is as bright on all
+  // materials.
   static Lamp at(const Vec& place);
   // Returns nothing for nodes that are no lamps, that are off, and whose place is unusable.
   static std::optional<Lamp> of(const xvrml::Node& node, const xvrml::RenderState& state,
@@ -27,6 +29,8 @@ class Lamp {
   // Returns whether a shape is within the group that the lamp shines on.
   bool reaches(const xvrml::RenderState& shape) const;
   Incident incidentAt(const Vec& point) const;
+  // Returns the factor of the direct light at a surface that takes intensities as irradiances.
+  float irradianceFactor() const { return isNode_ ? float(1 / std::numbers::pi) : 1.0f; }
 
  private:
   enum class Kind : uint8_t { directional, point, spot };
@@ -35,6 +39,7 @@ class Lamp {
   template <class T> void setPlaced(const T& light, bool linear);
 
   Kind kind_ = Kind::point;
+  bool isNode_ = true;
   xvrml::Color direct_{1, 1, 1}, ambient_;
   Affine toWorld_, fromWorld_; // from the lamp's coordinates, in which distances are measured
   Vec location_, axis_;        // axis_: where the light travels to

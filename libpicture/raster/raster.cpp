@@ -118,7 +118,9 @@ void addHeadlight(const RasterView& view, const Eye& eye, Surroundings& around) 
   const bool wanted = view.headlight == Headlight::automatic ? around.headlight.value_or(true)
                                                              : view.headlight == Headlight::on;
   if (wanted)
-    around.lamps.push_front(Lamp::along(eye.ray(view.width / 2.0, view.height / 2.0).direction));
+    around.lamps.push_front(
+        Lamp::along(eye.ray(view.width / 2.0, view.height / 2.0).direction,
+                    around.headlight.has_value() || view.headlight == Headlight::on));
   else if (around.lamps.empty() && view.headlight == Headlight::automatic)
     around.lamps.push_front(Lamp::at(eye.position()));
 }

@@ -118,11 +118,13 @@ Color Shading::lit(const Mesh& mesh, const Point& point, const Color& diffuse) c
     const double cosine = dot(point.normal, light.toLight);
     add(sum, product(light.ambient, diffuse), mesh.look.ambient);
     if (!(cosine > 0)) continue;
-    add(sum, product(light.direct, diffuse), float(cosine));
+    const float factor = surface.takesIrradiance ? lamp->irradianceFactor() : 1;
+    add(sum, product(light.direct, diffuse), factor * float(cosine));
     if (surface.isMatt) continue;
     const double shine = dot(point.normal, unit(light.toLight + point.toEye));
     if (shine > 0)
-      add(sum, product(light.direct, surface.specular), std::pow(float(shine), surface.exponent));
+      add(sum, product(light.direct, surface.specular),
+          factor * std::pow(float(shine), surface.exponent));
   }
   return sum;
 }

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "base/rotation.h"
-#include "base/visit_storage.h"
 #include "xvrml/viewed.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 namespace {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "base/visit_storage.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 namespace {

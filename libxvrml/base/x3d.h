@@ -1,5 +1,5 @@
-// x3d.h: the nodes and fields of X3D (ISO/IEC 19775-1) that VRML97 does not have, for messages, and
-// those that it spells otherwise or gives other defaults. Pure functions, any thread.
+// x3d.h: the fields of X3D (ISO/IEC 19775-1) that nodes of ours do not have, for messages, and
+// those that it spells otherwise. Pure functions, any thread.
 #pragma once
 
 #include <string_view>
@@ -14,10 +14,8 @@ constexpr std::string_view x3dAccessName(Access access) {
   return names[static_cast<size_t>(access)];
 }
 
-bool isX3dNode(std::string_view type);
-// Return whether a node of X3D, or a field that holds such nodes, belongs to a program for graphics
-// processors (clause 31): it can only be run there.
-bool isGpuNode(std::string_view type);
+// Returns whether a field of X3D holds programs for graphics processors (clause 31), which can only
+// be run there.
 bool isGpuField(std::string_view field);
 // Returns whether X3D adds this field to a node type of VRML97.
 bool isX3dField(std::string_view type, std::string_view field);
@@ -31,7 +29,5 @@ std::string_view x3dName(std::string_view type, std::string_view name, int versi
 
 // Returns whether the numbers of a field of ours, which are no rotations, are angles.
 bool isAngleField(std::string_view type, std::string_view field);
-// Returns the default of a field of VRML97 where X3D gives it another one; null: they are the same.
-const Value* x3dDefault(std::string_view type, std::string_view field);
 
 } // namespace xvrml

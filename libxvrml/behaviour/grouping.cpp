@@ -46,7 +46,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
 
 void addGroupingBehaviours(const AddBehaviour& add) {
   for (const NodeType* type : nodeTypes())
-    if (type->is("parent") || type->is("selecting")) add(*type, {.receive = receive});
+    if (type->find("addChildren")) add(*type, {.receive = receive});
   add(nodes::LOD::nodeType(), {.begin = beginLod, .receive = receive, .look = lookLod});
 }
 

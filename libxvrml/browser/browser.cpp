@@ -7,6 +7,7 @@
 #include "graph/crossing.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -87,28 +88,27 @@ static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value
 }
 
 bool Browser::set(Node& node, std::string_view field, Value value) {
-  const FieldInfo* plain = node.type().find(field);
+  const FieldInfo* plain = findField(node, field);
   if (plain && plain->access == Access::field) {
     const bool stored = storeField(*impl_->engine, node, *plain, std::move(value));
     impl_->settle();
     return stored;
   }
-  const bool sent = impl_->engine->dispatch(node, field, std::move(value));
+  const bool sent = impl_->engine->dispatch(node, ownName(node, field), std::move(value));
   impl_->runJobs();
   return sent;
 }
 
 Value Browser::get(const Node& node, std::string_view field) const {
-  if (const FieldInfo* plain = node.type().find(field); plain && holdsValue(*plain))
+  if (const FieldInfo* plain = findField(node, field); plain && holdsValue(*plain))
     return node.get(*plain);
-  if (const FieldInfo* out = node.type().findEventOut(field))
-    return impl_->engine->lastSent(node, *out);
+  if (const FieldInfo* out = findEventOut(node, field)) return impl_->engine->lastSent(node, *out);
   throw std::invalid_argument(
       fmt::format("{} has no field or eventOut '{}'", node.type().name, field));
 }
 
 uint64_t Browser::listen(Node& node, std::string_view out, Callback callback) {
-  const FieldInfo* field = node.type().findEventOut(out);
+  const FieldInfo* field = findEventOut(node, out);
   return field ? impl_->engine->listen(node, *field, std::move(callback)) : 0;
 }
 
@@ -137,11 +137,11 @@ void Browser::removeRoot(Node& node) {
 }
 
 bool Browser::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
-  return impl_->engine->addRoute(from, out, to, in);
+  return impl_->engine->addRoute(from, ownName(from, out), to, ownName(to, in));
 }
 
 bool Browser::deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
-  return impl_->engine->deleteRoute(from, out, to, in);
+  return impl_->engine->deleteRoute(from, ownName(from, out), to, ownName(to, in));
 }
 
 } // namespace xvrml

@@ -6,6 +6,7 @@
 #include "browser/state.h"
 #include "graph/field_access.h"
 #include "parse/loader.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 namespace {
@@ -173,28 +174,40 @@ std::string Browser::worldUrl() const { return impl_->world->path; }
 void Browser::setDescription(std::string text) { impl_->description = std::move(text); }
 std::string Browser::description() const { return impl_->description; }
 
-MFNode Browser::createVrmlFromString(std::string_view text, const std::string& base) {
+MFNode Browser::Impl::create(std::string_view text, const std::string& base,
+                             std::span<const ProtoPtr> prototypes) {
   constexpr std::string_view suffix = " (createVrmlFromString)";
-  std::string name = base.empty() ? impl_->world->path : base;
+  std::string name = base.empty() ? world->path : base;
   if (!name.ends_with(suffix)) name += suffix;
-  LoadOptions options = impl_->world->options;
-  uint64_t& most = options.limits.expandedNodes;
-  most -= std::min<uint64_t>(most, impl_->engine->nodes());
-  const SourcePosition caller = impl_->callerPosition();
-  const FileVersion& world = impl_->world->head.version;
-  const auto loaded = loadFragment(
-      text, name, options, TemporaryCharge(*impl_->world).budget(), fileDepth(caller.file) + 1,
-      versionOfText(text, caller.file ? fileVersion(caller.file) : world, world));
-  MFNode nodes = impl_->adopt(*loaded);
-  impl_->settle();
+  LoadOptions loading = world->options;
+  uint64_t& most = loading.limits.expandedNodes;
+  most -= std::min<uint64_t>(most, engine->nodes());
+  const SourcePosition caller = callerPosition();
+  const FileVersion& own = world->head.version;
+  const FileVersion version =
+      versionOfText(text, caller.file ? fileVersion(caller.file) : own, own);
+  const auto loaded = loadFragment(text, name, loading, TemporaryCharge(*world).budget(),
+                                   fileDepth(caller.file) + 1, {version, prototypes});
+  MFNode nodes = adopt(*loaded);
+  settle();
   return nodes;
+}
+
+MFNode Browser::createVrmlFromString(std::string_view text, const std::string& base) {
+  return impl_->create(text, base, {});
+}
+
+NodeRef Browser::createInstance(const ProtoPtr& prototype, const std::string& base) {
+  const MFNode made = impl_->create(prototype->type->name + " { }", base, {&prototype, 1});
+  return made.empty() ? NodeRef() : made[0];
 }
 
 void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node,
                                 std::string_view eventIn, const std::string& base) {
   LoadCall call{"createVrmlFromURL", urls, base.empty() ? impl_->world->path : base,
                 impl_->callerPosition()};
-  impl_->addJob([this, call = std::move(call), to = NodeRef(&node), in = std::string(eventIn)] {
+  impl_->addJob([this, call = std::move(call), to = NodeRef(&node),
+                 in = std::string(ownName(node, eventIn))] {
     World& world = *impl_->world;
     const LoadedUrl loaded = loadFirst(call, world, TemporaryCharge(world).budget());
     if (!loaded.world || !to->live) return;

@@ -20,7 +20,10 @@ struct Browser::Impl {
   void runJobs();
   void addJob(std::function<void()> job);
   SourcePosition callerPosition() const; // the calling Script, else the world's file
-  MFNode adopt(World& loaded);           // takes over what was loaded besides the world
+  // Makes nodes of a text, which may use the prototypes.
+  MFNode create(std::string_view text, const std::string& base,
+                std::span<const ProtoPtr> prototypes);
+  MFNode adopt(World& loaded); // takes over what was loaded besides the world
   void replaceScene(Scope scope, const std::vector<NodeRef>& kept,
                     std::vector<NodeRef> cyclic); // replaces the world
 

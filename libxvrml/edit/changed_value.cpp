@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "base/lexer.h"
-#include "base/visit_storage.h"
 #include "write/value_writer.h"
 #include "write/xml_escape.h"
 #include "xvrml/numbers.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 namespace {

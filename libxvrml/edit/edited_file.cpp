@@ -11,6 +11,7 @@
 #include "graph/exchange.h"
 #include "graph/field_access.h"
 #include "parse/source.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -138,7 +139,7 @@ Slot EditedFile::slotOf(const NodeSlot& given, bool holds) {
   Slot slot;
   if (given.parent) {
     slot.parent = twinOf(*given.parent);
-    slot.field = given.parent->type().find(given.field);
+    slot.field = findField(*given.parent, given.field);
     if (!slot.field || !holdsNodes(*slot.field))
       throw EditError(fmt::format("{} has no field '{}' that holds nodes",
                                   given.parent->type().name, given.field));

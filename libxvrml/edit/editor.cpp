@@ -7,7 +7,6 @@
 
 #include "base/lexer.h"
 #include "base/rotation.h"
-#include "base/visit_storage.h"
 #include "edit/declaration.h"
 #include "edit/in_place_writer.h"
 #include "edit/node_edits.h"
@@ -16,6 +15,8 @@
 #include "graph/field_access.h"
 #include "graph/range.h"
 #include "xvrml/edit.h"
+#include "xvrml/versions.h"
+#include "xvrml/visit_storage.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
@@ -137,7 +138,7 @@ uint64_t Editor::editsOf(const Node& node, std::string_view field) const {
 void Editor::set(Node& node, std::string_view field, Value value) {
   const Twin twin = impl_->file.standingTwinOf(node);
   const std::string what = fmt::format("{}.{}", node.type().name, field);
-  const FieldInfo* const info = node.type().find(field);
+  const FieldInfo* const info = findField(node, field);
   if (!info || !holdsValue(*info)) throw EditError(fmt::format("there is no field {}", what));
   if (holdsNodes(*info))
     throw EditError(fmt::format("{} holds nodes: insert or remove them", what));
@@ -147,11 +148,12 @@ void Editor::set(Node& node, std::string_view field, Value value) {
     throw EditError(fmt::format("{}: a number is not finite, which no file can say", what));
   if (hasZeroByte(value))
     throw EditError(fmt::format("{}: a text has a zero byte, which no file can say", what));
-  if (info->range.bounded() && info->type != FieldType::SFRotation && !inRange(*info, value))
-    throw EditError(fmt::format("{}: a number is outside of {}", what, describe(info->range)));
+  if (info->type != FieldType::SFRotation && !inRange(node, *info, value))
+    throw EditError(
+        fmt::format("{}: a number is outside of {}", what, describe(rangeIn(node, *info))));
   if (hasNormalizedAxes(*info))
     normalizeAxes(info->type, std::visit([](auto& v) -> void* { return &v; }, value));
-  const FieldInfo& own = *twin.document->type().find(field);
+  const FieldInfo& own = *twin.document->type().find(info->name);
   impl_->file.checkReadable(*twin.document, own);
   const auto put = [this, twin, &own](const Value& live, const Value& inFile) {
     if (!impl_->file.live().set(*twin.live, own.name, live))
@@ -164,7 +166,7 @@ void Editor::set(Node& node, std::string_view field, Value value) {
   const Value live = node.get(*info), inFile = twin.document->get(own);
   OpenStep step(impl_->history, fmt::format("Set {}", what));
   impl_->history.perform({[put, value] { put(value, value); },
-                          [put, live, inFile] { put(live, inFile); }, &node, std::string(field),
+                          [put, live, inFile] { put(live, inFile); }, &node, info->name,
                           2 * bytesOf(value) + bytesOf(live) + bytesOf(inFile)});
   step.close();
 }
@@ -373,13 +375,17 @@ NodeRef Editor::declare(Node& node, std::string_view field, const Value& value) 
 
 void Editor::addRoute(Node& from, std::string_view out, Node& to, std::string_view in) {
   const Twin source = impl_->file.standingTwinOf(from), target = impl_->file.standingTwinOf(to);
-  const FieldInfo *sent = from.type().findEventOut(out), *received = to.type().findEventIn(in);
+  const FieldInfo *sent = findEventOut(from, out), *received = findEventIn(to, in);
   if (!sent) throw EditError(fmt::format("{} has no eventOut '{}'", from.type().name, out));
   if (!received) throw EditError(fmt::format("{} has no eventIn '{}'", to.type().name, in));
   if (sent->type != received->type)
     throw EditError(fmt::format("a route joins events of one type: {} is {}, {} is {}", out,
                                 fieldTypeName(sent->type), in, fieldTypeName(received->type)));
-  const Route route{source.document, std::string(out), target.document, std::string(in), {}};
+  const Route route{source.document,
+                    std::string(ownName(from, out)),
+                    target.document,
+                    std::string(ownName(to, in)),
+                    {}};
   std::vector<Route>& routes = impl_->file.document().scope().routes;
   const auto same = [route](const Route& one) {
     return one.from == route.from && one.to == route.to && one.fromField == route.fromField &&
@@ -406,8 +412,8 @@ void Editor::removeRoute(Node& from, std::string_view out, Node& to, std::string
   const Twin source = impl_->file.twinOf(from), target = impl_->file.twinOf(to);
   std::vector<Route>& routes = impl_->file.document().scope().routes;
   const auto found = std::find_if(routes.begin(), routes.end(), [&](const Route& one) {
-    return one.from == source.document && one.to == target.document && one.fromField == out &&
-           one.toField == in;
+    return one.from == source.document && one.to == target.document &&
+           one.fromField == ownName(from, out) && one.toField == ownName(to, in);
   });
   if (found == routes.end()) throw EditError("the file has no such route");
   OpenStep step(impl_->history, "Remove route");

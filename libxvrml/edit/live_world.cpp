@@ -76,7 +76,7 @@ class RestingWorld : public LiveWorld {
   }
   MFNode read(const std::string& text, const std::string& name) override {
     std::unique_ptr<World> made =
-        loadFragment(text, name, world_.options, budgetOf(world_), 0, world_.head.version);
+        loadFragment(text, name, world_.options, budgetOf(world_), 0, {world_.head.version});
     world_.nodeCount += made->nodeCount;
     world_.cyclic.insert(world_.cyclic.end(), made->cyclic.begin(), made->cyclic.end());
     made->cyclic.clear();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/descend.h"
 #include "geometry/node_matrix.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
@@ -29,6 +30,10 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
     if (!describes || child->type().is("metadataObject")) out.push_back(child.get());
   });
   if (const Scope* content = inlineScope(node)) appendRoots(*content, out);
+}
+
+void childrenInScene(Node& node, std::vector<Node*>& out) {
+  if (!appendPlaced(node, out)) childrenInHierarchy(node, out);
 }
 
 void holdersOf(const Node& node, std::vector<Node*>& holders) {
@@ -59,7 +64,7 @@ std::vector<Path> pathsTo(const Node& node, size_t limit) {
       continue;
     }
     Node* parent = live.parents[top.next++];
-    open.push_back({parent, 0});
+    if (isPlacedBy(*parent, *top.node)) open.push_back({parent, 0});
   }
   return paths;
 }
@@ -68,7 +73,8 @@ bool isInScene(const Node& node) {
   if (!node.live) return false;
   return !walk(std::vector<const Node*>{&node}, [](const Node& one, auto& open) {
     const Live& live = *liveOf(one);
-    open.insert(open.end(), live.parents.begin(), live.parents.end());
+    for (Node* parent : live.parents)
+      if (isPlacedBy(*parent, one)) open.push_back(parent);
     return !live.root;
   });
 }

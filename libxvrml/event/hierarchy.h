@@ -12,6 +12,10 @@ namespace xvrml {
 // twice.
 void childrenInHierarchy(Node& node, std::vector<Node*>& out);
 
+// Appends those of these children that have a place in the scene below the node. A node of the
+// role `listing` only names others (appendPlaced): a LoadSensor watches nodes that stand elsewhere.
+void childrenInScene(Node& node, std::vector<Node*>& out);
+
 // The nodes from a root of the world to a node, prototype instances and Inlines included.
 using Path = std::vector<Node*>;
 

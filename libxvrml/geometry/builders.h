@@ -39,7 +39,8 @@ namespace xvrml {
   X(Arc2D)                                                                                         \
   X(ArcClose2D)                                                                                    \
   X(ORTQuadric)                                                                                    \
-  X(ORTAsphere)
+  X(ORTAsphere)                                                                                    \
+  X(GeoElevationGrid)
 
 #define XVRML_DECLARE_BUILDER(name)                                                                \
   Mesh build##name(const nodes::name& node, const MeshOptions& options, Faults& faults);

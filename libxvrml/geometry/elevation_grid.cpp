@@ -1,6 +1,12 @@
-// elevation_grid.cpp: ElevationGrid (clause 6.17): a grid of heights over the xz plane as
-// quadrilaterals.
+// elevation_grid.cpp: ElevationGrid (clause 6.17), a grid of heights over the xz plane, and
+// GeoElevationGrid (ISO/IEC 19775-1 25.3.2), one over a globe, as quadrilaterals.
+#include <cmath>
+#include <optional>
+#include <type_traits>
+
+#include "base/globe.h"
 #include "geometry/builders.h"
+#include "geometry/node_matrix.h"
 #include "geometry/polygons/face_set.h"
 
 namespace xvrml {
@@ -23,13 +29,16 @@ template <class T> void bind(Attribute<T>& attribute, std::span<const T> values,
   if (values.size() < faces) faults.add(fault, values.size());
 }
 
-} // namespace
+// Holds whether the rows of a grid go to the north, and not to the south as z does.
+template <class Grid> constexpr bool isNorthward = std::is_same_v<Grid, nodes::GeoElevationGrid>;
 
-Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options,
-                        Faults& faults) {
+// Returns the grid of either node. point: returns the place of a grid point with its column, row
+// and height.
+template <class Grid, class Point>
+Mesh buildGrid(const Grid& node, const MeshOptions& options, Faults& faults, const Point& point) {
   if (!(node.xSpacing > 0 && node.zSpacing > 0))
     faults.note("xSpacing and zSpacing must be positive");
-  if (!isFinite(node.xSpacing) || !isFinite(node.zSpacing)) return {};
+  if (!std::isfinite(double(node.xSpacing)) || !std::isfinite(double(node.zSpacing))) return {};
   int64_t columns = node.xDimension, rows = node.zDimension;
   if (columns <= 0 || rows <= 0) return {}; // an empty grid is allowed
   // Each is below 2^31, so products stay within 64 bits.
@@ -53,9 +62,7 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
   set.ownPoints.reserve(size_t(columns * rows));
   for (int64_t j = 0; j < rows; j++)
     for (int64_t i = 0; i < columns; i++)
-      set.ownPoints.push_back({float(double(node.xSpacing) * double(i)),
-                               node.height[size_t(i + j * columns)],
-                               float(double(node.zSpacing) * double(j))});
+      set.ownPoints.push_back(point(i, j, node.height[size_t(i + j * columns)]));
   set.points = set.ownPoints;
   uint32_t faces = uint32_t((columns - 1) * (rows - 1)), width = uint32_t(columns);
   set.corners.reserve(4 * size_t(faces));
@@ -69,8 +76,8 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
     }
   set.uncheckedFaces = faces;
   set.solid = node.solid;
-  set.ccw = node.ccw;
-  set.creaseAngle = node.creaseAngle;
+  set.ccw = node.ccw != isNorthward<Grid>;
+  set.creaseAngle = float(double(node.creaseAngle));
   ColorValues colors = colorValues(node.color);
   set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   bind(set.colors, set.colors.values, node.colorPerVertex, set.points.size(), faces,
@@ -90,6 +97,38 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
     set.texCoords.per = Attribute<Vec2f>::Per::point;
   }
   return buildFaceMesh(std::move(set), options, faults);
+}
+
+} // namespace
+
+Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options,
+                        Faults& faults) {
+  return buildGrid(node, options, faults, [&](int64_t i, int64_t j, float height) {
+    return Vec3f{float(double(node.xSpacing) * double(i)), height,
+                 float(double(node.zSpacing) * double(j))};
+  });
+}
+
+// Rows go to the north, so faces run the other way than those of an ElevationGrid.
+Mesh buildGeoElevationGrid(const nodes::GeoElevationGrid& node, const MeshOptions& options,
+                           Faults& faults) {
+  const bool eastFirst = comesEastFirst(node.geoSystem);
+  const Matrix toWorld = globeToWorld(node);
+  bool everywhere = true;
+  Mesh mesh = buildGrid(node, options, faults, [&](int64_t i, int64_t j, double height) {
+    Vec3d at = node.geoGridOrigin;
+    (eastFirst ? at.x : at.y) += double(node.xSpacing) * double(i);
+    (eastFirst ? at.y : at.x) += double(node.zSpacing) * double(j);
+    at.z += double(node.yScale) * height;
+    const std::optional<GlobePlace> place = placeOnGlobe(node.geoSystem, at);
+    everywhere = everywhere && place;
+    if (!place) return Vec3f();
+    const Vector p = transformPoint(toWorld, {place->center.x, place->center.y, place->center.z});
+    return Vec3f{float(p.x), float(p.y), float(p.z)};
+  });
+  if (everywhere) return mesh;
+  faults.note("points outside of the geoSystem; nothing is drawn");
+  return {};
 }
 
 } // namespace xvrml

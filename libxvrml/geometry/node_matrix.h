@@ -1,4 +1,4 @@
-// node_matrix.h: the matrix that a node gives its children: that of a Transform or a CADPart. Code
+// node_matrix.h: the matrix that a node gives its children, as a Transform does. Code
 // that walks down to what is drawn asks here, so that all of it knows the same nodes. Pure
 // functions, any thread that owns the nodes.
 #pragma once
@@ -12,5 +12,9 @@ namespace xvrml {
 bool hasMatrix(const Node& node);
 // Returns the matrix of a node; the identity if hasMatrix is false.
 Matrix matrixOf(const Node& node);
+
+// Returns the matrix from geocentric metres to the coordinates of the world that holds the node
+// (GlobeOrigin).
+Matrix globeToWorld(const Node& node);
 
 } // namespace xvrml

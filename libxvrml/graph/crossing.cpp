@@ -100,7 +100,8 @@ void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& dia
       });
     }
   });
-  if (!holdsNodes(c.to) && c.to.range.bounded()) enforceRange(c.to, c.node.storage(c.to));
+  if (!holdsNodes(c.to) && c.to.range.bounded())
+    enforceRange(c.to, revisionOf(c.node.type(), c.to, versionOf(c.node)), c.node.storage(c.to));
 }
 
 } // namespace xvrml

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "base/x3d.h"
 #include "graph/inline_node.h"
 #include "printable.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 namespace {
@@ -52,10 +52,6 @@ Node* nodeOf(Exchange& exchange, const Exchange::End& end, Diagnostics& diagnost
   return node;
 }
 
-std::string_view spelled(const Node& node, std::string_view field) {
-  return node.type().index >= 0 ? ownName(node.type().name, field) : field;
-}
-
 } // namespace
 
 Node* exportedNode(const Node& inlineNode, std::string_view name) {
@@ -81,8 +77,8 @@ std::vector<ResolvedRoute> resolveImports(Exchange& exchange, const Node* inline
     Node* const from = nodeOf(exchange, route.from, diagnostics);
     Node* const to = nodeOf(exchange, route.to, diagnostics);
     if (!from || !to) continue;
-    const FieldInfo* const out = from->type().findEventOut(spelled(*from, route.from.field));
-    const FieldInfo* const in = to->type().findEventIn(spelled(*to, route.to.field));
+    const FieldInfo* const out = findEventOut(*from, route.from.field);
+    const FieldInfo* const in = findEventIn(*to, route.to.field);
     if (out && in && out->type == in->type) {
       routes.push_back({from, to, out, in});
       continue;

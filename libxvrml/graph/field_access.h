@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "base/visit_storage.h"
 #include "xvrml/node.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 

@@ -2,10 +2,12 @@
 // and work still to be done.
 #pragma once
 
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
 #include "base/budget.h"
+#include "base/globe.h"
 #include "graph/exchange.h"
 #include "xvrml/world.h"
 
@@ -28,8 +30,12 @@ struct LoadState {
   // For createVrmlFromString: roots of any type are accepted, because they may be added to any
   // field.
   bool anyRoots = false;
+  // Prototypes that the world's own file may use without a declaration.
+  std::span<const ProtoPtr> known = {};
   // Not null: the reader of the world's own file records there where everything stands.
   TextLayout* layout = nullptr;
+  // Holds what the places on a globe count from; all files share it.
+  GlobeOriginPtr globe = std::make_shared<GlobeOrigin>();
   bool full = false; // the budget has refused a node; reported once
   // Counts so far. Inlines can share a file that has neither routes nor Scripts.
   uint64_t routes = 0, scripts = 0;

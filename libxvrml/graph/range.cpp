@@ -118,25 +118,29 @@ std::string boundText(double bound) {
 
 } // namespace
 
-bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
+bool enforceRange(const FieldInfo& field, const FieldRevision* revision, void* storage,
+                  RangeFault* fault) {
+  const FieldRange& range = revision ? revision->range : field.range;
+  const Value& standard = revision ? revision->defaultValue : field.defaultValue;
   if (hasNormalizedAxes(field)) {
     normalizeAxes(field.type, storage);
     return true;
   }
-  const auto tell = [fault](const auto& given, const auto& used, size_t index) {
+  const auto tell = [fault, &range](const auto& given, const auto& used, size_t index) {
     if (fault && fault->count++ == 0) {
       fault->given = textOf(given);
       fault->used = textOf(used);
       fault->index = index;
+      fault->range = range;
     }
   };
   return visitStorage(field.type, storage, [&](auto& value) {
     using T = std::remove_reference_t<decltype(value)>;
     if constexpr (Ranged<T>) {
       const T given = value;
-      if (enforce(value, field.range)) return true;
+      if (enforce(value, range)) return true;
       if constexpr (numberCount<T> == 1) {
-        if (!inside(*numbersOf(value), field.range)) value = std::get<T>(field.defaultValue);
+        if (!inside(*numbersOf(value), range)) value = std::get<T>(standard);
       }
       tell(given, value, 0);
       return false;
@@ -145,7 +149,7 @@ bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
       bool good = true;
       for (size_t i = 0; i < value.size(); ++i) {
         const auto given = value[i];
-        if (enforce(value[i], field.range)) continue;
+        if (enforce(value[i], range)) continue;
         good = false;
         tell(given, value[i], i);
       }
@@ -171,11 +175,12 @@ std::string describe(const NodeType& type, const FieldInfo& field, const RangeFa
   const bool list = isMultiple(field.type);
   const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index)
                                  : type.name + "." + field.name;
-  const std::string done = fault.given == fault.used
-                               ? "is kept, and parts that cannot be drawn are skipped"
-                               : fmt::format("becomes {}", fault.used);
+  const std::string done = fault.given != fault.used ? fmt::format("becomes {}", fault.used)
+                           : field.change == Change::none
+                               ? "is kept; no picture depends on it"
+                               : "is kept, and parts that cannot be drawn are skipped";
   return fmt::format(
-      "{}: {} is outside of its range {} and {}{}", where, fault.given, describe(field.range), done,
+      "{}: {} is outside of its range {} and {}{}", where, fault.given, describe(fault.range), done,
       fault.count > 1 ? fmt::format(", as do {} further elements", fault.count - 1) : "");
 }
 

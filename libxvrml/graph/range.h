@@ -8,6 +8,7 @@
 
 #include "xvrml/node.h"
 #include "xvrml/value_text.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -22,8 +23,11 @@ struct RangeFault {
   uint64_t count = 0;      // number of values that were outside
   size_t index = 0;        // index of the first one in its list
   std::string given, used; // the first one as it was, and as it is now
+  FieldRange range;        // the range that it was outside of
 };
-bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault = nullptr);
+// revision: how the version of the file describes the field; null: as FieldInfo does.
+bool enforceRange(const FieldInfo& field, const FieldRevision* revision, void* storage,
+                  RangeFault* fault = nullptr);
 // Returns "SpotLight.cutOffAngle: 1.9 is outside of its range (0,pi/2] and becomes 1.5707964".
 std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault);
 

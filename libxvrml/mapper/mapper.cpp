@@ -88,6 +88,7 @@ const Bounds& OpenRTMapper::Impl::bounds() {
     places.updateForFrame(graph, camera);
     bounds_ = boundsOf(graph, places);
     sphereStale = outermostStale = true;
+    facing_.clear();
   }
   boundsStale = false;
   return bounds_;
@@ -105,6 +106,13 @@ const std::vector<Vector>& OpenRTMapper::Impl::outermost() {
   if (outermostStale) outermost_ = outermostPoints(graph, places, Outermost::even());
   outermostStale = false;
   return outermost_;
+}
+
+bool OpenRTMapper::Impl::facesAway(const double view[16]) {
+  bounds(); // forgets what has changed
+  const auto [known, fresh] = facing_.try_emplace({view[8], view[9], view[10]});
+  if (fresh) known->second = xvrml::facesAway(world, view);
+  return known->second;
 }
 
 bool OpenRTMapper::Impl::followsCamera() const {
@@ -218,6 +226,8 @@ void OpenRTMapper::setHeadlight(MapOptions::Headlight headlight) {
 void OpenRTMapper::setModelLight(bool on) { impl_->modelLight = on; }
 
 void OpenRTMapper::setBackground(bool on) { impl_->background = on; }
+
+bool OpenRTMapper::facesAway(const double view[16]) const { return impl_->facesAway(view); }
 
 Bounds OpenRTMapper::bounds() const { return impl_->bounds(); }
 

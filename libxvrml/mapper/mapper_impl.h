@@ -2,6 +2,8 @@
 // and explain.cpp.
 #pragma once
 
+#include <array>
+#include <map>
 #include <optional>
 
 #include "mapper/graph/objects.h"
@@ -53,6 +55,7 @@ struct OpenRTMapper::Impl {
   std::vector<Vector> outermostFor(const CameraSettings& camera,
                                    const std::optional<mapper::Outermost::Directions>& more);
   CameraSettings fit(const double view[16], double fovy, double aspect);
+  bool facesAway(const double view[16]);
   bool followsCamera() const; // something is drawn as the camera says
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
   bool sphereStale = true, outermostStale = true, lightStale = true;
@@ -79,6 +82,8 @@ struct OpenRTMapper::Impl {
   Bounds bounds_;
   BoundingSphere sphere_;
   std::vector<Vector> outermost_;
+  // Answers of facesAway(), by the direction to the eye.
+  std::map<std::array<double, 3>, bool> facing_;
   bool hasUnspecifiedLighting_ = false;
   size_t surfacesKept_ = 64;
 };

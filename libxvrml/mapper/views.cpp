@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "geometry/lens.h"
+#include "geometry/node_matrix.h"
 #include "nodes/bindable.h"
 #include "nodes/viewpoint.h"
 
@@ -105,7 +106,9 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
   return list;
 }
 
-CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
+CameraSettings cameraOf(const Node* node, const Matrix& around, double aspect) {
+  // A viewpoint on a globe has axes of its own.
+  const Matrix parent = node && hasMatrix(*node) ? compose(around, matrixOf(*node)) : around;
   const auto viewpoint = viewpointFields(node);
   const Vec3f position = viewpoint ? viewpoint->position : Vec3f(0, 0, 10); // as in clause 6.53
   const Rotation orientation = viewpoint ? viewpoint->orientation : Rotation();

@@ -31,6 +31,10 @@ class Checker {
     eachType([this](TypeSpec& type) { resolveRoles(type); });
     eachType([this](TypeSpec& type) { checkFieldNames(type); });
     eachType([this](TypeSpec& type) { type.isAbstract ? checkAbstract(type) : checkNode(type); });
+    for (const Component& component : model_.components) {
+      for (const Revision& revision : component.revisions) checkRevision(revision);
+      for (const AbsentNode& one : component.absent) checkAbsent(one);
+    }
   }
 
  private:
@@ -209,6 +213,29 @@ class Checker {
     }
   }
 
+  void checkRevision(const Revision& revision) {
+    const auto found = types_.find(revision.node.name);
+    if (found == types_.end() || found->second->isAbstract) {
+      model_.error(revision.node.source, fmt::format("there is no node {}", revision.node.name));
+      return;
+    }
+    for (const FieldSpec& field : revision.fields) {
+      const FieldSpec* const own = findField(*found->second, field.name);
+      if (!own || own->type != field.type || !own->hasStorage() || !field.hasStorage())
+        model_.error(field.source, fmt::format("{} has no field {} of type {}", revision.node.name,
+                                               field.name, fieldTypeName(field.type)));
+      checkDefault(field);
+    }
+  }
+
+  void checkAbsent(const AbsentNode& one) {
+    if (types_.contains(one.node.name))
+      model_.error(one.node.source, fmt::format("{} is there: its stanza is at {}", one.node.name,
+                                                place(types_.find(one.node.name)->second->source)));
+    if (!absent_.insert(one.node.name).second)
+      model_.error(one.node.source, fmt::format("{} is listed twice", one.node.name));
+  }
+
   void checkUrls(const FieldSpec& field) {
     if (field.type != FieldType::MFString)
       model_.error(field.urlsSource, fmt::format("{} is of type {}: only an MFString holds URLs",
@@ -230,6 +257,7 @@ class Checker {
 
   Model& model_;
   std::map<std::string, TypeSpec*, std::less<>> types_;
+  std::set<std::string> absent_; // nodes that the library does not have
   // Positions of unknown names that were reported, because many nodes may inherit them.
   std::set<std::tuple<std::string, uint32_t, uint32_t>> reported_;
 };

@@ -51,6 +51,7 @@ struct TypeSpec {
   std::string name;
   std::string clause;
   std::string container; // the field that holds the node where X3D's XML does not say it, or ""
+  std::string lacks;     // what of the node is not done, or ""
   std::string text;
   std::vector<Reference> parents; // abstract types, as written
   std::vector<FieldSpec> fields;
@@ -61,6 +62,23 @@ struct TypeSpec {
   int number = -1;                // typeIndex of a node; set by readNumbers() or numberInOrder()
 };
 
+// Says where a version of X3D differs from the stanza of a node: a statement `since`.
+struct Revision {
+  Reference node;
+  int major = 0, minor = 0; // the first version of X3D that says so
+  std::string clause;       // ISO/IEC 19775-1, in the edition of that version
+  std::vector<FieldSpec> fields;
+};
+
+// A node of X3D that has no stanza, because the library does not have it: a line of a statement
+// `absent`.
+struct AbsentNode {
+  Reference node;
+  std::string clause;
+  std::string kind; // geometry, sensor, ...
+  std::string loss; // a clause of a message: "shapes with it are not drawn"
+};
+
 // Holds the contents of one .node file.
 struct Component {
   std::string name; // the file's name without folder and extension
@@ -68,6 +86,8 @@ struct Component {
   bool ofX3d = false;    // `standard X3D`: its nodes are those of ISO/IEC 19775-1
   bool imported = false; // read only for its abstract types: nothing is written for it
   std::vector<TypeSpec> types;
+  std::vector<Revision> revisions;
+  std::vector<AbsentNode> absent;
 };
 
 struct Model {

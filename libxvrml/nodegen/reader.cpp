@@ -47,6 +47,7 @@ std::string collapseSpace(std::string_view text) {
   return result;
 }
 
+// Wide because there is a function for each rule of the notation.
 class Reader {
  public:
   Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model,
@@ -54,7 +55,7 @@ class Reader {
       : locator_(text, std::move(file), model.diagnostics), lexer_(locator_),
         values_(lexer_, limits_), gap_(text.data()), component_(component) {}
 
-  // file ::= "component" string [ "standard" "X3D" ] { stanza }
+  // file ::= "component" string [ "standard" "X3D" ] { stanza | revision | absent }
   void read() {
     try {
       expectWord("component", "the component that the file describes");
@@ -74,9 +75,11 @@ class Reader {
 
  private:
   // stanza ::= "abstract" name [ ":" { name } ] string [ "container" name ] [ "{" { field } "}" ]
-  //          | name ":" name { name } "{" [ "clause" clause ] [ "container" name ] string
-  //            { field } "}"
+  //          | name ":" name { name } "{" [ "clause" clause ] [ "container" name ]
+  //            [ "lacks" string ] string { field } "}"
   void readStanza() {
+    if (acceptWord("since")) return readRevision();
+    if (acceptWord("absent")) return readAbsent();
     TypeSpec type;
     type.component = component_.name;
     type.ofX3d = component_.ofX3d;
@@ -101,8 +104,9 @@ class Reader {
   void readBody(TypeSpec& type) {
     expect(TokenKind::braceOpen, "{");
     if (!type.isAbstract) {
-      if (acceptWord("clause")) readClause(type);
+      if (acceptWord("clause")) type.clause = readClause();
       readContainer(type);
+      if (acceptWord("lacks")) type.lacks = readText("what of the node is not done");
       type.text = readText("what the node is");
     }
     while (!lexer_.peek().is(TokenKind::braceClose))
@@ -110,12 +114,55 @@ class Reader {
     take();
   }
 
+  // revision ::= "since" "X3D" version name "{" "clause" clause field { field } "}"
+  void readRevision() {
+    Revision revision;
+    expectWord("X3D", "the standard that differs");
+    readVersion(revision);
+    readName(revision.node, "the name of a node");
+    expect(TokenKind::braceOpen, "{");
+    expectWord("clause", "the clause that says so");
+    revision.clause = readClause();
+    do revision.fields.push_back(readField(false));
+    while (!lexer_.peek().is(TokenKind::braceClose));
+    take();
+    component_.revisions.push_back(std::move(revision));
+  }
+
+  // Reads the number of a version: 4, 3.3.
+  void readVersion(Revision& revision) {
+    const Token token = lexer_.peek();
+    const std::string_view text = token.text;
+    const bool whole = text.size() == 1, parts = text.size() == 3 && text[1] == '.';
+    const auto digit = [&](size_t i) { return text[i] >= '0' && text[i] <= '9'; };
+    if (!(whole || parts) || !digit(0) || (parts && !digit(2)))
+      fail(token, fmt::format("expected a version of X3D such as 3.3, found {}", describe(token)));
+    take();
+    revision.major = text[0] - '0';
+    if (parts) revision.minor = text[2] - '0';
+  }
+
+  // absent ::= "absent" kind string "{" { name clause } "}"
+  void readAbsent() {
+    AbsentNode one;
+    SourcePosition source;
+    readName(one.kind, source, "what the nodes are, such as geometry or sensor");
+    one.loss = readText("what is lost where they are left out");
+    expect(TokenKind::braceOpen, "{");
+    while (!lexer_.peek().is(TokenKind::braceClose)) {
+      readName(one.node, "the name of a node");
+      one.clause = readClause();
+      component_.absent.push_back(one);
+    }
+    take();
+  }
+
   // Reads the number of a clause: 6.7, 12.4.1. VRML97 has no token for the second form.
-  void readClause(TypeSpec& type) {
+  std::string readClause() {
     const Token token = lexer_.peek();
     if (token.text.empty() || token.text.find_first_not_of("0123456789.") != token.text.npos)
       fail(token, fmt::format("expected the number of a clause, found {}", describe(token)));
-    type.clause = take().text;
+    return std::string(take().text);
   }
 
   void readContainer(TypeSpec& type) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -187,6 +190,64 @@ std::string writeContainers(const Model& model) {
   return "std::span<const Container> containers() {\n  " + body + "\n}\n\n";
 }
 
+// Returns the table of what is not done of nodes that the library has.
+std::string writeLacks(const Model& model) {
+  std::string rows;
+  eachNode(model, [&](const TypeSpec& type) {
+    if (!type.lacks.empty())
+      rows += fmt::format("      {{{}, {}}},\n", cppString(type.name), cppString(type.lacks));
+  });
+  const std::string body =
+      rows.empty() ? "return {};"
+                   : "static constexpr Lack table[] = {\n" + rows + "  };\n  return table;";
+  return "std::span<const Lack> lacks() {\n  " + body + "\n}\n\n";
+}
+
+// Calls use(revision, field, number of the node) for each field of each `since`, in the order of
+// the numbers, then of the versions.
+template <class Use> void eachRevision(const Model& model, Use use) {
+  std::vector<std::pair<int, const Revision*>> all;
+  for (const Component& component : model.components)
+    for (const Revision& one : component.revisions)
+      if (const TypeSpec* type = model.find(one.node.name)) all.emplace_back(type->number, &one);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.first, a.second->major, a.second->minor) <
+           std::tuple(b.first, b.second->major, b.second->minor);
+  });
+  for (const auto& [number, one] : all)
+    for (const FieldSpec& field : one->fields) use(*one, field, number);
+}
+
+// Returns the table of the fields that a version of X3D describes otherwise.
+std::string writeRevisions(const Model& model) {
+  std::string rows;
+  eachRevision(model, [&](const Revision& one, const FieldSpec& field, int number) {
+    rows += fmt::format("      {{{}, {}, {}, {}, Access::{}, {}, Value({}{{{}}}), {}}},\n", number,
+                        cppString(field.name), one.major, one.minor, accessName(field.access),
+                        writeRange(field.range), fieldTypeName(field.type),
+                        cppInitializer(field.value), cppString(one.clause));
+  });
+  const std::string body = rows.empty()
+                               ? "return {};"
+                               : "constexpr double inf = std::numeric_limits<double>::infinity();\n"
+                                 "  static const FieldRevision table[] = {\n" +
+                                     rows + "  };\n  return table;";
+  return "std::span<const FieldRevision> revisions() {\n  " + body + "\n}\n\n";
+}
+
+// Returns the table of the nodes of X3D that the library does not have.
+std::string writeAbsent(const Model& model) {
+  std::string rows;
+  for (const Component& component : model.components)
+    for (const AbsentNode& one : component.absent)
+      rows += fmt::format("      {{{}, {}, {}, {}}},\n", cppString(one.node.name),
+                          cppString(one.clause), cppString(one.kind), cppString(one.loss));
+  const std::string body =
+      rows.empty() ? "return {};"
+                   : "static constexpr AbsentNode table[] = {\n" + rows + "  };\n  return table;";
+  return "std::span<const AbsentNode> absentNodes() {\n  " + body + "\n}\n\n";
+}
+
 } // namespace
 
 std::string writeList(const Model& model) {
@@ -199,8 +260,8 @@ std::string writeList(const Model& model) {
   std::map<int, std::string> names; // by number
   eachNode(model, [&](const TypeSpec& type) { names.emplace(type.number, type.name); });
   for (const auto& [number, name] : names) text += fmt::format("      &{}::nodeType(),\n", name);
-  return text + "  };\n  return types;\n}\n\n" + writeContainers(model) +
-         "} // namespace xvrml::nodes\n";
+  return text + "  };\n  return types;\n}\n\n" + writeContainers(model) + writeLacks(model) +
+         writeRevisions(model) + writeAbsent(model) + "} // namespace xvrml::nodes\n";
 }
 
 std::string writePlugin(const Model& model, const std::string& plugin) {

@@ -100,6 +100,13 @@ NodeType makeNodeType(const NodeRow& row, int index) {
     type.fields.back().rareOffset = field.rareOffset;
   }
   readFieldNames(type);
+  for (const FieldRevision& one : nodes::revisions())
+    if (one.type == index && one.access == Access::exposedField)
+      for (FieldInfo& field : type.fields)
+        if (field.name == one.field && field.access == Access::field) {
+          field.access = Access::exposedField;
+          field.exposedSince = uint8_t(one.major);
+        }
   const std::unique_ptr<Node> fresh(row.create(type));
   for (FieldInfo& field : type.fields) field.defaultValue = fresh->get(field);
   return type;
@@ -130,6 +137,22 @@ const NodeType* findNodeType(std::string_view name) {
   const Snapshot& snapshot = Registry::instance().current();
   const auto found = snapshot.byName.find(name);
   return found == snapshot.byName.end() ? nullptr : found->second;
+}
+
+std::string_view lackOf(const NodeType& type) {
+  for (const nodes::Lack& one : nodes::lacks())
+    if (one.type == type.name) return one.text;
+  return {};
+}
+
+const nodes::AbsentNode* findAbsentNode(std::string_view type) {
+  static const auto& byName = *[] {
+    auto* const table = new std::unordered_map<std::string_view, const nodes::AbsentNode*>();
+    for (const nodes::AbsentNode& one : nodes::absentNodes()) table->emplace(one.name, &one);
+    return table;
+  }();
+  const auto found = byName.find(type);
+  return found == byName.end() ? nullptr : found->second;
 }
 
 std::string_view containerOf(const NodeType& type) {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "xvrml/node.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -28,11 +28,41 @@ RenderCall renderCallOf(const NodeType& type); // null for all other types
 std::string_view containerOf(const NodeType& type);
 
 namespace nodes {
+struct AbsentNode;
+}
+// Returns what of a node is not done: "its skin stays as it is at rest". "" for most types. [any
+// thread]
+std::string_view lackOf(const NodeType& type);
+// Returns the row of a node of X3D that the library does not have; null for every other name. [any
+// thread]
+const nodes::AbsentNode* findAbsentNode(std::string_view type);
+
+namespace nodes {
 // The nodes and abstract types whose description names a container. Written by nodegen.
 struct Container {
   std::string_view type, field;
 };
 std::span<const Container> containers();
+
+// Says what is not done of a node that the library has, as a clause of a message. Written by
+// nodegen.
+struct Lack {
+  std::string_view type, text;
+};
+std::span<const Lack> lacks();
+
+// The fields that a version of X3D describes otherwise, in the order of the types' numbers, then of
+// the versions. Written by nodegen.
+std::span<const FieldRevision> revisions();
+
+// The nodes of X3D that the library does not have. Written by nodegen.
+struct AbsentNode {
+  std::string_view name;
+  std::string_view clause; // ISO/IEC 19775-1
+  std::string_view kind;   // geometry, sensor, ...
+  std::string_view loss;   // a clause of a message: "shapes with it are not drawn"
+};
+std::span<const AbsentNode> absentNodes();
 
 // The types of all .node files, in the order of their numbers. Written by nodegen.
 std::span<const NodeType* const> builtinNodeTypes();

@@ -37,7 +37,10 @@ inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
   const auto* info = static_cast<const SFNode*>(at("navigationInfo", FieldType::SFNode));
   const auto* shader = static_cast<const SFNode*>(at("shader", FieldType::SFNode));
   // nodegen has checked that the node has the fields of its abstract type, which are not optional.
-  return ViewpointFields{*static_cast<const SFVec3f*>(at("position", FieldType::SFVec3f)),
+  // A GeoViewpoint is placed by its matrix (geometry/node_matrix.h), not by its position.
+  static const SFVec3f origin;
+  const auto* position = static_cast<const SFVec3f*>(at("position", FieldType::SFVec3f));
+  return ViewpointFields{position ? *position : origin,
                          *static_cast<const SFRotation*>(at("orientation", FieldType::SFRotation)),
                          *static_cast<const SFBool*>(at("jump", FieldType::SFBool)),
                          *static_cast<const SFString*>(at("description", FieldType::SFString)),

@@ -15,12 +15,15 @@
 #include "graph/range.h"
 #include "nearest.h"
 #include "nodes/registry.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
 Builder::Builder(Locator& locator, LoadState& state, ParsedFile& file)
     : locator_(locator), state_(state), file_(file) {
   pushScope(&file.scope, nullptr, nullptr);
+  for (const ProtoPtr& prototype : state.known)
+    scope().types.emplace(prototype->type->name, prototype);
 }
 
 Builder::Mark Builder::mark() const {
@@ -75,6 +78,7 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
     return false;
   }
   warnOfX3d(*known, type);
+  warnOfLack(*known, type);
   if (known->name == "Script") {
     ++state_.scripts;
     frame.ownType = makeOwnType(*known);
@@ -83,8 +87,8 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
     frame.node = makeStaticNode(*known);
     if (isX3d())
       for (const FieldInfo& field : known->fields)
-        if (const Value* other = x3dDefault(known->name, field.name))
-          frame.node->set(field, *other);
+        if (const auto* revision = revisionOf(*known, field, file_.head.version))
+          frame.node->set(field, revision->defaultValue);
   }
   frame.declares = known->is("declaring");
   return true;
@@ -138,6 +142,7 @@ void Builder::closeNode(bool good) {
   NodeFrame frame = std::move(nodes_.back());
   given_.resize(nodes_.back().firstGiven);
   nodes_.pop_back();
+  if (good) noteGlobe(frame);
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
     locator_.error(frame.type.at, fmt::format("{} contains {} nodes, shared ones counted at each "
@@ -356,7 +361,7 @@ void Builder::closeField(bool good) {
     return;
   }
   if (!good) {
-    frame.node->set(field, field.defaultValue);
+    frame.node->set(field, defaultIn(frame.node->type(), field, file_.head.version));
     return;
   }
   if (angle_ != 1 && isAngle(*frame.node, field))
@@ -371,9 +376,12 @@ void Builder::closeField(bool good) {
                       frame.node->type().name, field.name, first.x, first.y, first.z,
                       axisLength(first),
                       outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
-  } else if (RangeFault fault;
-             field.range.bounded() && !enforceRange(field, frame.node->storage(field), &fault)) {
-    locator_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
+  } else if (field.range.bounded()) {
+    const NodeType& type = frame.node->type();
+    RangeFault fault;
+    if (!enforceRange(field, revisionOf(type, field, file_.head.version),
+                      frame.node->storage(field), &fault))
+      locator_.warn(frame.fieldAt, xvrml::describe(type, field, fault));
   }
 }
 

@@ -97,7 +97,7 @@ class Builder : public ParseSink {
     std::shared_ptr<NodeType> protoType; // interface of the open prototype, which is still growing
     std::unique_ptr<Scope> own;          // the scope of a default value
     std::unordered_map<std::string_view, ProtoPtr> types;
-    std::unordered_set<std::string_view> lost;
+    std::unordered_set<std::string_view> lost, lostTold;
     std::vector<std::string_view> defined;
     // Names of nodes to which a USE or ROUTE has given a place.
     std::unordered_set<std::string_view> placed;
@@ -134,6 +134,8 @@ class Builder : public ParseSink {
   bool isX3d() const { return file_.head.version.isX3d(); }
   bool isVrml97() const { return file_.head.version.encoding == Encoding::vrml97; }
   std::string_view spelled(const NodeType& type, std::string_view name) const;
+  const FieldInfo* eventIn(const NodeType& type, std::string_view own) const;
+  const FieldInfo* eventOut(const NodeType& type, std::string_view own) const;
   std::string_view word(Access access) const;
   bool isFirst(const std::string& name) { return reported_.insert(name).second; }
   bool lacksField(const NodeType& type, std::string_view name) const;
@@ -143,6 +145,8 @@ class Builder : public ParseSink {
   bool isMissingField(const NodeType& type, const Name& name);
   void reportGpuProgram(const Name& name);
   void reportUnknownNode(const Name& type);
+  void noteGlobe(const NodeFrame& frame);
+  void warnOfLack(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const Name& at);
   void warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at);
   uint64_t expandedCount(const Node* node) const;

@@ -136,7 +136,8 @@ NodeRef Builder::findName(const Name& name) {
     return {};
   }
   if (scope().lost.contains(name.text)) {
-    locator_.warn(name.at, fmt::format("{} was left out above", describe(name)));
+    if (scope().lostTold.insert(name.text).second)
+      locator_.warn(name.at, fmt::format("{} was left out above", describe(name)));
     return {};
   }
   std::string hint = nearest::suggestion(name.text, namesOf(*scope().scope));
@@ -176,6 +177,16 @@ void Builder::useNode(const Name& name) {
   state_.world.cyclic.emplace_back(between);
 }
 
+// Return the event of our own name, if the node has it in this file's version.
+const FieldInfo* Builder::eventIn(const NodeType& type, std::string_view own) const {
+  const FieldInfo* const field = type.findEventIn(own);
+  return field && field->exposedSince > file_.head.version.major ? nullptr : field;
+}
+const FieldInfo* Builder::eventOut(const NodeType& type, std::string_view own) const {
+  const FieldInfo* const field = type.findEventOut(own);
+  return field && field->exposedSince > file_.head.version.major ? nullptr : field;
+}
+
 void Builder::route(const Name& keyword, const RouteNames& names) {
   if (importedRoute(keyword, names)) return;
   const NodeRef from = findName(names.from);
@@ -183,8 +194,8 @@ void Builder::route(const Name& keyword, const RouteNames& names) {
   if (!from || !to) return;
   const std::string_view fromField = spelled(from->type(), names.fromField.text);
   const std::string_view toField = spelled(to->type(), names.toField.text);
-  const FieldInfo* out = from->type().findEventOut(fromField);
-  const FieldInfo* in = to->type().findEventIn(toField);
+  const FieldInfo* out = eventOut(from->type(), fromField);
+  const FieldInfo* in = eventIn(to->type(), toField);
   if (!out && isMissingField(from->type(), names.fromField)) return;
   if (!in && isMissingField(to->type(), names.toField)) return;
   if (!out) {
@@ -223,10 +234,11 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
   const std::string_view own = spelled(type, name.text);
   const FieldInfo* field = type.find(own);
   Access access = field ? field->access : Access::eventIn;
+  if (field && field->exposedSince > file_.head.version.major) access = Access::field;
   if (!field) { // set_x and x_changed of an exposedField x refer to its events
-    if ((field = type.findEventIn(own)))
+    if ((field = eventIn(type, own)))
       access = Access::eventIn;
-    else if ((field = type.findEventOut(own)))
+    else if ((field = eventOut(type, own)))
       access = Access::eventOut;
   }
   if (!field && isMissingField(type, name)) return;
@@ -263,12 +275,12 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
     // An inputOutput of a Script was read as initializeOnly, and reported there.
     const bool reported =
         isX3d() && nodeCast<ScriptNode>(frame.node) && access == Access::field && !meant.empty();
-    if (!reported)
-      locator_.error(interfaceName.at,
-                     fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
-                                 word(access), describe(name), type.name, word(declared->access),
-                                 describe(interfaceName), meant.empty() ? "" : ": ", meant));
-    if (meant.empty()) return;
+    const std::string text =
+        fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}", word(access),
+                    describe(name), type.name, word(declared->access), describe(interfaceName),
+                    meant.empty() ? "" : ": ", meant);
+    if (meant.empty()) return locator_.error(interfaceName.at, text);
+    if (!reported) locator_.warn(interfaceName.at, text);
   }
   proto->proto->is.push_back({frame.node, std::string(own), std::string(interfaceName.text)});
 }

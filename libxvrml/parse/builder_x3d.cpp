@@ -9,8 +9,10 @@
 #include "base/x3d.h"
 #include "graph/inline_node.h"
 #include "nearest.h"
+#include "nodes/registry.h"
 #include "parse/builder.h"
 #include "parse/source.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 
@@ -55,18 +57,48 @@ bool Builder::isMissingField(const NodeType& type, const Name& name) {
 
 // Reports a node type that is not known. In an X3D file each type is reported once.
 void Builder::reportUnknownNode(const Name& type) {
-  if (isX3d() && isGpuNode(type.text)) return reportGpuProgram(type);
+  const nodes::AbsentNode* const absent = findAbsentNode(type.text);
+  if (isX3d() && absent && absent->kind == "program") return reportGpuProgram(type);
   if (isX3d() && !isFirst(std::string(type.text))) return;
-  const bool ofX3d = isX3dNode(type.text);
-  if (isX3d() && ofX3d) {
-    locator_.warn(type.at, fmt::format("nodes of type {} are not supported: they are left out here "
-                                       "and below, with all that they hold",
-                                       describe(type)));
+  if (isX3d() && absent) {
+    locator_.warn(type.at, fmt::format("nodes of type {} ({}) are not supported and are left out "
+                                       "here and below, with all that they hold: {}",
+                                       describe(type), absent->kind, absent->loss));
     return;
   }
   locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
-                                      ofX3d ? " (it is X3D's)" : "",
+                                      absent ? " (it is X3D's)" : "",
                                       nearest::suggestion(type.text, nodeTypes())));
+}
+
+// Notes the first place on a globe that the world names, and warns of systems that are not known.
+// Nodes in prototypes get their places with the instances.
+void Builder::noteGlobe(const NodeFrame& frame) {
+  const Node& node = *frame.node;
+  const auto* origin = nodeCast<nodes::GeoOrigin>(&node);
+  const auto* location = nodeCast<nodes::GeoLocation>(&node);
+  const auto* viewpoint = nodeCast<nodes::GeoViewpoint>(&node);
+  const auto* grid = nodeCast<nodes::GeoElevationGrid>(&node);
+  if ((!origin && !location && !viewpoint && !grid) || inTemplate()) return;
+  const auto place = origin      ? placeOnGlobe(origin->geoSystem, origin->geoCoords)
+                     : location  ? placeOnGlobe(location->geoSystem, location->geoCoords)
+                     : viewpoint ? placeOnGlobe(viewpoint->geoSystem, viewpoint->position)
+                                 : placeOnGlobe(grid->geoSystem, grid->geoGridOrigin);
+  if (!place) {
+    locator_.warn(frame.type.at,
+                  fmt::format("{} names no place: expected the geoSystem GD, UTM with a zone such "
+                              "as Z10, or GC, and coordinates within it (ISO/IEC 19775-1 25.2.3)",
+                              describe(frame.type)));
+  } else if (!state_.globe->place || (state_.globe->isCorner && !grid)) {
+    *state_.globe = {place, origin && origin->rotateYUp, grid != nullptr};
+  }
+}
+
+// Warns once for a file what of a node is not done.
+void Builder::warnOfLack(const NodeType& type, const Name& at) {
+  const std::string_view lack = lackOf(type);
+  if (!lack.empty() && isFirst(fmt::format("{} lacks", type.name)))
+    locator_.warn(at.at, fmt::format("{} is not supported wholly: {}", describe(at), lack));
 }
 
 // Warns once in a file of VRML97 that a node is X3D's.

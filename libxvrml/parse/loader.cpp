@@ -42,17 +42,19 @@ Loader::Loader(World& world, const LoadOptions& options, uint64_t depth)
                 [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
 
 void Loader::load(const Source& source, const std::string& name,
-                  const std::optional<FileVersion>& fragment, TextLayout* layout) {
+                  const std::optional<Fragment>& fragment, TextLayout* layout) {
   const auto start = std::chrono::steady_clock::now();
   ParsedFile file;
   const auto sharedName = source.nameWithComments(name, depth_);
   if (fragment)
-    setFileVersion(sharedName, *fragment);
+    setFileVersion(sharedName, fragment->version);
   else
     source.identify(sharedName, state_.diagnostics);
   state_.anyRoots = fragment.has_value();
   state_.layout = layout;
+  if (fragment) state_.known = fragment->prototypes;
   parse(source, sharedName, file);
+  state_.known = {};
   state_.layout = nullptr;
   state_.anyRoots = false;
   world_.times.parse = secondsSince(start);
@@ -68,12 +70,14 @@ void Loader::load(const Source& source, const std::string& name,
 
 void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing) {
   for (const std::string& file : enclosing) inlined_[canonical(file)].reading = true;
+  if (const GlobeOriginPtr origin = globeOrigin(node.source.file)) state_.globe = origin;
   loadInline(node, std::max<uint64_t>(enclosing.size(), fileDepth(node.source.file) + 1));
 }
 
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
+  setGlobeOrigin(name, state_.globe);
   // Nodes of VRML 1.0 are counted when the world is complete.
   composed_ = composed_ || file.head.version.encoding == Encoding::vrml1;
   readWorldFile({source.text(), name, state_, file, budget_});
@@ -335,10 +339,11 @@ namespace {
 // build uses 0.6 kB per level.
 constexpr size_t deepestStack = size_t(6) << 20;
 
-template <class MakeSource> std::unique_ptr<World>
-loadFrom(const std::string& name, const LoadOptions& options, MakeSource makeSource,
-         const std::optional<FileVersion>& fragment = {}, const BudgetPtr& budget = nullptr,
-         uint64_t depth = 0, TextLayout* layout = nullptr) {
+template <class MakeSource>
+std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
+                                MakeSource makeSource, const std::optional<Fragment>& fragment = {},
+                                const BudgetPtr& budget = nullptr, uint64_t depth = 0,
+                                TextLayout* layout = nullptr) {
   // One level more than Inlines have: an Inline of the text reports the limit by itself.
   if (depth > 0 && depth - 1 > options.limits.inlineDepth)
     throw LoadError{{Severity::error,
@@ -385,7 +390,7 @@ std::unique_ptr<World> loadWithLayout(std::string_view text, const std::string& 
   return loadFrom(
       name, options,
       [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); },
-      fragment, nullptr, 0, &layout);
+      fragment ? std::optional(Fragment{*fragment}) : std::nullopt, nullptr, 0, &layout);
 }
 
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
@@ -397,11 +402,11 @@ std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string&
 
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
                                     const LoadOptions& options, const BudgetPtr& budget,
-                                    uint64_t depth, const FileVersion& version) {
+                                    uint64_t depth, const Fragment& fragment) {
   return loadFrom(
       name, options,
       [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); },
-      version, budget, depth);
+      fragment, budget, depth);
 }
 
 } // namespace xvrml

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <span>
 
 #include "graph/expander.h"
 #include "parse/source.h"
@@ -12,15 +13,22 @@ namespace xvrml {
 
 struct InlineNode;
 
+// A text without a header: the version that it follows, and prototypes that it may use without
+// declaring them.
+struct Fragment {
+  FileVersion version;
+  std::span<const ProtoPtr> prototypes = {};
+};
+
 class Loader {
  public:
   // depth: number of files around the world's own file (fileDepth()).
   Loader(World& world, const LoadOptions& options, uint64_t depth = 0);
   // Loads the world's own file. Throws LoadError if nothing of it can be used.
-  // fragment: the version that a text without a header follows; empty: the file has a header.
+  // fragment: describes a text without a header; empty: the file has a header.
   // layout: gets where everything stands in the text; null: nowhere.
   void load(const Source& source, const std::string& name,
-            const std::optional<FileVersion>& fragment = {}, TextLayout* layout = nullptr);
+            const std::optional<Fragment>& fragment = {}, TextLayout* layout = nullptr);
   // Loads the content of an Inline of a world that has already been loaded. enclosing: the files
   // around the Inline, innermost last, one for each enclosing Inline and one for itself.
   // node.content stays null if nothing could be loaded.
@@ -69,12 +77,12 @@ class Loader {
 };
 
 // Loads a text that needs no header (Browser::createVrmlFromString). name: for messages; relative
-// URLs are relative to its folder. version: of the standard that the text follows. budget: the
-// budget of the world that the text becomes part of. depth: number of files around the text. Throws
-// LoadError if it is more than one above limit inlineDepth.
+// URLs are relative to its folder. budget: the budget of the world that the text becomes part of.
+// depth: number of files around the text. Throws LoadError if it is more than one above limit
+// inlineDepth.
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
                                     const LoadOptions& options, const BudgetPtr& budget,
-                                    uint64_t depth, const FileVersion& version);
+                                    uint64_t depth, const Fragment& fragment);
 // Does the same as loadWorldFromMemory(), or as loadFragment() with a version, and fills the
 // layout, which stays empty for encodings other than VRML97, X3D ClassicVRML and X3D XML.
 std::unique_ptr<World> loadWithLayout(std::string_view text, const std::string& name,

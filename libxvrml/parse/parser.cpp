@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/x3d.h"
+#include "nodes/registry.h"
 
 namespace xvrml {
 
@@ -114,7 +115,7 @@ void Parser::openBody(const Token& type) {
 // field `children`: a Group with these nodes then takes its place, if one may stand there. All its
 // other fields are left out.
 void Parser::unknownNode(const Token& type) {
-  const bool keeps = !x3d_ && !sink_.typeNamed(type.text) && !isX3dNode(type.text) &&
+  const bool keeps = !x3d_ && !sink_.typeNamed(type.text) && !findAbsentNode(type.text) &&
                      sink_.wouldAccept(sink_.nodeTarget(), "Group", false);
   bool atChildren = false;
   skipBlock('{', keeps ? &atChildren : nullptr);

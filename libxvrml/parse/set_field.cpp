@@ -6,6 +6,7 @@
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 #include "parse/loader.h"
+#include "xvrml/versions.h"
 #include "xvrml/viewed.h"
 
 namespace xvrml {
@@ -30,7 +31,7 @@ void loadAgain(World& world, InlineNode& node) {
 } // namespace
 
 bool setField(World& world, Node& node, std::string_view name, Value value) {
-  const FieldInfo* field = node.type().find(name);
+  const FieldInfo* field = findField(node, name);
   if (!field || value.index() != size_t(field->type)) return false;
   assignUrlBase(node, *field, value);
   if (!node.set(*field, std::move(value))) return false;

@@ -387,6 +387,7 @@ struct NameDeleter {
   FileVersion version{};
   double metres = 1;
   FileStamp stamp{};
+  GlobeOriginPtr origin = nullptr;
   void operator()(const std::string* name) const { delete name; }
 };
 
@@ -418,6 +419,17 @@ double lengthUnit(const std::shared_ptr<const std::string>& file) {
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres) {
   if (NameDeleter* known = std::get_deleter<NameDeleter>(file)) known->metres = metres;
 }
+
+GlobeOriginPtr globeOrigin(const std::shared_ptr<const std::string>& file) {
+  const NameDeleter* known = std::get_deleter<NameDeleter>(file);
+  return known ? known->origin : nullptr;
+}
+
+void setGlobeOrigin(const std::shared_ptr<const std::string>& file, GlobeOriginPtr origin) {
+  if (NameDeleter* known = std::get_deleter<NameDeleter>(file)) known->origin = std::move(origin);
+}
+
+const GlobeOrigin* globeOriginOf(const Node& node) { return globeOrigin(node.source.file).get(); }
 
 FileStamp fileStamp(const std::shared_ptr<const std::string>& file) {
   const NameDeleter* known = std::get_deleter<NameDeleter>(file);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/budget.h"
+#include "base/globe.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -50,6 +51,11 @@ void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVe
 // Return and set the metres in the unit of lengths of the file of this name; 1 for other names.
 double lengthUnit(const std::shared_ptr<const std::string>& file);
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres);
+
+// Return and set what the places on a globe in the world of the file of this name count from; null
+// for other names.
+GlobeOriginPtr globeOrigin(const std::shared_ptr<const std::string>& file);
+void setGlobeOrigin(const std::shared_ptr<const std::string>& file, GlobeOriginPtr origin);
 
 // Tells a file that has been written to since from one that has not; all 0: no file.
 struct FileStamp {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/visit_storage.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 namespace {

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <optional>
 
-#include "base/visit_storage.h"
 #include "xvrml/appearance.h"
+#include "xvrml/visit_storage.h"
 
 namespace xvrml {
 namespace {
 
 class Words {
  public:
-  explicit Words(std::string_view text) : rest_(text) {}
+  explicit Words(std::string_view text) : rest_(text), bytes_(text.size()) {}
   std::optional<std::string_view> peek() const { return Words(*this).next(); }
   std::optional<std::string_view> next() {
     cut_ = false;
@@ -33,9 +33,12 @@ class Words {
   }
   // Returns whether a comma without a blank ended the last word, so that it may be part of one.
   bool cut() const { return cut_; }
+  // Returns how many bytes have been read.
+  size_t place() const { return bytes_ - rest_.size(); }
 
  private:
   std::string_view rest_;
+  size_t bytes_;
   bool cut_ = false;
 };
 
@@ -115,8 +118,8 @@ bool knownType(std::string_view type) {
 std::vector<ShaderOption> parseShaderOptions(const MFString& options,
                                              std::vector<std::string>& errors) {
   std::vector<ShaderOption> result;
-  for (const std::string& text : options) {
-    Words words(text);
+  for (size_t element = 0; element < options.size(); ++element) {
+    Words words(options[element]);
     bool cut = false; // the last option of this string is a text that a comma ended
     while (const auto type = words.next()) {
       if (cut && !knownType(*type)) {
@@ -141,10 +144,13 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options,
       }
       ShaderOption option;
       option.name = *name;
+      option.element = element;
+      option.begin = words.place();
       if (std::string error = readValues(words, *type, option); !error.empty()) {
         errors.push_back(std::move(error));
         break;
       }
+      option.end = words.place();
       result.push_back(std::move(option));
       cut = isText(result.back()) && words.cut();
     }

@@ -130,7 +130,7 @@ void RenderWalk::appendParts(Node& node, const Matrix& toWorld) {
   } else if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {
     appendShownChildren(*layer, parts_);
   } else {
-    childrenInHierarchy(node, parts_);
+    childrenInScene(node, parts_);
   }
 }
 

@@ -125,7 +125,9 @@ class ScriptHost : public ScriptRunner {
   const Node* runningNode() const { return running_ ? running_->node : nullptr; }
 
  private:
+  friend struct HostCalls;
   friend struct HostTable;
+  friend struct HostScene;
   using Key = Script::Key;
 
   // Results of calls in addition to XsResult.

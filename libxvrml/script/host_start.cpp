@@ -16,6 +16,11 @@ bool flagOf(const ScriptNode& node, std::string_view name) {
   return field && field->type == FieldType::SFBool && std::get<bool>(node.get(*field));
 }
 
+bool wantsTicks(const Script& script) {
+  const char* const word = script.engine->tickWord;
+  return script.engine->tick && (!word || script.text.find(word) != std::string::npos);
+}
+
 // Returns how many Scripts start in parallel: two per processor, so that one computes while the
 // browser serves another. More would only compete for time and memory.
 size_t parallelStarts() {
@@ -140,7 +145,7 @@ bool ScriptHost::created(Script& script, XsResult result) {
   const bool initializing = script.pending == wire::Op::initialize;
   if (!script.nodeCopy) {
     if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
-    if (script.engine->tick) ticking_.push_back(script.key);
+    if (wantsTicks(script)) ticking_.push_back(script.key);
   }
   if (initializing) {
     waitFor(script);

@@ -6,85 +6,15 @@
 
 #include <fmt/format.h>
 
-#include "event/hierarchy.h"
 #include "graph/field_access.h"
+#include "xvrml/versions.h"
+#include "script/host_calls.h"
+#include "script/host_scene.h"
 
 namespace xvrml {
 
 // Wide because there is one function for each entry of XsHost.
-struct HostTable {
-  using Host = const XsHost*;
-  static constexpr uint64_t stepsOfCall = 100;
-
-  static ScriptHost& hostOf(Host host) { return static_cast<const ScriptHost::Table*>(host)->host; }
-  static XsResult refuse(Script& script, XsResult why, std::string text) {
-    script.error = std::move(text);
-    return why;
-  }
-
-  // Finds the Script whose function is running, checks its budget and runs `body`.
-  template <class Body> static XsResult enter(Host table, XsNode self, Body&& body) {
-    try {
-      ScriptHost& host = hostOf(table);
-      Script* script = host.find(self);
-      if (!script) return XS_NO_NODE;
-      if (host.running_ != script)
-        return refuse(*script, XS_NOT_ALLOWED, "no function of this Script is running");
-      if (host.overBudget(*script, stepsOfCall))
-        return refuse(*script, XS_STOPPED, "the Script's time is up");
-      return body(host, *script);
-    } catch (const std::exception& error) {
-      Script* script = hostOf(table).find(self);
-      return script ? refuse(*script, XS_FAILED, error.what()) : XS_FAILED;
-    }
-  }
-  // Does the same for functions that change something. They are refused while the Script ends.
-  template <class Body> static XsResult act(Host table, XsNode self, Body&& body) {
-    return enter(table, self, [&](ScriptHost& host, Script& script) {
-      if (host.ending_ || script.nodeCopy)
-        return refuse(script, XS_NOT_ALLOWED, "the Script is being shut down");
-      return body(host, script);
-    });
-  }
-  template <class Body> static XsResult withNode(Script& script, XsNode number, Body&& body) {
-    Node* node = script.handles.find(number);
-    if (!node)
-      return refuse(script, XS_NO_NODE,
-                    number ? fmt::format("the Script does not know a node {}", number) : "NULL");
-    return body(*node);
-  }
-  static XsResult noField(Script& script, const Node& node, const char* what, const char* name) {
-    return refuse(script, XS_NO_FIELD,
-                  fmt::format("{} has no {} '{}'", node.type().name, what, name ? name : ""));
-  }
-  static XsResult giveText(Script& script, std::string text, XsString* out) {
-    script.lentText = std::move(text);
-    *out = {script.lentText.c_str(), script.lentText.size()};
-    return XS_OK;
-  }
-  static bool take(ScriptHost& host, Script& script, const XsValue* value, FieldType type,
-                   Value& out) {
-    return takeValue(value, type, script.handles, host.world_.options.limits, out, script.error);
-  }
-  static std::string text(ScriptHost& host, const XsString& from) {
-    std::string out, why;
-    if (!takeText(from, host.world_.options.limits, out, why)) throw std::runtime_error(why);
-    return out;
-  }
-  static std::vector<std::string> texts(ScriptHost& host, uint32_t count, const XsString* from) {
-    constexpr uint32_t most = 10'000;
-    if (count > most || (count > 0 && !from))
-      throw std::runtime_error(fmt::format("a list of {} texts", count));
-    std::vector<std::string> out;
-    for (uint32_t i = 0; i < count; ++i) out.push_back(text(host, from[i]));
-    return out;
-  }
-  // Returns the file that contains the Script's program (4.5.3).
-  static std::string baseOf(const Script& script) {
-    const auto& file = script.start.file ? script.start.file : script.node->source.file;
-    return file ? *file : std::string();
-  }
-
+struct HostTable : HostCalls {
   // --- Own fields and events ---
 
   static XsResult send(Host table, XsNode self, const char* name, const XsValue* value) {
@@ -155,7 +85,7 @@ struct HostTable {
       return withNode(script, number, [&](Node& node) {
         if (!name || !out) return noField(script, node, "field", name);
         if (&node == script.node) return readOwn(host, script, name, out);
-        const FieldInfo* field = node.type().findEventOut(name);
+        const FieldInfo* field = findEventOut(node, name);
         if (!field) return noField(script, node, "exposedField or eventOut", name);
         *out = script.lent.lend(host.engine_.lastSent(node, *field), script.handles);
         return XS_OK;
@@ -169,7 +99,7 @@ struct HostTable {
       return withNode(script, number, [&](Node& node) {
         if (&node != script.node && !script.flag(XS_DIRECT_OUTPUT))
           return needsDirectOutput(host, script, "an event to another node");
-        const FieldInfo* in = name ? node.type().findEventIn(name) : nullptr;
+        const FieldInfo* in = name ? findEventIn(node, name) : nullptr;
         if (!in) return noField(script, node, "eventIn or exposedField", name);
         Value taken;
         if (!take(host, script, value, in->type, taken))
@@ -206,7 +136,7 @@ struct HostTable {
   static XsResult giveField(Script& script, const Node& node, const FieldInfo* field,
                             const char* name, XsField* out) {
     if (!field || !out) return noField(script, node, "field or event", name);
-    *out = {field->name.c_str(), xsType(field->type), xsAccess(field->access)};
+    *out = {fieldName(node, *field).data(), xsType(field->type), xsAccess(field->access)};
     return XS_OK;
   }
   static XsResult field(Host table, XsNode self, XsNode number, uint32_t index, XsField* out) {
@@ -222,10 +152,9 @@ struct HostTable {
                             XsField* out) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
       return withNode(script, number, [&](Node& node) {
-        const NodeType& type = node.type();
-        const FieldInfo* found = name ? type.find(name) : nullptr;
-        if (!found && name) found = type.findEventIn(name);
-        if (!found && name) found = type.findEventOut(name);
+        const FieldInfo* found = name ? xvrml::findField(node, name) : nullptr;
+        if (!found && name) found = findEventIn(node, name);
+        if (!found && name) found = findEventOut(node, name);
         return giveField(script, node, found, name, out);
       });
     });
@@ -299,7 +228,7 @@ struct HostTable {
                                     const XsString* urls, XsNode number, const char* eventIn) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       return withNode(script, number, [&](Node& node) {
-        const FieldInfo* in = eventIn ? node.type().findEventIn(eventIn) : nullptr;
+        const FieldInfo* in = eventIn ? findEventIn(node, eventIn) : nullptr;
         if (!in || in->type != FieldType::MFNode)
           return noField(script, node, "eventIn of type MFNode", eventIn);
         host.browser_.createVrmlFromUrl(texts(host, urlCount, urls), node, eventIn, baseOf(script));
@@ -328,9 +257,8 @@ struct HostTable {
           const bool own = &source == script.node && &target == script.node;
           if (!own && !script.flag(XS_DIRECT_OUTPUT))
             return needsDirectOutput(host, script, "a change of routes");
-          if (!out || !source.type().findEventOut(out))
-            return noField(script, source, "eventOut", out);
-          if (!in || !target.type().findEventIn(in)) return noField(script, target, "eventIn", in);
+          if (!out || !findEventOut(source, out)) return noField(script, source, "eventOut", out);
+          if (!in || !findEventIn(target, in)) return noField(script, target, "eventIn", in);
           return change(host.browser_, source, target)
                      ? XS_OK
                      : refuse(script, XS_FAILED, "no such route, or types differ");
@@ -372,40 +300,6 @@ struct HostTable {
     if (!script || !out) return XS_NO_NODE;
     *out = {script->error.c_str(), script->error.size()};
     return XS_OK;
-  }
-
-  // --- The scene of the Script ---
-
-  // Returns the scene that the Script stands in: the content of the innermost Inline above it, else
-  // the world's. Bodies of prototypes have no scenes of their own here.
-  static const Scope& sceneOf(ScriptHost& host, const Node& script) {
-    const std::vector<Path> paths = pathsTo(script, 1);
-    if (!paths.empty())
-      for (size_t i = paths[0].size(); i-- > 0;)
-        if (const Scope* content = inlineScope(*paths[0][i])) return *content;
-    return host.world_.scope;
-  }
-
-  static XsResult namedNode(Host table, XsNode self, XsString name, XsValue* out) {
-    return enter(table, self, [&](ScriptHost& host, Script& script) {
-      const std::string wanted = text(host, name);
-      const auto& names = sceneOf(host, *script.node).names;
-      const auto found = names.find(wanted);
-      if (!out || found == names.end() || !found->second)
-        return refuse(script, XS_NO_NODE, fmt::format("the scene has no node '{}'", wanted));
-      *out = script.lent.lend(SFNode(found->second), script.handles);
-      return XS_OK;
-    });
-  }
-  static XsResult rootNodes(Host table, XsNode self, XsValue* out) {
-    return enter(table, self, [&](ScriptHost& host, Script& script) {
-      if (!out) return refuse(script, XS_FAILED, "no place for the answer");
-      MFNode roots;
-      for (const NodeRef& root : sceneOf(host, *script.node).roots)
-        if (root) roots.push_back(root);
-      *out = script.lent.lend(std::move(roots), script.handles);
-      return XS_OK;
-    });
   }
 
   // --- The library's own objects ---
@@ -456,8 +350,13 @@ ScriptHost::Table::Table(ScriptHost& host)
              HostTable::lastError,
              HostTable::object,
              HostTable::number,
-             HostTable::namedNode,
-             HostTable::rootNodes},
+             HostScene::namedNode,
+             HostScene::rootNodes,
+             HostScene::sceneFacts,
+             HostScene::createInstance,
+             HostScene::nodeWithin,
+             HostScene::nodeTypes,
+             HostScene::writeNode},
       host(host) {}
 
 } // namespace xvrml

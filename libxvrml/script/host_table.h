@@ -1,4 +1,5 @@
-// host_table.h: the function table of Scripts; the functions are in host_table.cpp.
+// host_table.h: the function table of Scripts; the functions are in host_table.cpp and
+// host_scene.cpp.
 #pragma once
 
 #include "script/host.h"

@@ -12,6 +12,7 @@
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "xvrml/comments.h"
+#include "xvrml/versions.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
@@ -38,10 +39,9 @@ size_t lastPrototypeOf(Node* root,
   return last;
 }
 
-// x3d: the file is X3D, which has other defaults for some fields.
-bool hasOwnValue(Node& node, const FieldInfo& field, bool x3d) {
-  const Value* standard = x3d ? x3dDefault(node.type().name, field.name) : nullptr;
-  if (!standard) standard = &field.defaultValue;
+// version: that of the file that is written.
+bool hasOwnValue(Node& node, const FieldInfo& field, const FileVersion& version) {
+  const Value* standard = &defaultIn(node.type(), field, version);
   if (const auto* instance = nodeCast<ProtoInstance>(&node)) {
     // A default of the prototype's file that a program has assigned again stays a default.
     if (instance->isGiven(field) && instance->hasOwnUrlBase(field)) return true;
@@ -70,6 +70,15 @@ std::string Writer::write() {
   writeHead();
   scope(world_.scope);
   writeEnd();
+  return std::move(text_);
+}
+
+std::string Writer::writeAlone(Node& root) {
+  Names names({&root}, {});
+  names_ = &names;
+  node(&root, "");
+  names_ = nullptr;
+  text_.erase(0, text_.find_first_not_of(" \n"));
   return std::move(text_);
 }
 
@@ -195,8 +204,8 @@ Writer::Field Writer::fieldOf(Node& node, const FieldInfo& info) const {
   Field field{&info, info.declared, nullptr, nullptr, {}};
   for (const IsConnection* connection : connectionsOf(node))
     if (connection->field == info.name) field.interfaces.push_back(connection->interfaceName);
-  const bool value = holdsValue(info) &&
-                     (field.declared ? field.interfaces.empty() : hasOwnValue(node, info, isX3d()));
+  const bool value = holdsValue(info) && (field.declared ? field.interfaces.empty()
+                                                         : hasOwnValue(node, info, version_));
   if (!value) return field;
   field.value = node.storage(info);
   if (hasNormalizedAxes(info)) { // a program may have written to the struct
@@ -308,19 +317,37 @@ std::string writeWorld(const World& world, const std::string& path) {
   return writeWorld(world, path, writtenEncoding(path));
 }
 
-std::string writeWorld(const World& world, const std::string& path, Encoding encoding) {
-  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
+FileVersion writtenVersion(const World& world, Encoding encoding) {
   const FileVersion& own = world.head.version;
-  FileVersion version{encoding, 2, 0};
-  if (encoding != Encoding::vrml97) // version 3.3 is what most programs read
-    version = {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
+  if (encoding == Encoding::vrml97) return {encoding, 2, 0};
+  // version 3.3 is what most programs read
+  return {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
+}
+
+namespace {
+
+// Calls `write` with the writer for an encoding, on a stack that is deep enough.
+template <class Write> std::string writeAs(const World& world, const std::string& path,
+                                           Encoding encoding, const Write& write) {
+  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
+  const FileVersion version = writtenVersion(world, encoding);
   return onStackOf(deepestStack, [&] {
     if (encoding == Encoding::vrml97 || encoding == Encoding::x3dClassic)
-      return makeVrmlWriter(world, path, version)->write();
-    if (encoding == Encoding::x3dXml) return makeXmlWriter(world, path, version)->write();
+      return write(*makeVrmlWriter(world, path, version));
+    if (encoding == Encoding::x3dXml) return write(*makeXmlWriter(world, path, version));
     throw std::invalid_argument(
         fmt::format("worlds cannot be written as {}", encodingName(encoding)));
   });
+}
+
+} // namespace
+
+std::string writeWorld(const World& world, const std::string& path, Encoding encoding) {
+  return writeAs(world, path, encoding, [](Writer& writer) { return writer.write(); });
+}
+
+std::string writeNode(const World& world, Node& node, Encoding encoding) {
+  return writeAs(world, "", encoding, [&](Writer& writer) { return writer.writeAlone(node); });
 }
 
 } // namespace xvrml

@@ -25,6 +25,8 @@ class Writer {
   virtual ~Writer() = default;
   // Returns the text. Throws std::length_error if nodes are nested too deep. Called once.
   std::string write();
+  // Returns the text of one node with its descendants, without a head. Called once.
+  std::string writeAlone(Node& root);
 
  protected:
   // A field of a node, an argument of an instance, or a field that a node or prototype declares.
@@ -103,6 +105,8 @@ std::unique_ptr<Writer> makeVrmlWriter(const World& world, const std::string& ta
 std::unique_ptr<Writer> makeXmlWriter(const World& world, const std::string& target,
                                       const FileVersion& version);
 
+// Returns the version that a file of the world in an encoding follows.
+FileVersion writtenVersion(const World& world, Encoding encoding);
 // Returns the units that a file of X3D names: those of the world's own file, but for angles, which
 // are written in radians.
 std::vector<FileHead::Unit> unitsOf(const FileHead& head);

@@ -177,6 +177,11 @@ struct Physical : rts::Surface<Physical> {
   rts::Param<float> alphaCutoff{"alphaCutoff", .5f, "smallest alpha that mode 1 shows", 0, 1};
   rts::Param<int32_t> lit{
       "lit", 1, "0: reflects nothing; emissiveTexture then has the alpha (UnlitMaterial)", 0, 1};
+  rts::Param<int32_t> irradiance{
+      "irradiance", 0,
+      "1: the color x intensity of a light with irradiance 1 is its irradiance here, as in X3D 4 "
+      "and glTF; 0: pi times as much",
+      0, 1};
   rts::Param<rts::Texture> texture{"texture", "multiplies baseColor; its alpha multiplies alpha"};
   rts::Param<rts::Texture> metallicRoughnessTexture{
       "metallicRoughnessTexture", "green multiplies roughness, blue metallic; linear"};
@@ -190,8 +195,11 @@ struct Physical : rts::Surface<Physical> {
       "matrix from texture coordinates (s, t, 0, 1) to places in the pictures"};
 
   uint32_t needs() const {
-    if (roughness * roughness <= microfacet::minAlpha) return RTS_SPECULAR | RTS_GLOSSY;
-    return metallicRoughnessTexture->id ? RTS_SPECULAR | RTS_GLOSSY : RTS_GLOSSY;
+    const bool polished = roughness * roughness <= microfacet::minAlpha;
+    uint32_t traits = RTS_GLOSSY;
+    if (polished || metallicRoughnessTexture->id) traits |= RTS_SPECULAR;
+    if (irradiance) traits |= RTS_IRRADIANCE;
+    return traits;
   }
   bool emits() const {
     return emissiveStrength > 0 &&

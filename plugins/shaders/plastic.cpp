@@ -2,6 +2,9 @@
 // or rough. With `transparency` the base is a layer of lacquer that shows what is below. [render]
 #include <algorithm>
 #include <array>
+#include <map>
+#include <mutex>
+#include <utility>
 
 #include "coat.h"
 #include "lacquer.h"
@@ -73,6 +76,25 @@ struct RoughCoatedDiffuse {
   }
 };
 
+// Keeps what prepare() has computed, by roughness and index. It takes milliseconds, and the parts
+// of a board have thousands of plastics that differ in their colours alone. [any thread]
+class PreparedBodies {
+ public:
+  template <class Make> RoughCoatedDiffuse get(float roughness, float index, const Make& make) {
+    const std::scoped_lock lock(mutex_);
+    if (bodies_.size() >= most) bodies_.clear();
+    const auto [at, fresh] = bodies_.try_emplace({roughness, index});
+    if (fresh) at->second = make();
+    return at->second;
+  }
+
+ private:
+  static constexpr size_t most = 256;
+  std::mutex mutex_;
+  std::map<std::pair<float, float>, RoughCoatedDiffuse> bodies_;
+};
+PreparedBodies preparedBodies;
+
 struct Plastic : rts::Surface<Plastic> {
   static constexpr const char* text =
       "coloured body under a clear boundary, smooth or rough; keeps energy";
@@ -94,16 +116,20 @@ struct Plastic : rts::Surface<Plastic> {
     if (!(index > 1.001f)) return 0;
     return rough() ? RTS_GLOSSY : RTS_SPECULAR | RTS_GLOSSY;
   }
+  const char* prepare() {
+    if (rough()) body_ = preparedBodies.get(roughness, index, [this] { return body(); });
+    return nullptr;
+  }
   // Tabulates 1 - albedo of the rough boundary. The base gets all light that the boundary does not
   // reflect, including light reflected between facets. So a white base reflects all light, with an
   // error of about 3e-4.
-  const char* prepare() {
-    if (!rough()) return nullptr;
+  RoughCoatedDiffuse body() const {
+    RoughCoatedDiffuse made{};
     const microfacet::MicrofacetLobe<Boundary> boundary{roughness, {index}};
     for (int j = 0; j < tableSize; j++) {
       const float root = std::fmax(1e-2f, float(j) / (tableSize - 1)), z = root * root;
       const float reflectance = albedoOf(boundary, {std::sqrt(std::fmax(0.0f, 1 - z * z)), 0, z});
-      body_.table[j] = std::fmin(1.0f, std::fmax(0.0f, 1 - reflectance));
+      made.table[j] = std::fmin(1.0f, std::fmax(0.0f, 1 - reflectance));
     }
     // The integral of 2 c T(c) dc = 4 r^3 T dr, with r the root of c: a polynomial of degree 6
     // between two table entries.
@@ -112,10 +138,10 @@ struct Plastic : rts::Surface<Plastic> {
       for (const Node& node : gauss<4>()) {
         const double r = (j + node.place) / (tableSize - 1);
         mean += node.weight / (tableSize - 1) * 4 * r * r * r *
-                double(RoughCoatedDiffuse::at(body_.table, float(r)));
+                double(RoughCoatedDiffuse::at(made.table, float(r)));
       }
-    body_.mean = static_cast<float>(mean);
-    return nullptr;
+    made.mean = static_cast<float>(mean);
+    return made;
   }
   template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
     const rts::ColorOf<F> albedo = colourAt(hit);

@@ -43,11 +43,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TURNS = {"slow": 0.15, "fast": 0.8}  # radians a second
 # FLIP that a rebuilt picture should not exceed, on the slow and on the fast turn
 AIMS = {
-    "globe": (0.08, 0.12),
-    "board": (0.07, 0.11),
-    "headlight_studio": (0.15, 0.20),
-    "chess": (0.08, 0.12),
-    "still_life": (0.03, None),
+    "globe": (0.08, 0.11),
+    "board": (0.06, 0.08),
+    "headlight_studio": (0.15, 0.18),
+    "chess": (0.08, 0.10),
+    "still_life": (0.03, 0.04),
+    "car": (0.10, 0.13),
 }
 KINDS = ("raw", "rebuilt")
 LEAD = 1.0  # seconds until frame rate and accumulation have settled
@@ -58,6 +59,7 @@ def find(name):
     """Returns the file of a world, or None if it is not here."""
     places = [
         pathlib.Path(name), ROOT / f"examples/scenes/{name}.wrl",
+        ROOT / f"examples/scenes/{name}.wrz",
         ROOT.parent / f"shared/bench/{name}.wrl"
     ]
     return next((p for p in places if p.is_file()), None)

@@ -158,10 +158,13 @@ class Looking {
       frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(asked));
       frame.purpose = LiveFrame::Purpose::preview;
+      const FrameSize shown = pacing.shown(options_.width, options_.height);
+      frame.shownWidth = shown.width;
+      frame.shownHeight = shown.height;
       const LivePicture picture = finish(frame);
       light = lightOf(picture.stats, true);
       pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples,
-                  picture.rebuilding);
+                  picture.rebuilding, picture.showing);
       const double now = secondsSince(begin);
       const double frameTime = 1 / options_.fps;
       if (now - last < frameTime)

@@ -40,7 +40,7 @@ std::string fileOf(const std::string& folder, int instant) {
 }
 
 void writePpm(const std::string& path, const LivePicture& picture) {
-  std::string bytes = fmt::format("P6\n{} {}\n255\n", picture.width, picture.height);
+  std::string bytes = fmt::format("P6\n{} {}\n255\n", picture.shownWidth, picture.shownHeight);
   bytes.append(reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size());
   writeFile(path, bytes);
 }
@@ -86,7 +86,7 @@ class Show {
     return settings;
   }
 
-  LiveFrame frameAt(int instant, LiveFrame::Purpose purpose, const FrameSize& size) const {
+  LiveFrame frameAt(int instant, LiveFrame::Purpose purpose, const FrameSize& size) {
     LiveFrame frame;
     frame.view.viewer = turn_.camera(instant);
     frame.width = size.width;
@@ -94,6 +94,10 @@ class Show {
     frame.samples = size.samples;
     frame.lightStride = size.lightStride;
     frame.purpose = purpose;
+    const FrameSize shown = options_.steps > 0 ? FrameSize{options_.width, options_.height}
+                                               : pacing_.shown(options_.width, options_.height);
+    frame.shownWidth = shown.width;
+    frame.shownHeight = shown.height;
     frame.denoising = live::denoisingInMotion(options_.fps);
     return frame;
   }
@@ -126,7 +130,7 @@ class Show {
     one.processor = double(std::clock() - worked) / CLOCKS_PER_SEC;
     const LivePicture& p = one.picture;
     light_ = lightOf(p.stats, !options_.raw);
-    pacing_.took(size, p.seconds, p.alone, p.overhead, p.samples, p.rebuilding);
+    pacing_.took(size, p.seconds, p.alone, p.overhead, p.samples, p.rebuilding, p.showing);
     shown_.push_back(std::move(one));
   }
 
@@ -217,7 +221,10 @@ class Show {
                         {"samples", one.picture.samples},
                         {"light_stride", one.picture.lightStride},
                         {"preview", one.picture.preview},
+                        {"shown_width", one.picture.shownWidth},
+                        {"shown_height", one.picture.shownHeight},
                         {"rebuilding", one.picture.rebuilding},
+                        {"showing", one.picture.showing},
                         {"denoised", one.picture.denoisedBy}});
     return {{"world", options_.world}, {"window", {options_.width, options_.height}},
             {"fps", options_.fps},     {"speed", options_.speed},

@@ -87,21 +87,46 @@ if shutil.which("shellcheck") and (done := run("shellcheck", "-s", "bash", scrip
 for line in re.sub(r"\\\n", " ", script.read_text()).splitlines():
     if re.match(r"vv\b", line):
         check_command(script, shlex.split(line))
+# Exports a board as kicad-cli does: writes the file behind -o, and the models beside it.
+STAND_IN = """#!/bin/sh
+while [ $# -gt 1 ]; do
+  if [ "$1" = -o ]; then out=$2; fi
+  shift
+done
+cp %s "$out" && cp -r %s "$(dirname "$out")"
+"""
+
+
+def make_pictures(folder, board, **environment):
+    """Returns the names of the pictures that the script makes of a board, and what it says."""
+    target = folder / f"{board.suffix[1:]}/a.png"
+    done = run(script,
+               board,
+               target,
+               "--spp",
+               1,
+               env={
+                   **os.environ, "PATH": f"{folder}:{build / 'bin'}:{os.environ['PATH']}",
+                   "SIZE": "40x30",
+                   **environment
+               })
+    return done.returncode, sorted(path.name for path in target.parent.glob("*")), done.stderr
+
+
 if known["vv"]:
-    with tempfile.TemporaryDirectory() as folder:
-        done = run(script,
-                   root / "examples/kicad/blinker.wrl",
-                   pathlib.Path(folder) / "new/a.png",
-                   "--spp",
-                   1,
-                   env={
-                       **os.environ, "PATH": f"{build / 'bin'}:{os.environ['PATH']}",
-                       "SIZE": "40x30",
-                       "TURNTABLE": "2"
-                   })
-        made = sorted(path.name for path in pathlib.Path(folder, "new").glob("*"))
-        if done.returncode or made != ["a-above.gif", "a-above.png", "a-bottom.png", "a-top.png"]:
-            complain(script, f"it made {made}: {done.stderr}")
+    with tempfile.TemporaryDirectory() as name:
+        folder, example = pathlib.Path(name), root / "examples/kicad"
+        code, made, said = make_pictures(folder, example / "blinker.wrl", TURNTABLE="2")
+        if code or made != ["a-above.gif", "a-above.png", "a-bottom.png", "a-top.png"]:
+            complain(script, f"it made {made}: {said}")
+        stand_in = folder / "kicad-cli"
+        stand_in.write_text(STAND_IN % (example / "blinker.wrl", example / "shapes3D"))
+        stand_in.chmod(0o755)
+        board = folder / "blinker.kicad_pcb"
+        board.write_text("(kicad_pcb)\n")
+        code, made, said = make_pictures(folder, board, VIEWS="top")
+        if code or made != ["a.png"] or "missing" in said:
+            complain(script, f"with kicad-cli it made {made}: {said}")
 
 # systemd -----------------------------------------------------------------------------------------
 

@@ -68,6 +68,7 @@ class Case:
     command: list
     files: dict
     code: int = 1  # exit code if a file cannot be written
+    old: bytes = OLD  # what the files hold before
     fresh: bool = False  # the files do not exist before
     recording: bool = False  # the command reads given.ort
 
@@ -79,6 +80,12 @@ with xvrml.Film("out.gif", fps=10) as film:
     film.add(picture)
     film.add(picture)
 """
+EDIT = """import xvrml
+world = xvrml.load("out.wrl")
+world.edit.set(world["B"], "size", (2, 2, 2))
+world.edit.save()
+"""
+EDITED = b"#VRML V2.0 utf8\nShape { geometry DEF B Box { size 1 2 2 } } # a box\n"
 CONTEXT = """import xvrml.rt
 with xvrml.rt.Context(1, config="backend=record file=out.ort"):
     pass
@@ -151,6 +158,9 @@ def cases(programs, python):
             "out.png": is_png,
             "out.gif": of_size(100)
         })
+        result["python edit"] = Case([sys.executable, "-c", EDIT],
+                                     {"out.wrl": lambda data: data == EDITED.replace(b"1 2 2", b"2 2 2")},
+                                     old=EDITED)
         result["python recording"] = Case([sys.executable, "-c", CONTEXT], {"out.ort": of_size(16)})
         result["python world"] = Case(
             [sys.executable, "-c", 'import xvrml\nxvrml.load("box.wrl").save("out.wrl")'],
@@ -196,7 +206,7 @@ class Sweep:
             (folder / "given.ort").write_bytes(recording)
         given = {p.name for p in folder.iterdir()}
         for name in () if case.fresh else case.files:
-            (folder / name).write_bytes(OLD)
+            (folder / name).write_bytes(case.old)
         return folder, given
 
     def told(self, what, done, code):
@@ -215,7 +225,7 @@ class Sweep:
             if data is None:
                 if not case.fresh:
                     self.faults.append(f"{what}: {name}, which was there before, has gone")
-            elif data != OLD and not whole(data):
+            elif data != case.old and not whole(data):
                 self.faults.append(f"{what}: {name} is damaged ({len(data)} bytes)")
         left = sorted({p.name for p in folder.iterdir()} - set(case.files) - given)
         if left:

@@ -1,5 +1,6 @@
-// glossy_light.cpp: caustics of glossy surfaces that light paths and camera paths make together
-// (render/lights/light_path_weights.h), against path tracing.
+// glossy_light.cpp: light that light paths and camera paths make together
+// (render/lights/light_path_weights.h), against path tracing: caustics of glossy surfaces, and what
+// mirrors and smooth glass send of emissive shapes.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -26,8 +27,9 @@ class GlossyLight : public Scene {
     rtQuality(RT_SEED, seed);
     return Scene::picture(edge);
   }
-  static bool hasGlossyPaths() {
-    return std::string(stats().transport.reason).find(", glossy") != std::string::npos;
+  // Returns whether the reason for the transport says that light is shared in a way.
+  static bool says(const char* way) {
+    return std::string(stats().transport.reason).find(way) != std::string::npos;
   }
   // Renders independent pictures, whose spread tells the error of their mean.
   static Quarters quarters(RTenum transport, int samples, int seed) {
@@ -50,18 +52,19 @@ class GlossyLight : public Scene {
     }
     return out;
   }
-  // Expects the same means by path tracing and with light paths, which are less noisy.
-  static void expectSameMeans(const std::function<void()>& build, int pathSamples,
-                              int lightSamples) {
+  // Expects the same means by path tracing and with light paths, which are less noisy. way: says
+  // that light is shared; empty: it need not be.
+  static void expectSameMeans(const std::function<void()>& build, int pathSamples, int lightSamples,
+                              const char* way = ", glossy") {
     const RTcontext own = rtGetCurrent(), context = rtNewContext("threads=1");
     build();
     const Quarters light = quarters(RT_TRANSPORT_LIGHT, lightSamples, 1000);
-    EXPECT_TRUE(hasGlossyPaths()) << stats().transport.reason;
+    EXPECT_TRUE(says(way)) << stats().transport.reason;
     rtDeleteContext(context);
     rtMakeCurrent(own);
     build();
     const Quarters path = quarters(RT_TRANSPORT_PATH, pathSamples, 1);
-    EXPECT_FALSE(hasGlossyPaths());
+    EXPECT_FALSE(*way && says(way));
     for (size_t q = 0; q < 4; q++) {
       const double error = std::hypot(light.error[q], path.error[q]);
       EXPECT_LT(std::fabs(light.mean[q] - path.mean[q]), 3 * error)
@@ -89,6 +92,53 @@ class GlossyLight : public Scene {
     rtEndObject();
     rtBindShader(0);
     return object;
+  }
+  // A floor is seen in a mirror, where light paths are connected to it and not to the camera. The
+  // lamp is too high to be seen.
+  static void aFloorInAMirror(const std::function<void()>& ball) {
+    Shader mirror("Mirror");
+    placeAt(0, square(matt(.6), 4));
+    ball();
+    rtPushMatrix();
+    rtTranslated(0, 1.5, 1.2);
+    rtRotated(90, 1, 0, 0);
+    place(square(mirror, 1.2));
+    rtPopMatrix();
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(0, -1, 1.2, 0, 1.5, .5, 0, 0, 1);
+    rtPerspective(30);
+    rtPopMatrix();
+    rtQuality(RT_MAX_DEPTH, 6);
+  }
+  // A matt wall is lit by a panel of a half edge and by its image in a mirror on the floor.
+  static void aWallOverAMirror(double panel, double radiance, double height) {
+    Shader mirror("Mirror");
+    placeAt(0, square(mirror, 1.5));
+    placeAt(height, square(matt(0, radiance), panel), true);
+    rtPushMatrix();
+    rtTranslated(0, 1.6, 0);
+    rtRotated(90, 1, 0, 0);
+    place(square(matt(.6), 3));
+    rtPopMatrix();
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(0, -2.5, .6, 0, 1.6, .6, 0, 0, 1);
+    rtPerspective(12);
+    rtPopMatrix();
+    rtQuality(RT_MAX_DEPTH, 6);
+  }
+  // Expects that pictures with light paths spread by at most a part of those by path tracing with
+  // as many samples.
+  static void expectLessNoise(const std::function<void()>& build, const char* way, double part) {
+    const auto noise = [](const Quarters& of) {
+      return of.error[0] + of.error[1] + of.error[2] + of.error[3];
+    };
+    build();
+    const double light = noise(quarters(RT_TRANSPORT_LIGHT, 64, 1000));
+    EXPECT_TRUE(says(way)) << stats().transport.reason;
+    const double path = noise(quarters(RT_TRANSPORT_PATH, 64, 1));
+    EXPECT_LT(light, part * path);
   }
 };
 
@@ -140,6 +190,117 @@ TEST_F(GlossyLight, ABallOfRoughGlass) {
   expectSameMeans(build, 512, 64);
 }
 
+TEST_F(GlossyLight, AFloorInAMirror) {
+  const auto build = [] {
+    aFloorInAMirror([] {
+      placeAt({1, .2, .9}, ball(brass(.15), .3));
+      placeAt({1.5, .2, 1.7}, ball(matt(0, 400), .05));
+    });
+  };
+  expectSameMeans(build, 512, 64, ", connected");
+}
+
+// The same with a coated panel, whose light comes to a rough floor by way of a second matt surface.
+TEST_F(GlossyLight, ARoughFloorInAMirror) {
+  const auto build = [] {
+    aFloorInAMirror([] {
+      Shader coat("Plastic");
+      coat.set("roughness", {.1});
+      placeAt({0, 0, .02}, square(brass(.5), .8));
+      placeAt({1, .2, 1.9}, square(coat, .5), true);
+      placeAt({1, 0, 1.7}, ball(matt(0, 2000), .015));
+      rtPushMatrix();
+      rtTranslated(-1.8, 0, 1);
+      rtRotated(90, 0, 1, 0);
+      place(square(matt(.7), 1));
+      rtPopMatrix();
+    });
+  };
+  expectSameMeans(build, 512, 64, ", connected");
+}
+
+// A wide lamp, which camera paths find in the mirror, and a small one, which light paths find.
+TEST_F(GlossyLight, AWideAndASmallLampOverAMirror) {
+  const auto build = [] {
+    aWallOverAMirror(.8, 2, 2.5);
+    placeAt({1, 0, 1.5}, ball(matt(0, 100), .05));
+  };
+  expectSameMeans(build, 512, 64, ", shared");
+}
+
+// Light of a wide lamp through a ball of glass to a matt floor, and of a lamp without extent, which
+// camera paths never find: only the first is shared.
+TEST_F(GlossyLight, AWideLampThroughGlass) {
+  const auto build = [] {
+    Shader glass("Glass");
+    placeAt(0, square(matt(.6), 4));
+    placeAt({0, 0, .6}, ball(glass, .4));
+    placeAt(2.5, square(matt(0, 3), 1), true);
+    lookAtTheFloor();
+    rtQuality(RT_MAX_DEPTH, 6);
+  };
+  expectSameMeans(build, 512, 64, ", shared");
+}
+
+// A ball of rough glass is seen over a mirror. Light paths leave the glass towards the camera, and
+// their flux is not scaled as radiance is.
+TEST_F(GlossyLight, RoughGlassOverAMirror) {
+  const auto build = [] {
+    Shader glass("RoughGlass"), mirror("Mirror");
+    glass.set("roughness", {.4});
+    placeAt(-1.5, square(mirror, 4));
+    placeAt({0, 0, 1}, ball(glass, .8));
+    placeAt({0, 1, 5}, square(matt(0, 6), 1.5), true);
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(0, -6, 1, 0, 0, 1, 0, 0, 1);
+    rtPerspective(14);
+    rtPopMatrix();
+    rtQuality(RT_MAX_DEPTH, 12);
+  };
+  expectSameMeans(build, 128, 128, "");
+}
+
+// The spread of pictures with light paths is a part of that by path tracing.
+TEST_F(GlossyLight, ConnectionsTakeTheSparksOutOfMirrors) {
+  const auto build = [] {
+    aFloorInAMirror([] {
+      placeAt({1, .2, .9}, ball(brass(.15), .3));
+      placeAt({1.5, .2, 1.7}, ball(matt(0, 400), .05));
+    });
+  };
+  expectLessNoise(build, ", connected", 1. / 3);
+}
+
+// Neither a large lamp nor a small one over a mirror is worse than by the better way alone.
+TEST_F(GlossyLight, AWideLampOverAMirrorIsNoWorseThanByPathTracing) {
+  expectLessNoise([] { aWallOverAMirror(1, 2, 1.5); }, ", shared", 1.25);
+}
+TEST_F(GlossyLight, ASmallLampOverAMirrorHasNoSparks) {
+  const auto build = [] {
+    aWallOverAMirror(1, .5, 2);
+    placeAt({1, 0, 1.5}, ball(matt(0, 300), .04));
+  };
+  expectLessNoise(build, "", 1. / 3);
+}
+
+TEST_F(GlossyLight, ConnectionsDoNotDependOnThreads) {
+  std::vector<std::vector<float>> made;
+  const RTcontext own = rtGetCurrent();
+  for (const char* config : {"threads=1", "threads=2"}) {
+    const RTcontext context = rtNewContext(config);
+    aFloorInAMirror([] {
+      placeAt({1, .2, .9}, ball(brass(.15), .3));
+      placeAt({1.5, .2, 1.7}, ball(matt(0, 400), .05));
+    });
+    made.push_back(picture(RT_TRANSPORT_LIGHT, 32, 1));
+    EXPECT_TRUE(says(", connected"));
+    rtDeleteContext(context);
+  }
+  rtMakeCurrent(own);
+  EXPECT_EQ(made[0], made[1]);
+}
+
 TEST_F(GlossyLight, ThePictureDoesNotDependOnThreads) {
   std::vector<std::vector<float>> made;
   const RTcontext own = rtGetCurrent();
@@ -150,7 +311,7 @@ TEST_F(GlossyLight, ThePictureDoesNotDependOnThreads) {
     placeAt({.9, 0, 1.6}, ball(matt(0, 300), .05));
     lookAtTheFloor();
     made.push_back(picture(RT_TRANSPORT_LIGHT, 32, 1));
-    EXPECT_TRUE(hasGlossyPaths());
+    EXPECT_TRUE(says(", glossy"));
     rtDeleteContext(context);
   }
   rtMakeCurrent(own);

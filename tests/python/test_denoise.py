@@ -81,6 +81,38 @@ def test_a_denoised_picture_knows_that_it_is_denoised(program, fake):  # noqa: F
         """, fake())
 
 
+def test_doubt(program, fake):  # noqa: F811
+    program(
+        """
+        world = xvrml.load("box.wrl")
+        image = world.render(size=(32, 24), spp=64,
+                             channels=("albedo", "normal", "error", "trust"))
+        done = image.denoised(audit=True)
+        doubt = done["doubt"]
+        assert "doubt" in done.channels and "doubt" not in image.channels
+        assert doubt.shape == (24, 32) and doubt.dtype == np.float32
+        assert ((doubt < 0) == (image["trust"] == 0)).all() and (doubt > 1).any()
+        judged = (doubt >= 0).sum()
+        assert done.stats["doubt_judged"] == judged
+        assert abs(done.stats["doubt_share"] - (doubt > 1).sum() / judged) < 1e-9
+        assert (image.doubt(np.asarray(done)) == doubt).all()
+        assert (image.doubt(done.array[..., :3]) == doubt).all(), "of any denoiser"
+        own = image.doubt(image.array)
+        assert ((own == 0) | (own == -1)).all()
+        assert (pickle.loads(pickle.dumps(done))["doubt"] == doubt).all()
+        done.save("a.exr")
+        assert "doubt" not in image.denoised().channels
+        fails(ValueError, "the picture is denoised", done.doubt, done.array)
+        fails(ValueError, "32x24, not 16x24", image.doubt, done.array[:, ::2])
+        fails(ValueError, "colours: numbers of shape", image.doubt, done.array[..., 0])
+        fails(KeyError, "no channel doubt", lambda: image["doubt"])
+        fails(ValueError, "channels", world.render, size=(8, 8), channels=("doubt", ))
+        image = world.render(size=(32, 24), spp=4, channels=("albedo", "normal"))
+        fails(ValueError, "no channel error, which doubt needs", image.denoised, audit=True)
+        fails(ValueError, "no channel error, which doubt needs", image.doubt, image.array)
+        """, fake())
+
+
 def test_files_of_it_say_so(program, fake):  # noqa: F811
     program(
         """

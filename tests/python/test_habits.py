@@ -52,7 +52,7 @@ def test_a_name_written_nearly_right(name, near):
 
 def test_submodules_are_there_without_an_import_of_their_own():
     code = "import sys, xvrml; assert 'xvrml.rt' not in sys.modules; print(xvrml.%s.__name__, hasattr(xvrml, 'nothing'))"
-    for name in ("rt", "interop", "dask"):
+    for name in ("rt", "interop", "dask", "ray"):
         done = subprocess.run([sys.executable, "-c", code % name], capture_output=True, text=True)
         assert done.stdout == f"xvrml.{name} False\n", done.stderr
 

@@ -2,12 +2,14 @@
 measured, a lamp is moved, the change is significant, undone, done again and saved."""
 import csv
 import difflib
+import re
 import time
 
 import pytest
 
-from conftest import HEADER
+from conftest import HEADER, ROOT
 from editor_window import changed, needs_the_editor, press  # noqa: F401
+from control_server import SMALL, start  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
 # A lamp of 100 cd in all directions, 5 m before a black wall, with a mark beside it, and a floor that
@@ -33,6 +35,14 @@ Transform { translation 0 -4 0 children Shape {
   geometry Box { size 30 1 30 } } }
 """
 REPORT = (32, 118)  # the button, in pixels
+LAMP_ROW = 203  # the third row of the outline
+
+
+def changes(before, now):
+    return [
+        line for line in difflib.unified_diff(before.split("\n"), now.split("\n"), n=0)
+        if line[0] in "+-" and line[:3] not in ("+++", "---")
+    ]
 
 
 class Reports:
@@ -87,12 +97,56 @@ def test_light_on_a_wall_is_measured_before_and_after_a_lamp_is_moved(window, vv
     w.key("ctrl+y")
     w.key("ctrl+s")
     now = changed(w, vv, lambda t: t != WORLD)
-    changes = [
-        line for line in difflib.unified_diff(WORLD.split("\n"), now.split("\n"), n=0)
-        if line[0] in "+-" and line[:3] not in ("+++", "---")
-    ]
-    assert changes == [
+    assert changes(WORLD, now) == [
         "-DEF LAMP Transform { translation 0 0 0 # moved by hand",
         "+DEF LAMP Transform { translation 0 0 -1 # moved by hand"
     ]
     assert w.end() == 0
+
+
+def test_a_jump_of_the_pointer_from_a_panel_counts(window, vv):
+    w = window(WORLD, "--size", "600x400", "--spp", "1")
+    w.key("e")
+    reports = Reports(w, vv.folder)
+    assert reports.probe() is None  # the pointer is at a button then
+    w.move(.2, .1)
+    w.key("u")
+    row = reports.until(lambda r: r["x"])
+    # The wall is 15 m away, and half as high as the tangent of half the field of view says.
+    assert (float(row["x"]), float(row["y"]), float(row["z"])) == pytest.approx((1.864, .621, -5), abs=.05)
+    assert w.end() == 0
+
+
+def desk_of_the_page():
+    """Returns the world of "A first session" in docs/editor.md, and the difference that it shows."""
+    page = (ROOT / "docs/editor.md").read_text()
+    return (re.search(pattern, page, re.S)[1]
+            for pattern in (r"```vrml file=desk\.wrl\n(.*?)```", r"```diff\n(.*?)\n```"))
+
+
+def test_the_first_session_of_the_page(window, vv):
+    desk, told = desk_of_the_page()
+    w = window(desk, "--size", "600x400")
+    w.key("e")
+    w.click(0, -.03)  # the top of the desk
+    w.key("u", "b")
+    press(w, 60, LAMP_ROW)
+    w.key("g", "y", "minus", "period", "3", "Return")
+    w.key("ctrl+s")
+    now = changed(w, vv, lambda t: t != desk)
+    assert changes(desk, now) == told.split("\n")
+    assert w.end() == 0
+
+
+def test_the_light_of_the_first_session(start, tmp_path):
+    """The change is significant with as many samples as a window takes."""
+    desk, _ = desk_of_the_page()
+    (tmp_path / "desk.wrl").write_text(desk)
+    vv = start("desk.wrl", *SMALL, "--spp", 4096).connect()
+    before = vv.probe(0, -.05, quantity="illuminance")
+    with vv.edit("Lower") as step:
+        step.set("LAMP", "translation", (0, 1.4, 0))
+    now = vv.probe(0, -.05, quantity="illuminance")
+    assert before["trusted"] and now["trusted"] and 6 < before["illuminance"] < 8
+    difference = now["illuminance"] - before["illuminance"]
+    assert 6 < difference < 9 and now["half_width"] + before["half_width"] < difference / 10

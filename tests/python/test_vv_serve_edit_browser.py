@@ -271,6 +271,11 @@ def test_a_lens_and_a_lamp_are_changed(browser, serve, vv):
     finished(browser)
     browser.drag(CANVAS, (0, 0))  # a click on the lens
     until_title(browser, "LENS  Shape")
+    browser.script("document.querySelector('#look .link').dispatchEvent("
+                   "new MouseEvent('contextmenu', { cancelable: true }))")
+    until_script(browser, "document.querySelector('pre')?.textContent ==="
+                 " '--shader LENS=glass/Glass:index=1.5'")
+    browser.script("document.getElementById('panel').close()")
     until_script(browser, "document.querySelector('#look .link').textContent === 'Glass'")
     browser.click("#look button:nth-of-type(2)")
     until_title(browser, "GLASS  ORTShader")

@@ -48,7 +48,10 @@ def test_what_is_refused_leaves_no_file(serve, vv):
     page.still()
     before = sorted(os.listdir(vv.folder))
     for name, content, why in (("x.sh", b"rm", "only worlds and meshes"),
-                               ("x.wrl", b"", "empty"), ("x.wrl", b"no world", "x.wrl is not")):
+                               ("x.wrl", b"", "empty"), ("x.wrl", b"no world", "x.wrl is not"),
+                               ("x.stl", b"solid x facet normal", "the file ends"),
+                               ("x.ply", b"ply format", "is not imported"),
+                               ("x.x3dv", b"#X3D V3.3 utf8", "holds nothing")):
         count = len(page.of("said"))
         page.edit("import", name=name, bytes=len(content))
         page.edit("import_part", data=base64.b64encode(content).decode())

@@ -3,9 +3,11 @@ looks, handles, probes, A and B, problems and reports."""
 import base64
 import io
 
+from conftest import HEADER
 from page_client import Image, serve, wait_for  # noqa: F401
 from serve_edit_tools import (
-    SIZE, WORLD, drag, field, history, node, opened, paint, select, text_of, until, value)
+    SIZE, WORLD, drag, field, history, node, opened, paint, select, select_row, text_of, until,
+    value)
 from window_driver import green, red
 
 
@@ -61,6 +63,27 @@ def test_a_look_is_chosen_and_its_parameters_are_set(serve, vv):
     page.edit("save")
     history(page, unsaved=False)
     assert 'name "Diffuse"' in text_of(vv) and f"{colour['field']} 0 1 0" in text_of(vv)
+
+
+def test_options_of_a_shader_are_set_in_their_places(serve, vv):
+    world = HEADER + """Shape { geometry Box { } appearance ORTAppearance {
+  shader DEF G ORTShader { name "Glass" options [ "1f index 1.50, color tint 1 .9 .8" ] } } } # by hand
+"""
+    page = serve(world, "--edit", "--spp", 1).join_editor()
+    opened(page, "Shape", "appearance: ORTAppearance")
+    sheet = select_row(page, "shader: G  ORTShader", "G  ORTShader")
+    assert field(sheet, "index")["value"] == 1.5 and field(sheet, "tint")["value"] == [1, 0.9, 0.8]
+    drag(page, sheet["node"], "index", 1.4, 1.3)
+    drag(page, sheet["node"], "tint", [1, 0.9, 0.5])
+    value(page, "tint", [1, 0.9, 0.5])
+    history(page, undo="Set ORTShader.tint", unsaved=True)
+    page.edit("save")
+    history(page, unsaved=False)
+    assert text_of(vv) == world.replace("1.50", "1.3").replace(".8\"", "0.5\"")
+    page.edit("undo")
+    page.edit("undo")
+    value(page, "index", 1.5)
+    history(page, undo="", redo="Set ORTShader.index")
 
 
 def test_nodes_are_hidden_for_all_and_not_saved(serve, vv):
@@ -175,6 +198,9 @@ def test_probes_measure_the_light(serve):
     first = until(page, "probes", lambda t: t["list"] and t["list"][0].get("half_width") is not None)
     probe = first["list"][0]
     assert probe["state"] == "read" and probe["luminance"] > 0 and "trusted" in probe
+    what, place, normal = probe["seen"].split("\n")
+    assert what == "THING  Shape, Material" and place.endswith(" 1, 4 from the viewer")
+    assert normal.startswith("normal ") and normal.endswith(" 1")
     page.edit("keep_probes")
     drag(page, paint(page), "diffuseColor", [1, 1, 1])
     changed = until(page, "probes", lambda t: t["list"] and t["list"][0].get("change", 0) > 0)

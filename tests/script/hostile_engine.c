@@ -238,7 +238,7 @@ static const char* const schemes[] = {"hostile", NULL};
 static const XsEngine engine = {sizeof(XsEngine), 0,          "hostile", "misbehaves, for tests",
                                 schemes,          NULL,       NULL,      create,
                                 destroy,          initialize, event,     processed,
-                                shutDown,         tick,       NULL};
+                                shutDown,         tick,       NULL,      NULL};
 static const XsEngine* const engines[] = {&engine};
 XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
                                      1,        engines};

@@ -5,6 +5,7 @@
 
 #include "edit/comparison.h"
 #include "edit/region.h"
+#include "holm.h"
 #include "student.h"
 #include "unit/editor_support.h"
 
@@ -79,10 +80,11 @@ TEST(Changes, TheChanceOfAChangeIsThatOfStudent) {
 }
 
 TEST(Changes, HolmGoesOnToTheFirstThatMayBeChance) {
-  EXPECT_EQ(significantOf({.04, .001, .012, .9, .018}), (std::vector<size_t>{1, 2}));
-  EXPECT_EQ(significantOf({.04}), (std::vector<size_t>{0}));
-  EXPECT_EQ(significantOf({.04, .04}), (std::vector<size_t>{}));
-  EXPECT_TRUE(significantOf({}).empty());
+  EXPECT_EQ(holm::significantOf({.04, .001, .012, .9, .018}, changeLevel),
+            (std::vector<size_t>{1, 2}));
+  EXPECT_EQ(holm::significantOf({.04}, changeLevel), (std::vector<size_t>{0}));
+  EXPECT_EQ(holm::significantOf({.04, .04}, changeLevel), (std::vector<size_t>{}));
+  EXPECT_TRUE(holm::significantOf({}, changeLevel).empty());
 }
 
 TEST(Changes, PixelsThatHaveChangedAreFound) {

@@ -286,18 +286,6 @@ TEST_F(Sheet, ParametersAreRowsUntilTheyAreDeclared) {
   undoAll();
 }
 
-TEST(EditorSheet, OptionsOfAShaderAreSaid) {
-  EditedWorld world("#VRML V2.0 utf8\nShape { appearance ORTAppearance { shader DEF S ORTShader {\n"
-                    "name \"Glass\" options [ \"1f index 1.2, color tint 1 0 0\" ] } } }\n");
-  EditModel model;
-  world.editor.select({world.node("S")});
-  model.update(world.editor, front(), false, 0);
-  for (const PropertyRow& row : model.sheet().rows) {
-    const bool isSet = row.field->name == "index" || row.field->name == "tint";
-    EXPECT_EQ(row.isInOptions, isSet) << row.field->name;
-  }
-}
-
 TEST(EditorSheet, AnotherClassHasOtherParameters) {
   EditedWorld world("#VRML V2.0 utf8\nShape { appearance ORTAppearance { shader DEF S ORTShader {\n"
                     "name \"Glass\" options \"1f index 1.2\" } } }\n");

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "edit/transform_tool.h"
 #include "unit/editor_support.h"
 #include "xvrml/nodes.h"
@@ -75,6 +77,23 @@ TEST_F(Tool, AMoveAlongAnAxisOfTheWorld) {
   tool.cancel(world.editor);
   EXPECT_EQ(matrix(), before);
   EXPECT_EQ(world.editor.editor().text(), text);
+}
+
+// Sums are those of the numbers in the file: 0.05 and 0.01 are 0.06 there, and not 0.060000002.
+TEST(ToolNumbers, SmallStepsAddUp) {
+  EditedWorld plain("#VRML V2.0 utf8\nDEF T Transform { translation 0 0 0 children Group { } }\n");
+  plain.editor.select({plain.node("T")});
+  for (int i = 1; i <= 20; ++i) {
+    TransformTool tool(plain.editor, Kind::move, front(), 0, 0);
+    tool.chooseAxis(0);
+    for (const char* key : {".", "0", "1"}) tool.type(key);
+    tool.point(plain.editor, 0, 0);
+    tool.accept(plain.editor);
+    const std::string wanted = fmt::format("translation {} 0 0 children", i / 100.0);
+    EXPECT_NE(plain.editor.editor().text().find(wanted), std::string::npos)
+        << wanted << "\n"
+        << plain.editor.editor().text();
+  }
 }
 
 TEST_F(Tool, AMoveAlongAnAxisOfItsOwn) {

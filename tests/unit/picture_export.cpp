@@ -136,11 +136,11 @@ TEST(ExportSurface, FormulasOfTheDocument) {
 }
 
 TEST(ExportLights, CandelaAreThoseOfTheDistance) {
-  // A light of 1 at 2 m without attenuation: 1 on a surface that reflects 1/pi of pi.
-  EXPECT_NEAR(candelaOf(1, {1, 0, 0}, 2, 1) / (pi * 4), 1, 1e-12);
-  EXPECT_NEAR(candelaOf(3, {0, 0, 1}, 10, 1), 3 * pi, 1e-9);
-  EXPECT_NEAR(candelaOf(3, {0, 0, 1}, 10, 0.1), 3 * pi * 0.01, 1e-9); // in decimetres
-  EXPECT_NEAR(candelaOf(1, {0, 0, 0}, 2, 1), 4 * pi, 1e-12);
+  // An irradiance of 1 at 2 m without attenuation.
+  EXPECT_NEAR(candelaOf(1, {1, 0, 0}, 2, 1), 4, 1e-12);
+  EXPECT_NEAR(candelaOf(3, {0, 0, 1}, 10, 1), 3, 1e-9);
+  EXPECT_NEAR(candelaOf(3, {0, 0, 1}, 10, 0.1), 3 * 0.01, 1e-9); // in decimetres
+  EXPECT_NEAR(candelaOf(1, {0, 0, 0}, 2, 1), 4, 1e-12);
 }
 
 TEST(ExportPictures, TransformsAreThoseOfTheExtension) {

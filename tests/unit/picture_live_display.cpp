@@ -128,6 +128,49 @@ TEST(LiveDisplay, whatIsShownGetsBetterSteadily) {
   EXPECT_LT(before, 5);
 }
 
+// The preview is wrong in its right half. There the still picture takes its place; on the left it
+// would only bring noise: nowhere does it bring more than the preview is wrong.
+TEST(LiveDisplay, aStillPictureBringsNoMoreNoiseThanThePreviewIsWrong) {
+  constexpr int width = 128, height = 96;
+  constexpr double truth = 128, noise = 60;
+  const auto biasAt = [](int x) { return x < width / 2 ? 1.0 : 40.0; };
+  Display display;
+  std::vector<float> biased;
+  for (int i = 0; i < width * height; ++i)
+    biased.push_back(float((truth + biasAt(i % width)) / 255));
+  show(display, pictureOf(biased, width, 1), preview(1), true);
+  std::vector<double> sums(size_t(width) * height);
+  uint32_t state = 1;
+  double wrong[2] = {};
+  for (int samples = 1; samples <= 64; ++samples) { // the same samples, and more and more of them
+    std::vector<float> values;
+    for (double& sum : sums) {
+      double normal = -6; // the sum of twelve uniform numbers
+      for (int k = 0; k < 12; ++k)
+        normal += double(state = state * 1664525 + 1013904223) / 4294967296.0;
+      sum += truth + normal * noise;
+      values.push_back(float(sum / samples / 255));
+    }
+    // After a while the weight of time is one.
+    const LivePicture shown = show(display, pictureOf(values, width, float(samples)), stillFrame(2),
+                                   false, samples < 3 ? 0.1 : 9);
+    if (samples < 4) continue;
+    for (const bool right : {false, true}) {
+      double sum = 0;
+      for (int y = 0; y < height; ++y) // away from where both halves meet
+        for (int x = right ? 80 : 0; x < (right ? width : 48); ++x) {
+          const double d = shown.rgb[3 * size_t(y * width + x)] - truth;
+          sum += d * d;
+        }
+      wrong[right] = std::sqrt(sum / (48.0 * height));
+    }
+    EXPECT_LT(wrong[0], 3) << samples; // alone it would be 30 at 4 samples, and 8 at 64
+    EXPECT_LT(wrong[1], 31) << samples;
+    EXPECT_TRUE(shown.preview);
+  }
+  EXPECT_LT(wrong[1], 10);
+}
+
 TEST(LiveDisplay, pixelsWithoutSamplesShowWhatWasThere) {
   Display display;
   show(display, uniform(200, 1, 2, 2), preview(1), true);

@@ -93,7 +93,7 @@ inline picture::Picture render(const World& world, const Shot& shot) {
   };
   auto &rgba = plane(RT_RGBA, 4), &depth = plane(RT_DEPTH, 1), &normal = plane(RT_NORMAL, 3),
        &albedo = plane(RT_ALBEDO, 3), &position = plane(RT_POSITION, 3), &name = plane(RT_NAME, 1),
-       &motion = plane(RT_MOTION, 3), &samples = plane(RT_SAMPLES, 1);
+       &motion = plane(RT_MOTION, 3), &samples = plane(RT_SAMPLES, 1), &place = plane(RT_PLACE, 2);
   plane(RT_REFLECTION, 3); // there are no coats
   const auto set = [](std::vector<float>& to, size_t i, Vec v) {
     to[i] = float(v.x);
@@ -106,6 +106,8 @@ inline picture::Picture render(const World& world, const Shot& shot) {
       const size_t i = pixel;
       const double dx = shot.centred ? 0.5 : random(pixel, shot.number, 0),
                    dy = shot.centred ? 0.5 : random(pixel, shot.number, 1);
+      place[2 * i] = float(dx);
+      place[2 * i + 1] = float(dy);
       Vec origin, direction;
       rayOf(shot, x + dx, y + dy, origin, direction);
       Hit hit = world(origin, direction);

@@ -388,7 +388,8 @@ TEST(LiveCompletion, theStillPictureFadesInOverThePreview) {
     ASSERT_FALSE(picture.finished);
     weight = live::stillWeight(picture.samples, many, picture.seconds);
     if (picture.covered < 1) continue;
-    EXPECT_EQ(picture.preview, weight < 1) << picture.samples << ", " << picture.seconds;
+    // Noise keeps some of it for longer.
+    EXPECT_TRUE(picture.preview || weight == 1) << picture.samples << ", " << picture.seconds;
     if (weight < .05) { EXPECT_LT(difference(picture.rgb, preview.rgb), 8); }
   }
   live.cancel();

@@ -105,6 +105,28 @@ std::string squareAt(const std::string& z, const std::string& color) {
          color + " } } geometry Box { size 2 2 .01 } } }\n";
 }
 
+// Lights of X3D are irradiances for a PhysicalMaterial, whose diffuse part reflects 1/pi of them.
+TEST(Raster, PhysicalMaterialsTakeIntensitiesAsIrradiances) {
+  const auto seen = [](const std::string& material, const std::string& lights) {
+    const auto world = xvrml::loadWorldFromMemory(
+        "#X3D V4.0 utf8\nPROFILE Full\n" + lights +
+            "Transform { translation 0 0 -3 children Shape { appearance Appearance { material " +
+            material + " } geometry Box { size 4 4 .01 } } }",
+        "raster.x3dv");
+    const std::vector<float> rgba = rasterize(*world, viewOf(true));
+    return double(rgba[4 * (size_t(height / 2) * width + width / 2)]);
+  };
+  const std::string matt = "Material { diffuseColor 1 1 1 }",
+                    physical = "PhysicalMaterial { metallic 0 baseColor 1 1 1 }",
+                    off = "NavigationInfo { headlight FALSE }\n",
+                    sun = off + "DirectionalLight { intensity .5 }\n";
+  EXPECT_NEAR(seen(matt, sun), .5, 1e-5);
+  EXPECT_NEAR(seen(physical, sun) * pi, .5, .1); // with a weak highlight
+  EXPECT_NEAR(seen(physical, "NavigationInfo { }\n") * pi, 1, .2);
+  // The lights of a model that has none are as bright on both.
+  EXPECT_NEAR(seen(physical, ""), seen(matt, ""), .2);
+}
+
 TEST(Raster, TheNearestShapeIsSeenInEitherOrder) {
   const std::string red = squareAt("-3", "1 0 0"), green = squareAt("-4", "0 1 0");
   for (const std::string& text : {red + green, green + red})

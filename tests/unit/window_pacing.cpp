@@ -143,6 +143,30 @@ TEST(Pacing, theTimeOfRebuildingCounts) {
   EXPECT_EQ(other.predicted(one), before);
 }
 
+// The shown picture has the pixels of the window, and fewer where these would take more than half
+// of a frame's time. Frames have what is left of it.
+TEST(Pacing, theSizeOfWhatIsShownHasATimeOfItsOwn) {
+  // seconds of a picture as large as the window
+  for (const double whole : {0.002, 0.01, 0.04, 0.3}) {
+    Pacing pacing(30);
+    double showing = 0, frame = 0;
+    FrameSize shown, before;
+    for (int k = 0; k < 60; k++) {
+      const FrameSize size = pacing.next(width, height, true, 64);
+      before = shown;
+      shown = pacing.shown(width, height);
+      EXPECT_NEAR(double(shown.width) / shown.height, 4.0 / 3, 0.01);
+      showing = whole * shown.width * shown.height / full;
+      frame = showing + 0.1 * size.width * size.height * size.samples / full;
+      pacing.took(size, frame, frame, 0, size.samples, showing, showing);
+    }
+    EXPECT_EQ(shown, before) << "it does not swing";
+    EXPECT_LT(showing, 0.5 / 30 * 1.15) << whole;
+    EXPECT_LT(frame, 1.6 / 30) << whole;
+    EXPECT_EQ(shown.width == width, whole < 0.015) << whole;
+  }
+}
+
 // The frame rate falls before pictures shrink below a quarter, but not far.
 TEST(Pacing, aQuarterIsKeptAtALowerRate) {
   Pacing pacing(30);

@@ -1,8 +1,11 @@
 // xvrml_messages.cpp: messages about values, X3D statements and missing files name the value, say
 // how it was handled, and why.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "xvrml/browser.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
@@ -72,6 +75,41 @@ TEST(Messages, StatementsOfX3dAreNamed) {
   EXPECT_EQ(world->diagnostics.errors(), 2u);
   EXPECT_EQ(world->diagnostics.warnings(), 1u);
   EXPECT_EQ(messagesOf("DEF META Group { } Group { children USE META }"), Messages{});
+}
+
+// A size that no picture depends on is kept, and nothing is skipped because of it.
+TEST(Messages, SizesOfBoundsHaveNoEffect) {
+  EXPECT_EQ(messagesOf("Group { bboxSize 0 0 0 }"),
+            Messages{"test.wrl:2:9: warning: Group.bboxSize: 0 0 0 is outside of its range (0,inf) "
+                     "or -1 and is kept; no picture depends on it"});
+  const Messages box = messagesOf("Shape { geometry Box { size 0 1 1 } }");
+  ASSERT_EQ(box.size(), 1u);
+  EXPECT_NE(box[0].find("parts that cannot be drawn are skipped"), std::string::npos) << box[0];
+}
+
+// Table 4.4 forbids it, but the value arrives, so that it is no error.
+TEST(Messages, AFieldThatIsAnExposedFieldIsTaken) {
+  const std::string vrml = "PROTO P [ exposedField SFVec3f size 1 1 1 ] { Shape { geometry Box { "
+                           "size IS size } } } P { size 2 3 4 }";
+  EXPECT_EQ(messagesOf(vrml),
+            Messages{"test.wrl:2:78: warning: field 'size' of Box cannot be exposedField 'size' of "
+                     "the interface (4.8.2): it takes the value of the instance, but no events"});
+  const auto world = loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl");
+  const auto* shape = nodeCast<nodes::Shape>(renderedNode(world->scope.roots[0].get()));
+  ASSERT_TRUE(shape);
+  EXPECT_EQ(nodeCast<nodes::Box>(shape->geometry)->size, (Vec3f{2, 3, 4}));
+}
+
+// All that refers to a node which was left out has one cause.
+TEST(Messages, ANodeThatWasLeftOutIsNamedOnce) {
+  std::string vrml = "DEF T Transform { } DEF L Nothing { }\n";
+  for (int i = 0; i < 5; ++i) vrml += "ROUTE T.translation_changed TO L.set_x\n";
+  const Messages messages = messagesOf(vrml);
+  EXPECT_EQ(std::count_if(messages.begin(), messages.end(),
+                          [](const std::string& one) {
+                            return one.find("'L' was left out above") != std::string::npos;
+                          }),
+            1);
 }
 
 TEST(Messages, MissingMediaSayWhy) {

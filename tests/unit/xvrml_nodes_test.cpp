@@ -90,7 +90,8 @@ constexpr Interface interfaces[] = {
 int count(const NodeType& type, Access access) {
   int number = 0;
   for (const FieldInfo& field : type.fields)
-    number += field.access == access && !field.ofX3d && field.name != "metadata";
+    number += (field.exposedSince ? Access::field : field.access) == access && !field.ofX3d &&
+              field.name != "metadata";
   return number;
 }
 

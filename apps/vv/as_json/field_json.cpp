@@ -10,6 +10,7 @@
 
 #include "xvrml/numbers.h"
 #include "xvrml/value_words.h"
+#include "xvrml/versions.h"
 #include "xvrml/world.h"
 
 namespace vv::json {
@@ -77,7 +78,7 @@ class Reader {
                      path_.empty() ? "" : " at value" + path_));
   }
   [[noreturn]] void wrongNumber(double got) const {
-    const FieldRange& r = field_.range;
+    const FieldRange& r = rangeIn(owner_, field_);
     fail(fmt::format("numbers from {} to {}{}{} were expected, not {}{}", r.minimum, r.maximum,
                      r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "",
                      std::isnan(r.also) ? "" : fmt::format(" or {}", r.also), got,
@@ -99,7 +100,7 @@ class Reader {
     if (field_.type == FieldType::SFRotation || field_.type == FieldType::MFRotation) return;
     const bool wide = hasWideNumbers(field_.type);
     const auto rounded = [wide](double v) { return wide ? v : double(float(v)); };
-    const FieldRange& r = field_.range;
+    const FieldRange& r = rangeIn(owner_, field_);
     const double v = rounded(number), minimum = rounded(r.minimum), maximum = rounded(r.maximum);
     const bool low = r.minimumOpen ? v <= minimum : v < minimum;
     const bool high = r.maximumOpen ? v >= maximum : v > maximum;

@@ -6,6 +6,7 @@
 
 #include "as_json/field_json.h"
 #include "as_json/fields.h"
+#include "xvrml/versions.h"
 
 namespace vv::json::edits {
 
@@ -39,14 +40,17 @@ class StepDoer {
   NodeSlot targetOf(const Place& place) const {
     const NodeRef parent = parentOf(place);
     if (!place.index) return world_.endOf(parent.get(), place.field);
-    return {parent.get(), place.field, *place.index};
+    return {parent.get(), parent ? std::string(ownName(*parent, place.field)) : place.field,
+            *place.index};
   }
 
   NodeSlot placeOf(const Node& node, const std::optional<Place>& at) const {
     if (!at) return world_.placeOf(node);
     const NodeRef parent = parentOf(*at);
     return world_.placeOf(node, [&](const NodeSlot& place) {
-      return place.parent == parent.get() && (at->field.empty() || at->field == place.field) &&
+      return place.parent == parent.get() &&
+             (at->field.empty() ||
+              (parent ? ownName(*parent, at->field) : at->field) == place.field) &&
              (!at->index || *at->index == place.index);
     });
   }

@@ -182,6 +182,10 @@ constexpr Row table[] = {
        return Select{listOf<NodeName>(m.at("nodes"), m.need("nodes"), nodeOf)};
      }},
     {"selection", [](Members&) -> Action { return ListSelection{}; }},
+    {"parameters",
+     [](Members& m) -> Action {
+       return ListParameters{m.text("class"), m.has("file") ? m.text("file") : ""};
+     }},
     {"pick", [](Members& m) -> Action { return readPick(m); }},
     {"probe", readProbe},
     {"measure", [](Members& m) -> Action { return Measure{readSamples(m)}; }},

@@ -93,6 +93,9 @@ struct Select {
   std::vector<NodeName> nodes;
 };
 struct ListSelection {};
+struct ListParameters {
+  std::string shaderClass, file; // ORTShader.name and ORTShader.file
+};
 struct Pick {
   double x = 0, y = 0; // picture coordinates, as in InputEvent
 };
@@ -111,10 +114,11 @@ struct Quit {
   bool discard = false; // edits that are not saved
 };
 
-using Action = std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute,
-                            Describe, ListNames, ListViewpoints, Bind, Load, Replace, Render, Time,
-                            Quit, PressKey, edits::Step, Undo, Save, ListEdits, ListRoots,
-                            ListParents, Select, ListSelection, Pick, Probe, Measure, Recover>;
+using Action =
+    std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute, Describe,
+                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit, PressKey,
+                 edits::Step, Undo, Save, ListEdits, ListRoots, ListParents, Select, ListSelection,
+                 ListParameters, Pick, Probe, Measure, Recover>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

@@ -16,6 +16,7 @@
 #include "as_json/field_json.h"
 #include "as_json/fields.h"
 #include "nearest.h"
+#include "xvrml/versions.h"
 #include "xvrml/walk.h"
 
 namespace vv::control {
@@ -142,6 +143,7 @@ std::string WorldCommands::perform(const Command& command) {
              [this](const ListParents& c) { return listParents(c); },
              [this](const Select& c) { return select(c); },
              [this](const ListSelection&) { return listSelection(); },
+             [this](const ListParameters& c) { return listParameters(c); },
              [this](const Pick& c) { return pick(c); },
              [this](const Recover&) { return throwLeftAway(); }, other),
       command.action);
@@ -240,7 +242,7 @@ std::string WorldCommands::subscribe(const Subscribe& subscribe) {
     return "null";
   }
   const NodeRef node = nodeOf(subscribe.to.node);
-  const FieldInfo* field = node->type().findEventOut(subscribe.to.field);
+  const FieldInfo* field = findEventOut(*node, subscribe.to.field);
   if (!field) refuseField(*node, subscribe.to.field, "subscribed to", fieldNames(*node, sends));
   std::string value = valueText(browser_.get(*node, field->name));
   if (known != client_.subscriptions.end()) return value;
@@ -315,8 +317,8 @@ std::string WorldCommands::release(const Release& release) {
 
 std::string WorldCommands::changeRoute(const ChangeRoute& change) {
   const NodeRef from = nodeOf(change.from.node), to = nodeOf(change.to.node);
-  const FieldInfo* out = from->type().findEventOut(change.from.field);
-  const FieldInfo* in = to->type().findEventIn(change.to.field);
+  const FieldInfo* out = findEventOut(*from, change.from.field);
+  const FieldInfo* in = findEventIn(*to, change.to.field);
   if (!out) refuseField(*from, change.from.field, "the start of a route", fieldNames(*from, sends));
   if (!in)
     refuseField(*to, change.to.field, "the end of a route",
@@ -338,9 +340,9 @@ std::string WorldCommands::describe(const Describe& describe) {
   const NodeRef node = nodeOf(describe.node);
   std::string fields;
   for (const FieldInfo& field : node->type().fields)
-    fields +=
-        fmt::format(R"({}{{"name":{},"type":"{}","access":"{}"}})", fields.empty() ? "" : ",",
-                    jsonText(field.name), fieldTypeName(field.type), accessName(field.access));
+    fields += fmt::format(R"({}{{"name":{},"type":"{}","access":"{}"}})", fields.empty() ? "" : ",",
+                          jsonText(std::string(fieldName(*node, field))), fieldTypeName(field.type),
+                          accessName(field.access));
   return fmt::format(R"({{"node":{},"type":{},"name":{},"fields":[{}]}})", client_.numbers.of(node),
                      jsonText(node->type().name), jsonText(node->defName), fields);
 }

@@ -48,6 +48,7 @@ class WorldCommands {
   std::string throwLeftAway();
   std::string listRoots();
   std::string listParents(const ListParents& list);
+  std::string listParameters(const ListParameters& list);
   std::string select(const Select& select);
   std::string listSelection();
 

@@ -1,4 +1,6 @@
 // world_edits.cpp: the commands that edit the file of the world, and those about its selection.
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -6,6 +8,7 @@
 
 #include "as_json/perform_step.h"
 #include "control/world_commands.h"
+#include "edit/shader_parameters.h"
 #include "run/outputs.h"
 
 namespace vv::control {
@@ -84,6 +87,28 @@ std::string WorldCommands::select(const Select& select) {
   for (const NodeName& name : select.nodes) nodes.push_back(nodeOf(name));
   session_.editor().select(std::move(nodes));
   return "null";
+}
+
+std::string WorldCommands::listParameters(const ListParameters& list) {
+  const picture::ShaderClass* const found = classOf(session_.editor(), list.shaderClass, list.file);
+  if (!found)
+    throw CommandError("value",
+                       fmt::format("there is no shader class {}{}", jsonText(list.shaderClass),
+                                   list.file.empty() ? "" : " in " + jsonText(list.file)));
+  std::string all;
+  for (const picture::ShaderParameter& parameter : found->parameters) {
+    const std::optional<FieldInfo> field = fieldFor(parameter);
+    if (!field) continue; // a matrix
+    all += fmt::format(R"({}{{"name":{},"type":"{}","text":{},"default":{})",
+                       all.empty() ? "" : ",", jsonText(field->name), fieldTypeName(field->type),
+                       jsonText(field->text), valueText(field->defaultValue));
+    if (std::isfinite(field->range.minimum))
+      all += fmt::format(R"(,"minimum":{})", field->range.minimum);
+    if (std::isfinite(field->range.maximum))
+      all += fmt::format(R"(,"maximum":{})", field->range.maximum);
+    all += "}";
+  }
+  return "[" + all + "]";
 }
 
 std::string WorldCommands::listSelection() { return factsOf(session_.editor().selection()); }

@@ -2,104 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "holm.h"
 #include "libpicture/false_colour.h"
-#include "libpicture/luminance.h"
-#include "student.h"
 
 namespace vv {
 
 namespace {
-
-constexpr double level = 0.05;
-// Degrees of freedom of an interval that is trusted: it has at least 8 replicates. Most have more,
-// but a picture does not say how many.
-constexpr double fewestFreedom = 7;
-// Half-width in standard errors where there are very many.
-constexpr double normalQuantile = 1.959963985;
-
-// Returns the probability that the absolute value of Student's t exceeds a value (M. Abramowitz, I.
-// Stegun, "Handbook of Mathematical Functions", 26.7.3 and 26.7.4). freedom: above 1.
-double chanceBeyond(double value, int freedom) {
-  const double angle = std::atan(value / std::sqrt(double(freedom)));
-  const double cosine = std::cos(angle);
-  const int first = freedom % 2; // the terms are those of odd or of even powers
-  double term = first ? cosine : 1, sum = term;
-  for (int k = first + 2; k <= freedom - 2; k += 2) {
-    term *= cosine * cosine * (k - 1) / k;
-    sum += term;
-  }
-  const double inside =
-      first ? 2 / std::numbers::pi * (angle + std::sin(angle) * sum) : std::sin(angle) * sum;
-  return std::clamp(1 - inside, 0.0, 1.0);
-}
-
-// The light of the pixels of a picture, in the order of their planes.
-class Light {
- public:
-  explicit Light(const picture::Picture& picture)
-      : rgba_(picture.planes.at(RT_RGBA)), error_(picture.planes.at(RT_ERROR)),
-        trust_(picture.planes.at(RT_TRUST)) {}
-  bool isTrusted(size_t pixel) const { return trust_[pixel] > 0; }
-  picture::PixelReading luminance(size_t pixel) const {
-    picture::PixelReading reading;
-    reading.luminance = picture::luminanceOf(&rgba_[4 * pixel]);
-    reading.luminanceHalfWidth = picture::luminanceOf(&error_[3 * pixel]);
-    return reading;
-  }
-
- private:
-  const std::vector<float>&rgba_, &error_, &trust_;
-};
 
 uint8_t mixed(double from, double to, double part) {
   return uint8_t(std::lround(from + (to - from) * part));
 }
 
 } // namespace
-
-Difference differenceBetween(const picture::PixelReading& before,
-                             const picture::PixelReading& now) {
-  const double a = double(before.luminanceHalfWidth), b = double(now.luminanceHalfWidth);
-  Difference difference;
-  difference.value = double(now.luminance) - double(before.luminance);
-  difference.halfWidth = std::hypot(a, b);
-  // Nothing is to be judged if the interval contains 0.
-  if (!(std::abs(difference.value) > difference.halfWidth)) return difference;
-  difference.chance = 0;
-  if (difference.halfWidth == 0) return difference; // both pictures are exact
-  // Degrees of freedom of the difference: F. E. Satterthwaite, Biometrics Bulletin 2, 1946.
-  const double p = a / difference.halfWidth, q = b / difference.halfWidth;
-  const double freedom = fewestFreedom / (p * p * p * p + q * q * q * q);
-  // The chance is the largest one that any degrees of freedom from there on give: that of the
-  // fewest, or of very many, whose half-widths are fewer standard errors.
-  const double ratio = std::abs(difference.value) / difference.halfWidth;
-  difference.chance = std::max(chanceBeyond(ratio * student::quantile95(fewestFreedom),
-                                            std::max(int(freedom + 1e-9), int(fewestFreedom))),
-                               std::erfc(ratio * normalQuantile / std::numbers::sqrt2));
-  return difference;
-}
-
-// S. Holm, A simple sequentially rejective multiple test procedure, Scandinavian Journal of
-// Statistics 6 (1979): the smallest chance of n is compared with level / n, the next with
-// level / (n - 1), and so on, up to the first that is larger. It holds for readings that depend on
-// each other, too, as those of neighbouring pixels do by their error bars.
-std::vector<size_t> significantOf(const std::vector<double>& chances) {
-  std::vector<size_t> order;
-  for (size_t i = 0; i < chances.size(); ++i)
-    if (chances[i] <= level) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [&chances](size_t a, size_t b) { return chances[a] < chances[b]; });
-  size_t count = 0;
-  while (count < order.size() && chances[order[count]] <= level / double(chances.size() - count))
-    ++count;
-  order.resize(count);
-  return order;
-}
 
 ChangePicture compare(const picture::Picture& before, const picture::Picture& now) {
   ChangePicture out;
@@ -108,7 +26,7 @@ ChangePicture compare(const picture::Picture& before, const picture::Picture& no
   out.changes.assign(size_t(now.width) * size_t(now.height), 0);
   std::vector<double> chances;
   std::vector<std::pair<size_t, float>> judged; // pixels and their changes
-  const Light a(before), b(now);
+  const picture::PixelLights a(before), b(now);
   for (size_t pixel = 0; pixel < out.changes.size(); ++pixel) {
     if (!a.isTrusted(pixel) || !b.isTrusted(pixel)) continue;
     const Difference difference = differenceBetween(a.luminance(pixel), b.luminance(pixel));
@@ -116,7 +34,7 @@ ChangePicture compare(const picture::Picture& before, const picture::Picture& no
     judged.emplace_back(pixel, float(difference.value));
   }
   out.judged = judged.size();
-  for (const size_t i : significantOf(chances)) {
+  for (const size_t i : holm::significantOf(chances, changeLevel)) {
     const auto [pixel, change] = judged[i];
     out.changes[pixel] = change;
     out.most = std::max(out.most, change);

@@ -15,22 +15,9 @@ namespace vv {
 
 // --- Changes of light ---
 
-// The change of the luminance from one reading to another.
-struct Difference {
-  double value = 0, halfWidth = 0; // cd/m2, with half of the 95 % interval
-  // The probability of a change that is at least as large, if nothing has changed; 1 if the
-  // interval contains 0.
-  double chance = 1;
-  bool isSignificant = false; // among all that were judged together, at 5 %
-};
-
-// Returns the change between readings of two pictures (B. L. Welch, Biometrika 34, 1947). The
-// pictures are taken as independent; where they share random numbers, the interval is too wide.
-Difference differenceBetween(const picture::PixelReading& before, const picture::PixelReading& now);
-
-// Returns which of the changes are significant, so that with a probability of 95 % none of these
-// is chance. chances: those of all changes that are judged together.
-std::vector<size_t> significantOf(const std::vector<double>& chances);
+using Difference = picture::LightDifference;
+// All changes that are judged together are significant at this level (common/holm.h).
+inline constexpr double changeLevel = 0.05;
 
 // The changes of the pixels of a picture.
 struct ChangePicture {

@@ -67,30 +67,38 @@ void EditModel::edit(Command command) {
 
 void EditModel::drag(const NodeRef& node, const FieldInfo& field, Value value) {
   const Dragged dragged{node, field.name};
+  const PropertyRow* const row = sheet_.node == node ? sheet_.find(field.name) : nullptr;
+  const bool isDeclared = node->type().find(field.name), isOption = row && row->isOption();
   if (dragged_ != dragged) {
     finishDrag();
     dragged_ = dragged;
     touched_.clear();
-    if (node->type().find(field.name)) begin(dragged);
+    if (isDeclared || isOption) begin(dragged);
   }
-  if (!node->type().find(field.name)) {
+  if (isOption)
+    return requestValue([this, dragged, value = std::move(value)](WorldEditor& editor) {
+      if (!isRefused_) setParameter(editor, dragged.node, dragged.field, value);
+    });
+  if (!isDeclared) {
     undeclared_ = std::move(value);
     return;
   }
-  const PropertyRow* const row = sheet_.node == node ? sheet_.find(field.name) : nullptr;
   ChangedList change{row ? row->shown : Value(), std::move(value), {}};
   noteTouched(change.shown, change.wanted, touched_);
   change.touched = touched_;
   requestValue([this, dragged, change = std::move(change)](WorldEditor& editor) {
-    if (isRefused_) return;
-    const Node& node = *dragged.node;
-    const FieldInfo& info = *node.type().find(dragged.field);
-    const Value now = node.get(info);
-    const bool isOwn = set_ == std::pair(dragged, now);
-    editor.editor().set(*dragged.node, dragged.field,
-                        mergedList(change, now, isOwn, nameOf(dragged)));
-    set_ = {dragged, node.get(info)};
+    if (!isRefused_) setField(editor, dragged, change);
   });
+}
+
+void EditModel::setField(WorldEditor& editor, const Dragged& dragged, const ChangedList& change) {
+  const Node& node = *dragged.node;
+  const FieldInfo& info = *node.type().find(dragged.field);
+  const Value now = node.get(info);
+  const bool isOwn = set_ == std::pair(dragged, now);
+  editor.editor().set(*dragged.node, dragged.field,
+                      mergedList(change, now, isOwn, nameOf(dragged)));
+  set_ = {dragged, node.get(info)};
 }
 
 std::string EditModel::nameOf(const Dragged& dragged) {
@@ -119,7 +127,7 @@ void EditModel::finishDrag() {
   if (std::optional<Value> value = std::exchange(undeclared_, std::nullopt))
     return request([dragged, value = std::move(*value)](WorldEditor& editor) {
       refuseWithinStep(editor);
-      declareParameter(editor, dragged.node, dragged.field, value);
+      setParameter(editor, dragged.node, dragged.field, value);
     });
   requestValue([this, dragged](WorldEditor& editor) {
     if (std::exchange(isRefused_, false)) return;
@@ -129,7 +137,7 @@ void EditModel::finishDrag() {
 }
 
 void EditModel::setActive(bool active) {
-  if (std::exchange(isActive_, active) && !active) isStale_ = true;
+  if (std::exchange(isActive_, active) && !active) note(Stale::sheet);
   if (!active) finishDrag();
 }
 
@@ -146,14 +154,21 @@ void EditModel::showAll() {
 }
 
 void EditModel::setOpen(const NodeRef& node, bool open) {
-  outline_.setOpen(node, open);
-  areRowsStale_ = true;
+  requestValue([this, node, open](WorldEditor&) {
+    outline_.setOpen(node, open);
+    changeRowsOf(*node);
+  });
+}
+
+void EditModel::changeRowsOf(const Node& node) {
+  if (stale_ == Stale::rows || !search_.empty()) return;
+  if (!outline_.changeRowsOf(node, rows_)) note(Stale::rows);
 }
 
 void EditModel::search(std::string text) {
   if (text == search_) return;
   search_ = std::move(text);
-  areRowsStale_ = true;
+  note(Stale::rows);
 }
 
 void EditModel::select(const NodeRef& node, bool add) {
@@ -164,29 +179,26 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
   while (!requests_.empty()) {
     const Request request = std::move(requests_.front());
     requests_.pop_front();
-    if (request.setsValue)
-      areValuesStale_ = true;
-    else
-      noteRequest();
+    note(request.stale == Stale::rows ? anyChange() : request.stale);
     try {
       request.command(editor);
     } catch (const std::exception& error) { message_ = error.what(); }
   }
   const uint64_t changes = editor.editor().changes(), nodes = editor.editor().nodeChanges();
-  areValuesStale_ |= std::exchange(changes_, changes) != changes;
-  if (std::exchange(nodeChanges_, nodes) != nodes) isStale_ = areRowsStale_ = true;
+  if (std::exchange(changes_, changes) != changes) note(Stale::values);
+  if (std::exchange(nodeChanges_, nodes) != nodes) note(Stale::rows);
   if (selection_ != editor.selection()) {
     selection_ = editor.selection();
-    noteRequest();
+    note(anyChange());
     if (Node* node = editor.selected()) reveal(editor, *node);
   }
   if (!hasAsked_ && editor.prepare()) {
-    hasAsked_ = isStale_ = true;
+    hasAsked_ = true;
+    note(Stale::sheet);
     unwritable_ = picture::whyNotEditable(editor.browser().world().path);
     readOnly_ = editor.editor().whyReadOnly();
   }
-  bool reads = isStale_ || areRowsStale_ || areValuesStale_ ||
-               (moves && seconds >= readAt_ + refreshInterval);
+  bool reads = stale_ != Stale::nothing || (moves && seconds >= readAt_ + refreshInterval);
   if (reads) {
     readAt_ = seconds;
     read(editor);
@@ -202,21 +214,15 @@ void EditModel::reveal(WorldEditor& editor, Node& node) {
   const std::optional<MFNode> opened = outline_.reveal(editor.browser(), node);
   if (!opened) return;
   shown_ = NodeRef(&node);
-  for (const NodeRef& one : *opened)
-    if (areRowsStale_ || !search_.empty() || !outline_.addRowsOf(*one, rows_)) areRowsStale_ = true;
+  for (const NodeRef& one : *opened) changeRowsOf(*one);
 }
 
-void EditModel::readRows(const World& world) {
-  areRowsStale_ = false;
-  rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
-}
-
-// Notes that something other than a value may have changed. Edits of nodes are counted; only what
-// Scripts have done to them may be missed, where it takes long to read all rows again.
-void EditModel::noteRequest() {
+// Returns what is stale when something other than a value may have changed. Edits of nodes are
+// counted; only what Scripts have done to them may be missed, where it takes long to read all rows
+// again: if there are many, or if they are searched for in the whole file.
+EditModel::Stale EditModel::anyChange() const {
   constexpr size_t mostReread = 10'000; // rows, which take some milliseconds
-  isStale_ = true;
-  areRowsStale_ |= rows_.size() <= mostReread;
+  return search_.empty() && rows_.size() <= mostReread ? Stale::rows : Stale::sheet;
 }
 
 void EditModel::readSheet(WorldEditor& editor) {
@@ -232,14 +238,15 @@ void EditModel::readSheet(WorldEditor& editor) {
 // have been opened, moved, added or removed.
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
-  const bool all = std::exchange(isStale_, false), values = std::exchange(areValuesStale_, false);
-  if (areRowsStale_) readRows(world);
-  if (all) {
+  const Stale stale = std::exchange(stale_, Stale::nothing);
+  if (stale == Stale::rows)
+    rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
+  if (stale >= Stale::sheet) {
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
   } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {
     readSheet(editor);
   }
-  if (all || values) {
+  if (stale >= Stale::values) {
     undoName_ = editor.editor().undoName();
     redoName_ = editor.editor().redoName();
     unsaved_ = editor.isChanged();

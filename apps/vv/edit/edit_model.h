@@ -3,7 +3,9 @@
 // wait until the world can be used. [the browser's thread]
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "edit/hiding.h"
+#include "edit/merged_list.h"
 #include "edit/outline.h"
 #include "edit/problems.h"
 #include "edit/properties.h"
@@ -76,7 +79,7 @@ class EditModel {
   std::string takeMessage() { return std::exchange(message_, {}); }
 
   // --- What is asked for ---
-  void request(Command command) { requests_.push_back({std::move(command)}); }
+  void request(Command command) { requests_.push_back({std::move(command), Stale::rows}); }
   // Requests an edit of a panel, which is a step of its own: it is refused while another step is
   // open, because that may still be taken back with all that is in it.
   void edit(Command command);
@@ -84,7 +87,7 @@ class EditModel {
   // Sets a field. All values until no widget is active any more are one step. It is refused if
   // another program has edited the field since it was shown. In a list those elements count that
   // differ from what was shown: others may have changed since. A parameter of a shader that is not
-  // declared yet gets its last value then.
+  // declared yet gets its last value then, unless the options of the shader have it.
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
   void setActive(bool active);
@@ -110,18 +113,28 @@ class EditModel {
     bool operator==(const Dragged&) const = default;
   };
 
-  struct Request {
-    Command command;
-    bool setsValue = false; // it changes nothing but the value of a field
+  // How much of what is shown must be read again: with each one also what stands before it.
+  enum class Stale : uint8_t {
+    nothing,
+    values, // values of fields, and the names of steps
+    sheet,  // the fields of the selected node
+    rows    // the outline
   };
 
-  void requestValue(Command command) { requests_.push_back({std::move(command), true}); }
+  struct Request {
+    Command command;
+    Stale stale; // by this command
+  };
+
+  void requestValue(Command command) { requests_.push_back({std::move(command), Stale::values}); }
   static std::string nameOf(const Dragged& dragged); // "Text.string"
-  void noteRequest();
+  void note(Stale stale) { stale_ = std::max(stale_, stale); }
+  Stale anyChange() const;
   void begin(const Dragged& dragged);
+  void setField(WorldEditor& editor, const Dragged& dragged, const ChangedList& change);
   void finishDrag();
   void reveal(WorldEditor& editor, xvrml::Node& node);
-  void readRows(const xvrml::World& world);
+  void changeRowsOf(const xvrml::Node& node);
   void read(WorldEditor& editor);
   void readSheet(WorldEditor& editor);
   std::vector<Line> framesOf(WorldEditor& editor, const EditView& view) const;
@@ -137,9 +150,7 @@ class EditModel {
   std::vector<Look> looks_;
   Hiding hiding_;
   bool unsaved_ = false, hasAsked_ = false, isActive_ = false;
-  // Everything that is shown may have changed, but for the rows of the outline; these may have;
-  // only the values of fields may have.
-  bool isStale_ = true, areRowsStale_ = true, areValuesStale_ = false;
+  Stale stale_ = Stale::rows;
   std::optional<Dragged> dragged_;         // what the step changes that is open
   std::optional<xvrml::Value> undeclared_; // the value of a parameter that is not declared yet
   std::vector<bool> touched_;              // elements of a list that it has changed

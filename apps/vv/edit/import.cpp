@@ -1,5 +1,6 @@
 #include "edit/import.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
@@ -38,11 +39,19 @@ std::string nameFor(const World& world, const fs::path& file) {
   return fresh;
 }
 
+// Returns whether an Inline has anything to show. A file that is broken from its beginning gives
+// content without nodes.
+bool showsSomething(const Node& made) {
+  const Scope* const content = inlineScope(made);
+  return content && std::any_of(content->roots.begin(), content->roots.end(),
+                                [](const NodeRef& root) { return bool(root); });
+}
+
 // Returns why the file of an Inline has not been read: the last of the messages since there were
 // `before`.
 std::string whyEmpty(const World& world, size_t before) {
   const std::vector<Diagnostic>& messages = world.diagnostics.list();
-  return messages.size() > before ? messages.back().message : "it cannot be read as a world";
+  return messages.size() > before ? messages.back().message : "it holds nothing that can be shown";
 }
 
 } // namespace
@@ -63,7 +72,7 @@ void importFile(WorldEditor& editor, const std::string& file) {
     made = insertNew(editor, placeForNew(editor), "Inline");
     // The world loads the content of an Inline when its URL is set.
     editor.editor().set(*made, "url", MFString{relativeUrl(path.string(), world.path)});
-    if (!inlineScope(*made))
+    if (!showsSomething(*made))
       throw EditError(
           fmt::format("{} is not imported: {}", path.string(), whyEmpty(world, before)));
     editor.editor().rename(*made, name);

@@ -235,7 +235,7 @@ void JournalFile::write(const TextStamp& base, std::string_view text) {
   // The lock makes this name ours, too: what stands there is left from a program that was killed.
   const std::string fresh = path_ + freshSuffix;
   ::unlink(fresh.c_str());
-  Descriptor file(::open(fresh.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  Descriptor file(picture::openNew(fresh, 0600));
   if (file.get() < 0) fail("write", path_, errno);
   try {
     lock(file.get());

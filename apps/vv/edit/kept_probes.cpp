@@ -93,7 +93,7 @@ void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
     if (hasProbe(probes, sensor)) continue;
     if (probes.all().size() >= most)
       throw EditError(fmt::format("there are {} probes already", most));
-    probes.addSensor(sensor);
+    probes.addSensor(sensor, sensor.name.substr(0, 64));
   }
   if (probes.all().size() == before)
     throw EditError(hasLarge ? fmt::format("the file has no more sensors of at most {} points: vv "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "edit/copy_node.h"
 #include "edit/material_files.h"
 #include "edit/node_fields.h"
+#include "libpicture/shader_text.h"
 #include "xvrml/nodes.h"
 #include "xvrml/walk.h"
 
@@ -234,6 +236,21 @@ void selectSameLook(WorldEditor& editor) {
   });
   std::reverse(found.begin(), found.end()); // walks begin at the last root
   editor.select(std::move(found));
+}
+
+std::string shaderOption(const Node& shape) {
+  constexpr std::string_view plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_+-.,:/=";
+  const auto* const shader = nodeCast<nodes::ORTShader>(lookOf(shape).surface);
+  if (!shader || shape.defName.find_first_of(".,:/=") != shape.defName.npos) return {};
+  bool isWhole = false;
+  const std::string rule = shape.defName + "=" + picture::shaderText(*shader, &isWhole);
+  // A shell takes these letters as they are.
+  const bool isPlain = rule.find_first_not_of(plain) == rule.npos;
+  constexpr size_t longest = 1024; // bytes of a command line that people read
+  return shape.defName.empty() || !isWhole || !isPlain || rule.size() > longest
+             ? ""
+             : "--shader " + rule;
 }
 
 } // namespace vv

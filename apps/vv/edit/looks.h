@@ -32,6 +32,10 @@ std::vector<Look> looksFor(WorldEditor& editor);
 std::vector<Look> looksIn(const std::string& folder);
 // Leaves the places of the appearance to be counted.
 ShapeLook lookOf(const xvrml::Node& shape);
+// Returns the option of vv that gives the shader of a Shape to one of its name:
+// "--shader Lens=Glass:index=1.8". Empty if the Shape has no name, or no shader that an option can
+// give as a whole.
+std::string shaderOption(const xvrml::Node& shape);
 
 // Gives the Shapes that are selected another look. A Shape without an appearance gets one. A
 // texture stays, and so do colour and transparency where the new material has them; the Appearance

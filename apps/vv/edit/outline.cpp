@@ -94,6 +94,22 @@ OutlineRow closedRow(const Open& place) {
   return row;
 }
 
+// Returns the rows of places, the last one first, and of what is open in them. seen: receives their
+// nodes.
+std::vector<OutlineRow> rowsOf(std::vector<Open> open, const OpenNodes& opened, SeenNodes& seen) {
+  std::vector<OutlineRow> rows;
+  while (!open.empty()) {
+    const Open place = std::move(open.back());
+    open.pop_back();
+    OutlineRow row = closedRow(place);
+    row.isUse = !seen.insert(place.node.get());
+    row.isOpen = row.canOpen && !row.isUse && opened.contains(place.node.get());
+    if (row.isOpen) appendChildPlaces(open, place);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 } // namespace
 
 std::string labelOf(const Node& node) {
@@ -105,19 +121,8 @@ std::string labelOf(const Node& node) {
 }
 
 std::vector<OutlineRow> Outline::rows(const World& world) const {
-  std::vector<OutlineRow> rows;
   SeenNodes seen;
-  std::vector<Open> open = rootPlaces(world);
-  while (!open.empty()) {
-    const Open place = std::move(open.back());
-    open.pop_back();
-    OutlineRow row = closedRow(place);
-    row.isUse = !seen.insert(place.node.get());
-    row.isOpen = row.canOpen && !row.isUse && open_.contains(place.node.get());
-    if (row.isOpen) appendChildPlaces(open, place);
-    rows.push_back(std::move(row));
-  }
-  return rows;
+  return rowsOf(rootPlaces(world), open_, seen);
 }
 
 void Outline::setOpen(const NodeRef& node, bool open) {
@@ -139,25 +144,36 @@ std::optional<MFNode> Outline::reveal(Browser& browser, Node& node) {
   return opened;
 }
 
-bool Outline::addRowsOf(const Node& node, std::vector<OutlineRow>& rows) const {
-  const auto parent = std::find_if(rows.begin(), rows.end(),
-                                   [&](const OutlineRow& row) { return row.node.get() == &node; });
-  if (parent == rows.end() || parent->isOpen) return false;
-  std::vector<Open> places;
-  appendChildPlaces(places, {{}, parent->node, parent->depth});
-  std::reverse(places.begin(), places.end());
+bool Outline::changeRowsOf(const Node& node, std::vector<OutlineRow>& rows) const {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const OutlineRow& one) {
+    return one.node.get() == &node && !one.isUse;
+  });
+  if (row == rows.end()) return false;
+  row->canOpen = hasChildren(node);
+  const bool opens = row->canOpen && open_.contains(&node);
+  if (row->isOpen == opens) return true;
+  // The rows in it begin here.
+  const auto first = row + 1;
   SeenNodes seen;
-  std::vector<OutlineRow> added;
-  for (const Open& place : places) {
-    if (!seen.insert(place.node.get()) || open_.contains(place.node.get())) return false;
-    added.push_back(closedRow(place));
+  const auto standsIn = [&seen](const OutlineRow& one) { return seen.contains(one.node.get()); };
+  if (!opens) {
+    const auto last = std::find_if(
+        first, rows.end(), [&row](const OutlineRow& one) { return one.depth <= row->depth; });
+    for (auto at = first; at != last; ++at) seen.insert(at->node.get());
+    // Another place of such a node would become its first one.
+    if (std::any_of(last, rows.end(),
+                    [&](const OutlineRow& one) { return one.isUse && standsIn(one); }))
+      return false;
+    row->isOpen = false;
+    rows.erase(first, last);
+    return true;
   }
-  if (std::any_of(rows.begin(), rows.end(),
-                  [&](const OutlineRow& row) { return seen.contains(row.node.get()); }))
-    return false;
-  parent->isOpen = true;
-  rows.insert(parent + 1, std::make_move_iterator(added.begin()),
-              std::make_move_iterator(added.end()));
+  std::vector<Open> places;
+  appendChildPlaces(places, {{}, row->node, row->depth});
+  std::vector<OutlineRow> added = rowsOf(std::move(places), open_, seen);
+  if (std::any_of(rows.begin(), rows.end(), standsIn)) return false;
+  row->isOpen = true;
+  rows.insert(first, std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
   return true;
 }
 

@@ -24,6 +24,9 @@ struct OutlineRow {
   PlacedNode place{}; // this one of its places
 };
 
+// Nodes whose children are to be seen. It keeps them, so that no address comes again.
+using OpenNodes = std::map<const xvrml::Node*, xvrml::NodeRef>;
+
 class Outline {
  public:
   // Returns the rows that are to be seen, from the top.
@@ -33,10 +36,10 @@ class Outline {
   // Opens all nodes on the way from a root to this one. Returns those that were closed, the
   // outermost first; none: it is not in the file.
   std::optional<xvrml::MFNode> reveal(xvrml::Browser& browser, xvrml::Node& node);
-  // Adds to rows, which rows() has returned, those of a node that has been opened since. Returns
-  // false if the rows must be read again: its row is not there, or what is in it stands elsewhere,
-  // too, or is open.
-  bool addRowsOf(const xvrml::Node& node, std::vector<OutlineRow>& rows) const;
+  // Adds to rows, which rows() has returned, those of a node that has been opened since, or takes
+  // out those of one that has been closed. Reads no others. Returns false if all rows must be read
+  // again: the node's row is not there, or what is in it stands elsewhere in them, too.
+  bool changeRowsOf(const xvrml::Node& node, std::vector<OutlineRow>& rows) const;
 
   // Returns the nodes whose DEF name, type or field names have this text, in any case, in the order
   // of the file; at most `most`.
@@ -44,7 +47,7 @@ class Outline {
                                       size_t most);
 
  private:
-  std::map<const xvrml::Node*, xvrml::NodeRef> open_; // keeps them, so that no address comes again
+  OpenNodes open_;
 };
 
 // Returns what a row says of a node: its DEF name and its type.

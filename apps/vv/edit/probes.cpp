@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "holm.h"
 
 namespace vv {
 
@@ -88,19 +91,20 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
   return text;
 }
 
-void Probes::add(const std::array<double, 3>& point) {
+void Probes::add(const std::array<double, 3>& point, std::string seen) {
   Probe probe;
   probe.number = ++last_;
   probe.point = point;
+  probe.seen = std::move(seen);
   probes_.push_back(probe);
 }
 
-void Probes::addSensor(const picture::PlacedSensor& sensor) {
+void Probes::addSensor(const picture::PlacedSensor& sensor, std::string seen) {
   std::array<double, 3> middle{};
   for (size_t k = 0; k < 3; ++k)
     middle[k] = sensor.first[k] + (sensor.columns - 1) * sensor.column[k] / 2 +
                 (sensor.rows - 1) * sensor.row[k] / 2;
-  add(middle);
+  add(middle, std::move(seen));
   probes_.back().sensor = sensor;
 }
 
@@ -198,7 +202,8 @@ std::vector<std::optional<Difference>> Probes::differences() const {
     chances.push_back(all[i]->chance);
     judged.push_back(i);
   }
-  for (const size_t i : significantOf(chances)) all[judged[i]]->isSignificant = true;
+  for (const size_t i : holm::significantOf(chances, changeLevel))
+    all[judged[i]]->isSignificant = true;
   return all;
 }
 

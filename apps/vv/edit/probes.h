@@ -25,6 +25,7 @@ struct Probe {
 
   int number = 0;
   std::array<double, 3> point{}; // in the world, if there is no area
+  std::string seen; // what it was put on: node, look, distance, place and normal; "" if nothing
   std::optional<Area> area;
   // Reads the light at the point, whatever the view is: the illuminance of the surface, or the
   // luminance that a sensor of the world sees; none: the probe reads the luminance in pictures.
@@ -55,9 +56,9 @@ class Probes {
   // Tell whether there are probes that are read from pictures, and whether one waits for it.
   bool readPictures() const;
   bool isWaiting() const;
-  void add(const std::array<double, 3>& point);
+  void add(const std::array<double, 3>& point, std::string seen = {});
   // Adds a sensor. The place of one with several points is their middle.
-  void addSensor(const picture::PlacedSensor& sensor);
+  void addSensor(const picture::PlacedSensor& sensor, std::string seen = {});
   // Adds a rectangle of the pictures of this view.
   void add(const Region& region, const EditView& view);
   void clear();

@@ -11,6 +11,8 @@
 #include "edit/shader_parameters.h"
 #include "xvrml/numbers.h"
 #include "xvrml/value_text.h"
+#include "xvrml/versions.h"
+#include "xvrml/visit_storage.h"
 
 namespace vv {
 
@@ -20,15 +22,29 @@ namespace {
 
 constexpr size_t mostUsable = 40; // nodes of the file that are offered
 
-size_t sizeOf(const Value& value) {
-  return std::visit(
-      [](const auto& one) -> size_t {
-        if constexpr (isList<std::remove_cvref_t<decltype(one)>>)
-          return one.size();
-        else
-          return 0;
-      },
-      value);
+// Return the bytes of a text or a picture, or of all in a list; 0 for other values.
+size_t bytesOf(const std::string& text) { return text.size(); }
+size_t bytesOf(const Image& image) { return image.pixels.size(); }
+template <class T> size_t bytesOf(const T& value) {
+  size_t sum = 0;
+  if constexpr (isList<T>)
+    for (const auto& one : value) sum += bytesOf(one);
+  return sum;
+}
+
+// A value is read where it stands, and not copied if it is long: it may have millions of elements.
+void readValue(WorldEditor& editor, Node& node, PropertyRow& row) {
+  visitStorage(row.field->type, node.storage(*row.field), [&row](const auto& value) {
+    using T = std::remove_cvref_t<decltype(value)>;
+    const T* const byDefault = std::get_if<T>(&row.defaultValue);
+    row.isDefault = byDefault && value == *byDefault;
+    if constexpr (isList<T>) row.size = value.size();
+    row.isLong =
+        row.size > PropertySheet::mostElements || bytesOf(value) > PropertySheet::mostBytes;
+    row.value = row.isLong ? Value() : Value(std::in_place_type<T>, value);
+    row.shown = isList<T> ? row.value : Value();
+  });
+  row.edits = editor.editor().editsOf(node, row.field->name);
 }
 
 bool holdsNodes(const FieldInfo& field) {
@@ -43,22 +59,12 @@ std::string helpOf(const FieldInfo& field, const std::string& text, const FieldR
   return help;
 }
 
-void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
-  row.value = node.get(*row.field);
-  row.size = sizeOf(row.value);
-  row.isDefault = row.value == row.defaultValue;
-  row.isLong = row.size > PropertySheet::mostElements;
-  row.edits = editor.editor().editsOf(node, row.field->name);
-  if (row.isLong) row.value = Value();
-  row.shown = isMultiple(row.field->type) ? row.value : Value();
-}
-
-PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field) {
+PropertyRow rowOf(WorldEditor& editor, Node& node, const FieldInfo& field) {
   PropertyRow row;
   row.field = &field;
-  row.defaultValue = field.defaultValue;
-  row.range = field.range;
-  row.help = helpOf(field, field.text, field.range);
+  row.defaultValue = defaultIn(node, field);
+  row.range = rangeIn(node, field);
+  row.help = helpOf(field, field.text, row.range);
   row.choices = choicesOf(field);
   if (holdsNodes(field)) {
     row.addable = typesFor(field);
@@ -71,8 +77,9 @@ PropertyRow rowOf(WorldEditor& editor, const Node& node, const FieldInfo& field)
 // Adds the parameters of a shader's class that the node does not declare, and says of the others
 // what the class says.
 void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, PropertySheet& sheet) {
-  const picture::ShaderClass* const known = classOf(editor, shader);
+  const picture::ShaderClass* const known = classOf(editor, shader.name, shader.file);
   if (!known) return;
+  const std::map<std::string, ShaderOption> options = optionsOf(shader);
   for (const picture::ShaderParameter& parameter : known->parameters) {
     const std::optional<FieldInfo> field = fieldFor(parameter);
     if (!field) continue;
@@ -96,7 +103,14 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
     row.help = helpOf(*field, field->text, field->range);
     row.isDefault = true;
     row.isDeclared = false;
-    row.isInOptions = isInOptions(shader, field->name);
+    if (const auto option = options.find(field->name); option != options.end()) {
+      const std::optional<Value> set = valueOf(option->second, parameter);
+      row.isInOptions = true;
+      row.isLong = !set;
+      if (set) row.value = *set;
+      row.isDefault = row.value == row.defaultValue && set;
+      row.help += "\nset by the options of the shader";
+    }
     sheet.rows.push_back(std::move(row));
   }
 }
@@ -114,6 +128,8 @@ std::string noteOf(const Node& node, size_t places) {
   if (const auto* instance = nodeCast<ProtoInstance>(&node))
     note = fmt::format("an instance of PROTO {}: its body is edited by these fields",
                        instance->declaration->type->name);
+  if (nodeCast<nodes::Inline>(&node))
+    note = "its content belongs to another file, which is edited by itself";
   if (places == 0) return "not in the world's file: it belongs to an Inline, a PROTO or a Script";
   if (places > 1)
     note += fmt::format("{}stands in {} places: an edit changes all of them",
@@ -139,7 +155,10 @@ PropertySheet sheetOf(WorldEditor& editor, const NodeRef& node) {
   if (const auto* const shader = nodeCast<nodes::ORTShader>(node))
     addParameters(editor, *shader, sheet);
   sheet.hasLook = nodeCast<nodes::Shape>(node) != nullptr;
-  if (sheet.hasLook) sheet.look = lookOf(*node);
+  if (sheet.hasLook) {
+    sheet.look = lookOf(*node);
+    sheet.shaderOption = shaderOption(*node);
+  }
   const auto places = [&editor](const NodeRef& one) { return placesOf(editor, one); };
   sheet.note = noteOf(*node, places(node));
   sheet.look.places = places(sheet.look.appearance);
@@ -167,6 +186,7 @@ bool refresh(WorldEditor& editor, PropertySheet& sheet) {
     const size_t places = sheet.look.places;
     sheet.look = lookOf(*sheet.node);
     sheet.look.places = places;
+    sheet.shaderOption = shaderOption(*sheet.node);
   }
   return isSame;
 }

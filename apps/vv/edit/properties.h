@@ -15,14 +15,14 @@ struct PropertyRow {
   // A row of the node's type, or the field that its ORTShader could declare for a parameter.
   const xvrml::FieldInfo* field = nullptr;
   std::shared_ptr<const xvrml::FieldInfo> parameter; // keeps the latter
-  xvrml::Value value; // empty for lists that are too long to be shown
+  xvrml::Value value;                                // empty if it is too long to be shown
   xvrml::Value shown; // a list as it was read, which a face does not change
   xvrml::Value defaultValue;
   size_t size = 0; // elements of a list
   bool isDefault = false;
-  bool isLong = false;      // the list has more than `mostElements`
+  bool isLong = false;      // it is not shown: it has more than `mostElements` or `mostBytes`
   bool isDeclared = true;   // false: the shader gets the field when it is changed
-  bool isInOptions = false; // the options of the shader set the parameter, which is not shown
+  bool isInOptions = false; // the options of the shader set it; what is no number is not shown
   uint64_t edits = 0;       // Editor::editsOf() when the value was read
   xvrml::FieldRange range;  // the range of each number
   std::string help;         // type, range and what the field does
@@ -31,10 +31,14 @@ struct PropertyRow {
   std::vector<size_t> places;                  // in how many places each node of the value stands
   std::vector<const xvrml::NodeType*> addable; // what may be added
   std::vector<xvrml::NodeRef> usable;          // nodes of the file that may stand here, too
+
+  // Returns whether a change of the value changes the options of the shader.
+  bool isOption() const { return isInOptions && !isLong; }
 };
 
 struct PropertySheet {
-  static constexpr size_t mostElements = 200;
+  // Longer lists, texts and pictures are not shown.
+  static constexpr size_t mostElements = 200, mostBytes = 32'768;
 
   xvrml::NodeRef node; // null: nothing is selected
   std::string title;   // "LAMP  PointLight"
@@ -42,6 +46,7 @@ struct PropertySheet {
   std::vector<PropertyRow> rows;
   bool hasLook = false; // the node is a Shape
   ShapeLook look;
+  std::string shaderOption; // as of shaderOption()
 
   // Returns the row of a field; null: there is none.
   const PropertyRow* find(const std::string& field) const;

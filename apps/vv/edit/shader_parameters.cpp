@@ -4,10 +4,13 @@
 #include <cfloat>
 #include <cstdint>
 #include <cstdlib>
-#include <iterator>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "edit/as_printed.h"
+#include "xvrml/numbers.h"
 
 namespace vv {
 
@@ -35,15 +38,12 @@ std::optional<Value> valueOf(const ShaderParameter& parameter) {
   }
 }
 
-// Returns the number that a plug-in's text has, as a float is printed: 0.1, not 0.10000000149.
-double printed(float number) { return std::strtod(fmt::format("{}", number).c_str(), nullptr); }
-
 } // namespace
 
-const ShaderClass* classOf(WorldEditor& editor, const nodes::ORTShader& shader) {
+const ShaderClass* classOf(WorldEditor& editor, const std::string& name, const std::string& file) {
   const std::vector<ShaderClass>& classes = editor.shaderClasses();
   const auto found = std::find_if(classes.begin(), classes.end(), [&](const ShaderClass& one) {
-    return one.name == shader.name && (shader.file.empty() || shader.file == one.library);
+    return one.name == name && (file.empty() || file == one.library);
   });
   return found == classes.end() ? nullptr : &*found;
 }
@@ -59,39 +59,98 @@ std::optional<FieldInfo> fieldFor(const ShaderParameter& parameter) {
   field.defaultValue = std::move(*value);
   field.text = parameter.text;
   if (parameter.minimum > -FLT_MAX) {
-    field.range.minimum = printed(parameter.minimum);
+    field.range.minimum = asPrinted(parameter.minimum);
     field.range.minimumOpen = false;
   }
   if (parameter.maximum < FLT_MAX) {
-    field.range.maximum = printed(parameter.maximum);
+    field.range.maximum = asPrinted(parameter.maximum);
     field.range.maximumOpen = false;
   }
   field.declared = true;
   return field;
 }
 
-bool isInOptions(const nodes::ORTShader& shader, const std::string& parameter) {
-  constexpr std::string_view types[] = {"1i",  "bool",  "1f",     "2f",     "3f",      "4f",
-                                        "16f", "color", "floats", "string", "texture", "file"};
-  constexpr const char* blanks = " \t\r\n,";
-  return std::any_of(shader.options.begin(), shader.options.end(), [&](std::string_view option) {
-    // The name of a parameter stands behind its type; an option may be one of several.
-    std::string_view before;
-    for (size_t at = option.find_first_not_of(blanks); at != option.npos;
-         at = option.find_first_not_of(blanks, at)) {
-      const size_t end = std::min(option.find_first_of(blanks, at), option.size());
-      const std::string_view word = option.substr(at, end - at);
-      if (word == parameter && std::count(std::begin(types), std::end(types), before) > 0)
-        return true;
-      before = word;
-      at = end;
-    }
-    return false;
-  });
+std::map<std::string, ShaderOption> optionsOf(const nodes::ORTShader& shader) {
+  std::vector<std::string> errors; // the world's messages have them
+  std::map<std::string, ShaderOption> options;
+  for (ShaderOption& option : parseShaderOptions(shader.options, errors)) {
+    std::string name = option.name;
+    options.insert_or_assign(std::move(name), std::move(option));
+  }
+  return options;
 }
 
-void declareParameter(WorldEditor& editor, const NodeRef& shader, const std::string& name,
-                      const Value& value) {
+namespace {
+
+// Return how many numbers an option or a value has; 0 if it is something else.
+size_t countOf(const ShaderOption& option) {
+  using Type = ShaderOption::Type;
+  if (option.type == Type::integer) return 1;
+  return option.type == Type::floats || option.type == Type::color ? option.numbers.size() : 0;
+}
+size_t countOf(const Value& value) {
+  return std::visit(
+      []<class T>(const T&) -> size_t {
+        if constexpr (Numeric<T>)
+          return numberCount<T>;
+        else
+          return 0;
+      },
+      value);
+}
+
+} // namespace
+
+std::optional<Value> valueOf(const ShaderOption& option, const ShaderParameter& parameter) {
+  const bool isInteger = option.type == ShaderOption::Type::integer;
+  if (isInteger != (parameter.type == RT_PARAM_INT) || countOf(option) == 0 ||
+      countOf(option) != parameter.value.size())
+    return std::nullopt;
+  if (isInteger) return int32_t(option.integer);
+  ShaderParameter set = parameter;
+  set.value = option.numbers;
+  return valueOf(set);
+}
+
+namespace {
+
+// Returns the text of an option's values with other numbers. Those that stay keep their words.
+std::string withNumbers(std::string_view text, const Value& value) {
+  constexpr const char* blanks = " \t\r\n,";
+  std::string out;
+  const auto replace = [&](auto number) {
+    const size_t begin = std::min(text.find_first_not_of(blanks), text.size());
+    const size_t end = std::min(text.find_first_of(blanks, begin), text.size());
+    const std::string word(text.substr(begin, end - begin));
+    const bool stays = decltype(number)(std::strtod(word.c_str(), nullptr)) == number;
+    out += std::string(text.substr(0, begin)) + (stays ? word : fmt::format("{}", number));
+    text.remove_prefix(end);
+  };
+  std::visit(
+      [&]<class T>(const T& set) {
+        if constexpr (Numeric<T>)
+          for (int i = 0; i < numberCount<T>; ++i) replace(numbersOf(set)[i]);
+      },
+      value);
+  return out += text;
+}
+
+} // namespace
+
+void setParameter(WorldEditor& editor, const NodeRef& shader, const std::string& name,
+                  const Value& value) {
+  if (const auto* const node = nodeCast<nodes::ORTShader>(shader)) {
+    const auto options = optionsOf(*node);
+    const auto option = options.find(name);
+    if (option != options.end() && countOf(option->second) == countOf(value)) {
+      const auto& [begin, end] = std::pair(option->second.begin, option->second.end);
+      MFString texts = node->options;
+      std::string& text = texts.at(option->second.element);
+      text.replace(begin, end - begin, withNumbers(text.substr(begin, end - begin), value));
+      return editor.step("Set ORTShader." + name,
+                         [&] { editor.editor().set(*shader, "options", std::move(texts)); });
+    }
+  }
   const NodeRef made = editor.editor().declare(*shader, name, value);
   MFNode nodes = editor.selection();
   std::replace(nodes.begin(), nodes.end(), shader, made);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "edit/actions.h"
+#include "edit/as_printed.h"
 #include "xvrml/nodes.h"
 
 namespace vv {
@@ -27,7 +28,7 @@ constexpr double leastFacing = 0.2;
 constexpr const char* verbs[] = {"Move", "Turn", "Scale"};
 
 V3d vectorOf(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-V3d vectorOf(const Vec3f& v) { return {double(v.x), double(v.y), double(v.z)}; }
+V3d vectorOf(const Vec3f& v) { return {asPrinted(v.x), asPrinted(v.y), asPrinted(v.z)}; }
 Vec3f floats(const V3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 // Returns where a ray meets the plane through a point that faces the camera.

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/save_edits.h"
+#include "xvrml/versions.h"
 
 namespace vv {
 
@@ -100,9 +101,10 @@ NodeSlot WorldEditor::placeOf(const Node& node, const Accepts& accepts) {
 
 NodeSlot WorldEditor::endOf(Node* parent, const std::string& field) const {
   if (!parent) return {nullptr, "", browser_.world().scope.roots.size()};
-  const FieldInfo* info = parent->type().find(field);
+  const FieldInfo* info = findField(*parent, field);
   const bool isList = info && info->type == FieldType::MFNode && holdsValue(*info);
-  return {parent, field, isList ? static_cast<const MFNode*>(parent->storage(*info))->size() : 0};
+  return {parent, std::string(ownName(*parent, field)),
+          isList ? static_cast<const MFNode*>(parent->storage(*info))->size() : 0};
 }
 
 std::string WorldEditor::undo() {

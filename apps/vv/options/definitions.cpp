@@ -5,6 +5,7 @@
 #include "nearest.h"
 #include "values.h"
 #include "xvrml/value_text.h"
+#include "xvrml/versions.h"
 
 namespace vv {
 
@@ -32,14 +33,14 @@ NodeRef findNode(const std::string& text, const std::string& name, const World& 
 
 const FieldInfo& findField(const std::string& text, const std::string& name, const Node& node) {
   const NodeType& type = node.type();
-  const FieldInfo* field = type.find(name);
-  if (!field) field = type.findEventIn(name);
+  const FieldInfo* field = xvrml::findField(node, name);
+  if (!field) field = findEventIn(node, name);
   if (field && field->access == Access::eventOut)
     fail(text, fmt::format("{} is an eventOut: {} sends it", name, type.name));
   if (field) return *field;
   std::vector<std::string> known;
   for (const FieldInfo& one : type.fields)
-    if (one.access != Access::eventOut) known.push_back(one.name);
+    if (one.access != Access::eventOut) known.emplace_back(fieldName(node, one));
   fail(text, fmt::format("{} has no field {}{}", type.name, name, didYouMean(name, known)));
 }
 
@@ -59,7 +60,7 @@ Definition readOne(const std::string& text, const World& world) {
   // rotation axes are normalised, so their range is not checked
   const bool rotates =
       one.field->type == FieldType::SFRotation || one.field->type == FieldType::MFRotation;
-  if (holdsValue(*one.field) && !rotates && !inRange(*one.field, *value))
+  if (holdsValue(*one.field) && !rotates && !inRange(*one.node, *one.field, *value))
     fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name,
                            one.field->name));
   one.value = std::move(*value);

@@ -28,7 +28,6 @@ constexpr ForeignOption habits[] = {
     {"--render-output", "-o FILE writes a picture"},
     {"--outfile", "-o FILE writes a picture"},
     {"--video", "-o film.mp4 with --frames FIRST-LAST or --turntable N writes a film"},
-    {"--samples", "--spp N sets the samples per pixel"},
     {"--sample-count", "--spp N sets the samples per pixel"},
     {"--quality", "--spp N sets the samples per pixel, --error 2% the precision"},
     {"--noise-threshold", "--error 2% sets the precision"},

@@ -12,8 +12,8 @@ namespace vv {
 // 800*600; 800 600; 800); otherwise "".
 std::string sizeHint(std::string_view text);
 
-// Returns a sentence that names the equivalent of another program's option (--resolution, --samples
-// and so on); "" if none is known.
+// Returns a sentence that names the equivalent of another program's option (--resolution,
+// --sample-count and so on); "" if none is known.
 std::string optionHint(std::string_view option);
 
 // Returns what to do with a second file on the command line: it may be a picture to write, or one

@@ -22,8 +22,8 @@ constexpr std::string_view exitCodes = "exit codes", everything = "all";
 
 // The options of the short text.
 constexpr std::string_view usual[] = {
-    "--output",   "--size", "--spp",    "--error", "--preset",  "--from",  "--viewpoint", "--fit",
-    "--exposure", "--time", "--shader", "--check", "--explain", "--stats", "--help"};
+    "--output", "--size",     "--spp",  "--error",  "--preset", "--from",    "--viewpoint",
+    "--fit",    "--exposure", "--time", "--shader", "--check",  "--explain", "--stats"};
 
 // Breaks `text` into lines of at most `columns`; all lines except the first are indented by
 // `indent` blanks.
@@ -97,8 +97,10 @@ std::string usage() {
          "  vv edit world.wrl               opens it with the editor, which keeps the file as it "
          "is "
          "written\n"
-         "  vv world.wrl --check            reports what is wrong with the world\n"
          "  vv merge a.exr b.exr -o c.exr   adds pictures of different seeds, written with --sums\n"
+         "  vv compare a.exr b.exr          tells whether two pictures differ by more than their "
+         "noise\n"
+         "  vv film --join f*.png -o f.mp4  makes a film of pictures\n"
          "  vv serve world.wrl              shows the world on a page for browsers; prints its "
          "address\n"
          "\n"
@@ -115,7 +117,8 @@ std::string describeExitCodes() {
          "  3    unusable input: the world, or another file that the command line names, "
          "cannot be read\n"
          "  4    --check, --strict or --audit found problems; --measure found no sensor or a wrong "
-         "one\n"
+         "one;\n"
+         "       vv compare found a difference; --audit-denoise found more doubt than it allows\n"
          "  5    under --strict: a plug-in or a texture is missing\n"
          "  6    fewer workers than --require-workers asks for\n"
          "  7    --time-limit has ended a run with --resume; the same command goes on\n"

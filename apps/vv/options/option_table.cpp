@@ -239,6 +239,7 @@ template <Job job> void ask(Options& o, const std::string&) { o.jobs.push_back(j
 
 constexpr const char *sequenceNeeds =
                          "--frames and --turntable need -o (or --check, to test a world)",
+                     *samplesNeed = "--samples is for {}; --spp N sets the samples per pixel",
                      *pageNeeds = "--port, --address, --token and --edit need {}";
 
 const OptionInfo table[] = {
@@ -324,6 +325,18 @@ const OptionInfo table[] = {
      with(repeatable,
           needs("--denoise",
                 "--raw needs {}: without it, -o writes the picture as it was rendered"))},
+    {"--audit-denoise", "[PERCENT]", "Picture",
+     "With --denoise: count the pixels whose denoised colour leaves the 99 % interval of the "
+     "picture "
+     "before, for --stats, and show them in the channel doubt of EXR files (above 1: doubtful). "
+     "The "
+     "exit code is 4 if they are more than PERCENT of the pixels that have intervals. Needs --spp "
+     "32 "
+     "or more.",
+     [](Options& o, const std::string& v) {
+       o.mostDoubt = v.empty() ? 1 : readNumber(v, -1e-9, 100 + 1e-9) / 100;
+     },
+     with(needs("--denoise"))},
     {"--preview-raster", "", "Picture",
      "Draw the pictures of -o by a z-buffer instead of rays, for a first look at a large world: "
      "without shadows, reflections, refractions and samples. Files say so.",
@@ -430,6 +443,22 @@ const OptionInfo table[] = {
      with(excludes("--time", "only one of {} and --frames can be used"),
           excludes("--turntable", "only one of --frames and {} can be used"),
           needs("-o,--check", sequenceNeeds))},
+    {"--missing", "", "Time",
+     "Make only those frames of --frames whose files are absent or damaged.",
+     [](Options& o, const std::string&) { o.missing = true; },
+     with(needs("--frames"), needs("-o"),
+          excludes("--viewpoint all,several sides of --from,--preview"))},
+    {"--jobs", "N", "Time",
+     "Make no pictures, but print N commands, each for a part of --frames, for the machines of a "
+     "farm (docs/farms.md). They cost about the same, by a few frames that are drawn in small.",
+     [](Options& o, const std::string& v) { o.farmJobs = int(readInteger(v, 1, 1000000)); },
+     with(needs("--frames"), needs("-o"),
+          excludes("--check,--measure,--compare,--stats,--input,--preview,--watch,--resume"))},
+    {"--join", "", "Time",
+     "Make a film of pictures that are there: vv film --join f-*.png -o film.mp4, in the order of "
+     "the "
+     "command line. All must have one size.",
+     [](Options&, const std::string&) {}, with(needs("vv film"))},
     {"--fps", "F", "Time",
      "Frames per second of sequences, films and the window, and steps per second of the world's "
      "clock (default 30).",
@@ -481,7 +510,7 @@ const OptionInfo table[] = {
     {"--preset", "studio|product|technical|pcb|NAME", "Change",
      "Use the options of a preset, unless others are given: studio (soft light, grey backdrop), "
      "product (the same before white), technical (the light of the camera, white), pcb (a "
-     "studio for KiCad's boards, with materials by their names), or one of a vv.toml."},
+     "studio for KiCad's boards, with materials by names and colours), or one of a vv.toml."},
     {"--config", "FILE|none", "Change",
      "Take presets and options from FILE, or from none, instead of the vv.toml beside the world "
      "(docs/presets.md)."},
@@ -519,12 +548,17 @@ const OptionInfo table[] = {
      "Replace the surface shader of shapes: Ball=Glass:index=1.33, material:PIN-*=Metal. SELECTOR "
      "is a DEF name (of a shape, an appearance, a Material or a group), or material:GLOB, "
      "appearance:GLOB or shape:GLOB for all nodes with such DEF names, also in Inlines and "
-     "prototypes, or colour:R,G,B[,SHININESS] for Materials of about this diffuseColor (and "
-     "shininess), or * for all shapes that have no shader yet. CLASS is LIBRARY/CLASS for a "
+     "prototypes, or kicad:GLOB for materials of KiCad's parts (kicad:PIN-*), which need no names, "
+     "or colour:R,G,B[,SHININESS] for Materials of about this diffuseColor (and shininess), or * "
+     "for all shapes that have no shader yet. CLASS is LIBRARY/CLASS for a "
      "class of a plug-in. The VALUE of a texture is a file name; @FILE as VALUE reads a text from "
      "a file. --shader @FILE reads rules, one a line. May be given several times; the last rule "
      "that selects a shape wins.",
      addShader, with(repeatable, inPresets)},
+    {"--placeholders", "", "Change",
+     "Draw a clear grey box in the place of each Inline that cannot be read, if its size is known: "
+     "by its bboxSize, or by the name of a KiCad part (SOIC-8_3.9x4.9mm.wrl).",
+     [](Options& o, const std::string&) { o.placeholders = true; }, with(inPresets)},
     {"--studio", "COLOUR", "Change",
      "Light a model as in a studio: soft boxes that stand where the camera stands, a ground that "
      "catches its shadow, and a backdrop of COLOUR (as for --background), instead of the world's "
@@ -610,10 +644,11 @@ const OptionInfo table[] = {
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
      ask<Job::listKeys>},
     {"--explain", "", "Inspect",
-     "Print the light transport algorithm and why it was chosen, and the objects that the world is "
+     "Print the light transport algorithm and why it was chosen, the materials with the rule of "
+     "--shader or a preset that each gets its shader from, and the objects that the world is "
      "rendered as: each with the reason, its triangles, bytes and instances.",
      ask<Job::explain>},
-    {"--json", "", "Inspect", "Print --info, --explain and the lists as JSON.",
+    {"--json", "", "Inspect", "Print --info, --explain, the lists and vv compare as JSON.",
      [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect",
      "Write statistics as JSON, one file for a whole sequence; - is standard output. image.spp is "
@@ -663,6 +698,16 @@ const OptionInfo table[] = {
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
      "interrupted. In the window, reload the world and keep the view.",
      [](Options& o, const std::string&) { o.watch = true; }, with(needs("-o,the window,vv serve"))},
+    {"--samples", "N,M", "Inspect",
+     "Samples per pixel of the two pictures of vv compare. With the same number twice they "
+     "have equal noise, and small changes are found best; with --variance, the variances are "
+     "divided by them.",
+     [](Options& o, const std::string& v) { o.compared.samples = readSamplesOfTwo(v); },
+     with(needs("vv compare", samplesNeed))},
+    {"--variance", "", "Inspect",
+     "Judge single pixels by the channel variance of both files, which is that of "
+     "the pixel, or of its samples if a channel or --samples has their number.",
+     nullptr, with(needs("vv compare"))},
     {"--write", "FILE", "Write",
      "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, .glb and "
      ".gltf "

@@ -121,7 +121,7 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
-// Returns the job of a command without dashes, `vv serve` or `vv merge`; null for other command
+// Returns the job of a command without dashes, such as `vv serve`; null for other command
 // lines. Worlds of these names are ./serve, ./merge.
 const JobInfo* commandOf(int argc, char** argv) {
   for (const JobInfo& info : jobTable)
@@ -135,13 +135,19 @@ bool takesNext(std::string_view word) {
   return option && *option->argument && option->argument[0] != '[';
 }
 
-// Takes the files of vv merge, and refuses options that say how to render.
+// Refuses options that a command without a world does not know. given: their names.
+void refuseOthers(const char* command, std::initializer_list<std::string_view> allowed,
+                  const std::vector<std::string>& given) {
+  for (const std::string& name : given)
+    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
+      throw UsageError(
+          fmt::format("vv {} renders nothing: {} cannot be used with it", command, name));
+}
+
+// Takes the files of vv merge.
 void readMerge(Options& options, const std::vector<std::string>& files,
                const std::vector<std::string>& given) {
-  constexpr std::string_view allowed[] = {"-o", "--sums", "--stats", "--compare", "-q", "-v"};
-  for (const std::string& name : given)
-    if (std::find(std::begin(allowed), std::end(allowed), name) == std::end(allowed))
-      throw UsageError(fmt::format("vv merge renders nothing: {} cannot be used with it", name));
+  refuseOthers("merge", {"-o", "--sums", "--stats", "--compare", "-q", "-v"}, given);
   if (files.empty())
     throw UsageError("vv merge: files were expected: EXR files that were written with --sums, or "
                      "files of --resume");
@@ -153,6 +159,52 @@ void readMerge(Options& options, const std::vector<std::string>& files,
       throw UsageError(output.path + ": vv merge makes one picture, not a film");
   options.merge = files;
   checkTogether(options);
+}
+
+// Takes the files of vv compare.
+void readCompare(Options& options, const std::vector<std::string>& files,
+                 const std::vector<std::string>& given) {
+  refuseOthers("compare", {"-o", "--samples", "--variance", "--json", "-q", "-v"}, given);
+  if (files.size() != 2)
+    throw UsageError(fmt::format("vv compare: two pictures were expected, not {}", files.size()));
+  for (const Output& output : options.outputs) {
+    if (output.film != picture::FilmKind::none)
+      throw UsageError(output.path + ": vv compare makes one picture, not a film");
+    if (output.path == "-")
+      throw UsageError("vv compare writes to standard output: -o needs a file name");
+  }
+  options.compared.files = files;
+  checkTogether(options);
+}
+
+// Takes the pictures of vv film --join.
+void readFilm(Options& options, const std::vector<std::string>& files,
+              const std::vector<std::string>& given) {
+  refuseOthers("film", {"-o", "--join", "--fps", "-q", "-v"}, given);
+  if (files.empty() || !options.isGiven("--join"))
+    throw UsageError("vv film --join FILE... -o FILM was expected, with pictures in their order");
+  if (options.outputs.empty())
+    throw UsageError(
+        fmt::format("vv film: -o FILM was expected, one of {}", picture::filmSuffixes));
+  for (const Output& output : options.outputs)
+    if (output.film == picture::FilmKind::none)
+      throw UsageError(
+          fmt::format("{}: vv film makes a film, one of {}", output.path, picture::filmSuffixes));
+  options.joined = files;
+}
+
+// Reads the files of a command that takes no world. given: the names of its options.
+using ReadFiles = void (*)(Options&, const std::vector<std::string>& files,
+                           const std::vector<std::string>& given);
+
+// Returns the reader of a command that takes no world; null for others.
+ReadFiles filesReaderOf(Job command) {
+  switch (command) {
+  case Job::merge: return readMerge;
+  case Job::compare: return readCompare;
+  case Job::film: return readFilm;
+  default: return nullptr;
+  }
 }
 
 // Refuses --NAME=VALUE of an option without a value, and --NAME= of one whose value is optional.
@@ -238,10 +290,10 @@ Options readCommandLine(int argc, char** argv) {
   inputs.insert(inputs.end(), files.begin(), files.end());
   const JobInfo* const command = commandOf(argc, argv);
   if (command) options.jobs.push_back(command->job);
-  const bool merges = options.has(Job::merge);
+  const ReadFiles readFiles = command ? filesReaderOf(command->job) : nullptr;
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
-  if (!inputs.empty() && !merges) options.input = inputs[0];
+  if (!inputs.empty() && !readFiles) options.input = inputs[0];
   std::vector<Setting> given; // on the command line
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
@@ -256,20 +308,20 @@ Options readCommandLine(int argc, char** argv) {
                        {},
                        false});
   }
-  if (inputs.size() > 1 && !merges) {
+  if (inputs.size() > 1 && !readFiles) {
     // The second file may stand behind an option with an empty value: --spp= 64.
     Options unused;
     for (const Setting& setting : given)
       if (setting.value.empty() && *setting.option->argument) apply(setting, unused);
     throw UsageError(secondFileHint(inputs[0], inputs[1]));
   }
-  if (merges) {
+  if (readFiles) {
     std::vector<std::string> names;
     for (const Setting& setting : given) {
       names.push_back(shownName(*setting.option));
       apply(setting, options);
     }
-    if (!options.has(Job::help) && !options.has(Job::version)) readMerge(options, inputs, names);
+    if (!options.has(Job::help) && !options.has(Job::version)) readFiles(options, inputs, names);
     return options;
   }
   for (const Setting& setting : withPresets(std::move(given), options.input))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -40,6 +41,8 @@ enum class Job : uint8_t {
   help,
   version,
   merge,
+  compare,
+  film,
   serve,
   edit,
   listKeys,
@@ -61,6 +64,8 @@ inline constexpr JobInfo jobTable[] = {
     {Job::help, "--help", false, false},
     {Job::version, "--version", false, false},
     {Job::merge, "merge", false, false},
+    {Job::compare, "compare", false, false},
+    {Job::film, "film", false, false},
     {Job::serve, "serve", false, true},
     {Job::edit, "edit", false, true},
     {Job::listKeys, "--list-keys", false, false},
@@ -79,6 +84,12 @@ struct ServeOptions {
   // A text, @FILE, or "new" for random characters; empty: as the environment says, or none.
   std::string token;
   bool edit = false; // those who have a second token may edit the world
+};
+
+// The pictures of vv compare.
+struct CompareOptions {
+  std::vector<std::string> files;            // two
+  std::optional<std::array<int, 2>> samples; // samples per pixel of each
 };
 
 // Says which seeds a picture is made of.
@@ -100,10 +111,13 @@ struct Options {
   // window.
   std::optional<double> epoch;
   std::optional<FrameRange> frames;
-  double fps = 30;   // rate of frames and films; also the step of the world's clock
-  int turntable = 0; // number of pictures around the world; 0: none
+  bool missing = false; // only the frames that are absent or damaged
+  int farmJobs = 0;     // commands that the sequence is cut into; 0: its pictures are made here
+  double fps = 30;      // rate of frames and films; also the step of the world's clock
+  int turntable = 0;    // number of pictures around the world; 0: none
   std::vector<std::string> definitions; // texts of the form DEF.field=value
   std::vector<picture::ShaderRule> shaders;
+  bool placeholders = false;       // boxes stand for Inlines that cannot be read
   std::string cameraShader;        // text of the form Class:param=value
   std::string cameraShaderFolder;  // confines the files that it names; empty: anywhere
   std::vector<picture::Side> from; // sides that the model is seen from
@@ -136,12 +150,16 @@ struct Options {
   bool sums = false;              // EXR files get the sums of their pictures
   SeedRange seeds;                // the first one is also in render.quality
   std::vector<std::string> merge; // files whose sums are added (vv merge)
-  bool denoise = false;           // files and films of -o hold denoised pictures
-  std::string poseFile;           // the file of --pose; empty: none
-  bool posed = false;             // view.lookAt is that of --pose
-  bool fitExposure = false;       // render.view.exposure is chosen by the first picture
+  std::vector<std::string> joined; // pictures that become a film (vv film --join)
+  bool denoise = false;            // files and films of -o hold denoised pictures
+  std::string poseFile;            // the file of --pose; empty: none
+  bool posed = false;              // view.lookAt is that of --pose
+  bool fitExposure = false;        // render.view.exposure is chosen by the first picture
   std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
   std::vector<const OptionInfo*> given; // options that the command line or a preset sets
+  CompareOptions compared;
+  // Denoised pictures are audited, and the run fails if a larger share of one is doubtful.
+  std::optional<double> mostDoubt;
 
   // Tells whether the command line or a preset sets the option with this name.
   bool isGiven(std::string_view name) const;
@@ -156,7 +174,8 @@ struct Options {
   bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
     return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
-           !has(Job::merge) && !has(Job::serve) && !has(Job::listKeys);
+           !has(Job::merge) && !has(Job::compare) && !has(Job::film) && !has(Job::serve) &&
+           !has(Job::listKeys);
   }
   // Tells whether the world runs and somebody looks at it, in the window or on a page.
   bool showsWorld() const { return opensWindow() || has(Job::serve); }

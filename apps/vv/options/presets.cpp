@@ -14,6 +14,7 @@
 #include <toml++/toml.h>
 
 #include "libpicture/built_in_presets.h"
+#include "libpicture/shader_selector.h"
 #include "lower_case.h"
 #include "nearest.h"
 #include "options/option_info.h"

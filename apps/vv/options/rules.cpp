@@ -41,6 +41,8 @@ constexpr Condition conditions[] = {
     {"-o", [](const Options& o) { return o.makesPictures(); }},
     {"the window", [](const Options& o) { return o.opensWindow(); }},
     {"vv serve", [](const Options& o) { return o.has(Job::serve); }},
+    {"vv compare", [](const Options& o) { return o.has(Job::compare); }},
+    {"vv film", [](const Options& o) { return o.has(Job::film); }},
     {"--viewpoint all", [](const Options& o) { return o.severalViews(); }},
     {"several sides of --from", [](const Options& o) { return o.severalViews(); }},
     {"--error", [](const Options& o) { return o.render.error > 0; }},
@@ -92,13 +94,24 @@ const Rule rules[] = {
      },
      "only one of --environment, which shows all around, and --background can be used"},
     {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
-    {[](const Options& o) { return o.json && inspectionsOf(o) == 0; },
-     "--json needs " + joined(inspections(), "or")},
+    {[](const Options& o) { return o.json && inspectionsOf(o) == 0 && !o.has(Job::compare); },
+     "--json needs " + joined(inspections(), "or") + ", or vv compare"},
     {[](const Options& o) { return inspectionsOf(o) > 1; },
      fmt::format("only one of {} can be used", joined(inspections(), "and"))},
     // sequences of pictures
     {[](const Options& o) { return o.isSequence() && writesToStandardOutput(o); },
      "a sequence needs file names, not standard output"},
+    {[](const Options& o) {
+       return (o.missing || o.farmJobs > 0) &&
+              std::any_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.film != picture::FilmKind::none;
+              });
+     },
+     "--missing and --jobs are for files of single frames, such as .png: they cannot be used with "
+     "a "
+     "film"},
+    {[](const Options& o) { return o.farmJobs > 0 && o.input == "-"; },
+     "--jobs needs a file, not standard input: each job reads it"},
     {[](const Options& o) { return o.watch && o.input == "-"; },
      "--watch needs a file, not standard input"},
     // values of pictures

@@ -194,6 +194,17 @@ picture::Crop readCrop(std::string_view text) {
   return crop;
 }
 
+std::array<int, 2> readSamplesOfTwo(std::string_view text) {
+  std::array<int, 2> samples{};
+  const std::vector<std::string_view> parts = split(text, ',');
+  if (parts.size() != 2 || !whole(parts[0], samples[0]) || !whole(parts[1], samples[1]) ||
+      samples[0] < 1 || samples[1] < 1)
+    throw UsageError(fmt::format("N,M was expected: the samples per pixel of two pictures that are "
+                                 "compared, not \"{}\" (--spp N sets those of a picture)",
+                                 text));
+  return samples;
+}
+
 picture::Intrinsics readIntrinsics(std::string_view text) {
   constexpr double most = 1e6, middle = 0.5; // pixels; of the first pixel, from the edge
   const std::vector<std::string_view> parts = split(text, ',');

@@ -2,6 +2,7 @@
 // expected; readPose() throws Failure for a file. [any thread]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -32,7 +33,8 @@ double readSeconds(std::string_view text); // seconds from 0 to a million
 uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off
 void readSize(std::string_view text, int& width, int& height);
-picture::Crop readCrop(std::string_view text); // X,Y,WxH
+picture::Crop readCrop(std::string_view text);              // X,Y,WxH
+std::array<int, 2> readSamplesOfTwo(std::string_view text); // N,M
 // FX,FY,CX,CY in OpenCV's convention: the centre of the first pixel is at (0, 0)
 picture::Intrinsics readIntrinsics(std::string_view text);
 // 16 numbers by rows, or a file of them, after "opencv:" (the default) or "opengl:". file: gets the

@@ -12,7 +12,7 @@ enum ExitCode {
   exitRender = 1,     // the picture could not be made or written
   exitUsage = 2,      // the command line is wrong
   exitInput = 3,      // the world or another input file is missing or unusable
-  exitProblems = 4,   // --check or --strict found problems
+  exitProblems = 4,   // problems, or a difference, were found by what looks for them
   exitMissing = 5,    // under --strict: a plug-in or a texture is missing
   exitNoWorkers = 6,  // there are fewer workers than --require-workers asks for
   exitUnfinished = 7, // --time-limit has ended a run with --resume

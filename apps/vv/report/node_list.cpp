@@ -6,7 +6,7 @@
 
 #include "describe.h"
 #include "printable.h"
-#include "xvrml/node.h"
+#include "xvrml/versions.h"
 
 namespace vv {
 
@@ -14,16 +14,34 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Returns what versions of X3D say otherwise of a field.
+Json versionsJson(const xvrml::NodeType& type, const xvrml::FieldInfo& field) {
+  Json all = Json::array();
+  for (const xvrml::FieldRevision& one : revisionsOf(type))
+    if (one.field == field.name)
+      all.push_back({{"since", fmt::format("{}.{}", one.major, one.minor)},
+                     {"access", accessName(one.access)},
+                     {"default", valueText(one.defaultValue)},
+                     {"clause", std::string(one.clause)}});
+  return all;
+}
+
+// Returns the access of a field in VRML97, or in the standard that adds it.
+std::string_view ownAccess(const xvrml::FieldInfo& field) {
+  return accessName(field.exposedSince ? xvrml::Access::field : field.access);
+}
+
 Json typeJson(const xvrml::NodeType& type) {
   Json fields = Json::array();
   for (const xvrml::FieldInfo& field : type.fields) {
-    Json one = {{"name", field.name},
-                {"type", fieldTypeName(field.type)},
-                {"access", accessName(field.access)}};
+    Json one = {
+        {"name", field.name}, {"type", fieldTypeName(field.type)}, {"access", ownAccess(field)}};
     if (holdsValue(field)) one["default"] = valueText(field.defaultValue);
     if (!field.nodeTypes.empty()) one["accepts"] = field.nodeTypes;
     if (!field.text.empty()) one["text"] = field.text;
     if (field.ofX3d) one["standard"] = standardName(xvrml::Standard::x3d);
+    if (Json versions = versionsJson(type, field); !versions.empty())
+      one["versions"] = std::move(versions);
     fields.push_back(std::move(one));
   }
   Json all = {{"name", type.name}, {"component", type.component}, {"text", type.text}};
@@ -41,8 +59,8 @@ std::string typeText(const xvrml::NodeType& type, std::string_view comment) {
     out += fmt::format(" {} clause {}.", standardName(type.standard), type.clause);
   out += '\n';
   for (const xvrml::FieldInfo& field : type.fields) {
-    std::string line = fmt::format("  {:<12} {:<10} {}", accessName(field.access),
-                                   fieldTypeName(field.type), field.name);
+    std::string line =
+        fmt::format("  {:<12} {:<10} {}", ownAccess(field), fieldTypeName(field.type), field.name);
     if (holdsValue(field)) line = fmt::format("{:<46} {}", line, valueText(field.defaultValue));
     if (field.ofX3d) line += "  # X3D";
     out += line + "\n";

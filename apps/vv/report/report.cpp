@@ -9,13 +9,12 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "denoised_json.h"
 #include "describe.h"
-#include "libpicture/transport.h"
+#include "json_text.h"
 #include "libpicture/worker_facts.h"
-#include "printable.h"
 #include "transport_words.h"
 #include "xvrml/nodes.h"
 #include "xvrml/script_engines.h"
@@ -23,14 +22,6 @@
 namespace vv {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-// Serializes JSON. Names may contain bytes that are not UTF-8; they become the replacement
-// character.
-std::string dump(const Json& json) {
-  return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
-}
 
 // Returns the error estimate of the whole picture, relative (openrt.h, RTerrorStats). Samples that
 // are no replicates bound the error of the picture only loosely, and statistics do not change how a
@@ -46,13 +37,6 @@ Json errorEstimate(const RTerrorStats& s, bool asked) {
           {"unmet", value(s.unmet)},
           {"level", s.level},
           {"method", asked ? s.method : "none: --channels rgba,error,trust or --error tells it"}};
-}
-
-Json transportJson(const Options& options, const RTstats& s) {
-  return {{"chosen", picture::transportName(s.transport.chosen)},
-          {"reason", s.transport.reason},
-          {"claim", transportClaim(s, options.render)},
-          {"leaves_out", picture::omittedLightNames(s)}};
 }
 
 // Returns the state of the cluster since the program began to connect to the workers. `tiles`
@@ -151,15 +135,13 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
     json["image"]["seeds"] = options.seeds.count();
   }
   if (r.preview) json["image"]["preview"] = true;
-  if (!result.picture.denoisedBy.empty())
-    json["image"]["denoised"] = {
-        {"by", result.picture.denoisedBy}, {"channels", Json::array({"rgba"})}, {"biased", true}};
+  if (!result.picture.denoisedBy.empty()) json["image"]["denoised"] = denoisedJson(result);
   return json;
 }
 
 void addMachine(Json& json, const Options& options, const picture::RenderResult& result) {
   const RTstats& s = result.stats;
-  json["transport"] = transportJson(options, result.stats);
+  json["transport"] = transportJson(result.stats, options.render);
   const picture::RenderSettings& r = options.render;
   json["error"] = errorEstimate(s.error, (r.channels & (RT_ERROR | RT_TRUST)) || r.error > 0 ||
                                              r.timeLimit > 0);
@@ -257,6 +239,7 @@ void SequenceStats::add(const PictureName& name, double worldTime,
                    {"render", result.renderSeconds},
                    {"write", writeSeconds}};
   if (result.denoiseSeconds > 0) frame["time"]["denoise"] = result.denoiseSeconds;
+  if (result.doubt) frame["doubt"] = doubtJson(*result.doubt);
   if (sum.frames.empty()) sum.first = result.renderSeconds;
   sum.frames.push_back(std::move(frame));
   sum.map += result.mapSeconds;
@@ -294,116 +277,6 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
   json["fps"] = options.fps;
   json["frames"] = sum.frames;
   return dump(json);
-}
-
-namespace {
-
-// Counts what --compat changes, or would change.
-struct Compat {
-  uint64_t scripts = 0;  // Scripts that hold nodes without directOutput TRUE
-  uint64_t textures = 0; // appearances with a texture and a diffuseColor that is not white
-};
-
-Compat compatOf(const xvrml::World& world) {
-  Compat compat;
-  forEachNode(world, [&](const xvrml::Node& node) {
-    if (const auto* script = xvrml::nodeCast<xvrml::ScriptNode>(&node)) {
-      const xvrml::FieldInfo* flag = node.type().find("directOutput");
-      const bool allowed = flag && node.get(*flag) == xvrml::Value(true);
-      const bool holds = std::any_of(script->type().fields.begin(), script->type().fields.end(),
-                                     [&](const xvrml::FieldInfo& field) {
-                                       if (field.access == xvrml::Access::eventIn)
-                                         // events may send nodes to it
-                                         return field.type == xvrml::FieldType::SFNode ||
-                                                field.type == xvrml::FieldType::MFNode;
-                                       if (field.access != xvrml::Access::field) return false;
-                                       const xvrml::Value value = node.get(field);
-                                       const auto* one = std::get_if<xvrml::NodeRef>(&value);
-                                       const auto* many = std::get_if<xvrml::MFNode>(&value);
-                                       return (one && *one) || (many && !many->empty());
-                                     });
-      compat.scripts += !allowed && holds;
-    } else if (node.type().index == xvrml::nodes::Appearance::typeIndex) {
-      const auto* appearance = static_cast<const xvrml::nodes::Appearance*>(&node);
-      const auto* material =
-          xvrml::nodeCast<xvrml::nodes::Material>(xvrml::renderedNode(appearance->material.get()));
-      compat.textures +=
-          appearance->texture && material && material->diffuseColor != xvrml::Color{1, 1, 1};
-    }
-  });
-  return compat;
-}
-
-std::string compatText(const Options& options, const Compat& compat) {
-  std::string text;
-  if (compat.scripts > 0)
-    text += fmt::format("compat scripts {}: {} without directOutput TRUE; {}\n",
-                        options.run.directOutputAlways ? "on" : "off",
-                        compat.scripts == 1 ? "1 Script holds nodes"
-                                            : fmt::format("{} Scripts hold nodes", compat.scripts),
-                        options.run.directOutputAlways
-                            ? "their changes to these nodes are carried out, as in browsers of 1997"
-                            : "their changes to these nodes are ignored (6.40); --compat scripts "
-                              "carries them out, as browsers of 1997 did");
-  if (compat.textures > 0)
-    text += fmt::format(
-        "compat textures {}: {} appearance{} with a texture and a diffuseColor that is not white; "
-        "{}\n",
-        options.render.multiplyTextures ? "on" : "off", compat.textures,
-        compat.textures == 1 ? "" : "s",
-        options.render.multiplyTextures ? "a colour texture multiplies diffuseColor, as in X3D"
-                                        : "a colour texture replaces diffuseColor (4.14.3); "
-                                          "--compat textures multiplies them, as X3D does");
-  return text;
-}
-
-} // namespace
-
-std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
-                         const std::vector<xvrml::ExplainedObject>& objects) {
-  const Compat compat = compatOf(world);
-  uint64_t triangles = 0, bytes = 0, instances = 0, shapes = 0;
-  for (const xvrml::ExplainedObject& o : objects) {
-    triangles += o.triangles;
-    bytes += o.bytes;
-    instances += o.instances;
-    shapes += o.shapes;
-  }
-  if (options.json) {
-    Json list = Json::array();
-    for (const xvrml::ExplainedObject& o : objects)
-      list.push_back({{"name", o.name},
-                      {"reason", o.reason},
-                      {"triangles", o.triangles},
-                      {"shapes", o.shapes},
-                      {"bytes", o.bytes},
-                      {"instances", o.instances}});
-    return dump(
-        {{"transport", transportJson(options, stats)},
-         {"compat",
-          {{"scripts", {{"on", options.run.directOutputAlways}, {"affected", compat.scripts}}},
-           {"textures", {{"on", options.render.multiplyTextures}, {"affected", compat.textures}}}}},
-         {"objects", std::move(list)},
-         {"totals",
-          {{"objects", objects.size()},
-           {"shapes", shapes},
-           {"triangles", triangles},
-           {"bytes", bytes},
-           {"instances", instances},
-           {"instanced_triangles", stats.scene.triangles}}}});
-  }
-  std::string text =
-      fmt::format("transport {}: {}\n  {}\n", picture::transportName(stats.transport.chosen),
-                  stats.transport.reason, transportClaim(stats, options.render));
-  text += compatText(options, compat);
-  text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}\n", "triangles", "shapes", "bytes",
-                      "instances", "object: reason");
-  for (const xvrml::ExplainedObject& o : objects)
-    text += fmt::format("{:>10} {:>8} {:>12} {:>9}  {}: {}\n", o.triangles, o.shapes, o.bytes,
-                        o.instances, oneLine(o.name), oneLine(o.reason));
-  return text +
-         fmt::format("{:>10} {:>8} {:>12} {:>9}  {} objects, {} triangles with all instances\n",
-                     triangles, shapes, bytes, instances, objects.size(), stats.scene.triangles);
 }
 
 namespace {

@@ -51,11 +51,6 @@ class SequenceStats {
   std::unique_ptr<Impl> impl_;
 };
 
-// Describes the light transport of a world and what it is rendered as (OpenRTMapper::explain).
-// `stats` are those of any picture of the world.
-std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
-                         const std::vector<xvrml::ExplainedObject>& objects);
-
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
 // The up axis, and why it was chosen; the reason is empty if the axis was given.
 struct UpAxis {

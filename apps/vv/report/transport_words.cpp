@@ -1,6 +1,7 @@
 #include "transport_words.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "libpicture/transport.h"
 
@@ -38,6 +39,14 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
   if (const double clamp = settings.quality[RT_CLAMP]; clamp > 0)
     claim += fmt::format("; samples are clamped to {}, which removes light", clamp);
   return claim;
+}
+
+nlohmann::ordered_json transportJson(const RTstats& stats,
+                                     const picture::RenderSettings& settings) {
+  return {{"chosen", picture::transportName(stats.transport.chosen)},
+          {"reason", stats.transport.reason},
+          {"claim", transportClaim(stats, settings)},
+          {"leaves_out", picture::omittedLightNames(stats)}};
 }
 
 } // namespace vv

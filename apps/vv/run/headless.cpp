@@ -12,6 +12,7 @@
 #include "report/problems.h"
 #include "report/progress.h"
 #include "report/shader_list.h"
+#include "run/farm_jobs.h"
 #include "run/inputs.h"
 #include "run/leave_memory.h"
 #include "run/outputs.h"
@@ -35,8 +36,10 @@ constexpr int savingSeconds = 5;
 
 class Headless {
  public:
-  Headless(const Options& options, const std::string& commandLine, const Inspection& inspection)
-      : options_(options), commandLine_(commandLine), inspection_(inspection) {
+  Headless(const Options& options, const std::vector<std::string>& words,
+           const Inspection& inspection)
+      : options_(options), words_(words), commandLine_(fmt::format("{}", fmt::join(words, " "))),
+        inspection_(inspection) {
     options_.view.shader = readCameraShader(options_);
   }
 
@@ -47,6 +50,10 @@ class Headless {
     }
     checkOutputs(options_);
     checkInputs(options_);
+    if (options_.missing && Timeline(options_).size() == 0) {
+      if (!options_.quiet) say("vv: no frame is missing");
+      return exitDone;
+    }
     std::unique_ptr<xvrml::World> read;
     {
       const StageProgress reading("", "reading the world", options_.quiet);
@@ -73,6 +80,10 @@ class Headless {
     if (!options_.write.empty()) writeWorld(options_, *browser_);
     if (options_.check) return check();
     if (inspection_.ofWorld) inspect();
+    if (options_.farmJobs > 0) {
+      writeOut(farmJobs(options_, words_, *browser_));
+      return exitDone;
+    }
     int code = exitDone;
     if (options_.makesPictures()) {
       deferInterrupt(true, unsigned(stuckSeconds(options_.render) + savingSeconds));
@@ -117,7 +128,8 @@ class Headless {
   }
 
   Options options_;
-  const std::string& commandLine_;
+  const std::vector<std::string>& words_; // the words of the command line
+  const std::string commandLine_;
   const Inspection inspection_;
   Problems problems_{options_};
   std::unique_ptr<xvrml::Browser> browser_;
@@ -131,13 +143,13 @@ int runOnce(Headless& job) {
 }
 
 // Repeats the job whenever a file has changed. Errors are printed, and watching continues.
-int runWatching(const Options& options, const std::string& commandLine,
+int runWatching(const Options& options, const std::vector<std::string>& words,
                 const Inspection& inspection) {
   deferInterrupt(true);
   Watched watched({options.input});
   for (;;) {
     const timespec begin = Watched::now();
-    Headless job(options, commandLine, inspection);
+    Headless job(options, words, inspection);
     runOnce(job);
     watched.add(job.files(), begin);
     watched.add(shaderFiles(options.render.shaderPath), begin);
@@ -148,13 +160,13 @@ int runWatching(const Options& options, const std::string& commandLine,
 
 } // namespace
 
-int runHeadless(const Options& options, const std::string& commandLine,
+int runHeadless(const Options& options, const std::vector<std::string>& words,
                 const Inspection& inspection) {
   const size_t builtIn = xvrml::nodeTypes().size();
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
   if (xvrml::nodeTypes().size() > builtIn) freeAllMemory();
-  if (options.watch) return runWatching(options, commandLine, inspection);
-  auto job = std::make_shared<Headless>(options, commandLine, inspection);
+  if (options.watch) return runWatching(options, words, inspection);
+  auto job = std::make_shared<Headless>(options, words, inspection);
   const int code = runOnce(*job);
   if (job->leavesMemory()) leave(std::move(job));
   return code;

@@ -7,7 +7,8 @@
 namespace vv {
 
 // Returns an exit code; error messages have been printed.
-int runHeadless(const Options& options, const std::string& commandLine,
+// words: the command line; the first is the program.
+int runHeadless(const Options& options, const std::vector<std::string>& words,
                 const Inspection& inspection);
 
 } // namespace vv

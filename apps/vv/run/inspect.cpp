@@ -1,5 +1,6 @@
 #include "run/inspect.h"
 
+#include "report/explain.h"
 #include "report/node_list.h"
 #include "report/report.h"
 

@@ -50,7 +50,13 @@ void PictureFiles::prepare(const PictureRequest& request, size_t total,
   const double start = steadySeconds();
   const StageProgress progress(request.name.text(), "denoising", options_.quiet);
   if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
-  result.picture = denoiser_->denoised(result.picture);
+  picture::Picture made = denoiser_->denoised(result.picture);
+  if (options_.mostDoubt) {
+    std::vector<float> doubt = picture::doubtOf(result.picture, picture::rgbaOf(made));
+    result.doubt = picture::countDoubt(doubt);
+    made.planes[picture::doubtBit] = std::move(doubt);
+  }
+  result.picture = std::move(made);
   result.denoiseSeconds = steadySeconds() - start;
 }
 
@@ -93,7 +99,8 @@ std::optional<picture::Picture> PictureFiles::inFalseColours(const picture::Pict
 void PictureFiles::writePictures(const PictureRequest& request, const picture::Picture& made,
                                  const std::optional<picture::Picture>& coloured, bool complete,
                                  Which only) {
-  const picture::Picture wanted = picture::withChannels(made, options_.render.channels);
+  const picture::Picture wanted =
+      picture::withChannels(made, options_.render.channels | picture::doubtBit);
   for (const Output& output : options_.outputs) {
     if (output.film != picture::FilmKind::none || !request.isStill || !isOf(output, only)) continue;
     const bool shows = coloured && output.format->appliesCurve;

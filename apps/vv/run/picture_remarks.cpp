@@ -116,4 +116,23 @@ void PictureRemarks::warnOfError(const PictureRequest& request,
                          whyMissed(options_, result)));
 }
 
+void PictureRemarks::sayDoubt(const PictureRequest& request, const picture::RenderResult& result) {
+  if (!result.doubt) return;
+  const picture::DoubtCounts& doubt = *result.doubt;
+  const bool tooMuch = doubt.share() > *options_.mostDoubt;
+  hasDoubt_ |= tooMuch;
+  const std::string text =
+      doubt.judged == 0
+          ? "no pixel has error bars that can be trusted, so that the denoised picture cannot be "
+            "audited: --spp 32 or more gives some"
+          : fmt::format(
+                "{:.3g} % of {} judged pixels are doubtful: their denoised colour leaves the "
+                "99 % interval of the picture before",
+                100 * doubt.share(), doubt.judged);
+  if (tooMuch)
+    sayError(begin(request) + text);
+  else if (!options_.quiet && !options_.isSequence())
+    say("vv: " + begin(request) + text);
+}
+
 } // namespace vv

@@ -29,12 +29,18 @@ class PictureRemarks {
                bool idle, picture::Renderer& renderer);
   // Warns if the picture has not reached --error.
   void warnOfError(const PictureRequest& request, const picture::RenderResult& result) const;
+  // Says how much of a denoised picture is doubtful. In a sequence, only those are named that have
+  // more doubt than --audit-denoise allows.
+  void sayDoubt(const PictureRequest& request, const picture::RenderResult& result);
+  // Tells whether a picture had more doubt than it allows.
+  bool hasDoubt() const { return hasDoubt_; }
 
  private:
   const Options& options_;
   const xvrml::Browser& browser_;
   bool biasSaid_ = false, brightnessSaid_ = false;
   bool anythingShown_ = false; // a picture has shown something
+  bool hasDoubt_ = false;
 };
 
 } // namespace vv

@@ -151,6 +151,7 @@ int Pictures::make() {
   if (!options_.stats.empty() && !options_.isSequence())
     settings.channels |= RT_VARIANCE | RT_SAMPLES;
   if (options_.denoise) settings.channels |= picture::denoiserGuides;
+  if (options_.mostDoubt) settings.channels |= RT_ERROR | RT_TRUST;
   if (settings.error > 0) settings.channels |= RT_SAMPLES; // warnOfError() needs the samples
   warnOfAlpha(options_);
   settings.progressive = !options_.isSequence() && picture::isWorthProgressive(settings);
@@ -191,7 +192,7 @@ int Pictures::make() {
   if (options_.cluster.used() && !anyWorker_ && !options_.audit && !options_.quiet)
     sayWarning(total() == 1 ? "no worker answered; this machine made the picture alone"
                             : "no worker answered; this machine made the pictures alone");
-  return exitDone;
+  return remarks_.hasDoubt() ? exitProblems : exitDone;
 }
 
 size_t Pictures::total() const {
@@ -445,6 +446,7 @@ void Pictures::finish(const PictureRequest& request, const Moment& moment,
   remarks_.sayTimes(request, result, writeSeconds, last);
   remarks_.sayHint(request, result, last, inFlight_.empty(), *renderer_);
   remarks_.warnOfError(request, result);
+  remarks_.sayDoubt(request, result);
   if (options_.stats.empty()) return;
   if (options_.isSequence())
     frames_.add(request.name, moment.time, result, writeSeconds);

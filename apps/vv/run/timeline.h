@@ -2,6 +2,10 @@
 // them). [main thread]
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <vector>
+
 #include "options/options.h"
 
 namespace vv {
@@ -14,12 +18,14 @@ struct Moment {
 
 class Timeline {
  public:
+  // With --missing, reads the files of all frames.
   explicit Timeline(const Options& options);
   size_t size() const { return count_; }
   Moment operator[](size_t i) const;
 
  private:
   const Options& options_;
+  std::vector<long long> missing_; // the frames, if only those are made
   size_t count_ = 1;
 };
 

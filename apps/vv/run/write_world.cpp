@@ -30,6 +30,10 @@ void writeWorld(const Options& options, xvrml::Browser& browser) {
     if (options.time) WorldClock(browser, options.fps).advance(*options.time);
     return exportWorld(options, browser.world());
   }
+  if (!options.quiet)
+    for (const std::string& change :
+         xvrml::changesByWriting(browser.world(), options.writeEncoding))
+      sayWarning("--write: " + change);
   // Relative URLs of a text for standard output stay as they are.
   writeText(options.write,
             xvrml::writeWorld(browser.world(), options.write == "-" ? "" : options.write,

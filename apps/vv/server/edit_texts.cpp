@@ -125,7 +125,7 @@ std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers&
   appendRange(out, row.range);
   if (isLinear(node, row)) out += ",\"linear\":true";
   if (!row.choices.empty()) out += ",\"choices\":" + jsonLine(row.choices);
-  if (row.isLong || row.isInOptions || roughSize(row.value) > size_t(maxValueBytes)) {
+  if (row.isLong || roughSize(row.value) > size_t(maxValueBytes)) {
     out += ",\"long\":true";
   } else if (field.type == FieldType::SFNode || field.type == FieldType::MFNode) {
     appendLinks(out, row, numbers);
@@ -169,10 +169,10 @@ std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
                   jsonText(sheet.title), jsonText(shortened(sheet.note, mostNoteBytes)));
   if (name.size() <= mostNameBytes) out += ",\"name\":" + jsonText(name);
   if (sheet.hasLook)
-    out += fmt::format(R"(,"look":{{"name":{},"surface":{},"places":{}}})",
+    out += fmt::format(R"(,"look":{{"name":{},"surface":{},"places":{},"option":{}}})",
                        jsonText(shortened(sheet.look.name, mostNameBytes)),
                        sheet.look.surface ? std::to_string(numbers.of(sheet.look.surface)) : "null",
-                       sheet.look.places);
+                       sheet.look.places, jsonText(sheet.shaderOption));
   out += ",\"fields\":[";
   size_t shown = 0;
   for (const PropertyRow& row : sheet.rows) {

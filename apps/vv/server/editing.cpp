@@ -235,6 +235,16 @@ void Editing::perform(uint64_t, Face& face, const edit::Drag& drag) {
   const NodeRef node = nodeOf(face.numbers, drag.node);
   const PropertySheet& sheet = face.model.sheet();
   const PropertyRow* const row = sheet.node == node ? sheet.find(drag.field) : nullptr;
+  const auto begin = [&](std::string_view name) {
+    endTools(); // their steps can be taken back
+    if (!std::exchange(face.isDragging, true))
+      editor().editor().begin(fmt::format("Set {}.{}", node->type().name, name));
+  };
+  if (row && row->isOption()) {
+    const Value value = draggedValue(drag, *node, *row->field, row->value);
+    begin(drag.field);
+    return setParameter(editor(), node, drag.field, value);
+  }
   if (row && !row->isDeclared) {
     const auto& last = face.parameter;
     const bool isSame = last && last->shader == node && last->name == drag.field;
@@ -244,9 +254,7 @@ void Editing::perform(uint64_t, Face& face, const edit::Drag& drag) {
   }
   const FieldInfo& field = valueField(*node, drag.field);
   Value value = draggedValue(drag, *node, field, node->get(field));
-  endTools(); // their steps can be taken back
-  if (!std::exchange(face.isDragging, true))
-    editor().editor().begin(fmt::format("Set {}.{}", node->type().name, field.name));
+  begin(field.name);
   editor().editor().set(*node, field.name, std::move(value));
 }
 
@@ -258,7 +266,7 @@ void Editing::endDrag(uint64_t page, Face& face) {
   const std::optional<Face::Parameter> parameter = std::exchange(face.parameter, std::nullopt);
   if (!parameter) return;
   try {
-    declareParameter(editor(), parameter->shader, parameter->name, parameter->value);
+    setParameter(editor(), parameter->shader, parameter->name, parameter->value);
   } catch (const std::exception& error) {
     say(page, error.what(), true);
     face.told.erase("sheet");

@@ -45,6 +45,7 @@ std::string probesText(const Probes& probes) {
     const Probe& probe = probes.all()[i];
     Json one = {{"number", probe.number}, {"state", nameOf(probe.state)}};
     if (probe.area) one["area"] = true;
+    if (!probe.seen.empty()) one["seen"] = probe.seen;
     if (probe.state == Probe::State::read) {
       one[quantityOf(probe)] = probe.now.luminance;
       one["half_width"] = probe.now.luminanceHalfWidth;

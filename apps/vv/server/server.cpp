@@ -451,7 +451,7 @@ void Server::encode(uint64_t page, Shot& shot) {
   try {
     const bool isFirst = shot.jpeg.empty();
     if (isFirst)
-      shot.jpeg = picture::jpegOf(picture.rgb, picture.width, picture.height,
+      shot.jpeg = picture::jpegOf(picture.rgb, picture.shownWidth, picture.shownHeight,
                                   still ? stillQuality : movingQuality);
     if (isFirst) shot.picture.rgb = {}; // the JPEG file is all that pages get
     host_->sendPicture(page, pictureMessage(shot.number, picture, shot.wanted, shot.jpeg));

@@ -91,8 +91,8 @@ std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, i
                            std::string_view jpeg) {
   const bool still = facts.purpose == picture::LiveFrame::Purpose::still;
   const std::string header = jsonLine({{"picture", number},
-                                       {"width", facts.width},
-                                       {"height", facts.height},
+                                       {"width", facts.shownWidth},
+                                       {"height", facts.shownHeight},
                                        {"samples", facts.samples},
                                        {"wanted", still ? wanted : 0},
                                        {"preview", facts.preview},

@@ -11,7 +11,6 @@
 #include <utility>
 #include <variant>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -56,16 +55,14 @@ size_t stemLength(std::string_view name) {
   return dot == name.npos ? name.size() : dot;
 }
 
-// Opens a new file in a folder, under its name or with a number before the suffix. Never opens one
-// that is there. Returns its descriptor.
-int openNew(const fs::path& folder, const std::string& name, std::string& path) {
+// Opens a new file in a folder, under its name or with a number before the suffix. Returns its
+// descriptor.
+int openNumbered(const fs::path& folder, const std::string& name, std::string& path) {
   const size_t stem = stemLength(name);
   for (int number = 1; number <= mostNumber; ++number) {
     const std::string addition = number == 1 ? "" : fmt::format("-{}", number);
     path = (folder / (name.substr(0, stem) + addition + name.substr(stem))).string();
-    const int file =
-        ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (file >= 0) return file;
+    if (const int file = picture::openNew(path, 0666); file >= 0) return file;
     if (errno != EEXIST)
       throw EditError(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
   }
@@ -75,7 +72,7 @@ int openNew(const fs::path& folder, const std::string& name, std::string& path) 
 // Returns the path of a new file with this content.
 std::string writeNew(const fs::path& folder, const std::string& name, std::string_view content) {
   std::string path;
-  const int file = openNew(folder, name, path);
+  const int file = openNumbered(folder, name, path);
   std::string why;
   try {
     picture::writeDescriptor(file, content, path);

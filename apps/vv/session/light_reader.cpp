@@ -1,5 +1,13 @@
 #include "session/light_reader.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "edit/looks.h"
+#include "edit/outline.h"
+#include "xvrml/nodes.h"
+
 namespace vv {
 
 using namespace xvrml;
@@ -17,17 +25,40 @@ SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, double x, doubl
   return seen;
 }
 
+// Returns what a probe says of the surface that it was put on.
+std::string textOf(WorldEditor& editor, const SurfaceSeen& seen) {
+  const PickHit& hit = seen.hit;
+  std::string text;
+  if (const MFNode nodes = nodesOfFile(editor.browser().world(), hit.path); !nodes.empty()) {
+    text = labelOf(*nodes.back());
+    if (nodeCast<nodes::Shape>(nodes.back()))
+      if (const std::string look = lookOf(*nodes.back()).name; !look.empty())
+        text += ", " + look.substr(0, 64);
+    text += "\n";
+  }
+  const auto three = [](const std::array<double, 3>& v) {
+    return fmt::format("{:.4g} {:.4g} {:.4g}", v[0], v[1], v[2]);
+  };
+  const double distance = hit.distance * std::hypot(seen.ray.direction[0], seen.ray.direction[1],
+                                                    seen.ray.direction[2]);
+  return text + fmt::format("at {}, {:.4g} from the viewer\nnormal {}", three(hit.point), distance,
+                            three(hit.normal));
+}
+
 } // namespace
 
 EditView viewOf(Session& session) { return {session.pilot().camera(), session.pilot().aspect()}; }
 
 void LightReader::addProbe(WorldEditor& editor, const EditView& view, double x, double y) {
-  probes_.add(surfaceAt(editor, view, x, y).hit.point);
+  const SurfaceSeen seen = surfaceAt(editor, view, x, y);
+  probes_.add(seen.hit.point, textOf(editor, seen));
 }
 
 void LightReader::addSensor(WorldEditor& editor, const EditView& view, double x, double y) {
-  const auto [ray, hit] = surfaceAt(editor, view, x, y);
-  probes_.addSensor(picture::sensorAt(hit.point.data(), hit.normal.data(), ray.direction));
+  const SurfaceSeen seen = surfaceAt(editor, view, x, y);
+  probes_.addSensor(
+      picture::sensorAt(seen.hit.point.data(), seen.hit.normal.data(), seen.ray.direction),
+      textOf(editor, seen));
 }
 
 void LightReader::keep(WorldEditor& editor, const EditView& view) {

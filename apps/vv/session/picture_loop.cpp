@@ -215,8 +215,9 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
                                                : Purpose::rawPreview;
   frame.viewer = viewer_;
   frame.falseColour = falseColour_ = pilot.falseColour();
-  frame.shownWidth = width_;
-  frame.shownHeight = height_;
+  const picture::FrameSize shown = pacing_.shown(previewSide(width_), previewSide(height_));
+  frame.shownWidth = shown.width;
+  frame.shownHeight = shown.height;
   still_ = Progress::none;
   isStillLost_ = false;
   cancelled_ = false;
@@ -288,7 +289,8 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
     still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
     pacing_.took({picture.width, picture.height, 1, picture.lightStride}, picture.seconds,
-                 picture.alone, picture.overhead, picture.samples, picture.rebuilding);
+                 picture.alone, picture.overhead, picture.samples, picture.rebuilding,
+                 picture.showing);
     facts_.stats = picture.stats;
     facts_.map = picture.map;
   }

@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/missing_parts.h"
 #include "options/definitions.h"
 #include "process/messages.h"
+#include "report/missing_list.h"
 #include "report/progress.h"
 #include "steady_clock.h"
 
@@ -42,12 +44,22 @@ void giveShaders(const Options& options, xvrml::World& world) {
   } catch (const picture::ShaderError& error) { throw Failure{exitUsage, error.what()}; }
 }
 
+// Puts boxes in the place of missing parts if --placeholders asks for them, and lists the parts for
+// that and for --check.
+void treatMissingParts(const Options& options, xvrml::World& world) {
+  if (!options.placeholders && !options.check) return;
+  const std::vector<picture::MissingPart> parts = picture::missingParts(world);
+  if (parts.empty()) return;
+  const size_t boxes = options.placeholders ? picture::addPlaceholders(world) : 0;
+  if (!options.quiet) say(missingText(parts, boxes, options.check || options.verbose));
+}
+
 } // namespace
 
 xvrml::LoadOptions loadOptionsForShowing(const Options& options) {
   xvrml::LoadOptions load = options.load;
   const bool whole = !options.shaders.empty() || !options.definitions.empty() || options.script ||
-                     !options.recordInput.empty() || options.strict;
+                     !options.recordInput.empty() || options.strict || options.placeholders;
   if (!whole) load.loadInlines = false;
   return load;
 }
@@ -69,6 +81,7 @@ std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
       changes ? readDefinitions(options.definitions, *world) : std::vector<Definition>();
   for (const Definition& d : definitions)
     if (!d.asEvent) d.node->set(*d.field, d.value);
+  treatMissingParts(options, *world);
   if (changes) giveShaders(options, *world);
   std::unique_ptr<xvrml::Browser> browser = startScripts(std::move(world), options);
   for (const Definition& d : definitions)

@@ -271,7 +271,8 @@ void EditorPanels::drawSheet() {
     watchWidth(sheetWidth_, widths_.sheet);
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
-      ImGui::TextWrapped("Click on something in the picture or in the outline to select it.");
+      ImGui::TextWrapped("Click on something in the picture or in the outline to select it. "
+                         "V or U measures the light where the pointer is. F1 lists all keys.");
     } else {
       ImGui::PushID(sheet.node.get());
       ImGui::TextUnformatted(sheet.title.c_str());
@@ -334,7 +335,9 @@ void EditorPanels::drawProbes() {
 
 // Draws the menu of a probe, whose line is the last item.
 void EditorPanels::drawProbeMenu(const Probe& probe) {
-  hint(canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "");
+  const char* const menuHint =
+      canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "";
+  hint(probe.seen + (probe.seen.empty() ? "" : "\n") + menuHint);
   ImGui::PushID(probe.number);
   if (Menu menu; menu.beginContext("##probe")) {
     if (menu.item("Keep in the world", "Add an ORTSensor that reads the same",

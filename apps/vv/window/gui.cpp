@@ -273,7 +273,8 @@ bool Gui::take(const SDL_Event& event) {
   ImGui::SetCurrentContext(impl_->context);
   const bool isKeyLeft = std::exchange(impl_->isKeyLeft, false);
   if (event.type == SDL_TEXTINPUT && isKeyLeft) return false; // what that key types
-  const bool before = Impl::wants(event);
+  // A move belongs to what is below its end, also if it comes from a panel at one jump.
+  const bool before = event.type != SDL_MOUSEMOTION && Impl::wants(event);
   if (!Impl::feed(event)) return false;
   impl_->unsettled = framesToSettle;
   if (impl_->endsTyping(event)) return false;

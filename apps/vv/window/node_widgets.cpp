@@ -105,6 +105,12 @@ bool drawLook(EditModel& model, LookLibrary& library, Thumbnails& thumbnails) {
   hint(look.places > 1
            ? fmt::format("Choose another one. The appearance stands in {} places.", look.places)
            : "Choose another one");
+  if (Menu menu; menu.beginContext("##lookmenu")) {
+    if (menu.item("Copy as --shader", "The option that gives this shader to the Shape of this name",
+                  !sheet.shaderOption.empty()))
+      ImGui::SetClipboardText(sheet.shaderOption.c_str());
+    menu.end();
+  }
   ImGui::SameLine(0, 2);
   ImGui::BeginDisabled(!look.surface);
   if (ImGui::ArrowButton("##surface", ImGuiDir_Right)) model.select(look.surface, false);

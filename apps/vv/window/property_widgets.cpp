@@ -212,6 +212,18 @@ void drawName(const PropertyRow& row) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(row.help).c_str());
 }
 
+// Says what the value is that is not shown.
+void drawLong(const PropertyRow& row) {
+  const std::string type(fieldTypeName(row.field->type));
+  ImGui::SameLine();
+  if (row.isInOptions)
+    ImGui::TextDisabled("(options)");
+  else if (isMultiple(row.field->type))
+    ImGui::TextDisabled("%s of %zu", type.c_str(), row.size);
+  else
+    ImGui::TextDisabled("%s, too long to be shown", type.c_str());
+}
+
 } // namespace
 
 void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
@@ -224,15 +236,8 @@ void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
       model.drag(node, field, row.defaultValue);
     menu.end();
   }
-  if (row.isLong) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("%s of %zu", std::string(fieldTypeName(field.type)).c_str(), row.size);
-  }
-  if (row.isInOptions) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("(options)");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("The options of this shader set it.");
-  } else if (holdsNodes) {
+  if (row.isLong) drawLong(row);
+  if (holdsNodes) {
     drawNodes(model, node, row);
   } else if (!row.isLong && drawValue(row)) {
     model.drag(node, field, row.value);

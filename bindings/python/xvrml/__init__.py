@@ -36,6 +36,7 @@ from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, DrawnShape, Edi
 load = _arguments.explained(_xvrml.load)
 denoise = _arguments.explained(_xvrml.denoise)
 merge = _arguments.explained(_xvrml.merge)
+compare = _arguments.explained(_xvrml.compare)
 for _class in (World, Browser, Cluster, Editor, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
@@ -53,11 +54,11 @@ __all__ = [
     "EditError", "Editor", "EditStep", "Feature", "Film", "LiveView", "MaterialValues",
     "Measurement", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "Reach", "RenderError",
     "RenderState", "Renderer", "TextureLayer", "TexturePicture", "ViewpointInfo", "Worker",
-    "World", "denoise", "features", "load", "load_node_plugins", "loads", "merge", "__version__",
-    *nodes.__all__
+    "World", "compare", "denoise", "features", "load", "load_node_plugins", "loads", "merge",
+    "__version__", *nodes.__all__
 ]
 
-_SUBMODULES = ("control", "dask", "interop", "notebook", "rt")
+_SUBMODULES = ("control", "dask", "interop", "notebook", "ray", "rt")
 
 
 def __getattr__(name):

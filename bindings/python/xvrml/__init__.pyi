@@ -536,7 +536,10 @@ class Picture:
     def note(self) -> str:
         ...
 
-    def denoised(self, *, threads: int = ...) -> Picture:
+    def denoised(self, *, threads: int = ..., audit: bool = ...) -> Picture:
+        ...
+
+    def doubt(self, colours: npt.ArrayLike) -> npt.NDArray[np.float32]:
         ...
 
     @property
@@ -1128,6 +1131,16 @@ def denoise(
     *,
     threads: int = ...,
 ) -> npt.NDArray[np.float32]:
+    ...
+
+
+def compare(
+    a: Union[_Path, Picture, npt.ArrayLike],
+    b: Union[_Path, Picture, npt.ArrayLike],
+    *,
+    samples: Optional[Tuple[int, int]] = ...,
+    variance: bool = ...,
+) -> Dict[str, Any]:
     ...
 
 

@@ -8,7 +8,8 @@ from . import _xvrml
 _PACKAGES = (("notebook", "jupyter_rfb", "World.view() in notebooks",
               "pip install 'xvrml[notebook]'"),
              ("dask", "distributed", "xvrml.dask: pictures on a Dask cluster",
-              "pip install 'xvrml[dask]'"))
+              "pip install 'xvrml[dask]'"),
+             ("ray", "ray", "xvrml.ray: pictures on a Ray cluster", "pip install 'xvrml[ray]'"))
 
 
 class Feature(NamedTuple):
@@ -38,8 +39,8 @@ def look_for_pyoidn():
 
 def features() -> Dict[str, Feature]:
     """Returns what depends on libraries and packages that need not be there, by name: denoise, mp4,
-    webm, gif, script engines, seccomp, notebook, dask. A library for denoising is tried in a child
-    process. `vv --list-features` also lists what only the program has."""
+    webm, gif, script engines, seccomp, notebook, dask, ray. A library for denoising is tried in a
+    child process. `vv --list-features` also lists what only the program has."""
     rows = [Feature(*row) for row in _xvrml._features()]
     for name, package, text, how in _PACKAGES:
         there = bool(_folders(package))

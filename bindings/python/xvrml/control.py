@@ -542,6 +542,13 @@ class Control:
         result: List[Dict[str, Any]] = self.call("selection")
         return result
 
+    def parameters(self, shader_class: str, file: Optional[str] = None) -> List[Dict[str, Any]]:
+        """Returns the parameters of a shader class, of which an ORTShader may declare fields: name,
+        type of the field, text, default, and minimum and maximum if it has them. file: its plug-in."""
+        more = {} if file is None else {"file": file}
+        result: List[Dict[str, Any]] = self.call("parameters", **{"class": shader_class}, **more)
+        return result
+
     # --- The viewer, the world, pictures ---
 
     def pick(self, x: float, y: float) -> Optional[Dict[str, Any]]:

@@ -21,7 +21,7 @@
 #include "render/lights/shadows.h"
 #include "render/medium/containing_media.h"
 #include "render/medium/medium_lights.h"
-#include "render/path/glossy_trial.h"
+#include "render/path/light_path_trial.h"
 #include "render/path/photon_pass.h"
 #include "render/path/transport.h"
 #include "render/wave/nearest_hits.h"
@@ -342,9 +342,11 @@ void LocalBackend::prepareFrame() {
   if (guided_) return;
   snapshot_->enclosed = isEnclosed(*snapshot_);
   snapshot_->aroundEye = mediaAroundEye(*snapshot_);
-  guided_ = guideByPhotons(*snapshot_, stop_) && tryGlossyPaths(*snapshot_, stop_);
+  guided_ = guideByPhotons(*snapshot_, stop_) && tryLightPaths(*snapshot_, stop_);
   if (snapshot_->photonGuide) transportReason_ += ", guided";
-  if (snapshot_->glossySources) transportReason_ += ", glossy";
+  if (snapshot_->sharesMirrors) transportReason_ += ", shared";
+  if (snapshot_->showsGlossy) transportReason_ += ", glossy";
+  if (snapshot_->connectsGlossy) transportReason_ += ", connected";
 }
 
 std::shared_ptr<const RenderScene> LocalBackend::prepared() {

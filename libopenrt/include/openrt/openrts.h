@@ -296,7 +296,10 @@ enum {
   /* surface with `medium`: only its medium acts on light, as in a cloud. Where the
    * indices of refraction on both sides are equal, the surface is invisible: no channel shows it,
    * and light samples pass through it. */
-  RTS_MEDIUM_ONLY = 1024
+  RTS_MEDIUM_ONLY = 1024,
+  /* surface and light: where both have it, the light's colour is its irradiance at a surface that
+   * faces it, and not pi times as much: so lights of X3D 4 and glTF shine on physical materials. */
+  RTS_IRRADIANCE = 2048
 };
 
 /* How often a parameter's value may change. Functions always find the value for a hit in

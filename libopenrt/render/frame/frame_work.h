@@ -24,9 +24,11 @@ struct FrameFacts {
   bool lamps = false;  // light tracing is needed
   // Tells how many photons guide the paths, which depends on the number of samples. 0: none do.
   uint64_t guide = 0;
-  // The bit of `guide` that says that light paths by way of glossy surfaces take a part of the
-  // light.
-  static constexpr uint64_t glossyPaths = uint64_t(1) << 62;
+  // The bits of `guide` that say where light paths by way of glossy surfaces take a part of the
+  // light: connected to the camera, and to surfaces of camera paths.
+  static constexpr uint64_t glossyPaths = uint64_t(1) << 62, connectedPaths = uint64_t(1) << 61;
+  // The bit of it that says that camera paths share the light of mirrors and glass.
+  static constexpr uint64_t sharedMirrors = uint64_t(1) << 60;
   static constexpr uint64_t unknownGuide = ~uint64_t(0);
 };
 

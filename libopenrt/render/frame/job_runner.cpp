@@ -19,9 +19,11 @@ namespace {} // namespace
 
 FrameFacts factsOf(const RenderScene& scene) {
   return {.camera = scene.camera.shader.shaderClass != nullptr,
-          .lamps = scene.lightSources || scene.glossySources,
+          .lamps = scene.lightSources || scene.showsGlossy,
           .guide = (scene.photonGuide || scene.lightPathFlux > 0 ? photonsOf(scene.frame) : 0) |
-                   (scene.glossySources ? FrameFacts::glossyPaths : 0)};
+                   (scene.showsGlossy ? FrameFacts::glossyPaths : 0) |
+                   (scene.connectsGlossy ? FrameFacts::connectedPaths : 0) |
+                   (scene.sharesMirrors ? FrameFacts::sharedMirrors : 0)};
 }
 
 struct JobRunner::Impl {

@@ -34,10 +34,23 @@ uint32_t shapeAt(const RtsBatch& batch, uint32_t i) {
   return shapes ? shapes->find(hits.record[lane], hits.primitive[lane]) : EmissiveShapes::none;
 }
 
-// Returns whether light tracing contributes the emission of hit i.
-bool isLeftToLightTracing(const RtsBatch& batch, uint32_t i) {
-  return canOnlyReachSky(batch.scene, batch.states->flagsOf(batch.order[i])) &&
-         startsLightPaths(batch, i);
+// Returns whether a light path may start on the side of an emissive shape that hit i is on. A
+// curved shape starts paths on both sides if both emit.
+bool isStart(const RtsBatch& batch, uint32_t i, uint32_t shape) {
+  const EmissiveShapes::Shape& s = (*batch.scene.emitters->shapes())[shape];
+  return !s.curved() || (s.sides & (batch.points->hits.flags[i] & RTS_HIT_BACK ? 2 : 1));
+}
+
+// Returns the weight of a camera path that has found the emission of hit i, against light paths
+// that come by way of mirrors and smooth glass.
+float shareOfMirrors(const RtsBatch& batch, uint32_t i, uint32_t shape) {
+  const uint32_t lane = batch.order[i];
+  if (!canOnlyReachSky(batch.scene, batch.states->flagsOf(lane)) || !startsLightPaths(batch, i))
+    return 1;
+  if (!batch.scene.sharesMirrors || shape == EmissiveShapes::none) return 0;
+  if (!isStart(batch, i, shape)) return 1;
+  return cameraPathShare(mirrorPathRatio(batch.scene, shape, load(batch.points->hits.position, i),
+                                         batch.states->lightPathRatio[lane]));
 }
 
 // Returns the ratio of pdfs of the path that has found the emission of hit i
@@ -46,12 +59,9 @@ float lightPathRatioAt(const RtsBatch& batch, uint32_t i, uint32_t shape, float 
   const PathStates& states = *batch.states;
   const uint32_t lane = batch.order[i];
   if (!(states.glossyPdf[lane] > 0) || !startsLightPaths(batch, i)) return 0;
-  const RtsHits& hits = batch.points->hits;
-  // A curved shape starts paths on both sides if both emit.
-  const EmissiveShapes::Shape& s = (*batch.scene.emitters->shapes())[shape];
-  if (s.curved() && !(s.sides & (hits.flags[i] & RTS_HIT_BACK ? 2 : 1))) return 0;
-  return lightPathRatio(batch.scene, shape, load(hits.position, i), states.lightPathRatio[lane],
-                        states.glossyPdf[lane], lightPdf);
+  if (!isStart(batch, i, shape)) return 0;
+  return lightPathRatio(batch.scene, shape, load(batch.points->hits.position, i),
+                        states.lightPathRatio[lane], states.glossyPdf[lane], lightPdf);
 }
 
 // Returns the MIS weights of the emission that rays have found at some hits.
@@ -66,7 +76,7 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
   found.allocate(arena, n);
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t i = hit[j], lane = batch.order[i], shape = shapeAt(batch, i);
-    weight[j] = boundaries.visibleAt(i) && !isLeftToLightTracing(batch, i) ? 1 : 0;
+    weight[j] = boundaries.visibleAt(i) ? shareOfMirrors(batch, i, shape) : 0;
     if (states.flagsOf(lane).specularSinceDiffuse() && startsLightPaths(batch, i))
       weight[j] *= states.unguidedWeight[lane];
     if (weight[j] == 0 || !(states.pdf[lane] > 0 || states.glossyPdf[lane] > 0) ||

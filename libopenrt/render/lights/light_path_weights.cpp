@@ -15,11 +15,32 @@ bool isAimedAt(const RtsBatch& batch, uint32_t i) {
                                 LightSources::Kind::glossy);
 }
 
+float connectionsAt(const RenderScene& scene, PathFlags path, const Vec3f& throughput) {
+  if (!scene.connectsGlossy || path.pathClass() != PathClass::specularFirst || path.scattered())
+    return 0;
+  // The number with the least variance at equal cost is proportional to what the path carries.
+  return std::min(1.0f, largest(throughput));
+}
+
+float backOfCameraPath(const RtsBatch& batch, const RtsLobe& lobe, uint32_t i, float back) {
+  const uint32_t lane = batch.order[i];
+  if (!batch.states->flagsOf(lane).connectable()) return back;
+  return spreadTo(batch.states->previousOf(lane).position, load(batch.points->hits.position, i),
+                  load(lobe.normal, i));
+}
+
 float lightPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place, float surfaces,
                      float glossyPdf, float lightPdf) {
   if (!(surfaces > 0) || !(glossyPdf > 0) || !std::isfinite(lightPdf)) return 0;
-  return float(scene.glossySources->startPdf(shape, place) * double(surfaces)) *
+  return float(scene.glossySources->startPdf(scene, shape, place) * double(surfaces) /
+               camerasPerGlossyPath) *
          (glossyPdf / (glossyPdf + lightPdf));
+}
+
+float mirrorPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place,
+                      float surfaces) {
+  if (!(surfaces > 0)) return 0;
+  return float(scene.lightSources->startPdf(scene, shape, place) * double(surfaces));
 }
 
 namespace {
@@ -53,8 +74,9 @@ const float* cameraPathShares(const RtsBatch& batch, const RtsLobe& lobe, const 
   uint32_t n = 0;
   for (uint32_t r = 0; r < rays.count; r++) {
     const uint32_t i = samples.hit[r], lane = batch.order[i];
+    const PathFlags flags = batch.states->flagsOf(lane);
     if (samples.shape[r] == EmissiveShapes::none || !(batch.states->lightPathRatio[lane] > 0) ||
-        !isScatteredFirst(batch.states->flagsOf(lane)) || !isAimedAt(batch, i))
+        !flags.scattered() || !sharesGlossy(batch.scene, flags) || !isAimedAt(batch, i))
       continue;
     ray[n] = r;
     hit[n] = i;
@@ -66,14 +88,15 @@ const float* cameraPathShares(const RtsBatch& batch, const RtsLobe& lobe, const 
   const ProjectedPdfs pdfs = projectedPdfs(batch, lobe, n, hit, direction, ahead);
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t r = ray[j], i = hit[j];
+    const float back = backOfCameraPath(batch, lobe, i, pdfs.back[j]);
     const Vec3f towards = load(rays.dir, r);
     const float cosine = std::fabs(dot(load(lobe.normal, i), towards));
     if (!(pdfs.ahead[j] > 0) || (oneWay && oneWay[j])) continue;
     share[r] = cameraPathShare(lightPathRatio(
         batch.scene, samples.shape[r],
         lightSampleContext(*batch.points, i, false).position + samples.distance[r] * towards,
-        batch.states->lightPathRatio[batch.order[i]] * pdfs.back[j] / pdfs.ahead[j],
-        pdfs.ahead[j] * cosine, samples.pdf[r]));
+        batch.states->lightPathRatio[batch.order[i]] * back / pdfs.ahead[j], pdfs.ahead[j] * cosine,
+        samples.pdf[r]));
   }
   return share;
 }

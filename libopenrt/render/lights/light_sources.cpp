@@ -144,11 +144,22 @@ void LightSources::addGlossySources(const RenderScene& scene) {
   for (double& pdf : placePdf_) pdf /= total;
 }
 
-double LightSources::startPdf(uint32_t shape, const Vec3f& place) const {
+// Returns the pdf of a place on a shape, by area.
+double LightSources::placePdf(const RenderScene& scene, uint32_t shape) const {
+  if (kind_ == Kind::glossy) return placePdf_[shape];
+  const EmissiveShapes& shapes = *scene.emitters->shapes();
+  const double area = shapes.place(scene, shape, .5f, .5f).area,
+               pdf = shapes[shape].power * M_PI / cumulative_.back() / area;
+  return area > 0 && std::isfinite(pdf) && !shapes[shape].uncertain
+             ? pdf
+             : std::numeric_limits<double>::infinity();
+}
+
+double LightSources::startPdf(const RenderScene& scene, uint32_t shape, const Vec3f& place) const {
   Vec3f axis;
   const double cosine = coneToTargets(place, axis),
-               half = cosine == -1 && oneSided_[shape] ? .5 : 1;
-  return placePdf_[shape] / (2 * M_PI * (1 - cosine) * half);
+               half = kind_ == Kind::glossy && cosine == -1 && oneSided_[shape] ? .5 : 1;
+  return placePdf(scene, shape) / (2 * M_PI * (1 - cosine) * half);
 }
 
 // Returns the cosine of the half angle of the cone about the targets as seen from a point; -1 from

@@ -41,9 +41,9 @@ class LightSources {
   LightRay sampleRay(const RenderScene& scene, double pick, const float place[2],
                      const float direction[2]) const;
 
-  // For Kind::glossy: returns about the pdf with which a path starts at a point of a shape and in
-  // the direction of a glossy surface, by area and solid angle.
-  double startPdf(uint32_t shape, const Vec3f& place) const;
+  // Returns about the pdf with which a path starts at a point of a shape and in the direction of a
+  // surface that is aimed at, by area and solid angle; infinite where that is not known.
+  double startPdf(const RenderScene& scene, uint32_t shape, const Vec3f& place) const;
 
  private:
   struct Source { // the sun of the sky, if it is neither a light nor a shape
@@ -53,6 +53,7 @@ class LightSources {
   void boundTargets(const RenderScene& scene);
   void addGlossySources(const RenderScene& scene);
   void measureSceneExtent(const RenderScene& scene);
+  double placePdf(const RenderScene& scene, uint32_t shape) const;
   double coneToTargets(const Vec3f& from, Vec3f& axis) const;
   Vec3f startOfParallel(const Vec3f& towards, const float place[2]) const;
   Kind kind_;

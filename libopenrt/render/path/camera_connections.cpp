@@ -77,8 +77,7 @@ const float* coveredPixels(const RtsBatch& batch, const uint32_t* hit, uint32_t 
   return pixels;
 }
 
-// Rough boundaries scale radiance by eta squared. Flux is not scaled, because the camera is outside
-// of all media.
+// Rough boundaries scale radiance by eta squared, and not the flux that light paths carry.
 void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const float* ratio,
                      float* const scattered[3]) {
   const RtsHits& hits = batch.points->hits;
@@ -98,7 +97,8 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const f
       const bool front = dot(load(hits.geometric, h), out) > 0;
       Vec3f w;
       if (!weightAt(lobe, h, w) || (!nonSpecularFunctions(lobe)->transmits && !front)) continue;
-      const float factor = adjointCorrection(lobe, hits, h, out) * to.weight[i] * share[i];
+      const float factor = adjointCorrection(lobe, hits, h, out) / radianceScale(lobe, h, out) *
+                           to.weight[i] * share[i];
       store(load(scattered, i) + w * load(lobeValues.value, i) * factor, scattered, i);
     }
   }

@@ -47,10 +47,29 @@ void startSamples(const FilmSamples& film, PathSamples& samples) {
   }
 }
 
+namespace {
+
+// Draws the places in the pixels where the seed counts the points of one sequence.
+void drawInTurn(const FilmSamples& film, Arena& arena, float* xy[2]) {
+  constexpr uint32_t sequence = 0x706c6163;
+  const uint32_t n = film.count();
+  PathSamples places;
+  places.allocate(arena, n);
+  uint32_t path = 0;
+  for (const uint32_t pixel : film.pixels)
+    for (uint32_t s = 0; s < film.perPixel; s++)
+      places.set(path++, pixel, sequence, film.replicates.seed);
+  randomNumbersAtStart(places, n, arena).drawPair(0, arena, xy);
+}
+
+} // namespace
+
 void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& arena, float* xy[2]) {
   const uint32_t n = film.count();
   if (film.centred)
     for (int k = 0; k < 2; k++) std::fill_n(xy[k] = arena.take<float>(padded(n)), n, 0.5f);
+  else if (film.inTurn)
+    drawInTurn(film, arena, xy);
   else
     randomNumbersAtStart(samples, n, arena).drawPair(0, arena, xy);
   uint32_t path = 0;
@@ -62,6 +81,17 @@ void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& aren
     }
   }
   for (int k = 0; k < 2; k++) std::fill(xy[k] + n, xy[k] + padded(n), xy[k][n - 1]);
+}
+
+void recordPlaces(const FilmSamples& film, const float* const xy[2], const PixelSamples& found) {
+  float* const* const place = found.of(RT_PLACE);
+  if (!place[0]) return;
+  uint32_t path = 0;
+  for (const uint32_t pixel : film.pixels) {
+    const float corner[2] = {float(pixel % film.width), float(pixel / film.width)};
+    for (uint32_t s = 0; s < film.perPixel; s++, path++)
+      for (int k = 0; k < 2; k++) place[k][path] = xy[k][path] - corner[k];
+  }
 }
 
 void makeCameraRays(const StageContext& context, const float* const xy[2], Rays& rays) {

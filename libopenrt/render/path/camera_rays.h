@@ -6,6 +6,7 @@
 #include <span>
 
 #include "render/wave/batch.h"
+#include "render/wave/pixel_samples.h"
 #include "render/wave/random_numbers.h"
 
 namespace openrt {
@@ -18,6 +19,7 @@ struct FilmSamples {
   uint32_t first, perPixel;
   Replicates replicates;
   bool centred; // all positions are in the middles of the pixels
+  bool inTurn;  // consecutive seeds take consecutive points of a sequence of the pixel (RT_JITTER)
 
   uint32_t count() const { return uint32_t(pixels.size()) * perPixel; }
 };
@@ -26,6 +28,8 @@ struct FilmSamples {
 void startSamples(const FilmSamples& film, PathSamples& samples);
 // Samples the paths' positions on the film, in pixels. The arrays are padded with the last one.
 void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& arena, float* xy[2]);
+// Records where in their pixels these positions are, if the frame asks for it (RT_PLACE).
+void recordPlaces(const FilmSamples& film, const float* const xy[2], const PixelSamples& found);
 // Makes the rays of the camera through positions on the film, in render space.
 void makeCameraRays(const StageContext& context, const float* const xy[2], Rays& rays);
 

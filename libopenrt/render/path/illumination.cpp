@@ -80,6 +80,15 @@ bool evaluateLight(RtsBatch& batch, const LightSlot& light, uint32_t count,
   return out.directional != 0;
 }
 
+// Turns the colours of a light into those that give its irradiance (RTS_IRRADIANCE). hit: the index
+// of the hit that each colour belongs to; null: its own.
+void takeIrradiance(const RtsBatch& batch, const LightSlot& light, uint32_t n, const uint32_t* hit,
+                    float* const color[3]) {
+  if (!batch.irradiance || !(light.shader.traits & RTS_IRRADIANCE)) return;
+  for (uint32_t i = 0; i < n; i++)
+    if (batch.irradiance[hit ? hit[i] : i]) store(load(color, i) * float(M_1_PI), color, i);
+}
+
 // Samples a light for each hit; the hits of each light are evaluated together.
 void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const RtsHits& hits,
                           RtsIllumination& out) {
@@ -139,6 +148,7 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
     }
     const bool parallel =
         evaluateLight(own, batch.scene.lights[light], m, places, local, part, reach);
+    takeIrradiance(batch, batch.scene.lights[light], m, order + begin, part.color);
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t to = order[begin + i];
       for (int k = 0; k < 3; k++) {
@@ -180,6 +190,8 @@ void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumin
   }
   batch.lights.directional = evaluateLight(batch, lightOf(batch, i), hits.count, hits.position,
                                            batch.lights.local, out, batch.lights.reach);
+  if (batch.points && &hits == &batch.points->hits)
+    takeIrradiance(batch, lightOf(batch, i), hits.count, nullptr, out.color);
 }
 
 void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted,

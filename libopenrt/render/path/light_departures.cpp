@@ -129,7 +129,16 @@ void LightDepartures::applyAttenuation(RayState& state) {
   Departure& departure = departures_[state.path];
   if (departure.attenuationKnown) return;
   state.throughput *= departure.attenuation;
+  const bool scattered = departure.scattered;
   departure = {};
+  departure.scattered = scattered;
+}
+
+float LightDepartures::irradianceFactor(uint32_t path, bool surface) const {
+  const LightSources::LightRay& start = rays_[path];
+  const bool lamp = start.shape == LightSources::none && !start.sun;
+  if (!surface || !lamp || departures_[path].scattered) return 1;
+  return context_.scene.lights[start.light].shader.traits & RTS_IRRADIANCE ? float(M_1_PI) : 1.0f;
 }
 
 } // namespace openrt

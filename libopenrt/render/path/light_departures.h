@@ -41,6 +41,11 @@ class LightDepartures {
   Vec3f attenuationAfter(uint32_t path, double length);
   // Returns the flux at the current surface over that in the throughput, by colour.
   const Vec3f& attenuation(uint32_t path) const { return departures_[path].attenuation; }
+  // Returns the factor of the flux at a surface that scatters the path. The first one decides:
+  // a lamp's colour may be its irradiance there (RTS_IRRADIANCE). surface: it has the trait.
+  float irradianceFactor(uint32_t path, bool surface) const;
+  // Says that a surface has scattered the path, and that its flux has this factor.
+  void setScattered(uint32_t path) { departures_[path].scattered = true; }
   // Multiplies the throughput by the attenuation of a path that is scattered.
   void applyAttenuation(RayState& state);
 
@@ -54,6 +59,7 @@ class LightDepartures {
     Vec3f attenuation{1, 1, 1}; // flux at the current hit divided by `flux`
     // the attenuation has been applied, or the light does not depend on distance
     bool attenuationKnown = true;
+    bool scattered = false; // a surface has scattered the path
   };
   Vec3f lampFlux(const LightSources::LightRay& start, const Vec3f& at);
   void evaluateSun();

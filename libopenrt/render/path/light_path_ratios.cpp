@@ -6,7 +6,6 @@
 #include "render/lights/emitted.h"
 #include "render/lights/light_path_weights.h"
 #include "render/path/camera_connections.h"
-#include "render/surface/projected_pdfs.h"
 
 namespace openrt {
 namespace {
@@ -33,7 +32,8 @@ struct Pairs {
 };
 
 // Returns by hit the ratios of the camera paths that have arrived; 0 where light paths do not make
-// them. At the first surface the factor for the direction to the camera is in it.
+// them. At the first surface the factor for the direction to the camera is in it, or the number of
+// connections.
 const float* ratiosOfArrived(const RtsBatch& batch) {
   Arena& arena = batch.arena;
   const PathStates& states = *batch.states;
@@ -45,9 +45,12 @@ const float* ratiosOfArrived(const RtsBatch& batch) {
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order[i];
     const PathFlags flags = states.flagsOf(lane);
-    if (!(states.lightPathRatio[lane] > 0)) continue;
-    if (isScatteredFirst(flags)) ratio[i] = states.lightPathRatio[lane];
-    if (flags.pathClass() == PathClass::undeflected) first[count++] = i;
+    ratio[i] =
+        flags.scattered()
+            ? states.lightPathRatio[lane]
+            : connectionRatio(connectionsAt(batch.scene, flags, load(states.throughput, lane)));
+    if (flags.pathClass() == PathClass::undeflected && states.lightPathRatio[lane] > 0)
+      first[count++] = i;
   }
   if (count == 0) return ratio;
   const float* pixels = coveredPixels(batch, first, count);
@@ -59,8 +62,8 @@ const float* ratiosOfArrived(const RtsBatch& batch) {
 } // namespace
 
 float firstRatio(const RenderScene& scene) {
-  if (!scene.glossySources) return 0;
-  return float(scene.frame.width) * float(scene.frame.height) / float(camerasPerGlossyPath);
+  if (!scene.showsGlossy && !scene.sharesMirrors) return 0;
+  return float(scene.frame.width) * float(scene.frame.height);
 }
 
 void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples) {
@@ -80,32 +83,38 @@ void countCameraPaths(const RtsBatch& batch, BsdfSampleArrays& samples) {
     const ProjectedPdfs pdfs = pairs.projected(batch, *sample.lobe);
     for (uint32_t j = 0; j < pairs.count; j++) {
       const uint32_t i = pairs.hit[j];
-      const bool first = !isScatteredFirst(batch.states->flagsOf(batch.order[i]));
+      const PathFlags flags = batch.states->flagsOf(batch.order[i]);
       if (!(pdfs.ahead[j] > 0)) continue;
-      ratio[i] = arrived[i] * (first ? 1 : pdfs.back[j]) / pdfs.ahead[j];
-      if (first || !isGlossy(*sample.lobe) || !isAimedAt(batch, i)) continue;
-      const Vec3f normal = load(sample.lobe->normal, i);
-      glossy[i] = pdfs.ahead[j] * std::fabs(dot(normal, load(pairs.direction, j)));
+      const float cosine = std::fabs(dot(load(sample.lobe->normal, i), load(pairs.direction, j)));
+      const float back =
+          flags.scattered() ? backOfCameraPath(batch, *sample.lobe, i, pdfs.back[j]) : 1.0f;
+      ratio[i] = arrived[i] * back / pdfs.ahead[j];
+      // A geometry term has this cosine, and backOfCameraPath() the rest.
+      if (!flags.scattered() && flags.pathClass() == PathClass::specularFirst) ratio[i] /= cosine;
+      if (flags.scattered() && sharesGlossy(batch.scene, flags) && isGlossy(*sample.lobe) &&
+          isAimedAt(batch, i))
+        glossy[i] = pdfs.ahead[j] * cosine;
     }
   }
 }
 
-const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
-                             const uint32_t* number, uint32_t selected,
-                             const LightSources::LightRay* const* start) {
+const float* lightPathFactors(const RtsBatch& batch, const RtsLobe& lobe,
+                              const HitDirections& pairs, const ProjectedPdfs& pdfs,
+                              const float* to, const LightStarts& starts) {
+  const LightSources::LightRay* const* start = starts.ray;
   Arena& arena = batch.arena;
   const RtsHits& hits = batch.points->hits;
-  const uint32_t n = hits.count;
-  auto* factor = arena.takeZero<float>(padded(n));
+  auto* factor = arena.take<float>(padded(pairs.count));
   ArenaScope scope(arena);
-  Pairs pairs(arena, n);
-  for (uint32_t i = 0; i < n; i++)
-    if (number[i] == selected && sample.pdf[i] > 0) pairs.add(sample, i);
-  if (pairs.count == 0) return factor;
-  const ProjectedPdfs pdfs = pairs.projected(batch, *sample.lobe);
-  // The camera's side is that of the direction, so ahead and back change places.
   for (uint32_t j = 0; j < pairs.count; j++)
-    factor[pairs.hit[j]] = pdfs.back[j] > 0 ? pdfs.ahead[j] / pdfs.back[j] : 0.0f;
+    factor[j] = pdfs.back[j] > 0 ? to[j] / pdfs.back[j] : 0.0f;
+  if (starts.sources.kind() != LightSources::Kind::glossy) {
+    for (uint32_t j = 0; j < pairs.count; j++)
+      if (const LightSources::LightRay* ray = start[pairs.hit[j]];
+          ray && ray->shape != LightSources::none)
+        factor[j] = mirrorPathRatio(batch.scene, ray->shape, ray->place.position, factor[j]);
+    return factor;
+  }
   FoundShapes found;
   found.allocate(arena, pairs.count);
   auto* pair = arena.take<uint32_t>(pairs.count);
@@ -124,11 +133,28 @@ const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
   batch.scene.emitters->pdf(found, lightPdf);
   for (uint32_t f = 0; f < found.count; f++) {
     const uint32_t j = pair[f], i = pairs.hit[j];
-    const float cosine = std::fabs(dot(load(sample.lobe->normal, i), load(hits.direction, i)));
-    factor[i] = lightPathRatio(batch.scene, start[i]->shape, start[i]->place.position, factor[i],
+    const float cosine = std::fabs(dot(load(lobe.normal, i), load(hits.direction, i)));
+    factor[j] = lightPathRatio(batch.scene, start[i]->shape, start[i]->place.position, factor[j],
                                pdfs.back[j] * cosine, lightPdf[f]);
   }
   return factor;
+}
+
+const float* countLightPaths(const RtsBatch& batch, const SampleArrays& sample,
+                             const uint32_t* number, uint32_t selected, const LightStarts& starts) {
+  Arena& arena = batch.arena;
+  const uint32_t n = batch.points->hits.count;
+  auto* byHit = arena.takeZero<float>(padded(n));
+  ArenaScope scope(arena);
+  Pairs pairs(arena, n);
+  for (uint32_t i = 0; i < n; i++)
+    if (number[i] == selected && sample.pdf[i] > 0) pairs.add(sample, i);
+  if (pairs.count == 0) return byHit;
+  const ProjectedPdfs pdfs = pairs.projected(batch, *sample.lobe);
+  const float* factor = lightPathFactors(
+      batch, *sample.lobe, {pairs.count, pairs.hit, pairs.direction}, pdfs, pdfs.ahead, starts);
+  for (uint32_t j = 0; j < pairs.count; j++) byHit[pairs.hit[j]] = factor[j];
+  return byHit;
 }
 
 void firstSurfaceShares(const RtsBatch& batch, const RtsLobe& lobe, uint32_t n, const uint32_t* hit,
@@ -137,7 +163,10 @@ void firstSurfaceShares(const RtsBatch& batch, const RtsLobe& lobe, uint32_t n, 
   ArenaScope scope(batch.arena);
   const ProjectedPdfs pdfs = projectedPdfs(batch, lobe, n, hit, direction, pdf);
   for (uint32_t i = 0; i < n; i++)
-    share[i] = pdfs.back[i] > 0 ? lightPathShare(ratio[i] / pdfs.back[i]) : 0.0f;
+    if (std::isinf(ratio[i]))
+      share[i] = 1;
+    else
+      share[i] = pdfs.back[i] > 0 ? lightPathShare(ratio[i] / pdfs.back[i]) : 0.0f;
 }
 
 } // namespace openrt

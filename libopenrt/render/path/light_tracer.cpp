@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/lights/light_path_weights.h"
 #include "render/lights/luminance.h"
@@ -20,6 +21,21 @@ constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
 // Keeps the paths by way of glossy surfaces apart from the others.
 constexpr uint32_t glossySeed = 0x676c6f73u;
 
+// Adds to light paths the passages of the camera paths that they are connected to.
+void addPassages(const ConnectedSurfaces& surfaces, const PathStates& states, uint32_t n) {
+  const RtsBatch& camera = surfaces.batch;
+  for (uint32_t r = 0; r < n; r++) {
+    const uint32_t lane = camera.order[surfaces.hit[states.path[r]]];
+    PathFlags flags = states.flagsOf(r);
+    flags.setPassages(camera.states->flagsOf(lane).passages());
+    states.flags[r] = flags.bits;
+  }
+}
+
+bool takesIrradiance(const RtsBatch& batch, uint32_t i) {
+  return batch.irradiance && batch.irradiance[i];
+}
+
 } // namespace
 
 LightTracer::LightTracer(const RenderScene& scene)
@@ -30,18 +46,30 @@ LightTracer::LightTracer(const RenderScene& scene)
 bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
   picture_.assign(size_t(scene_.frame.width) * scene_.frame.height * 3, 0.0f);
   return (!scene_.lightSources || traceFrom(*scene_.lightSources, paths, seed, stop)) &&
-         (!scene_.glossySources ||
+         (!scene_.showsGlossy ||
           traceFrom(*scene_.glossySources,
                     (paths + camerasPerGlossyPath - 1) / camerasPerGlossyPath,
                     hash(seed, glossySeed), stop));
 }
 
-GlossyGain LightTracer::tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
-  GlossyGain gain;
+LightPathGain LightTracer::tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
+                                    const PixelWeights& weights, const std::atomic<bool>& stop) {
+  LightPathGain gain;
   gain_ = &gain;
-  traceFrom(*scene_.glossySources, paths, seed, stop);
+  weights_ = &weights;
+  traceFrom(sources, paths, seed, stop);
   gain_ = nullptr;
   return gain;
+}
+
+void LightTracer::connectTo(const ConnectedSurfaces& surfaces, const PathSamples& samples) {
+  ArenaScope scope(arena_);
+  sources_ = scene_.glossySources.get();
+  surfaces_ = &surfaces;
+  probes_ = 0;
+  samples_ = samples;
+  followPaths(surfaces.count);
+  surfaces_ = nullptr;
 }
 
 bool LightTracer::traceFrom(const LightSources& sources, uint32_t paths, uint32_t seed,
@@ -73,17 +101,25 @@ std::vector<Photon> LightTracer::tracePhotons(const LightSources& sources, uint3
 
 void LightTracer::tracePaths(uint32_t first, uint32_t n) {
   ArenaScope scope(arena_);
-  level_ = 0;
   samples_.allocate(arena_, n);
   for (uint32_t i = 0; i < n; i++) samples_.set(i, ~0u, seed_, first + i);
+  followPaths(n);
+}
+
+// Follows the paths of the current samples.
+void LightTracer::followPaths(uint32_t n) {
+  level_ = 0;
   queue_.clear();
   departures_.start(*sources_, samples_, n, queue_);
+  // The surface that the camera sees, or the sensor, counts as one more level; and so do all those
+  // of a camera path, but for those that it passes straight on.
+  const uint32_t others = surfaces_ ? surfaces_->level + 1 : 1;
+  if (surfaces_) addPassages(*surfaces_, queue_.states(), uint32_t(queue_.size()));
   Wave wave;
   wave.rays.allocate(arena_, n);
   double ended = 0; // flux, of which nobody knows where it would have gone
   while (true) {
-    // The surface that the camera sees, or the sensor, counts as one more level.
-    queue_.cut(level_ + 1, scene_.frame.depth, ended);
+    queue_.cut(level_ + others, scene_.frame.depth, ended);
     if (queue_.empty()) break;
     next_.clear();
     counters_.secondary += queue_.size();
@@ -195,7 +231,10 @@ void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass
     if (photons_) {
       leavePhotons(points, states, deflected, count);
     } else {
-      if (!sensors_ && count) connect(batch, random, deflected, count);
+      if (surfaces_)
+        connectToSurfaces(batch);
+      else if (!sensors_ && count)
+        connect(batch, random, deflected, count);
       sampleLobes(batch, sampling);
     }
   }
@@ -228,6 +267,20 @@ void LightTracer::leavePhotons(const Points& points, const PathStates& states, c
   }
 }
 
+LightStarts LightTracer::startsOf(const RtsBatch& batch) const {
+  const uint32_t n = batch.points->hits.count;
+  auto** start = batch.arena.takeZero<const LightSources::LightRay*>(padded(n));
+  for (uint32_t i = 0; i < n; i++)
+    if (!batch.states->flagsOf(batch.order[i]).scattered())
+      start[i] = &departures_.ray(batch.states->path[batch.order[i]]);
+  return {*sources_, start};
+}
+
+// Returns whether camera paths make paths like those in flight, too.
+bool LightTracer::shares() const {
+  return sources_->kind() == LightSources::Kind::glossy || (scene_.sharesMirrors && !photons_);
+}
+
 // Spawns one ray from each hit. Its sample is selected without the flux of the path, which is not
 // known before the first surface has been shaded. At the first surface only specular reflection and
 // refraction count, or what dropLobes() has left.
@@ -237,12 +290,10 @@ void LightTracer::spawnRays(const RtsBatch& batch, const LobeSampling& sampling,
   const PathStates& states = *batch.states;
   const uint32_t n = points.hits.count;
   const bool glossy = sources_->kind() == LightSources::Kind::glossy;
+  const LightStarts starts = startsOf(batch);
   auto* first = arena_.takeZero<uint32_t>(padded(n));
-  auto* start = arena_.take<const LightSources::LightRay*>(n);
-  for (uint32_t i = 0; i < n; i++) {
+  for (uint32_t i = 0; i < n; i++)
     first[i] = states.flagsOf(points.order[i]).pathClass() == PathClass::undeflected;
-    start[i] = first[i] ? &departures_.ray(states.path[points.order[i]]) : nullptr;
-  }
   BsdfSampleArrays samples(batch, sampling, boundaries, TransportMode::importance);
   Selection selection{.points = &points,
                       .choice = sampling.choices[0],
@@ -253,8 +304,8 @@ void LightTracer::spawnRays(const RtsBatch& batch, const LobeSampling& sampling,
   selectSamples(selection, samples);
   uint32_t number = 0;
   for (SampleArrays& sample : samples) {
-    if (glossy && sample.pdf)
-      sample.lightPathRatio = countLightPaths(batch, sample, selection.number, number, start);
+    if (shares() && sample.pdf)
+      sample.lightPathRatio = countLightPaths(batch, sample, selection.number, number, starts);
     number++;
   }
   for (uint32_t i = 0; i < n; i++) {
@@ -283,6 +334,8 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays
   if (sample.pdf) {
     departures_.applyAttenuation(state);
     weight = weight / radianceScale(lobe, i, direction);
+    weight *= departures_.irradianceFactor(state.path, takesIrradiance(batch, i));
+    departures_.setScattered(state.path);
   }
   const float correction =
       sample.deflected ? adjointCorrection(lobe, points.hits, i, direction) : 1.0f;
@@ -291,6 +344,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays
   if (sample.colour) state.flags.setChannel(uint8_t(sample.colour));
   state.media = mediaTowards(points, i, direction, boundaries, state.media);
   if (!sample.deflected) state.flags.addPassage();
+  if (sample.pdf) state.flags.set(PathFlags::scatteredBit, true);
   if (sample.deflected && state.flags.pathClass() == PathClass::undeflected) {
     if (!departures_.applyEmission(points, i, state)) return;
     state.flags.setClass(PathClass::specularFirst);
@@ -306,15 +360,42 @@ void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
     queueRay(points, i, direction, state, next_);
 }
 
+// Connects the hits with the surfaces of the camera paths.
+void LightTracer::connectToSurfaces(const RtsBatch& batch) {
+  ArenaScope scope(arena_);
+  const uint32_t n = batch.points->hits.count;
+  auto* hits = arena_.take<uint32_t>(padded(n));
+  float* const flux[3] = {arena_.take<float>(padded(n)), arena_.take<float>(padded(n)),
+                          arena_.take<float>(padded(n))};
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    RayState state = (*batch.states)[batch.order[i]];
+    if (state.flags.pathClass() == PathClass::undeflected &&
+        !departures_.applyEmission(*batch.points, i, state))
+      continue;
+    store(state.throughput * departures_.attenuation(state.path), flux, count);
+    hits[count++] = i;
+  }
+  connectVertices(*surfaces_, {batch, count, hits, flux, startsOf(batch)});
+}
+
 // Returns the ratios of pdfs for scatterToCamera(); null for paths that only light tracing makes.
 const float* LightTracer::ratiosToCamera(const RtsBatch& batch, const CameraConnections& to) {
-  if (sources_->kind() != LightSources::Kind::glossy) return nullptr;
+  if (!shares()) return nullptr;
   auto* ratio = arena_.takeZero<float>(padded(to.count));
   ArenaScope scope(arena_);
   const float first = firstRatio(scene_), *pixels = coveredPixels(batch, to.hit, to.count);
-  for (uint32_t i = 0; i < to.count; i++)
-    if (pixels[i] > 0)
-      ratio[i] = batch.states->lightPathRatio[batch.order[to.hit[i]]] * first / pixels[i];
+  for (uint32_t i = 0; i < to.count; i++) {
+    const RayState state = (*batch.states)[batch.order[to.hit[i]]];
+    const LightSources::LightRay& start = departures_.ray(state.path);
+    if (start.shape == LightSources::none) {
+      ratio[i] = std::numeric_limits<float>::infinity();
+      continue;
+    }
+    if (pixels[i] > 0) ratio[i] = state.lightPathRatio * first / pixels[i];
+    if (!state.flags.scattered())
+      ratio[i] = mirrorPathRatio(scene_, start.shape, start.place.position, ratio[i]);
+  }
   return ratio;
 }
 
@@ -334,7 +415,9 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
     const float x = to.xy[0][i], y = to.xy[1][i];
     if (!isInPicture(to, i)) continue;
     const RayState state = (*batch.states)[batch.order[hits[i]]];
-    const Vec3f& attenuation = departures_.attenuation(state.path);
+    const Vec3f attenuation =
+        departures_.attenuation(state.path) *
+        departures_.irradianceFactor(state.path, takesIrradiance(batch, hits[i]));
     float* pixel = &picture_[3 * (size_t(y) * width + size_t(x))];
     for (int k = 0; k < 3; k++) {
       const double light =
@@ -350,10 +433,8 @@ bool LightTracer::isInPicture(const CameraConnections& to, uint32_t i) const {
          y < float(scene_.frame.height);
 }
 
-// Adds to the gain what connections bring. A light path that finds the radiance x with the density
-// p tells that camera paths of the density p / ratio have the second moment x^2 ratio there.
+// Adds to the gain what connections to the camera bring.
 void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
-  constexpr double mostRatio = 1e4;
   float *whole[3], *weighted[3], *seen[3];
   for (auto* group : {whole, weighted, seen})
     for (int k = 0; k < 3; k++) group[k] = arena_.take<float>(padded(to.count));
@@ -361,21 +442,18 @@ void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
   scatterToCamera(batch, to, ratiosToCamera(batch, to), weighted);
   for (int k = 0; k < 3; k++) std::copy_n(whole[k], to.count, seen[k]);
   traceToCamera(batch, to, seen);
+  const bool glossy = sources_->kind() == LightSources::Kind::glossy;
   const double pixels = double(scene_.frame.width) * scene_.frame.height,
-               scale = scale_ * cameraArea_ * cameraArea_ / (double(firstRatio(scene_)) * pixels);
+               paths = pixels / (glossy ? camerasPerGlossyPath : 1),
+               scale = scale_ * cameraArea_ * cameraArea_ / (paths * pixels);
   for (uint32_t i = 0; i < to.count; i++) {
     const Vec3f all = load(whole, i), shared = load(weighted, i);
     const double found = double(all.x + all.y + all.z);
     if (!(found > 0) || !isInPicture(to, i)) continue;
-    const double share = std::min(1.0, double(shared.x + shared.y + shared.z) / found),
-                 ratio =
-                     share < 1 ? std::min(mostRatio, std::sqrt(share / (1 - share))) : mostRatio;
     const Vec3d radiance =
         Vec3d(load(batch.states->throughput, batch.order[to.hit[i]]) * load(seen, i));
-    const double square = dot(radiance, radiance) * scale;
-    if (!std::isfinite(square * ratio)) continue;
-    gain_->without += square * ratio;
-    gain_->with += square * (ratio * (1 - share) * (1 - share) + share * share);
+    const double weight = scale * weights_->at(double(to.xy[0][i]), double(to.xy[1][i]));
+    gain_->add(dot(radiance, radiance) * weight, double(shared.x + shared.y + shared.z) / found);
   }
 }
 

@@ -1,9 +1,12 @@
 // light_tracer.h: light tracing for caustics. Follows paths from light sources whose first hit is
 // specular (a mirror or a smooth boundary). Path tracing from the camera finds these paths with low
-// probability, or never if the light has no extent. Where it pays (glossy_trial.h), it also follows
-// paths that a glossy lobe scatters first. Each non-specular vertex of a light path is
+// probability, or never if the light has no extent. Where it pays (light_path_trial.h), it also
+// follows paths that a glossy lobe scatters first. Each non-specular vertex of a light path is
 // connected to the camera: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 // 1997, chapter 10, with a camera subpath of one vertex. One instance per render thread.
+//
+// Where the camera sees the first such surface by way of mirrors or glass, each vertex of a path by
+// way of glossy surfaces is connected to that surface instead (surface_connections.h).
 //
 // Illuminance sensors have no lens to connect to. There a path adds its flux to each cell of the
 // grid that it crosses (sensor_plane.h): "crossed" instead of "connected" below.
@@ -20,19 +23,15 @@
 #include "render/lights/photon_guide.h"
 #include "render/path/camera_connections.h"
 #include "render/path/light_departures.h"
+#include "render/path/light_path_gain.h"
+#include "render/path/pixel_weights.h"
 #include "render/path/sensor_plane.h"
+#include "render/path/surface_connections.h"
 #include "render/surface/sample_arrays.h"
 #include "render/wave/boundaries.h"
 #include "render/wave/wave.h"
 
 namespace openrt {
-
-// Tells what light paths by way of glossy surfaces are worth: the second moments of the radiance
-// that they and one camera path of each pixel find, summed over the colours, as the mean over the
-// pixels.
-struct GlossyGain {
-  double without = 0, with = 0; // camera paths alone; both, with their weights
-};
 
 class LightTracer {
  public:
@@ -48,8 +47,13 @@ class LightTracer {
   // part of a frame needs its own seed. Returns false if `stop` was set; it is checked every few
   // thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
-  // Traces paths by way of glossy surfaces and returns what they are worth.
-  GlossyGain tryGlossy(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
+  // Traces a path by way of glossy surfaces for each surface of a camera path, and adds its light
+  // there. samples: of the light paths.
+  void connectTo(const ConnectedSurfaces& surfaces, const PathSamples& samples);
+  // Traces paths from sources and returns what they are worth that are connected to the camera, as
+  // the mean over the pixels by their weights.
+  LightPathGain tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
+                         const PixelWeights& weights, const std::atomic<bool>& stop);
   std::vector<float>& picture() { return picture_; }
   RayCounters& counters() { return counters_; } // ray counts since the counters were last reset
 
@@ -57,6 +61,7 @@ class LightTracer {
   bool traceFrom(const LightSources& sources, uint32_t paths, uint32_t seed,
                  const std::atomic<bool>& stop);
   void tracePaths(uint32_t first, uint32_t n);
+  void followPaths(uint32_t n);
   void traceWave(Wave& wave);
   void selectMet(Wave& wave);
   void transmitRays(const Points& points, const PathStates& states, const RtsClass& shaderClass);
@@ -71,6 +76,9 @@ class LightTracer {
   const float* ratiosToCamera(const RtsBatch& batch, const CameraConnections& to);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
+  void connectToSurfaces(const RtsBatch& batch);
+  LightStarts startsOf(const RtsBatch& batch) const;
+  bool shares() const;
   void spawnRays(const RtsBatch& batch, const LobeSampling& sampling, const Boundaries& boundaries);
   void spawnRay(const RtsBatch& batch, uint32_t i, const SampleArrays& sample, double kept,
                 const Boundaries& boundaries);
@@ -106,9 +114,11 @@ class LightTracer {
   bool probedInside_ = false;
   uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
-  GlossyGain* gain_ = nullptr;             // gets the gain; null: picture_ gets the light
-  PathSamples samples_{};                  // samples of the paths in flight
-  RayQueue queue_, next_;                  // rays of the current wave, and of the next one
+  LightPathGain* gain_ = nullptr;          // gets the gain; null: picture_ gets the light
+  const PixelWeights* weights_ = nullptr;  // those of the gain
+  const ConnectedSurfaces* surfaces_ = nullptr; // get the light; null: picture_ does
+  PathSamples samples_{};                       // samples of the paths in flight
+  RayQueue queue_, next_;                       // rays of the current wave, and of the next one
 };
 
 } // namespace openrt

@@ -149,6 +149,7 @@ void PathTracer::continueFromLobes(const RtsBatch& batch, const Boundaries& boun
       for (uint32_t i = 0; followed && i < n; i++)
         if (!goesOn(batch, i)) followed[i] = 0;
   sampleEmitters(batch, sampling, boundaries, sent);
+  connections_.connect(pathsOf(batch), sampling, boundaries, sent);
   if (scene_.lightPathFlux > 0) addLightPathBound(pathsOf(batch), sampling, tile_.footprint);
   if (scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
 }

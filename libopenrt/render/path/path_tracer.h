@@ -15,6 +15,7 @@
 #include "render/film/ledger.h"
 #include "render/lights/unsampled_lights.h"
 #include "render/path/guided_rays.h"
+#include "render/path/light_connections.h"
 #include "render/path/light_path_bound.h"
 #include "render/path/spawn_rays.h"
 #include "render/surface/sent_light.h"
@@ -48,8 +49,9 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // Tells a trial about all guided rays from now on.
+  // Tell trials about all guided rays, and about all connections of light paths, from now on.
   void observe(GuideTrial* trial) { guided_.observe(trial); }
+  void observe(LightPathGain* gain) { connections_.observe(gain); }
   // Begins with the samples of other paths, which have hit no surface.
   void begin(const PathSamples& samples);
   // Traces the rays of a wave, and then those that they spawn.
@@ -108,6 +110,7 @@ class PathTracer {
   uint32_t nesting_ = 0;
   RayQueue queue_, next_; // rays of the current wave, and of the next one
   GuidedRays guided_{context_};
+  LightConnections connections_{context_};
 };
 
 } // namespace openrt

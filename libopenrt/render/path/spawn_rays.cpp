@@ -80,7 +80,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
       .count = arena.take<uint32_t>(padded(n)),
       .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);
-  if (batch.scene.glossySources) countCameraPaths(batch, samples);
+  if (batch.scene.countsLightPaths()) countCameraPaths(batch, samples);
   if (path)
     markRandom(paths, samples, boundaries, from.random);
   else

@@ -94,7 +94,8 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   ArenaScope scope(arena);
   const auto pixels = std::span<const uint32_t>(pixels_).subspan(range.begin, range.count());
   const bool centred = paths_.centred || scene_.frame.measure != RT_MEASURE_NOTHING;
-  const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred};
+  const bool inTurn = scene_.frame.jitter && scene_.frame.samples == 1;
+  const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred, inTurn};
   const uint32_t n = film.count();
   PixelSamples found;
   found.allocate(arena, n);
@@ -111,6 +112,7 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   for (uint32_t i = 0; i < n; i++) wave.states.set(i, RayState{.path = i, .lightPathRatio = ratio});
   float* xy[2];
   sampleFilm(film, paths, arena, xy);
+  recordPlaces(film, xy, found);
   makeCameraRays(tracer_.context(), xy, wave.rays);
   if (!scene_.mediumLights.empty()) {
     ArenaScope inner(arena);

@@ -34,8 +34,10 @@ class TileRenderer {
   RayCounters& counters() { return paths_.counters; }
   // Energy left out by the last render().
   const Ledger& ledger() const { return paths_.ledger; }
-  // Tells a trial about all guided rays of camera paths from now on.
+  // Tell trials about all guided rays of camera paths, and about all connections of light paths,
+  // from now on.
   void observe(GuideTrial* trial) { tracer_.observe(trial); }
+  void observe(LightPathGain* gain) { tracer_.observe(gain); }
 
  private:
   void begin(const Tile& tile);

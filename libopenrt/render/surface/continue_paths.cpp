@@ -68,13 +68,17 @@ Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
   };
   const auto bitsOfClass = [](PathClass pathClass) { return bitsOf(uint32_t(pathClass)); };
   const Bits first = bitsOfClass(PathClass::specularFirst);
-  const Bits rest =
-      hn::AndNot(bitsOf(PathFlags::classBits | PathFlags::specularSinceDiffuseBit), flags);
-  if (sample.pdf)
+  const BitsMask scattered = hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
+  const Bits rest = hn::AndNot(
+      bitsOf(PathFlags::classBits | PathFlags::specularSinceDiffuseBit | PathFlags::connectableBit),
+      flags);
+  if (sample.pdf) {
+    const BitsMask behind = is(PathClass::specularFirst);
     return hn::AndNot(bitsOf(PathFlags::passedUnsampledBit), rest) |
            bitsOf(PathFlags::deflectedBit | PathFlags::scatteredBit) |
-           hn::IfThenElse(is(PathClass::specularFirst), first, bitsOfClass(PathClass::diffuse));
-  const BitsMask scattered = hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
+           hn::IfThenElseZero(hn::AndNot(scattered, behind), bitsOf(PathFlags::connectableBit)) |
+           hn::IfThenElse(behind, first, bitsOfClass(PathClass::diffuse));
+  }
   return rest | bitsOf(PathFlags::deflectedBit) |
          hn::IfThenElseZero(scattered, bitsOf(PathFlags::specularSinceDiffuseBit)) |
          hn::IfThenElse(hn::Or(is(PathClass::undeflected), is(PathClass::specularFirst)), first,
@@ -263,7 +267,10 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
       append(gather(states.previousPosition, lane), to.previousPosition);
       append(gather(states.previousNormal, lane), to.previousNormal);
       append(gather(states.unguidedWeight, lane), to.unguidedWeight);
-      append(gather(states.lightPathRatio, lane), to.lightPathRatio);
+      // No light path is connected to a surface that is seen in a mirror.
+      const Lanes ratio = gather(states.lightPathRatio, lane);
+      const Mask lost = hasBits(gather(states.flags, lane), PathFlags::connectableBit);
+      append(sample.deflected ? select(lost, zero, ratio) : ratio, to.lightPathRatio);
       append(sample.deflected ? zero : gather(states.glossyPdf, lane), to.glossyPdf);
     } else {
       append(one, to.unguidedWeight);

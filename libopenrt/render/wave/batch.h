@@ -90,6 +90,8 @@ struct RtsBatch : openrt::StageContext {
   // the batch has all points.
   std::span<const uint32_t> subset;
   const openrt::Crossing* crossing = nullptr; // boundaries of media by hit; null: there are none
+  // By hit: 1 where the surface has RTS_IRRADIANCE; null: nowhere.
+  const uint8_t* irradiance = nullptr;
   // By hit: number of rays it has traced; allocated with the first request.
   uint32_t* requests = nullptr;
   // The shader is asked what surfaces are, not what light they send: it gets no lights, and rays

@@ -46,6 +46,10 @@ struct PathFlags {
   // Since its last non-specular vertex the path has passed straight through something that light
   // samples do not pass.
   static constexpr uint32_t passedUnsampledBit = 64;
+  // The first non-specular surface of the path, seen by way of specular ones, has scattered the
+  // ray, and nothing has bent it since: a connection of a light path may lie along it
+  // (render/lights/light_path_weights.h).
+  static constexpr uint32_t connectableBit = 128;
   static constexpr uint32_t channelShift = 8, channelBits = 3, splitsShift = 10, mostSplits = 63;
   static constexpr uint32_t passagesShift = 16;
 
@@ -56,6 +60,7 @@ struct PathFlags {
   bool reflected() const { return bits & reflectedBit; }
   // Returns whether light sampling at the last non-specular vertex cannot find what the ray hits.
   bool unsampled() const { return bits & (specularSinceDiffuseBit | passedUnsampledBit); }
+  bool connectable() const { return bits & connectableBit; }
   // 1 + index of the only colour that the ray carries (dispersion); 0: all colours
   uint8_t channel() const { return uint8_t(bits >> channelShift & channelBits); }
   // number of times the path has split into several rays

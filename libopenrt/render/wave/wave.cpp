@@ -37,7 +37,7 @@ static const uint8_t* findAimed(const StageContext& context, WaveSource source, 
 void intersectWave(const StageContext& context, WaveSource source, Wave& wave) {
   const uint32_t n = wave.rays.count;
   // A culled back face that a ray skips is a front face for the ray the other way.
-  uint8_t* oneWay = context.scene.glossySources && context.scene.kernel->cullsBacks()
+  uint8_t* oneWay = context.scene.countsLightPaths() && context.scene.kernel->cullsBacks()
                         ? context.arena.takeZero<uint8_t>(n)
                         : nullptr;
   if (source == WaveSource::camera)

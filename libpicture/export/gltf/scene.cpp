@@ -53,11 +53,11 @@ bool isGroup(const Node& node) {
 
 } // namespace
 
-double candelaOf(double intensity, const Vec3f& attenuation, double distance, double scale) {
+double candelaOf(double irradiance, const Vec3f& attenuation, double distance, double scale) {
   const double a = attenuation.x, b = attenuation.y, c = attenuation.z;
   const double inside = distance / scale; // in the coordinates of the node
   const double divisor = std::max(a + b * inside + c * inside * inside, 1.0);
-  return std::numbers::pi * intensity * distance * distance / divisor;
+  return irradiance * distance * distance / divisor;
 }
 
 Scene::Scene(Document& document, Meshes& meshes, Motions& motions, Remarks& remarks)
@@ -156,6 +156,11 @@ void Scene::draw(const xvrml::DrawnShape& shape) {
   const std::optional<MeshUse> use = meshes_.use(shape, chooserOf(shape.state));
   if (!use) return;
   grow(use->box, shape.matrix());
+  const xvrml::AppearanceParts& look = shape.appearance();
+  const bool physical = nodeCast<nodes::PhysicalMaterial>(look.material) && !look.shader;
+  hasPhysical_ |= physical;
+  hasOthers_ |= !physical &&
+                (look.shader || (look.material && !nodeCast<nodes::UnlitMaterial>(look.material)));
   if (!open_.empty()) {
     open_.back().shapes.push_back({use->mesh, shape.shape.defName});
     return;
@@ -288,8 +293,6 @@ Scene::Visit Scene::renderDirectionalLight(nodes::DirectionalLight& node, const 
   if (!node.global && state.path.size() > 1)
     remarks_.change("a DirectionalLight of a group shines on everything");
   Deferred light = lightOf(node, "directional", state);
-  light.object["intensity"] = float(std::numbers::pi * light.intensity); // lux
-  light.intensity = 0;
   Place place;
   place.rotation = quaternionToward(node.direction);
   addLight(std::move(light), place, node);
@@ -299,6 +302,7 @@ Scene::Visit Scene::renderDirectionalLight(nodes::DirectionalLight& node, const 
 // Sets what lights with a place have. Returns the place of the glTF node.
 template <class T> Place Scene::placeLight(const T& node, const State& state, Deferred& light) {
   Place place;
+  light.placed = true;
   if (isFinite(vecOf(node.location))) place.translation = vecOf(node.location);
   light.place = transformed(state.matrix, place.translation);
   light.attenuation = {positive(node.attenuation.x, largest), positive(node.attenuation.y, largest),
@@ -367,25 +371,38 @@ void Scene::finishCamera(Deferred& camera) {
   numbers["zfar"] = float(clamped(2 * (distance + radius), 1, largest));
 }
 
-// Sets the candela of a light with a place. A DirectionalLight has its intensity already.
-void Scene::finishLight(Deferred& light) {
-  if (light.object.contains("intensity")) return;
-  const Vec3f& falloff = light.attenuation;
-  const double distance = std::max(length(centre() + light.place * -1.0), 1e-3 * light.scale);
-  const double candela = candelaOf(light.intensity, falloff, distance, light.scale),
-               inside = distance / light.scale;
-  // From here on the light falls off with the square in the world, too.
-  const bool square = falloff.x == 0 && falloff.y == 0 && double(falloff.z) * inside * inside >= 1;
-  if (!square)
-    remarks_.change("a light falls off with the square of the distance, and is as bright as in the "
-                    "world at the middle of what is drawn");
-  light.object["intensity"] = float(clamped(candela, 0, largest));
+// Returns the irradiance that a light of intensity 1 has at surfaces which face it. glTF's surfaces
+// reflect 1/pi of it, as PhysicalMaterial does (ISO/IEC 19775-1:2023 17.2.2), and Material all.
+double Scene::irradianceOfOne() {
+  if (hasPhysical_ && hasOthers_ && !lights_.empty())
+    remarks_.change("lights are as bright as on Material, and pi times as bright as in the world "
+                    "on PhysicalMaterial");
+  return hasPhysical_ && !hasOthers_ ? 1 : std::numbers::pi;
+}
+
+// Sets the lux of a parallel light, or the candela of one with a place.
+void Scene::finishLight(Deferred& light, double irradiance) {
+  double strength = irradiance * light.intensity;
+  if (light.placed) {
+    const Vec3f& falloff = light.attenuation;
+    const double distance = std::max(length(centre() + light.place * -1.0), 1e-3 * light.scale),
+                 inside = distance / light.scale;
+    strength = candelaOf(strength, falloff, distance, light.scale);
+    // From here on the light falls off with the square in the world, too.
+    const bool square =
+        falloff.x == 0 && falloff.y == 0 && double(falloff.z) * inside * inside >= 1;
+    if (!square)
+      remarks_.change("a light falls off with the square of the distance, and is as bright as in "
+                      "the world at the middle of what is drawn");
+  }
+  light.object["intensity"] = float(clamped(strength, 0, largest));
 }
 
 void Scene::finish() {
   Json list = Json::array();
+  const double irradiance = irradianceOfOne();
   for (Deferred& light : lights_) {
-    finishLight(light);
+    finishLight(light, irradiance);
     list.push_back(std::move(light.object));
   }
   if (!list.empty()) document_.addExtension("KHR_lights_punctual", {{"lights", std::move(list)}});

@@ -16,10 +16,10 @@
 namespace picture::gltf {
 
 // Returns the intensity in candela that a point light needs to light a surface at a distance as the
-// node does there: glTF's light falls off with the square of the distance, and its matt surfaces
-// reflect 1/pi of it. scale: metres per unit of the node's coordinates. intensity, attenuation: of
-// the node.
-double candelaOf(double intensity, const xvrml::Vec3f& attenuation, double distance, double scale);
+// node does there: glTF's light falls off with the square of the distance. scale: metres per unit
+// of the node's coordinates. irradiance: what the node gives where nothing attenuates it.
+// attenuation: of the node.
+double candelaOf(double irradiance, const xvrml::Vec3f& attenuation, double distance, double scale);
 
 class Scene : public xvrml::Renderer {
  public:
@@ -65,7 +65,8 @@ class Scene : public xvrml::Renderer {
     Json object;
     Vec place;            // in the world
     double scale = 1;     // metres per unit
-    double intensity = 0; // field of a light with a place
+    double intensity = 0; // field of the light
+    bool placed = false;  // it has a place, so its distance matters
     xvrml::Vec3f attenuation;
   };
   template <class T> Visit open(T& node, const State& state);
@@ -86,7 +87,8 @@ class Scene : public xvrml::Renderer {
   void grow(const Box& box, const double matrix[16]);
   Vec centre() const;
   void finishCamera(Deferred& camera);
-  void finishLight(Deferred& light);
+  double irradianceOfOne();
+  void finishLight(Deferred& light, double irradiance);
 
   Document& document_;
   Meshes& meshes_;
@@ -95,6 +97,7 @@ class Scene : public xvrml::Renderer {
   std::vector<Open> open_;
   std::unordered_map<const xvrml::Node*, bool> choosers_; // answers of choosesLooks()
   std::vector<Deferred> lights_, cameras_;
+  bool hasPhysical_ = false, hasOthers_ = false; // lit materials that are drawn
   double low_[3], high_[3]; // bounds of what is drawn; low_[0] > high_[0]: nothing is
 };
 

@@ -98,7 +98,7 @@ template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
   walk(std::move(roots), [&](Node& node, std::vector<Node*>& open) {
     if (!visit(node)) return;
     const auto before = ptrdiff_t(open.size());
-    childrenInHierarchy(node, open);
+    childrenInScene(node, open);
     std::reverse(open.begin() + before, open.end());
   });
 }

@@ -17,7 +17,7 @@ std::vector<Node*> soundsBelow(const Scope& scope) {
   std::vector<Node*> found;
   walk(rootsOf(scope), [&](Node& node, std::vector<Node*>& open) {
     if (node.type().index == nodes::Sound::typeIndex) found.push_back(&node);
-    childrenInHierarchy(node, open);
+    childrenInScene(node, open);
   });
   return found;
 }

@@ -30,6 +30,7 @@ void Interaction::changed(Node& node, const FieldInfo& field) {
 void Interaction::forgotten(const Node& node) {
   picker.forgotten(node);
   binding.forget(node);
+  navigation.forget(node);
   pointer.forget(node);
   keyboard.forget(node);
 }

@@ -12,6 +12,13 @@
 #include "xvrml/world.h"
 
 namespace xvrml {
+namespace {
+
+bool contains(const std::vector<Node*>& nodes, const Node* node) {
+  return std::find(nodes.begin(), nodes.end(), node) != nodes.end();
+}
+
+} // namespace
 
 // Lengths are in the coordinate system around the Viewpoint (6.29); up is its y axis (6.53).
 Avatar Navigator::avatarAt(const Node* viewpoint, const Vector& upWithoutViewpoint) const {
@@ -46,9 +53,26 @@ bool Navigator::findObstacle(const PickRay& ray, const Matrix& view, bool touch,
   normal = hit.normal;
   if (touch)
     for (const Hit::Step& step : hit.path)
-      if (step.node->type().index == nodes::Collision::typeIndex)
+      if (step.node->type().index == nodes::Collision::typeIndex) {
         sendFrom<"collideTime">(interaction_.engine, *step.node, interaction_.engine.now());
+        if (!contains(touched_, step.node)) touched_.push_back(step.node);
+      }
   return true;
+}
+
+// Sends isActive of the Collision nodes that the viewer has begun or ceased to touch (ISO/IEC
+// 19775-1 23.4.2).
+void Navigator::tellTouches() {
+  for (Node* node : active_)
+    if (!contains(touched_, node)) sendFrom<"isActive">(interaction_.engine, *node, false);
+  for (Node* node : touched_)
+    if (!contains(active_, node)) sendFrom<"isActive">(interaction_.engine, *node, true);
+  active_ = touched_;
+}
+
+void Navigator::forget(const Node& node) {
+  std::erase(touched_, &node);
+  std::erase(active_, &node);
 }
 
 // Returns the centre of rotation for EXAMINE. A viewpoint of X3D says it (ISO/IEC 19775-1 23.3.1).
@@ -99,7 +123,9 @@ void Navigator::move(const NavigationInput& input, double seconds) {
   if (!interaction_.scope || interaction_.viewer.inTransition()) return;
   motion_.view = interaction_.viewer.view();
   const Avatar avatar = avatarAt(interaction_.binding.bound().viewpoint, up_);
+  touched_.clear();
   const Motion to = moved(motion_, type(), avatar, input, seconds, Touches::sent);
+  tellTouches();
   const bool elsewhere = to.view != motion_.view;
   motion_ = to;
   if (elsewhere) interaction_.viewer.moveTo(to.view);

@@ -70,14 +70,20 @@ class Navigator {
   void resetMotion() {
     motion_.fall = 0;
     motion_.hasCenter = false;
+    touched_.clear();
+    tellTouches();
   }
+  void forget(const Node& node); // called when a node is destroyed
 
  private:
   Vector centerOf(const Matrix& view);
+  void tellTouches();
   bool findObstacle(const PickRay& ray, const Matrix& view, bool touch, double& t, Vector& normal);
 
   Interaction& interaction_;
   Motion motion_;
+  // Collision nodes whose children the viewer has hit during this move, and those that say so.
+  std::vector<Node*> touched_, active_;
   std::optional<Navigation> chosen_;
   std::set<Key> held_;
   double lastTick_ = std::numeric_limits<double>::quiet_NaN();

@@ -30,7 +30,7 @@ void partsOf(Node& node, std::vector<Node*>& parts) {
   if (const auto* layer = nodeCast<nodes::CADLayer>(&node)) {
     return appendShownChildren(*layer, parts);
   }
-  childrenInHierarchy(node, parts);
+  childrenInScene(node, parts);
 }
 
 // Appends the children that a ray with these rules may hit.

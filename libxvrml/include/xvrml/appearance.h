@@ -110,6 +110,9 @@ struct ShaderOption {
   MFString otherUrls;
   NodeRef picture;
   const FieldInfo* field = nullptr; // not null: the node declares the parameter as a field
+  // Where the values stand of a parameter that no field declares: in bytes of an element of
+  // `options`.
+  size_t element = 0, begin = 0, end = 0;
 };
 // Returns the parameters of a shader in order: those of its options, then the fields that it
 // declares. A field takes the place of an option of the same name. Without the shader's class it is

@@ -209,6 +209,9 @@ class Browser {
   // LoadError if nothing of the text can be used. base: the file that relative URLs are relative
   // to; "" means the world's file.
   MFNode createVrmlFromString(std::string_view text, const std::string& base = "");
+  // Makes an instance of a prototype, with its defaults, in the same way. Null if its name cannot
+  // stand in a file.
+  NodeRef createInstance(const ProtoPtr& prototype, const std::string& base = "");
   // The next three calls wait for the end of the cascade if one is under way. base: the file that
   // relative URLs are relative to; "" means the world's file.
   //

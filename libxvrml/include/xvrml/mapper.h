@@ -66,6 +66,9 @@ struct BoundingSphere {
 // Writes the rotation of a camera (camera to world, column-major) that looks at a model from 35
 // degrees to the right of its front and 25 degrees above.
 void threeQuarterView(Axis up, double view[16]);
+// Returns whether a camera far away that looks along the view's -z sees nothing but backs of faces
+// that have one side, which are not drawn. False for a world without faces.
+bool facesAway(const World& world, const double view[16]);
 // Returns a camera that looks along the view's -z at the centre of a sphere. The picture holds the
 // whole sphere, with a margin.
 CameraSettings cameraAround(const BoundingSphere& sphere, const double view[16], double fovy,
@@ -120,6 +123,8 @@ class OpenRTMapper {
   CameraSettings cameraAround(const double view[16], double fovy, double aspect) const;
   // Returns whether a camera sees all that is drawn, but for a few hundredths of the picture.
   bool seesAll(const CameraSettings& camera, double aspect) const;
+  // Returns facesAway() of the world; the answer is kept until the world changes.
+  bool facesAway(const double view[16]) const;
   Bounds bounds() const;
   BoundingSphere boundingSphere() const;
   // Guesses the axis that points up, by the rules of docs/decisions/0040-models.md.

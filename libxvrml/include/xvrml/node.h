@@ -126,6 +126,9 @@ struct FieldInfo {
   // bytes from its start. Null: any other field.
   const RareAccess* rare = nullptr;
   uint32_t rareOffset = 0;
+  // VRML97 has a field here, which `access` calls an exposedField: events change it since this
+  // version of X3D. 0: `access` holds for all.
+  uint8_t exposedSince = 0;
 };
 // Returns whether nodes store a value of the field: a field or an exposedField, not an event.
 inline bool holdsValue(const FieldInfo& field) {

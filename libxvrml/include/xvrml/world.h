@@ -208,6 +208,12 @@ const Scope* inlineScope(const Node& inlineNode);
 std::string writeWorld(const World& world, const std::string& path, Encoding encoding);
 std::string writeWorld(const World& world, const std::string& path);
 std::string writeWorld(const World& world);
+// Returns what looks different in the file that writeWorld() writes in an encoding, because its
+// version gives another meaning to the same nodes: one phrase each, for people.
+std::vector<std::string> changesByWriting(const World& world, Encoding encoding);
+// Returns a node of the world with its descendants as text in one of these encodings, without the
+// head of a file and without prototypes and routes. URLs stay as they are. Throws as writeWorld().
+std::string writeNode(const World& world, Node& node, Encoding encoding);
 // Returns the encoding in which a file of this name is written: X3D for .x3dv and .x3d, VRML97 for
 // all others.
 Encoding writtenEncoding(std::string_view path);

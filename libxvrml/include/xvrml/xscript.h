@@ -234,6 +234,8 @@ typedef struct XsEngine {
    * file can be opened, no thread or process started and no socket made, and memory is limited. The
    * engine does here whatever its language needs of these. Optional. */
   XsResult (*prepare)(void);
+  /* 1.3: `tick` is called only for programs whose text contains this word. NULL: for all. */
+  const char* tickWord;
 } XsEngine;
 
 typedef struct XsPlugin {
@@ -340,6 +342,24 @@ struct XsHost {
   XsResult (*namedNode)(const XsHost* host, XsNode self, XsString name, XsValue* out);
   /* out: an MFNode, the outermost nodes. */
   XsResult (*rootNodes)(const XsHost* host, XsNode self, XsValue* out);
+
+  /* --- 1.3: what scenes and nodes of X3D say of themselves (ISO/IEC 19777-1). An engine reads
+   * these members only if `size` says that they are there. */
+  /* out: an MFString of three: the scene's version ("2.0" is VRML97), its encoding ("VRML", "XML",
+   * "JSON", or "SCRIPTED" for all others) and its file. */
+  XsResult (*sceneFacts)(const XsHost* host, XsNode self, XsValue* out);
+  /* out: the SFNode of a new instance of a prototype that the scene declares, with its defaults.
+   * XS_NO_NODE if the scene declares no such prototype. */
+  XsResult (*createInstance)(const XsHost* host, XsNode self, XsString prototype, XsValue* out);
+  /* out: the SFNode of a DEF name among a node and its descendants. XS_NO_NODE: there is none. */
+  XsResult (*nodeWithin)(const XsHost* host, XsNode self, XsNode node, XsString name, XsValue* out);
+  /* out: an MFString of the abstract types of ISO/IEC 19775-1 that the node has, X3DNode first. */
+  XsResult (*nodeTypes)(const XsHost* host, XsNode self, XsNode node, XsValue* out);
+  /* out: a node with its descendants, or for node 0 the whole world, as text. encoding: "VRML"
+   * (VRML97 in a world of VRML97, else ClassicVRML) or "XML". Prototypes are not part of a node's
+   * text. */
+  XsResult (*writeNode)(const XsHost* host, XsNode self, XsNode node, XsString encoding,
+                        XsString* out);
 };
 
 #if defined(_WIN32)

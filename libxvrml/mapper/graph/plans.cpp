@@ -124,6 +124,12 @@ void planCadLayer(PlanContext&, Node& node, Plan& plan) {
   appendShownChildren(static_cast<nodes::CADLayer&>(node), plan.children);
 }
 
+// Groups that are placed without all that they can do (NodeType's `lacks`).
+void planPlacing(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::group;
+  appendPlaced(node, plan.children);
+}
+
 void planViewpointGroup(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::ViewpointGroup&>(node).children);
 }
@@ -172,6 +178,8 @@ std::vector<PlanFunction>& table() {
     set(nodes::ORTSensor::typeIndex, planSensor);
     set(nodes::ClipPlane::typeIndex, planClipPlane);
     set(nodes::ViewpointGroup::typeIndex, planViewpointGroup);
+    for (const NodeType* type : nodeTypes())
+      if (type->is("placing")) set(type->index, planPlacing);
     for (const NodeType* type : nodeTypes())
       if (const BindableStack stack = bindableStack(*type); stack != BindableStack::none)
         set(type->index, bindablePlans[size_t(stack)]);

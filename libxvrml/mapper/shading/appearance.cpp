@@ -60,6 +60,7 @@ Surfaces::Key Surfaces::keyOf(const AppearanceParts& parts, RTid texture, bool m
     std::memcpy(bytes.data() + size, &value, sizeof value);
     size += sizeof value;
   };
+  add(parts.shader);
   add(texture);
   add(multiply);
   add(vertexAlpha);
@@ -75,12 +76,14 @@ Surfaces::Key Surfaces::keyOf(const AppearanceParts& parts, RTid texture, bool m
 }
 
 // Returns whether the appearance may share the shader of an equal one: the world has many
-// appearances, and no events reach this one.
-bool Surfaces::mayShare(const Entry& entry) const {
+// appearances, and no events reach this one. One with an ORTShader has nothing but a Material.
+bool Surfaces::mayShare(const Entry& entry, const AppearanceParts& parts) const {
   Node* node = entry.appearance.get();
   if (!node || entries_[placeOf(entry.use)].size() <= smallWorld) return false;
-  const AppearanceParts parts = resolveAppearance(node);
-  if (parts.shader || isPhysical(parts.material)) return false;
+  if (isPhysical(parts.material)) return false;
+  const bool isPlain = !parts.texture && !parts.textureTransform && !entry.use.vertexAlpha &&
+                       nodeCast<nodes::Material>(parts.material) && !hasPictures(*parts.material);
+  if (parts.shader && !isPlain) return false;
   for (const Node* part :
        {node, nodeCast<nodes::Material>(parts.material) ? parts.material : nullptr, parts.texture,
         parts.textureTransform})
@@ -116,12 +119,17 @@ bool Surfaces::share(Entry& entry, const Key& key) {
   return !fresh;
 }
 
-// Takes the entry away from its shared shader. The last user keeps the shader as its own.
+// Takes the entry away from its shared shader. The last user keeps one of the class VRML97 as its
+// own.
 void Surfaces::leaveShared(Entry& entry) {
   const uint32_t at = std::exchange(entry.shared, IndexTable::none);
-  if (--shared_[at].users > 0) return;
-  entry.own = shared_[at].shader;
-  sharedByKey_.erase(shared_[at].key.low, at);
+  Shared& shared = shared_[at];
+  if (--shared.users > 0) return;
+  if (const NodeRef user = std::exchange(shared.customUser, {}))
+    custom_.forget(*user);
+  else
+    entry.own = shared.shader;
+  sharedByKey_.erase(shared.key.low, at);
   freeShared_.push_back(at);
 }
 
@@ -168,17 +176,40 @@ Surface Surfaces::makeLines(const Entry& entry) {
   return surface;
 }
 
+// Lets the entry share the shader of equal appearances with one ORTShader, if it may, or leave it
+// if it has other values now. Returns whether the shader is ready: an earlier user has made it.
+bool Surfaces::joinCustom(Entry& entry, const AppearanceParts& parts) {
+  const bool isFirst = entry.surface.shader == 0 && !isShared(entry);
+  if (!isShared(entry) && !(isFirst && mayShare(entry, parts))) return false;
+  const Key key = keyOf(parts, 0, false, false);
+  if (isShared(entry) && shared_[entry.shared].key == key)
+    return false; // its parameters are set again
+  if (isShared(entry)) leaveShared(entry);
+  if (!isFirst) return false;
+  if (share(entry, key)) return entry.surface.shader != 0;
+  const NodeType& type = *findNodeType("Appearance");
+  shared_[entry.shared].customUser = NodeRef(type.create(type));
+  return false;
+}
+
 // Returns the shader of an ORTAppearance. Fields of the appearance set the class's parameters of
 // the same name, where the class has them (as VRML97 does). These fields are texture,
 // textureTransform and those of the Material.
-RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
-  const AppearanceParts parts = resolveAppearance(&appearance);
-  if (!parts.texture && !firstTransform(parts.textureTransform) && !parts.material)
+RTid Surfaces::customSurface(Entry& entry, const AppearanceParts& parts) {
+  nodes::ORTShader& node = *parts.shader;
+  if (!parts.texture && !firstTransform(parts.textureTransform) && !parts.material) {
+    if (isShared(entry)) leaveShared(entry);
     return custom_.shaderFor(node, RT_SURFACE);
+  }
+  if (joinCustom(entry, parts)) return shared_[entry.shared].shader;
   const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
     setMaterialParameters(shader, shaderClass, node, parts, textures_, world_, linear_);
   };
-  return custom_.shaderFor(node, RT_SURFACE, &appearance, preset);
+  const Node* const user =
+      isShared(entry) ? shared_[entry.shared].customUser.get() : entry.appearance.get();
+  const RTid shader = custom_.shaderFor(node, RT_SURFACE, user, preset);
+  if (isShared(entry)) shared_[entry.shared].shader = shader;
+  return shader;
 }
 
 bool Surfaces::multiplies(const Entry& entry) const {
@@ -188,11 +219,15 @@ bool Surfaces::multiplies(const Entry& entry) const {
 // Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
   const AppearanceParts parts = resolveAppearance(entry.appearance.get());
+  // Shaders of both kinds are not shared with each other.
+  if (isShared(entry) && bool(shared_[entry.shared].customUser) != bool(parts.shader))
+    leaveShared(entry);
   if (parts.shader) {
-    if (const RTid shader = customSurface(*entry.appearance, *parts.shader)) {
+    if (const RTid shader = customSurface(entry, parts)) {
       entry.surface.shader = shader;
       return;
     }
+    if (isShared(entry)) leaveShared(entry); // the class is not there
   }
   if (!parts.shader && needsX3dMaterial(parts)) return makeX3d(entry);
   if (!parts.shader && isPhysical(parts.material)) return makePhysical(entry);
@@ -200,7 +235,7 @@ void Surfaces::makeSurface(Entry& entry) {
   const RTid texture = textures_.ofNode(parts.texture);
   const bool multiplied = multiplies(entry);
   const bool first = entry.own == 0 && !isShared(entry);
-  if (isShared(entry) || (first && mayShare(entry))) {
+  if (isShared(entry) || (first && !parts.shader && mayShare(entry, parts))) {
     const Key key = keyOf(parts, texture, multiplied, entry.use.vertexAlpha);
     if (isShared(entry) && shared_[entry.shared].key == key) {
       entry.surface.shader = shared_[entry.shared].shader;

@@ -1,6 +1,6 @@
 // appearance.h: appearance nodes as surface shaders, made on first use. In a world with many
-// appearances, equal ones share a shader as long as no event reaches them; the first change gives
-// an appearance a shader of its own. [the mapper's thread]
+// appearances, equal ones, also with an ORTShader, share a shader as long as no event reaches them;
+// the first change gives an appearance a shader of its own. [the mapper's thread]
 #pragma once
 
 #include <optional>
@@ -77,11 +77,13 @@ class Surfaces {
     uint64_t low = 0, high = 0;
     bool operator==(const Key&) const = default;
   };
-  // A shader of the class VRML97 for all appearances whose values have the hash `key`.
+  // A shader for all appearances whose values have the hash `key`: of the class VRML97, or that of
+  // an ORTShader.
   struct Shared {
     RTid shader = 0;
     uint32_t users = 0; // 0: the place is free
     Key key;
+    NodeRef customUser; // stands for the users in custom_; null: the class is VRML97
   };
   struct Entry {
     NodeRef appearance;
@@ -107,13 +109,14 @@ class Surfaces {
   void makePhysical(Entry& entry);
   void makeX3d(Entry& entry);
   bool multiplies(const Entry& entry) const;
-  bool mayShare(const Entry& entry) const;
+  bool mayShare(const Entry& entry, const AppearanceParts& parts) const;
   Key keyOf(const AppearanceParts& parts, RTid texture, bool multiply, bool vertexAlpha) const;
   bool isShared(const Entry& entry) const { return entry.shared != IndexTable::none; }
+  bool joinCustom(Entry& entry, const AppearanceParts& parts);
   bool share(Entry& entry, const Key& key);
   void leaveShared(Entry& entry);
   bool take(const Entry& entry, uint64_t bytes);
-  RTid customSurface(Node& appearance, nodes::ORTShader& shader);
+  RTid customSurface(Entry& entry, const AppearanceParts& parts);
   void forget(Entry& entry);
 
   World& world_;

@@ -227,7 +227,7 @@ void CustomShaders::changed(const Node& node) {
 void CustomShaders::forget(const Node& user) {
   std::erase_if(entries_, [&](const auto& entry) {
     if (entry.first.second != &user) return false;
-    if (entry.second.shader != 0) rtDeleteShader(entry.second.shader);
+    if (entry.second.shader != 0) replaced_.push_back(entry.second.shader);
     quota_.give(entry.second.bytes);
     return true;
   });

@@ -34,7 +34,7 @@ class CustomShaders {
                  const Preset& preset = {});
   // Marks the node's shaders as out of date. Their users have to call shaderFor() again.
   void changed(const Node& node);
-  // Deletes the shaders made for this user.
+  // Deletes the shaders made for this user with the next sweep(): the scene may still use them.
   void forget(const Node& user);
   // Deletes replaced shaders. Call it when nothing in the scene uses them any more.
   void sweep();

@@ -208,6 +208,7 @@ void Lights::atCamera(CameraLight light, const CameraSettings& camera) {
       s.vector("direction", lamps[i].direction);
       if (lamps[i].intensity != 1) s.number("intensity", lamps[i].intensity, 0);
       s.integer("shadows", 0);
+      if (!head) s.integer("irradiance", 0); // as bright on all materials
       one.shader = s.id();
     }
     load(view);

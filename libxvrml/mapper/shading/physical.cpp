@@ -46,6 +46,7 @@ template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
 void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m,
                  const AppearanceParts& parts, Textures& textures, bool linear) {
   shader.integer("lit", 1);
+  shader.integer("irradiance", 1); // ISO/IEC 19775-1:2023 17.2.2.4
   shader.color("baseColor", convert(m.baseColor, linear));
   shader.number("metallic", m.metallic, 0, 1);
   shader.number("roughness", m.roughness, 0, 1);

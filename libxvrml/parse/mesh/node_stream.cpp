@@ -127,12 +127,6 @@ std::string_view NodeStream::define(std::string_view name, std::string_view othe
   return file_.names.emplace_back(std::move(unique));
 }
 
-double NodeStream::maximum(std::string_view type, std::string_view field) const {
-  const NodeType* known = file_.sink.typeNamed(type);
-  const FieldInfo* info = known ? known->find(field) : nullptr;
-  return info ? info->range.maximum : std::numeric_limits<double>::infinity();
-}
-
 bool NodeStream::knows(std::string_view type, std::string_view field) const {
   const NodeType* known = file_.sink.typeNamed(type);
   return known && known->find(field);

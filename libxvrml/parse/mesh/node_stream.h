@@ -44,8 +44,6 @@ class NodeStream {
   // Returns whether there is such a node type, or a field of one.
   bool knows(std::string_view type) const { return file_.sink.typeNamed(type); }
   bool knows(std::string_view type, std::string_view field) const;
-  // Returns the largest number that a field may have; infinity if there is no such field.
-  double maximum(std::string_view type, std::string_view field) const;
 
  private:
   bool skips() const { return skipped_ > 0; }

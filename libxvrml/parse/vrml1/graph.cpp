@@ -16,7 +16,7 @@ NodeRef Graph::finish(NodeRef node) {
     // A Transform may mirror what it holds: negative scales are meant.
     if (!field.range.bounded() || field.type == FieldType::SFRotation || field.name == "scale" ||
         !holdsValue(field) || node->isUnset(field) ||
-        enforceRange(field, node->storage(field), &fault))
+        enforceRange(field, nullptr, node->storage(field), &fault))
       continue;
     if (reported_.insert(node->type().name + '.' + field.name).second)
       state_.diagnostics.warn(node->source, describe(node->type(), field, fault));

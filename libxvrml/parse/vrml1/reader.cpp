@@ -271,7 +271,7 @@ void Reader::vrml97Field(TreeNode& node, const Token& name) {
   normalizeAxes(field->type, node.vrml97->storage(*field));
   RangeFault fault;
   if (field->range.bounded() && field->type != FieldType::SFRotation &&
-      !enforceRange(*field, node.vrml97->storage(*field), &fault))
+      !enforceRange(*field, nullptr, node.vrml97->storage(*field), &fault))
     lexer_.warn(name.at(), xvrml::describe(type, *field, fault));
 }
 

@@ -24,7 +24,9 @@ using HostFunctions =
                  &XsHost::getCurrentFrameRate, &XsHost::getWorldUrl, &XsHost::setDescription,
                  &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
                  &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute,
-                 &XsHost::log, &XsHost::namedNode, &XsHost::rootNodes>;
+                 &XsHost::log, &XsHost::namedNode, &XsHost::rootNodes, &XsHost::sceneFacts,
+                 &XsHost::createInstance, &XsHost::nodeWithin, &XsHost::nodeTypes,
+                 &XsHost::writeNode>;
 
 // Output arguments.
 template <class T> constexpr bool isOut =

@@ -13,7 +13,7 @@
 
 namespace xvrml::wire {
 
-constexpr uint32_t version = 2;
+constexpr uint32_t version = 3;
 constexpr uint32_t maximumMessage = 256u << 20; // bytes per message
 
 enum class Op : uint16_t {

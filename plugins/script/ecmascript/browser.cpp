@@ -87,14 +87,22 @@ duk_ret_t loadUrl(duk_context* ctx) { // arguments: urls, parameters
   return 0;
 }
 
-duk_ret_t createVrmlFromString(duk_context* ctx) {
-  Interpreter& self = begin(ctx);
-  pushText(ctx, 0, "Browser.createVrmlFromString");
+void pushMadeNodes(duk_context* ctx, Interpreter& self, const char* name) {
+  pushText(ctx, 0, name);
   XsValue made{};
   const XsResult result =
       self.host->createVrmlFromString(self.host, self.self, textForHost(ctx, self, -1), &made);
-  if (result != XS_OK) throwHost(ctx, self, result, "Browser.createVrmlFromString");
+  if (result != XS_OK) throwHost(ctx, self, result, name);
   pushValue(ctx, self, made);
+}
+duk_ret_t createVrmlFromString(duk_context* ctx) {
+  pushMadeNodes(ctx, begin(ctx), "Browser.createVrmlFromString");
+  return 1;
+}
+duk_ret_t createX3dFromString(duk_context* ctx) {
+  Interpreter& self = begin(ctx);
+  pushMadeNodes(ctx, self, "Browser.createX3DFromString");
+  wrapScene(ctx, self);
   return 1;
 }
 
@@ -199,7 +207,7 @@ void putConstant(duk_context* ctx, const char* name, bool value) {
 
 } // namespace
 
-void registerBrowser(duk_context* ctx, Interpreter&) {
+void registerBrowser(duk_context* ctx, Interpreter& self) {
   static constexpr Method methods[] = {{"getName", getName, 0},
                                        {"getVersion", getVersion, 0},
                                        {"getCurrentSpeed", getCurrentSpeed, 0},
@@ -210,7 +218,7 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
                                        {"loadURL", loadUrl, 2},
                                        {"createVrmlFromString", createVrmlFromString, 1},
                                        {"createVrmlFromURL", createVrmlFromUrl, 3},
-                                       {"createX3DFromString", createVrmlFromString, 1},
+                                       {"createX3DFromString", createX3dFromString, 1},
                                        {"createX3DFromURL", createVrmlFromUrl, 3},
                                        {"addRoute", addRoute, 4},
                                        {"deleteRoute", deleteRoute, 4},
@@ -226,7 +234,7 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
       {"addRoute", addRoute, 4},     {"deleteRoute", deleteRoute, 4}, {"__xvrmlCopy", copyOf, 1}};
   duk_push_object(ctx);
   putMethods(ctx, methods, std::size(methods));
-  putX3d(ctx);
+  putX3d(ctx, self);
   duk_put_global_string(ctx, "Browser");
   duk_push_global_object(ctx);
   putMethods(ctx, globals, std::size(globals));

@@ -13,6 +13,8 @@ Interpreter& of(XsInterpreter interpreter) {
   return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter));
 }
 
+constexpr const char* prepareEvents = "prepareEvents";
+
 XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   XsResult result = XS_FAILED;
   *made = reinterpret_cast<uintptr_t>(ecma::createInterpreter(host, info, result));
@@ -27,6 +29,10 @@ XsResult event(XsInterpreter interpreter, const XsEvent* event) {
 }
 XsResult eventsProcessed(XsInterpreter interpreter, double time) {
   return callFunction(of(interpreter), "eventsProcessed", nullptr, time);
+}
+// Lets a program of X3D collect what has arrived since the last frame (ISO/IEC 19775-1 29.2.5).
+XsResult tick(XsInterpreter interpreter, double time) {
+  return callFunction(of(interpreter), prepareEvents, nullptr, time);
 }
 XsResult shutdown(XsInterpreter interpreter, double time) {
   return callFunction(of(interpreter), "shutdown", nullptr, time, true);
@@ -58,8 +64,9 @@ const XsEngine engine = {sizeof(XsEngine),
                          event,
                          eventsProcessed,
                          shutdown,
-                         nullptr,
-                         prepare};
+                         tick,
+                         prepare,
+                         prepareEvents};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

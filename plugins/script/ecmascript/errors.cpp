@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <new>
+
+#include "newer.h"
 #include "slots.h"
 
 namespace ecma {
@@ -13,12 +16,31 @@ void logText(Interpreter& self, int severity, uint32_t line, const char* text, s
   self.host->log(self.host, self.self, severity, line, message);
 }
 
+namespace {
+
+// Replaces a syntax error on top of the stack by one that names what the engine cannot know.
+// Returns its line; 0 if the program has nothing newer.
+uint32_t explainSyntax(duk_context* ctx, const Interpreter& self) {
+  if (duk_get_error_code(ctx, -1) != DUK_ERR_SYNTAX_ERROR) return 0;
+  NewerSyntax newer;
+  try {
+    newer = findNewer({self.info->text.data, self.info->text.bytes});
+  } catch (const std::bad_alloc&) {} // the engine's own words have to do
+  if (newer.line == 0) return 0;
+  duk_push_sprintf(ctx, "SyntaxError: '%s' is newer than ECMAScript 5.1, which this engine runs",
+                   newer.what);
+  duk_replace(ctx, -2);
+  return newer.line;
+}
+
+} // namespace
+
 // Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function. The first one in the
 // program's own file is reported.
 void reportError(Interpreter& self, const char* during) {
   duk_context* ctx = self.ctx;
   const duk_idx_t error = duk_get_top_index(ctx);
-  uint32_t line = 0;
+  uint32_t line = explainSyntax(ctx, self);
   char function[80] = "";
   if (duk_is_error(ctx, error)) {
     duk_get_prop_string(ctx, error, "stack");

@@ -150,6 +150,7 @@ duk_ret_t setUp(duk_context* ctx, void* data) {
   registerMatrix(ctx, self);
   registerNodes(ctx, self);
   registerBrowser(ctx, self);
+  registerConstants(ctx);
   registerFields(ctx, self);
   restrictGlobals(ctx, self);
   return 0;

@@ -64,7 +64,8 @@ struct Interpreter {
   void *keySf = nullptr, *keyMf = nullptr, *keyList = nullptr, *keyParent = nullptr,
        *keyNode = nullptr, *keyMatrix = nullptr, *keyRow = nullptr;
   void *values = nullptr, *held = nullptr, *types = nullptr, *mfHandler = nullptr,
-       *nodePrototype = nullptr, *matrixPrototype = nullptr, *rowPrototype = nullptr;
+       *nodePrototype = nullptr, *matrixPrototype = nullptr, *rowPrototype = nullptr,
+       *scenePrototype = nullptr;
   void* prototypes[XS_LAST_TYPE + 1] = {};
   void *componentGet[XS_MOST_COMPONENTS] = {}, *componentSet[XS_MOST_COMPONENTS] = {};
 

@@ -1,6 +1,9 @@
 // matrix.cpp: Implements VrmlMatrix (C.6.19): 4 x 4, m[row][column], translation in the last row.
+// SFMatrix4f and SFMatrix4d (ISO/IEC 19777-1) have the same methods. SFMatrix3f and SFMatrix3d are
+// transformations of the plane; they are computed as those of space that leave z alone.
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "slots.h"
 
@@ -21,21 +24,89 @@ Matrix* matrixData(duk_context* ctx, duk_idx_t index) {
   return data;
 }
 
-Matrix* receiver(duk_context* ctx) {
-  step(Interpreter::of(ctx));
-  duk_push_this(ctx);
-  Matrix* data = matrixData(ctx, -1);
-  if (!data) throwType(ctx, "must be called on a VrmlMatrix");
-  return data;
+// A matrix of the program: a VrmlMatrix, or one of X3D's types.
+struct Operand {
+  Matrix m;
+  XsType type;           // XS_TYPE_32_BITS: a VrmlMatrix
+  Matrix* own = nullptr; // the data of a VrmlMatrix
+  SfData* sf = nullptr;
+  bool isVrml() const { return own != nullptr; }
+  bool isPlane() const { return !own && components(type) == 9; }
+  const char* name() const { return own ? "VrmlMatrix" : typeName(type); }
+  // Returns the type of the vectors that it transforms.
+  XsType vector() const {
+    const bool doubles = !own && xsHasDoubles(type);
+    if (isPlane()) return doubles ? XS_SFVEC2D : XS_SFVEC2F;
+    return doubles ? XS_SFVEC3D : XS_SFVEC3F;
+  }
+};
+
+// Rows and columns of a transformation of the plane in one of space.
+constexpr int planeAxes[] = {0, 1, 3};
+
+Matrix spaceOf(const double* v, int numbers) {
+  Matrix m = identity;
+  const int side = numbers == 9 ? 3 : 4;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      (side == 3 ? m.m[planeAxes[i]][planeAxes[j]] : m.m[i][j]) = v[side * i + j];
+  return m;
 }
 
-duk_ret_t answer(duk_context* ctx, const Matrix& value) {
+void numbersOf(const Matrix& m, int numbers, double* v) {
+  const int side = numbers == 9 ? 3 : 4;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      v[side * i + j] = side == 3 ? m.m[planeAxes[i]][planeAxes[j]] : m.m[i][j];
+}
+
+bool isMatrixType(XsType type) { return components(type) == 9 || components(type) == 16; }
+
+bool readOperand(duk_context* ctx, duk_idx_t index, Operand& out) {
+  if (Matrix* own = matrixData(ctx, index)) {
+    out = {*own, XS_TYPE_32_BITS, own, nullptr};
+    return true;
+  }
+  SfData* sf = sfData(ctx, index);
+  if (!sf || !isMatrixType(sf->type)) return false;
+  out = {spaceOf(sf->v, components(sf->type)), sf->type, nullptr, sf};
+  return true;
+}
+
+// Leaves the receiver at index `this` on top of the stack.
+Operand receiver(duk_context* ctx) {
+  step(Interpreter::of(ctx));
+  duk_push_this(ctx);
+  Operand operand;
+  if (!readOperand(ctx, -1, operand)) throwType(ctx, "must be called on a matrix");
+  return operand;
+}
+
+void store(duk_context* ctx, duk_idx_t index, const Operand& to, const Matrix& value) {
+  if (to.isVrml()) {
+    *to.own = value;
+    return;
+  }
+  numbersOf(value, components(to.type), to.sf->v);
+  writeBack(ctx, Interpreter::of(ctx), index, to.sf, 0, components(to.type));
+}
+
+duk_ret_t answerVrml(duk_context* ctx, const Matrix& value) {
   Interpreter& self = Interpreter::of(ctx);
   duk_push_bare_object(ctx);
   duk_push_heapptr(ctx, self.matrixPrototype);
   duk_set_prototype(ctx, -2);
   *static_cast<Matrix*>(duk_push_fixed_buffer(ctx, sizeof(Matrix))) = value;
   duk_put_prop_heapptr(ctx, -2, self.keyMatrix);
+  return 1;
+}
+
+// Returns a new matrix of the receiver's type.
+duk_ret_t answer(duk_context* ctx, const Operand& like, const Matrix& value) {
+  if (like.isVrml()) return answerVrml(ctx, value);
+  double v[XS_MOST_COMPONENTS];
+  numbersOf(value, components(like.type), v);
+  pushSf(ctx, Interpreter::of(ctx), like.type, v);
   return 1;
 }
 
@@ -68,26 +139,35 @@ Matrix rotation(const double* r, double sign) {
 // Reads an argument that may be missing or null.
 bool optional(duk_context* ctx, duk_idx_t index, XsType type, double* out) {
   if (duk_is_null_or_undefined(ctx, index)) return false;
-  toPlain(ctx, index, type, out, "VrmlMatrix.setTransform");
+  toPlain(ctx, index, type, out, "setTransform");
   return true;
+}
+
+// Reads a rotation: in the plane an angle about z, where an SFRotation will do, too.
+void optionalRotation(duk_context* ctx, duk_idx_t index, bool plane, double* out) {
+  if (plane && duk_is_number(ctx, index))
+    out[3] = duk_get_number(ctx, index);
+  else
+    optional(ctx, index, XS_SFROTATION, out);
 }
 
 // Sets the matrix of a Transform (6.52) with these fields.
 // arguments: translation, rotation, scale, scaleOrientation, center
 duk_ret_t setTransform(duk_context* ctx) {
-  Matrix& m = *receiver(ctx);
+  const Operand to = receiver(ctx);
+  const duk_idx_t self = duk_get_top_index(ctx);
   double t[4] = {}, r[4] = {0, 0, 1, 0}, s[4] = {1, 1, 1, 0}, o[4] = {0, 0, 1, 0}, c[4] = {};
-  optional(ctx, 0, XS_SFVEC3F, t);
-  optional(ctx, 1, XS_SFROTATION, r);
-  optional(ctx, 2, XS_SFVEC3F, s);
-  optional(ctx, 3, XS_SFROTATION, o);
-  optional(ctx, 4, XS_SFVEC3F, c);
+  optional(ctx, 0, to.vector(), t);
+  optionalRotation(ctx, 1, to.isPlane(), r);
+  optional(ctx, 2, to.vector(), s);
+  optionalRotation(ctx, 3, to.isPlane(), o);
+  optional(ctx, 4, to.vector(), c);
   Matrix scale = identity;
   for (int i = 0; i < 3; ++i) scale.m[i][i] = s[i];
   Matrix all = product(translation(c, -1), rotation(o, -1));
   all = product(product(all, scale), rotation(o, 1));
   all = product(product(all, rotation(r, 1)), translation(c, 1));
-  m = product(all, translation(t, 1));
+  store(ctx, self, to, product(all, translation(t, 1)));
   return 0;
 }
 
@@ -176,19 +256,23 @@ void axisOf(const Matrix& q, double* r) {
   }
 }
 
+// Writes numbers into an object of the program that has as many.
 void give(duk_context* ctx, duk_idx_t index, XsType type, const double* v) {
   if (duk_is_null_or_undefined(ctx, index)) return;
   SfData* sf = sfData(ctx, index);
-  if (!sf || sf->type != type)
-    throwType(ctx, "VrmlMatrix.getTransform: expected %s, got %s", typeName(type),
-              describe(ctx, index));
-  std::memcpy(sf->v, v, size_t(components(type)) * sizeof *v);
-  writeBack(ctx, Interpreter::of(ctx), index, sf, 0, components(type));
+  const int count = components(type);
+  const bool fits =
+      sf && (type == XS_SFROTATION ? sf->type == type : components(sf->type) == count);
+  if (!fits)
+    throwType(ctx, "getTransform: expected %s, got %s", typeName(type), describe(ctx, index));
+  std::memcpy(sf->v, v, size_t(count) * sizeof *v);
+  writeBack(ctx, Interpreter::of(ctx), index, sf, 0, count);
 }
 
 // arguments: objects that receive translation, rotation, scale
 duk_ret_t getTransform(duk_context* ctx) {
-  const Matrix& m = *receiver(ctx);
+  const Operand of = receiver(ctx);
+  const Matrix& m = of.m;
   Matrix linear = m;
   for (int i = 0; i < 3; ++i) linear.m[i][3] = linear.m[3][i] = 0;
   linear.m[3][3] = 1;
@@ -197,46 +281,62 @@ duk_ret_t getTransform(duk_context* ctx) {
                s[4] = {stretch.m[0][0], stretch.m[1][1], stretch.m[2][2], 0};
   double r[4];
   axisOf(q, r);
-  give(ctx, 0, XS_SFVEC3F, t);
+  give(ctx, 0, of.vector(), t);
   give(ctx, 1, XS_SFROTATION, r);
-  give(ctx, 2, XS_SFVEC3F, s);
+  give(ctx, 2, of.vector(), s);
   return 0;
 }
 
 duk_ret_t inverse(duk_context* ctx) {
+  const Operand of = receiver(ctx);
   Matrix out;
-  if (!invert(*receiver(ctx), out)) throwRange(ctx, "VrmlMatrix.inverse: the matrix is singular");
-  return answer(ctx, out);
+  if (!invert(of.m, out)) throwRange(ctx, "%s.inverse: the matrix is singular", of.name());
+  return answer(ctx, of, out);
 }
-duk_ret_t transpose(duk_context* ctx) { return answer(ctx, transposed(*receiver(ctx))); }
+duk_ret_t transpose(duk_context* ctx) {
+  const Operand of = receiver(ctx);
+  return answer(ctx, of, transposed(of.m));
+}
 
-const Matrix& argument(duk_context* ctx) {
-  const Matrix* other = matrixData(ctx, 0);
-  if (!other) throwType(ctx, "expected VrmlMatrix, got %s", describe(ctx, 0));
-  return *other;
+// Reads the first argument, a matrix of as many rows as the receiver.
+Matrix argument(duk_context* ctx, const Operand& like) {
+  Operand other;
+  if (!readOperand(ctx, 0, other) || other.isPlane() != like.isPlane())
+    throwType(ctx, "expected %s, got %s", like.name(), describe(ctx, 0));
+  return other.m;
 }
-duk_ret_t multLeft(duk_context* ctx) { return answer(ctx, product(argument(ctx), *receiver(ctx))); }
+duk_ret_t multLeft(duk_context* ctx) {
+  const Operand of = receiver(ctx);
+  return answer(ctx, of, product(argument(ctx, of), of.m));
+}
 duk_ret_t multRight(duk_context* ctx) {
-  return answer(ctx, product(*receiver(ctx), argument(ctx)));
+  const Operand of = receiver(ctx);
+  return answer(ctx, of, product(of.m, argument(ctx, of)));
 }
 
-duk_ret_t multiplied(duk_context* ctx, const Matrix& m) {
-  double v[4], out[4] = {};
-  toPlain(ctx, 0, XS_SFVEC3F, v, "VrmlMatrix");
+duk_ret_t multiplied(duk_context* ctx, const Operand& of, const Matrix& m) {
+  double v[4] = {}, out[4] = {};
+  toPlain(ctx, 0, of.vector(), v, of.name());
   v[3] = 1;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) out[j] += v[i] * m.m[i][j];
   for (int j = 0; j < 3 && out[3] != 0; ++j) out[j] /= out[3];
-  pushSf(ctx, Interpreter::of(ctx), XS_SFVEC3F, out);
+  pushSf(ctx, Interpreter::of(ctx), of.vector(), out);
   return 1;
 }
 // Multiplies a row vector by the matrix.
-duk_ret_t multVecMatrix(duk_context* ctx) { return multiplied(ctx, *receiver(ctx)); }
+duk_ret_t multVecMatrix(duk_context* ctx) {
+  const Operand of = receiver(ctx);
+  return multiplied(ctx, of, of.m);
+}
 // Multiplies the matrix by a column vector.
-duk_ret_t multMatrixVec(duk_context* ctx) { return multiplied(ctx, transposed(*receiver(ctx))); }
+duk_ret_t multMatrixVec(duk_context* ctx) {
+  const Operand of = receiver(ctx);
+  return multiplied(ctx, of, transposed(of.m));
+}
 
 duk_ret_t toText(duk_context* ctx) {
-  const Matrix& m = *receiver(ctx);
+  const Matrix m = receiver(ctx).m;
   char text[16 * 40];
   size_t length = 0;
   for (int i = 0; i < 16; ++i) {
@@ -295,35 +395,42 @@ duk_ret_t construct(duk_context* ctx) { // arguments: 16 numbers row by row, ano
   step(Interpreter::of(ctx));
   Matrix m = identity;
   const duk_idx_t given = duk_get_top(ctx);
-  if (given == 1) return answer(ctx, argument(ctx));
+  if (given == 1) return answerVrml(ctx, argument(ctx, {identity, XS_SFMATRIX4D}));
   if (given > 0 && given != 16)
     throwType(ctx, "VrmlMatrix: expected 16 numbers, got %d", int(given));
   for (int i = 0; i < given; ++i) m.m[i / 4][i % 4] = toNumber(ctx, i, XS_SFFLOAT, "VrmlMatrix");
-  return answer(ctx, m);
+  return answerVrml(ctx, m);
 }
+
+constexpr Method matrixMethods[] = {{"setTransform", setTransform, 5},
+                                    {"getTransform", getTransform, 3},
+                                    {"inverse", inverse, 0},
+                                    {"transpose", transpose, 0},
+                                    {"multLeft", multLeft, 1},
+                                    {"multRight", multRight, 1},
+                                    {"multVecMatrix", multVecMatrix, 1},
+                                    {"multMatrixVec", multMatrixVec, 1}};
 
 } // namespace
 
 void registerMatrix(duk_context* ctx, Interpreter& self) {
-  static constexpr Method methods[] = {{"setTransform", setTransform, 5},
-                                       {"getTransform", getTransform, 3},
-                                       {"inverse", inverse, 0},
-                                       {"transpose", transpose, 0},
-                                       {"multLeft", multLeft, 1},
-                                       {"multRight", multRight, 1},
-                                       {"multVecMatrix", multVecMatrix, 1},
-                                       {"multMatrixVec", multMatrixVec, 1},
-                                       {"toString", toText, 0}};
+  static constexpr Method text[] = {{"toString", toText, 0}};
   static const char* const indices[] = {"0", "1", "2", "3"};
   duk_push_bare_object(ctx);
   for (int i = 0; i < 4; ++i) putAccessor(ctx, indices[i], getElement, setElementOf, i);
   self.rowPrototype = keep(ctx);
   duk_push_object(ctx);
   for (int i = 0; i < 4; ++i) putAccessor(ctx, indices[i], getRow, setRow, i);
-  putMethods(ctx, methods, std::size(methods));
+  putMethods(ctx, matrixMethods, std::size(matrixMethods));
+  putMethods(ctx, text, std::size(text));
   duk_dup(ctx, -1);
   self.matrixPrototype = keep(ctx);
   putConstructor(ctx, "VrmlMatrix", construct, 0, "vrmlMatrix");
+  for (const XsType type : {XS_SFMATRIX3F, XS_SFMATRIX3D, XS_SFMATRIX4F, XS_SFMATRIX4D}) {
+    duk_push_heapptr(ctx, self.prototypes[type]);
+    putMethods(ctx, matrixMethods, std::size(matrixMethods));
+    duk_pop(ctx);
+  }
 }
 
 } // namespace ecma

@@ -171,6 +171,10 @@ void setElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t i
 void pushMfFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType type,
                 const char* what) {
   index = duk_normalize_index(ctx, index);
+  if (type == XS_MFNODE && pushSceneNodes(ctx, index)) { // a scene stands for its nodes
+    pushMfFrom(ctx, self, -1, type, what);
+    return duk_remove(ctx, -2);
+  }
   const MfData* from = mfData(ctx, index);
   if (from && from->type == type && elementBytes(type) > 0) {
     const uint32_t count = from->count;

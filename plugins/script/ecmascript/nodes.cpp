@@ -265,6 +265,7 @@ void registerNodes(duk_context* ctx, Interpreter& self) {
   static constexpr Method methods[] = {{"toString", notationMethod, 0}};
   duk_push_object(ctx);
   putMethods(ctx, methods, 1);
+  putNodeMethods(ctx);
   duk_push_c_function(ctx, finalize, 2);
   duk_set_finalizer(ctx, -2);
   duk_dup(ctx, -1);

@@ -27,7 +27,24 @@ void registerFields(duk_context* ctx, Interpreter& self);
 void renewOwn(Interpreter& self, const char* name);
 
 // scene.cpp: Adds what X3D's Browser object has to the object on top: properties, and the scene.
-void putX3d(duk_context* ctx);
+void putX3d(duk_context* ctx, Interpreter& self);
+// Replaces the MFNode on top by a scene (X3DScene) that holds these nodes.
+void wrapScene(duk_context* ctx, Interpreter& self);
+// Pushes the MFNode of such a scene and returns true. Pushes nothing for other values.
+bool pushSceneNodes(duk_context* ctx, duk_idx_t index);
+
+// constants.cpp: Defines the global X3DConstants.
+void registerConstants(duk_context* ctx);
+// Return the numbers of X3DConstants; 0 for an unknown name.
+int nodeTypeNumber(const char* name);
+int accessNumber(XsAccess access);
+
+// node_methods.cpp: Adds the methods of X3D's nodes to the object on top.
+void putNodeMethods(duk_context* ctx);
+// Pushes the text of a node, or of the world for node 0. encoding: "VRML" or "XML".
+void pushWritten(duk_context* ctx, Interpreter& self, XsNode node, const char* encoding);
+// Returns whether the host has the functions of version 1.3.
+bool hasX3dNodes(const Interpreter& self);
 
 // from_host.cpp: Pushes the program's form of a value.
 void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place place = {});

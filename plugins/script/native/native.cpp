@@ -179,7 +179,7 @@ const XsEngine engine = {
     sizeof(XsEngine), XS_NEEDS_TRUST, "native", "C functions of shared libraries, through libffi",
     schemes,          nullptr,        nullptr,  create,
     destroy,          initialize,     event,    eventsProcessed,
-    shutdown,         tick,           nullptr};
+    shutdown,         tick,           nullptr,  nullptr};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

@@ -61,7 +61,7 @@ const char* const suffixes[] = {".py", nullptr};
 const XsEngine engine = {sizeof(XsEngine), XS_NEEDS_TRUST, "python", "Python " PY_VERSION,
                          schemes,          mimeTypes,      suffixes, create,
                          destroy,          initialize,     event,    eventsProcessed,
-                         shutdown,         nullptr,        nullptr};
+                         shutdown,         nullptr,        nullptr,  nullptr};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

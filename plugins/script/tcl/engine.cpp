@@ -107,7 +107,8 @@ const XsEngine engine = {.size = sizeof(XsEngine),
                          .eventsProcessed = eventsProcessed,
                          .shutdown = shutdown,
                          .tick = tick,
-                         .prepare = prepare};
+                         .prepare = prepare,
+                         .tickWord = nullptr};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

@@ -243,6 +243,56 @@ static XsResult deleteRoute(Call* c) {
                 host->deleteRoute(host, c->self->info->self, from, c->words[2], to, c->words[4]));
 }
 
+/* --- Scenes and nodes of X3D --- */
+
+/* Adds a value to a line: texts as they are, nodes as TYPE:NAME. */
+static void addValue(Call* c, const XsValue* value, char* line, size_t size) {
+  const XsHost* host = c->self->host;
+  const XsNode self = c->self->info->self;
+  XsNode nodes[8];
+  uint32_t count = value->count < 8 ? value->count : 8;
+  for (uint32_t i = 0; i < count; ++i) {
+    const size_t used = strlen(line);
+    if (value->type == XS_MFSTRING)
+      snprintf(line + used, size - used, " %s", value->of.strings[i].data);
+    else
+      nodes[i] = value->of.nodes[i]; /* the next call of the host ends the value */
+  }
+  for (uint32_t i = 0; value->type != XS_MFSTRING && i < count; ++i) {
+    const size_t used = strlen(line);
+    XsNodeInfo info = {sizeof info, 0, NULL, NULL};
+    if (host->describe(host, self, nodes[i], &info) == XS_OK)
+      snprintf(line + used, size - used, " %s:%s", info.typeName, info.defName);
+  }
+}
+
+static XsResult scene(Call* c) { /* arguments: WHAT ARGUMENT...; prints what the host tells */
+  const XsHost* host = c->self->host;
+  const XsNode self = c->self->info->self;
+  const char *what = c->words[1], *first = c->words[2], *second = c->words[3];
+  XsValue value = {XS_MFSTRING, 0, {NULL}};
+  XsString written = {"", 0};
+  XsResult result = XS_FAILED;
+  char line[600] = "";
+  snprintf(line, sizeof line, "%s", what);
+  if (strcmp(what, "named") == 0) result = host->namedNode(host, self, text(first), &value);
+  if (strcmp(what, "roots") == 0) result = host->rootNodes(host, self, &value);
+  if (strcmp(what, "facts") == 0) result = host->sceneFacts(host, self, &value);
+  if (strcmp(what, "instance") == 0) result = host->createInstance(host, self, text(first), &value);
+  if (strcmp(what, "within") == 0)
+    result = host->nodeWithin(host, self, nodeOf(c, first), text(second), &value);
+  if (strcmp(what, "types") == 0) result = host->nodeTypes(host, self, nodeOf(c, first), &value);
+  if (strcmp(what, "text") == 0) {
+    result = host->writeNode(host, self, nodeOf(c, first), text(second), &written);
+    if (result == XS_OK) snprintf(line, sizeof line, "text %s", written.data);
+  }
+  if (result == XS_OK) {
+    addValue(c, &value, line, sizeof line);
+    say(c->self, 0, 0, line);
+  }
+  return answer(c, result);
+}
+
 /* --- Time, messages, errors --- */
 
 static XsResult now(Call* c) { /* argument: OUT, an SFTime */
@@ -303,7 +353,8 @@ static const struct {
                 {"addRoute", addRoute}, {"deleteRoute", deleteRoute},
                 {"now", now},           {"print", print},
                 {"error", error},       {"fail", fail},
-                {"loop", loop},         {"wrong", wrong}};
+                {"loop", loop},         {"wrong", wrong},
+                {"scene", scene}};
 
 /* Runs one line: splits a copy into words and calls the command. */
 static XsResult runLine(Call call, const char* line, size_t length) {
@@ -398,12 +449,13 @@ static const XsEngine engine = {sizeof(XsEngine),
                                 processed,
                                 shutdown,
                                 tick,
+                                NULL,
                                 NULL};
 static const XsEngine trusted = {
     sizeof(XsEngine),   XS_NEEDS_TRUST, "trusted", "the same for trusted worlds",
     trustedSchemes,     NULL,           NULL,      createInterpreter,
     destroyInterpreter, initialize,     event,     processed,
-    shutdown,           NULL,           NULL};
+    shutdown,           NULL,           NULL,      NULL};
 static const XsEngine* const engines[] = {&engine, &trusted};
 XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin),
                                      2,        engines};

@@ -18,6 +18,7 @@ struct LightParams {
   float color[3];
   float intensity;
   int32_t shadows;
+  int32_t irradiance;
 };
 struct DirectionalParams {
   LightParams light;
@@ -48,9 +49,16 @@ struct SpotParams {
        0.0f,    0.0f,      "colour of the light"},                                                 \
       {"intensity", RTS_FLOAT, offsetof(LightParams, intensity), {1.0f},                           \
        0.0f,        noLimit,   "strength of the direct part"},                                     \
+      {"shadows",                                                                                  \
+       RTS_INT,                                                                                    \
+       offsetof(LightParams, shadows),                                                             \
+       {1.0f},                                                                                     \
+       0.0f,                                                                                       \
+       1.0f,                                                                                       \
+       "1: casts shadows, 0: shines through everything"},                                          \
   {                                                                                                \
-    "shadows", RTS_INT, offsetof(LightParams, shadows), {1.0f}, 0.0f, 1.0f,                        \
-        "1: casts shadows, 0: shines through everything"                                           \
+    "irradiance", RTS_INT, offsetof(LightParams, irradiance), {1.0f}, 0.0f, 1.0f,                  \
+        "1: color x intensity is the irradiance of surfaces whose irradiance is 1"                 \
   }
 #define VRML97_POINT_PARAMS                                                                        \
   {"attenuation",                                                                                  \
@@ -104,7 +112,9 @@ const RtsParam spotParams[] = {
 };
 
 uint32_t lightTraits(const RtsHost*, const void* params) {
-  return static_cast<const LightParams*>(params)->shadows ? 0 : RTS_NO_SHADOW;
+  const auto& light = *static_cast<const LightParams*>(params);
+  return (light.shadows ? 0u : uint32_t(RTS_NO_SHADOW)) |
+         (light.irradiance ? uint32_t(RTS_IRRADIANCE) : 0u);
 }
 
 struct Outgoing { // colour of the direct and the ambient part before attenuation

@@ -306,6 +306,29 @@ TEST(Collision, SendsCollideTimeWhenItsChildrenStopTheViewer) {
   EXPECT_NEAR(eye(r, 2), 1.25, 1e-6);
 }
 
+// X3D's Collision is a sensor (ISO/IEC 19775-1 23.4.2).
+TEST(Collision, IsActiveWhileTheViewerIsAtItsChildren) {
+  Running r(walks + "Viewpoint { position 0 1.6 10 } DEF FAR Viewpoint { position 0 1.6 15 } " +
+            floor20 +
+            "DEF C Collision { children Transform { translation 0 2 0 children Shape { geometry "
+            "Box { size 40 4 2 } } } }");
+  r.log("C", "isActive");
+  r.browser.tick(7);
+  r.browser.navigate({.ahead = 1}, 10);
+  EXPECT_EQ(r.take(), Log{"7 C.isActive TRUE"});
+  r.browser.tick(8);
+  r.browser.navigate({.ahead = 1}, 1);
+  EXPECT_EQ(r.take(), Log{});
+  r.browser.navigate({.ahead = -1}, 1);
+  EXPECT_EQ(r.take(), Log{"8 C.isActive FALSE"});
+  r.browser.tick(9);
+  r.browser.navigate({.ahead = 1}, 10);
+  r.take();
+  r.browser.tick(10);
+  r.set("FAR", "set_bind", true); // a jump takes the viewer away
+  EXPECT_EQ(r.take(), Log{"10 C.isActive FALSE"});
+}
+
 // A wall that is seen ahead but not reached is no collision (6.8).
 TEST(Collision, SendsNothingBeforeTheViewerIsAtItsDistance) {
   Running r(

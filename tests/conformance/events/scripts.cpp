@@ -289,6 +289,33 @@ TEST_P(Scripts, WhatTickMakesBeginsAfterIt) {
   EXPECT_EQ(r.printed(), (Log{"made", "child"}));
 }
 
+// The functions of the ABI about scenes (xscript.h, 1.2 and 1.3), here and in a process.
+TEST_P(Scripts, ScenesAndNodesSayWhatTheyAre) {
+  Scripted r("PROTO Ball [ ] { Group { } }\nDEF T Transform { children DEF G Group { } }\n"
+             "DEF S Script { field SFNode t USE T url \"test:initialize: scene roots\n"
+             "initialize: scene named G\ninitialize: scene named X\ninitialize: scene facts\n"
+             "initialize: scene instance Ball\ninitialize: scene instance Box\n"
+             "initialize: scene within t G\ninitialize: scene within t T\n"
+             "initialize: scene within t S\ninitialize: scene types self\n"
+             "initialize: scene types none\ninitialize: scene text self XML\n"
+             "initialize: scene text t JPEG\" }");
+  const Log printed = r.printed();
+  ASSERT_EQ(printed.size(), 13u) << fmt::format("{}", fmt::join(printed, "\n"));
+  EXPECT_EQ(printed[0], "roots Transform:T Script:S");
+  EXPECT_EQ(printed[1], "named Group:G");
+  EXPECT_EQ(printed[2], "scene: 1 the scene has no node 'X'");
+  EXPECT_EQ(printed[3].find("facts 2.0 VRML "), 0u) << printed[3];
+  EXPECT_EQ(printed[4], "instance Ball:");
+  EXPECT_EQ(printed[5], "scene: 1 the scene has no prototype 'Box'");
+  EXPECT_EQ(printed[6], "within Group:G");
+  EXPECT_EQ(printed[7], "within Transform:T");
+  EXPECT_EQ(printed[8], "scene: 1 no node 'S' in the scene");
+  EXPECT_EQ(printed[9], "types X3DNode X3DChildNode X3DScriptNode");
+  EXPECT_EQ(printed[10], "scene: 1 NULL");
+  EXPECT_EQ(printed[11].find("text <Script DEF='S'"), 0u) << printed[11];
+  EXPECT_EQ(printed[12], "scene: 6 'JPEG' is no encoding: expected XML or VRML");
+}
+
 TEST_P(Scripts, RunawayPostsEndWithAMessage) {
   BrowserOptions options;
   options.maximumEvents = 1000;

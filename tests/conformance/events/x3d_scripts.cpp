@@ -95,6 +95,59 @@ INSTANTIATE_TEST_SUITE_P(
                                        "put: x = tenTimes(put)"}),
     [](const testing::TestParamInfo<Language>& info) { return std::string(info.param.name); });
 
+// --- Names of other nodes' fields ---
+
+// In a world of X3D these names work in all languages: children of Switch and LOD, enabled of
+// Collision (ISO/IEC 19775-1 10.4.3, 23.4.2, 23.4.3). Each program notes what it reads, disables
+// the Collision, and routes the children of the Switch to itself.
+class NamesOfX3d : public InputOutput {};
+
+TEST_P(NamesOfX3d, AreReadWrittenAndRouted) {
+  Scripted r(
+      header +
+          "DEF W Switch { whichChoice 0 children [ Group { } Group { } ] }\n"
+          "DEF L LOD { children [ Group { } Group { } Group { } ] }\n"
+          "DEF C Collision { enabled TRUE }\nDEF N Group { }\n"
+          "DEF S Script { directOutput TRUE inputOnly SFBool go inputOnly MFNode got\n"
+          "outputOnly SFInt32 two outputOnly SFInt32 three outputOnly SFBool on\n"
+          "outputOnly SFInt32 now initializeOnly SFNode w USE W initializeOnly SFNode l USE L\n"
+          "initializeOnly SFNode c USE C initializeOnly SFNode n USE N\n"
+          "initializeOnly SFNode me USE S url \"" +
+          GetParam().url + "\" }\n",
+      trusting());
+  r.set("S", "go", true);
+  EXPECT_EQ(r.get("S", "two"), "2");
+  EXPECT_EQ(r.get("S", "three"), "3");
+  EXPECT_EQ(r.get("S", "on"), "TRUE");
+  EXPECT_EQ(r.get("C", "enabled"), "FALSE");
+  EXPECT_EQ(r.get("S", "now"), "3");
+  EXPECT_EQ(r.messages(), Log());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Languages, NamesOfX3d,
+    testing::Values(
+        Language{
+            "ecmascript",
+            "ecmascript:\nfunction go() { two = w.children.length; three = l.children.length;\n"
+            "on = c.enabled; c.enabled = false;\n"
+            "Browser.currentScene.addRoute(w, 'children_changed', me, 'got');\n"
+            "w.addChildren = new MFNode(n); }\nfunction got(v) { now = v.length; }"},
+        Language{"tcl",
+                 "tcl:\nproc go {v t} {global w l c n me two three on\n"
+                 "set two [llength [$w get children]]; set three [llength [$l get children]]\n"
+                 "set on [$c get enabled]; $c set enabled FALSE\n"
+                 "Browser addRoute $w children_changed $me got\n"
+                 "$w set addChildren [list $n]}\n"
+                 "proc got {v t} {global now; set now [llength $v]}"},
+        Language{"python", "python:\ndef go(v, t):\n    script.two = len(script.w.children)\n"
+                           "    script.three = len(script.l.children)\n"
+                           "    script.on = script.c.enabled\n    script.c.enabled = False\n"
+                           "    Browser.add_route(script.w, 'children_changed', script.me, 'got')\n"
+                           "    script.w.addChildren = [script.n]\n"
+                           "def got(v, t): script.now = len(v)"}),
+    [](const testing::TestParamInfo<Language>& info) { return std::string(info.param.name); });
+
 // --- ECMAScript ---
 
 TEST_F(EcmaScript, InputOutputListsAreOneObjectThatEventsRenew) {
@@ -192,7 +245,8 @@ TEST_F(EcmaScript, BrowserHasPropertiesOfX3d) {
                   "Browser.getVersion(), Browser.currentSpeed, Browser.currentFrameRate);"
                   "Browser.description = 'said'; print(Browser.description);"
                   "var made = Browser.createX3DFromString('Transform { translation 1 2 3 }');"
-                  "print(made.length, made[0].translation.z); Browser.println('ln'); }"));
+                  "print(made.rootNodes.length, made.rootNodes[0].translation.z); "
+                  "Browser.println('ln'); }"));
   r.set("S", "go", true);
   EXPECT_EQ(r.takeOutput(), "true true 0 0\nsaid\n1 3\nln");
   EXPECT_EQ(r.browser.description(), "said");

@@ -5,6 +5,7 @@
 #include "conformance/events/media_files.h"
 #include "conformance/events/viewing.h"
 #include "xvrml/nodes.h"
+#include "xvrml/renderer.h"
 
 namespace xvrml {
 namespace {
@@ -183,6 +184,28 @@ TEST(LoadSensor, WaitsForInlinesUntilTheTimeIsOver) {
   made->tick(3);
   EXPECT_EQ(events, (Log{"1 isActive TRUE", "1 progress 0", "3 progress 1", "3 isLoaded TRUE",
                          "3 loadTime 3", "3 isActive FALSE"}));
+}
+
+// What is watched stands where else it is used: the pointer meets nothing at the sensor, and a walk
+// over what is drawn finds it once.
+TEST(LoadSensor, PlacesNothing) {
+  const Folder folder;
+  folder.write("part.x3dv", head + "DEF V Viewpoint { }\nShape { geometry Box { } }\n");
+  Browser browser(
+      loadWorldFromMemory(head + "LoadSensor { watchList DEF I Inline { url \"part.x3dv\" } }\n"
+                                 "Transform { translation 9 0 0 children USE I }\n",
+                          folder / "world.x3dv", LoadOptions()));
+  browser.tick(0);
+  const double along[] = {0, 0, -1}, atSensor[] = {0, 0, 5}, atInline[] = {9, 0, 5};
+  PickHit hit;
+  EXPECT_FALSE(browser.pick(atSensor, along, {}, hit));
+  EXPECT_TRUE(browser.pick(atInline, along, {}, hit));
+  struct Counter : Renderer {
+    int shapes = 0;
+    void draw(const DrawnShape&) override { ++shapes; }
+  } counter;
+  render(browser.world(), counter);
+  EXPECT_EQ(counter.shapes, 1);
 }
 
 TEST(LoadSensor, IsWrittenWithTheNameOfItsVersion) {

@@ -39,7 +39,7 @@ class Editor {
     const edit = (command, members) => this.edit(command, members);
     this.layOut();
     this.chooser = new Chooser();
-    this.nodes = new Nodes(this.chooser, edit);
+    this.nodes = new Nodes(this.chooser, edit, (text) => page.on_command({ text }));
     this.outline = new Outline($("rows"), edit, (row, item) => this.openRow(row, item));
     this.fields = new Fields($("fields"), {
       drag: (drag, ends) => this.dragTo(drag, ends),
@@ -345,7 +345,9 @@ class Editor {
   }
 
   on_sheet(message) {
-    const none = "Click on something in the picture or in the outline to select it.";
+    const none =
+      "Click on something in the picture or in the outline to select it. V or U measures the " +
+      "light where the pointer is. F1 lists all keys.";
     $("title").textContent = message.title;
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);

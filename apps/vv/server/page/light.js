@@ -138,6 +138,7 @@ export class Light {
     const items = message.list.map((probe) => {
       const item = known.get(probe.number) ?? this.item(probe);
       item.firstChild.replaceChildren(...readingOf(probe));
+      item.firstChild.title = probe.seen ?? "";
       item.classList.toggle("uncertain", "change" in probe && !probe.significant);
       return item;
     });

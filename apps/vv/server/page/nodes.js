@@ -11,10 +11,9 @@ function small(text, label, action) {
 }
 
 export class Nodes {
-  // edit: sends a command of the editor.
-  constructor(chooser, edit) {
-    this.chooser = chooser;
-    this.edit = edit;
+  // edit: sends a command of the editor. show: shows a text that can be copied.
+  constructor(chooser, edit, show) {
+    Object.assign(this, { chooser, edit, show });
     this.looks = [];
     this.isOnlyHere = true; // what the user chose last
   }
@@ -128,6 +127,10 @@ export class Nodes {
     );
     name.className = "link";
     name.disabled = !isEditable;
+    name.addEventListener("contextmenu", (event) => {
+      event.preventDefault();
+      if (look.option) this.show(look.option);
+    });
     const show = small("\u2192", "Show the fields of the material or the shader", () =>
       this.edit("select", { node: look.surface }),
     );

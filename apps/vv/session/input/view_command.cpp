@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 #include <fmt/format.h>
 
+#include "libpicture/shader_text.h"
 #include "options/option_info.h"
 #include "xvrml/nodes.h"
 
@@ -41,21 +41,6 @@ std::string placeOf(const xvrml::CameraSettings& camera) {
          ":" + triple(m[4], m[5], m[6]);
 }
 
-// Returns the shader of an ORTViewpoint as a value of --camera-shader. Pictures and other files,
-// which no camera of the project has, are left out.
-std::string textOf(const xvrml::nodes::ORTShader& shader) {
-  std::string text = shader.file.empty() ? shader.name : shader.file + "/" + shader.name;
-  for (const std::string& option : shader.options) {
-    std::istringstream words(option);
-    std::string type, name, word, values;
-    words >> type >> name;
-    if (type == "texture" || type == "file") continue;
-    while (words >> word) values += (values.empty() ? "" : ",") + word;
-    if (!values.empty()) text += ":" + name + "=" + values;
-  }
-  return text;
-}
-
 } // namespace
 
 std::string viewCommand(const ShownView& view, const std::vector<std::string>& arguments) {
@@ -70,7 +55,7 @@ std::string viewCommand(const ShownView& view, const std::vector<std::string>& a
     line += fmt::format(" --ortho {}", view.camera.height);
   }
   if (const auto* shader = xvrml::nodeCast<xvrml::nodes::ORTShader>(view.camera.shader))
-    line += " --camera-shader " + quoted(textOf(*shader));
+    line += " --camera-shader " + quoted(picture::shaderText(*shader));
   if (view.headlight) line += *view.headlight ? " --headlight on" : " --headlight off";
   if (view.falseColour)
     line += *view.falseColour > 0 ? fmt::format(" --false-colour {}", *view.falseColour)

@@ -48,30 +48,9 @@ static Color lightColor(const Item& light) {
 
 namespace {
 
-// The nodes that stand for a light. glTF's matt surfaces reflect 1/pi of the light, those of VRML
-// and X3D all of it; so candela and lux are divided by pi. Several nodes are as strong together as
-// one of them may not be.
-struct Nodes {
-  const char* type;
-  int count;
-  double each, missing; // intensity of a node; what a node would need more
-
-  static Nodes of(const NodeStream& out, const Item& light, const char* type) {
-    constexpr double mostNodes = 16;
-    const double intensity = std::max(0.0, light.number("intensity", 1)) / std::numbers::pi,
-                 most = out.maximum(type, "intensity"),
-                 count = std::clamp(std::ceil(intensity / most), 1.0, mostNodes),
-                 each = std::min(intensity / count, most);
-    return {type, int(count), each, intensity / count - each};
-  }
-};
-
-// Light decreases with the square of the distance. `range` ends it; without one it never ends. A
-// light that is too strong even for several nodes gets a smaller attenuation: it is the same light
-// from some distance on.
-void setPlaced(NodeStream& out, const Item& light, const Nodes& nodes) {
-  const double falloff = nodes.missing > 0 ? nodes.each / (nodes.each + nodes.missing) : 1;
-  out.set("attenuation", Vec3f{0, 0, float(falloff)});
+// Light decreases with the square of the distance. `range` ends it; without one it never ends.
+void setPlaced(NodeStream& out, const Item& light) {
+  out.set("attenuation", Vec3f{0, 0, 1});
   out.set("radius", float(light.has("range") ? std::max(0.0, light.number("range", 1)) : 1e9));
 }
 
@@ -91,21 +70,19 @@ void writeLight(NodeStream& out, const Item& light) {
   const bool spot = type == "spot", placed = spot || type == "point";
   if (!placed && type != "directional")
     return light.error("the light has no type that is known (directional, point, spot)");
-  const Nodes nodes = Nodes::of(out, light,
-                                spot     ? "SpotLight"
-                                : placed ? "PointLight"
-                                         : "DirectionalLight");
-  if (!placed && nodes.missing > 0)
-    light.warn("a directional light of more than 50 lux is not supported: 50 is used");
-  for (int i = 0; i < nodes.count; ++i) {
-    out.open(nodes.type, out.define(light.text("name"), "Light"));
-    out.set("color", lightColor(light));
-    out.set("intensity", float(nodes.each));
-    if (placed) setPlaced(out, light, nodes);
-    if (out.knows(nodes.type, "global")) out.set("global", true);
-    if (spot) setCone(out, light.object("spot"));
-    out.close();
-  }
+  // Candela and lux as they are: PhysicalMaterial takes an intensity as an irradiance, and lights
+  // of X3D 4 have no upper limit.
+  constexpr double brightest = 1e30; // a float
+  out.open(spot     ? "SpotLight"
+           : placed ? "PointLight"
+                    : "DirectionalLight",
+           out.define(light.text("name"), "Light"));
+  out.set("color", lightColor(light));
+  out.set("intensity", float(std::clamp(light.number("intensity", 1), 0.0, brightest)));
+  if (placed) setPlaced(out, light);
+  out.set("global", true);
+  if (spot) setCone(out, light.object("spot"));
+  out.close();
 }
 
 } // namespace xvrml::gltf

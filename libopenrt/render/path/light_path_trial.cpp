@@ -1,0 +1,176 @@
+#include "render/path/light_path_trial.h"
+
+#include <vector>
+
+#include "render/lights/emitters.h"
+#include "render/lights/light_path_weights.h"
+#include "render/lights/light_sources.h"
+#include "render/path/light_tracer.h"
+#include "render/path/pixel_weights.h"
+#include "render/path/tile.h"
+#include "render/path/trial_blocks.h"
+#include "render/wave/light_stride.h"
+#include "scene/quality.h"
+#include "scene/transports.h"
+
+namespace openrt {
+namespace {
+
+// Pictures of fewer samples are previews.
+constexpr uint32_t fewestSamples = 16;
+constexpr uint32_t lightPaths = 4096, blocks = 32, samples = 8;
+constexpr uint32_t trialSeed = 0x676c6f74u;
+// The weights of light paths make a camera path cost about so much more.
+constexpr double costOfWeights = 1.1;
+
+// Worlds with culled backs and clear things have no such paths: clear sheets of one side pass other
+// light in one direction than in the other.
+bool canTrace(const RenderScene& scene) {
+  const edit::FrameSettingsT& frame = scene.frame;
+  const RtsClass* camera = scene.camera.shader.shaderClass;
+  return tracesLamps(frame.transport) && !showsNoLight(frame) && frame.samples >= fewestSamples &&
+         frame.measure == RT_MEASURE_NOTHING && lightStrideOf(frame) == 1 && camera &&
+         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass &&
+         !(scene.kernel->cullsBacks() && scene.transparentShadows);
+}
+
+double raysOf(const RayCounters& counters) {
+  return double(counters.camera + counters.secondary + counters.shadow);
+}
+
+// Rays of one camera path and, in the mean over the pixels and by their weights, its variance and
+// what connections are worth; colours are summed.
+struct CameraTrial {
+  double variance = 0, rays = 0;
+  LightPathGain connections;
+};
+
+// Traces camera paths and light paths before a frame.
+class Trial {
+ public:
+  Trial(RenderScene& scene, const std::atomic<bool>& stop) : scene_(scene), stop_(stop) {}
+  // Traces camera paths in blocks of pixels. The first call also finds the weights of pixels.
+  CameraTrial tryCameraPaths();
+  // Traces light paths from sources. rays: gets their number for each camera path, where there are
+  // `cameras` camera paths for a light path.
+  LightPathGain tryLightPaths(const LightSources& sources, uint32_t cameras, double& rays) {
+    LightTracer tracer(scene_);
+    const LightPathGain gain = tracer.tryPaths(sources, lightPaths, trialSeed, weights_, stop_);
+    rays = raysOf(tracer.counters()) / (lightPaths * cameras);
+    return gain;
+  }
+
+ private:
+  struct Block {
+    double radiance = 0, variance = 0; // in the mean over its pixels
+    LightPathGain connections;
+  };
+  Block render(TileRenderer& renderer, const Tile& tile);
+
+  RenderScene& scene_;
+  const std::atomic<bool>& stop_;
+  PixelWeights weights_;
+  std::vector<PixelSums> sums_;
+};
+
+Trial::Block Trial::render(TileRenderer& renderer, const Tile& tile) {
+  Block out;
+  renderer.observe(&out.connections);
+  sums_.assign(tile.pixels(), {});
+  renderer.render(tile, Replicates{trialSeed}, false, 0, samples, sums_, stop_);
+  for (const PixelSums& pixel : sums_)
+    for (int k = 0; k < 3; k++) {
+      out.radiance += pixel.rgba[k] / samples;
+      out.variance += (pixel.delta2[k] - pixel.delta[k] * pixel.delta[k] / samples) / (samples - 1);
+    }
+  const auto pixels = double(tile.pixels());
+  out.radiance /= pixels;
+  out.variance /= pixels;
+  for (double* moment : {&out.connections.camera, &out.connections.both})
+    *moment /= pixels * samples;
+  return out;
+}
+
+CameraTrial Trial::tryCameraPaths() {
+  const edit::FrameSettingsT settings = scene_.frame;
+  prepareTrial(scene_.frame);
+  TileRenderer renderer(scene_);
+  std::vector<Block> rendered;
+  double pixels = 0;
+  const bool first = weights_.empty();
+  for (uint32_t b = 0; b < blocks && !stop_; b++) {
+    const Tile tile = trialBlock(settings, b);
+    rendered.push_back(render(renderer, tile));
+    if (first) weights_.add(tile, rendered.back().radiance);
+    pixels += double(tile.pixels());
+  }
+  scene_.frame = settings;
+  CameraTrial out;
+  if (stop_) return out;
+  if (first) weights_.finish();
+  for (uint32_t b = 0; b < blocks; b++) {
+    const double weight = weights_.ofBlock(b) / blocks;
+    out.variance += rendered[b].variance * weight;
+    out.connections.camera += rendered[b].connections.camera * weight;
+    out.connections.both += rendered[b].connections.both * weight;
+  }
+  out.rays = raysOf(renderer.counters()) / (pixels * samples);
+  return out;
+}
+
+// The variance and the rays of one sample of a pixel, with the sharing that has been taken so far.
+struct Expectation {
+  double variance, rays;
+  bool weighted = false; // camera paths have weights
+
+  // Takes a sharing if that lowers the product. without, with: the second moments of the light that
+  // may be shared. more: the rays that it adds.
+  bool take(double without, double with, double more) {
+    const double then = rays * (weighted ? 1 : costOfWeights) + more;
+    const bool pays = (variance + with) * then < (variance + without) * rays;
+    variance += pays ? with : without;
+    if (pays) rays = then;
+    weighted |= pays;
+    return pays;
+  }
+};
+
+} // namespace
+
+bool tryLightPaths(RenderScene& scene, const std::atomic<bool>& stop) {
+  scene.glossySources = nullptr;
+  scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  if (!canTrace(scene)) return true;
+  const EmissiveShapes* shapes = scene.emitters->shapes();
+  const auto sources =
+      std::make_shared<const LightSources>(scene, nullptr, LightSources::Kind::glossy);
+  const bool mirrors = scene.lightSources && shapes && !shapes->empty();
+  if (!mirrors && sources->empty()) return true;
+  Trial trial(scene, stop);
+  const CameraTrial camera = trial.tryCameraPaths();
+  if (stop) return false;
+  Expectation expected{camera.variance, camera.rays};
+  double rays = 0;
+  if (mirrors) {
+    scene.sharesMirrors = true; // the light paths are traced in any case
+    const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, rays);
+    scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
+  }
+  if (!sources->empty()) {
+    scene.glossySources = sources;
+    scene.showsGlossy = true;
+    const LightPathGain gain = trial.tryLightPaths(*sources, camerasPerGlossyPath, rays);
+    const bool shows = expected.take(gain.camera, gain.both, rays);
+    scene.showsGlossy = false;
+    scene.connectsGlossy = true;
+    const CameraTrial connected = trial.tryCameraPaths();
+    const LightPathGain& more = connected.connections;
+    scene.connectsGlossy = expected.take(more.camera, more.both, connected.rays - camera.rays);
+    scene.showsGlossy = shows;
+  }
+  if (stop) scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  if (!scene.showsGlossy && !scene.connectsGlossy) scene.glossySources = nullptr;
+  return !stop;
+}
+
+} // namespace openrt

@@ -1,0 +1,44 @@
+// differences.h: the differences between the pixels of two pictures, without what their files have
+// rounded, and how far those of neighbours are alike. Pure functions of noise_test.cpp. [any
+// thread]
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libpicture/files/picture.h"
+
+namespace picture {
+
+// Half-width of a 95 % interval in standard errors.
+inline constexpr double halfWidthOfNormal = 1.959963985;
+
+// Tells whether a picture has the channels error and trust.
+bool hasErrors(const Picture& picture);
+
+struct Differences {
+  int width = 0, height = 0;
+  // For each colour, the second picture less the first one, and the first one. A difference within
+  // the rounding of the files is 0, and so are all of a pixel that is not finite.
+  std::array<std::vector<float>, 3> of, before;
+  uint64_t notFinite = 0; // pixels
+  Differences(const Picture& a, const Picture& b);
+  bool isFinite(size_t pixel) const { return !isInfinite_[pixel]; }
+
+ private:
+  std::vector<bool> isInfinite_;
+};
+
+struct Correlation {
+  double factor = 1; // as NoiseTest::correlation
+  bool isSmooth = false;
+};
+
+// Returns how far the differences of neighbours are alike: the median over the tiles of 32x32
+// pixels that have any. If they are more alike than by a reconstruction filter, they are smooth,
+// and the factor is 1.
+Correlation correlationOf(const Differences& differences);
+
+} // namespace picture

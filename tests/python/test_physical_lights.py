@@ -1,0 +1,107 @@
+"""Tests how lights of X3D shine on a PhysicalMaterial (docs/worlds.md): an intensity is an irradiance, 1/pi of
+what a Material gets. Other light is the same for both, and glTF agrees in both directions."""
+import json
+import math
+
+import pytest
+
+np = pytest.importorskip("numpy")
+xvrml = pytest.importorskip("xvrml")
+
+HEAD = "#X3D V4.0 utf8\nPROFILE Full\nNavigationInfo { headlight FALSE }\nViewpoint { position 0 0 2 }\n"
+WALL = "geometry Rectangle2D { size 9 9 } }\n"
+FIELDS = "baseColor 0.5 0.5 0.5 metallic 0 roughness 1"
+PHYSICAL = "Shape { appearance Appearance { material PhysicalMaterial { " + FIELDS + " } } " + WALL
+# The same surface of a class that takes lights as a Material does.
+CLASS = ('Shape { appearance ORTAppearance { material PhysicalMaterial { ' + FIELDS +
+         ' } shader ORTShader { name "Physical" } } ' + WALL)
+LIGHTS = {
+    "sun": "DirectionalLight { direction 0.3 0 -1 intensity 0.7 }",
+    "lamp": "PointLight { location 0 0 3 attenuation 0 0 1 intensity 5 }",
+    "spot": "SpotLight { location 0 0 3 direction 0 0 -1 intensity 0.8 beamWidth 1 cutOffAngle 1.2 }",
+    "many": " ".join(f"PointLight {{ location {x} 0 3 intensity 0.02 }}" for x in range(-20, 20))
+}
+
+
+def middle(text, spp=16, **options):
+    image = np.asarray(xvrml.loads(text).render(size=(9, 9), spp=spp, fov=10, **options))
+    return image[4, 4, :3].astype(float)
+
+
+@pytest.mark.parametrize("transport", ["whitted", "path", "light"])
+@pytest.mark.parametrize("light", LIGHTS)
+def test_an_intensity_is_an_irradiance(light, transport):
+    options = {"transport": transport, "spp": 256 if light == "many" else 4}
+    physical = middle(HEAD + LIGHTS[light] + PHYSICAL, **options)
+    whole = middle(HEAD + LIGHTS[light] + CLASS, **options)
+    assert physical[0] > .01
+    assert physical * math.pi == pytest.approx(whole, rel=1e-4 if light != "many" else .05)
+
+
+def test_a_white_material_is_pi_times_as_bright():
+    light = "DirectionalLight { intensity 0.5 }"
+    matt = "Shape { appearance Appearance { material Material { diffuseColor 1 1 1 } } " + WALL
+    white = PHYSICAL.replace("0.5 0.5 0.5", "1 1 1")
+    assert middle(HEAD + light + matt) == pytest.approx(.5, abs=1e-5)
+    # The layer over the base sends some of the light elsewhere.
+    assert middle(HEAD + light + white) == pytest.approx(.5 / math.pi, rel=.12)
+
+
+@pytest.mark.parametrize("more", [
+    "EnvironmentLight { color 1 1 1 intensity 1 }",
+    'ORTLight { shader ORTShader { name "Luminaire" options [ "1f lumen 100" "3f location 0 0 3" ] } }',
+    "Transform { translation 0 0 3 rotation 1 0 0 3.14159 children Shape { appearance Appearance { "
+    "material UnlitMaterial { emissiveColor 1 1 1 } } geometry Rectangle2D { size 2 2 } } }"
+])
+def test_other_light_is_the_same(more):
+    options = {"transport": "path", "spp": 256}
+    physical, whole = (middle(HEAD + more + wall, **options) for wall in (PHYSICAL, CLASS))
+    assert physical[0] > 0 and physical == pytest.approx(whole, rel=1e-5)
+
+
+def test_the_headlight_is_a_light_of_x3d():
+    head = HEAD.replace("headlight FALSE", "headlight TRUE")
+    assert middle(head + PHYSICAL) * math.pi == pytest.approx(middle(head + CLASS), rel=1e-4)
+
+
+def test_models_without_lights_stay_as_bright():
+    """The lights that vv gives a model shine on all materials alike."""
+    head = "#X3D V4.0 utf8\nPROFILE Full\nViewpoint { position 0 0 2 }\n"
+    matt = "Shape { appearance Appearance { material Material { diffuseColor 0.5 0.5 0.5 } } " + WALL
+    assert middle(head + PHYSICAL)[0] == pytest.approx(middle(head + matt)[0], rel=.15)
+
+
+def caustic(wall):
+    """A lamp behind a mirror that sends its light to the wall."""
+    mirror = ("Transform { translation 0 2.5 1 rotation 1 0 0 1.5708 children Shape { appearance ORTAppearance { "
+              'shader ORTShader { name "Mirror" } } geometry Rectangle2D { size 4 4 solid FALSE } } }\n')
+    screen = ("Transform { translation 0 0.6 1 rotation 1 0 0 1.5708 children Shape { appearance Appearance { material "
+              "Material { diffuseColor 0 0 0 } } geometry Rectangle2D { size 3 0.4 solid FALSE } } }\n")
+    lamp = "PointLight { location 0 1.2 1 attenuation 0 0 1 intensity 3 }\n"
+    return middle(HEAD + lamp + mirror + screen + wall, transport="light", spp=1024)
+
+
+def test_light_by_way_of_a_mirror_has_the_same_unit():
+    physical, whole = caustic(PHYSICAL), caustic(CLASS)
+    assert whole[0] > 0 and physical * math.pi == pytest.approx(whole, rel=.02)
+
+
+def lights_of(path):
+    document = json.loads(path.read_text())
+    return [light["intensity"] for light in document["extensions"]["KHR_lights_punctual"]["lights"]]
+
+
+@pytest.mark.parametrize("wall,factor", [(PHYSICAL, 1), (PHYSICAL.replace("PhysicalMaterial { " + FIELDS, "Material { "), math.pi)])
+def test_lights_survive_gltf(tmp_path, wall, factor):
+    text = HEAD + "DirectionalLight { direction 0 0 -1 intensity 0.5 }\n" + wall
+    world = xvrml.loads(text)
+    world.save(str(tmp_path / "a.gltf"))
+    assert lights_of(tmp_path / "a.gltf") == pytest.approx([.5 * factor], rel=1e-6)
+    again = np.asarray(xvrml.load(str(tmp_path / "a.gltf")).render(size=(9, 9), spp=16, fov=10, viewpoint=0))
+    assert again[4, 4, :3] == pytest.approx(middle(text), rel=.12)
+
+
+def test_a_mixed_world_says_what_changes(tmp_path):
+    world = xvrml.loads(HEAD + LIGHTS["sun"] + PHYSICAL + PHYSICAL.replace("PhysicalMaterial { " + FIELDS, "Material { "))
+    world.save(str(tmp_path / "a.gltf"))
+    assert lights_of(tmp_path / "a.gltf") == pytest.approx([.7 * math.pi], rel=1e-6)
