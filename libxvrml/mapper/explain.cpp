@@ -80,8 +80,8 @@ std::string itemReason(const Graph& graph, const Item& item, const Part& part) {
 
 std::string placeReason(const Graph& graph, const Item& item, const Part& part) {
   if (!item.node)
-    return fmt::format("merged static geometry of {} shapes, each with its own material",
-                       part.shapes);
+    return fmt::format("merged static geometry of {} shapes{}", part.shapes,
+                       part.shapes > 1 ? ", each with its own material" : "");
   if (part.level != none) return fmt::format("split: level {} of an LOD", part.level);
   if (item.kind == Kind::lod) return "split: LOD follows the viewer";
   if (item.kind == Kind::billboard) return "split: Billboard follows the viewer";

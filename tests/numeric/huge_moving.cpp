@@ -73,7 +73,7 @@ TEST_F(HugeMoving, WhatIsFarAwayInTheSameObjectChangesNothing) {
   place(object);
   const std::vector<float> alone = picture(48);
   EXPECT_GT(mean(alone), .02);
-  for (const double far : {1e6, 6e7, 1e8, 1e12, 1e16, 1e19}) {
+  for (const double far : {1e6, 6e7, 1e8, 1e12, 1e14}) {
     define(
         [&] {
           drawSmallThings();
@@ -85,24 +85,32 @@ TEST_F(HugeMoving, WhatIsFarAwayInTheSameObjectChangesNothing) {
   }
 }
 
+// The picture is that of a static object, whose frame lies at the eye.
 TEST_F(HugeMoving, SmallThingsMayBePartOfAHugeOne) {
-  const RTid object = define([] { drawSmallThings(); });
-  place(object);
-  const std::vector<float> alone = picture(48);
+  const RTid object = define([] {}), still = rtBeginObject(0);
+  rtEndObject();
   for (const double size : {1e6, 1e8, 1e10}) {
-    define(
-        [&] {
-          drawSquare({0, 0, size}, size); // behind the camera
-          drawSmallThings();
-        },
-        object);
-    expectSame(alone, picture(48), size);
+    const auto draw = [&] {
+      rtBindShader(white_);
+      drawSquare({0, 0, -size}, size);
+      drawSmallThings();
+    };
+    rtBeginObject(still);
+    draw();
+    rtEndObject();
+    const RTid instance = place(still);
+    const std::vector<float> expected = picture(48);
+    EXPECT_GT(mean(expected), .1);
+    rtDeleteInstance(instance);
+    const RTid moving = place(define(draw, object));
+    expectSame(expected, picture(48), size);
+    rtDeleteInstance(moving);
   }
 }
 
 // The camera is where the small things are, and nothing static says how small things are there.
 TEST_F(HugeMoving, SmallThingsMayBeAtBothEnds) {
-  constexpr double away = 1e8;
+  constexpr double away = 1 << 27; // where the grid of the origin of render space has a line
   place(define([] { drawSmallThings(); }));
   const std::vector<float> alone = picture(48);
   rtPushMatrix();

@@ -44,7 +44,7 @@ TEST_F(MapGrouping, WhatARouteReachesStandsAlone) {
   load("DEF T Transform { children [ " + box + box + " ] }\n" + repeat(box, 5) +
        "DEF I PositionInterpolator { }\nROUTE I.value_changed TO T.set_translation\n");
   EXPECT_EQ(reasons(), "T | split: ROUTE from I.value_changed | 24 2 1\nworld | merged static "
-                       "geometry of 5 shapes | 60 5 1\n");
+                       "geometry of 5 shapes, each with its own material | 60 5 1\n");
 }
 
 TEST_F(MapGrouping, RoutesThatMoveNothingDoNotSplit) {
@@ -118,8 +118,9 @@ TEST_F(MapGrouping, OrtStaticMergesWhatEventsReach) {
 TEST_F(MapGrouping, OrtInstanceIsAnObjectHoweverSmall) {
   load("DEF B ORTInstance { children " + box + " }\n" +
        repeat("Transform { translation 2 0 0 children USE B }\n", 3));
-  EXPECT_EQ(reasons(), "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 "
-                       "shapes, each with its own material | 0 0 1\n");
+  EXPECT_EQ(
+      reasons(),
+      "B | split: ORTInstance | 12 1 4\nworld | merged static geometry of 0 shapes | 0 0 1\n");
   EXPECT_EQ(frame().scene.uniqueTriangles, 12u);
 }
 
