@@ -20,7 +20,7 @@ def peak(vv, parts, kind):
     return json.loads(done.text)["memory"]["peak_rss"]
 
 
-@pytest.mark.parametrize("kind, most", [("different", 4700), ("separate", 3450), ("used", 1950)])
+@pytest.mark.parametrize("kind, most", [("different", 4800), ("separate", 3550), ("used", 2050)])
 def test_a_further_part_takes_few_bytes(vv, kind, most):
     each = (peak(vv, MANY, kind) - peak(vv, FEW, kind)) / (MANY - FEW)
     assert each < most
