@@ -90,8 +90,8 @@ TEST(Versions, FieldsTakeEventsSinceTheVersionThatSaysSo) {
   old.replace(old.find("inputOutput"), 11, "exposedField");
   EXPECT_EQ(messagesOf(*load("2.0", old)),
             std::vector<std::string>{
-                "a.wrl:2:69: warning: field 'description' of Viewpoint cannot be exposedField 'd' of "
-                "the interface (4.8.2): it takes the value of the instance, but no events"});
+                "a.wrl:2:69: warning: field 'description' of Viewpoint cannot be exposedField 'd' "
+                "of the interface (4.8.2): it takes the value of the instance, but no events"});
   // ISO/IEC 19775-1:2023 13.3.2, 13.3.3, 15.4.1
   const std::string parts = "Shape { geometry DEF C Cone { } } DEF S BooleanFilter { }\n"
                             "ROUTE S.inputTrue TO C.set_bottom";
