@@ -73,11 +73,12 @@ constexpr Field fields[] = {{"Anchor", "autoRefresh"},
                             {"TriangleStripSet", "fogCoord"}};
 
 // Lists fields and events of ours that X3D calls otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3,
-// :2023 34.4.1).
+// :2023 34.4.1, 35.4.1).
 constexpr int neverWritten = 99;
 struct Renamed {
   std::string_view type, x3d, own;
-  int since = 3; // the first major version of X3D in which the name is written
+  int since = 3;             // the first major version of X3D in which the name is written
+  int before = neverWritten; // the first one in which it no longer is
 };
 constexpr Renamed renamed[] = {
     {"Collision", "enabled", "collide"},
@@ -94,6 +95,8 @@ constexpr Renamed renamed[] = {
     {"LOD", "children_changed", "level"}, // level_changed is another event in X3D
     {"LOD", "children_changed", "level_changed"},
     {"LOD", "level_changed", "activeLevel_changed"},
+    {"Layer", "isPickable", "pickable", 3, 4},
+    {"LayoutLayer", "isPickable", "pickable", 3, 4},
     {"LoadSensor", "children", "watchList", 4},
     {"LoadSensor", "set_children", "set_watchList", 4},
     {"LoadSensor", "children_changed", "watchList_changed", 4},
@@ -112,7 +115,8 @@ std::string_view ownName(std::string_view type, std::string_view name) {
 
 std::string_view x3dName(std::string_view type, std::string_view name, int version) {
   for (const Renamed& one : renamed)
-    if (one.type == type && one.own == name && version >= one.since) return one.x3d;
+    if (one.type == type && one.own == name && version >= one.since && version < one.before)
+      return one.x3d;
   return name;
 }
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "geometry/lens.h"
-#include "geometry/node_matrix.h"
 #include "nodes/bindable.h"
 #include "nodes/viewpoint.h"
 
@@ -106,9 +105,7 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
   return list;
 }
 
-CameraSettings cameraOf(const Node* node, const Matrix& around, double aspect) {
-  // A viewpoint on a globe has axes of its own.
-  const Matrix parent = node && hasMatrix(*node) ? compose(around, matrixOf(*node)) : around;
+CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
   const auto viewpoint = viewpointFields(node);
   const Vec3f position = viewpoint ? viewpoint->position : Vec3f(0, 0, 10); // as in clause 6.53
   const Rotation orientation = viewpoint ? viewpoint->orientation : Rotation();

@@ -37,7 +37,7 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
                                     Diagnostics& diagnostics);
 
 // Returns the camera of a Viewpoint; for null that of the standard's default Viewpoint. parent:
-// world matrix of the node's parent.
+// world matrix of what stands in the node: that of its parent, or its place on a globe.
 CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspect);
 // Returns the directions, across the lines of sight, in which a world's outermost points make such
 // a camera exact: cameraAround() sees all of the world if it has these points. Returns nullopt if

@@ -50,6 +50,8 @@ void expectRoundTrip(const World& world, const std::string& name, Encoding encod
   EXPECT_EQ(again->head.version.encoding, encoding);
   const bool spokenThere = encoding != Encoding::vrml97 || world.head.version == FileVersion();
   EXPECT_EQ(spokenThere ? messages(*again) : "", "") << text;
+  // VRML97 limits numbers that X3D 4 does not, such as the intensity of a light; it says so.
+  if (!spokenThere && messages(*again).find("is outside of its range") != std::string::npos) return;
   std::string difference;
   // Nodes that a reader of VRML 1.0 shares have no names; those that are read again have.
   const bool named = world.head.version.encoding != Encoding::vrml1;

@@ -20,11 +20,13 @@ TEST(UrlFields, AreThoseOfTheStandard) {
         EXPECT_EQ(field.type, FieldType::MFString) << field.name;
         EXPECT_TRUE(holdsValue(field)) << field.name;
       }
-  EXPECT_EQ(found, (std::set<std::string>{
-                       "Anchor.url", "AudioClip.url", "Background.backUrl", "Background.bottomUrl",
-                       "Background.frontUrl", "Background.leftUrl", "Background.rightUrl",
-                       "Background.topUrl", "ImageCubeMapTexture.url", "ImageTexture.url",
-                       "Inline.url", "MovieTexture.url", "Script.url"}));
+  EXPECT_EQ(found,
+            (std::set<std::string>{
+                "Anchor.url", "AudioClip.url", "Background.backUrl", "Background.bottomUrl",
+                "Background.frontUrl", "Background.leftUrl", "Background.rightUrl",
+                "Background.topUrl", "GeoLOD.child1Url", "GeoLOD.child2Url", "GeoLOD.child3Url",
+                "GeoLOD.child4Url", "GeoLOD.rootUrl", "ImageCubeMapTexture.url", "ImageTexture.url",
+                "Inline.url", "MovieTexture.url", "Script.url"}));
 }
 
 // Prototypes in the folder lib/, used by worlds/w.wrl.

@@ -48,6 +48,18 @@ TEST(Versions, NamesAreThoseOfTheFile) {
   EXPECT_EQ(fieldName(*vrml->scope.roots[0], *choice.type().find("choice")), "choice");
 }
 
+// A Layer's pickable is isPickable up to X3D 3.3 (ISO/IEC 19775-1:2013 35.4.1).
+TEST(Versions, NamesOfX3dMayChange) {
+  for (const auto& [version, name] : {std::pair("3.3", "isPickable"), {"4.0", "pickable"}}) {
+    const auto world = load(version, "LayerSet { layers DEF L Layer { isPickable FALSE } }");
+    EXPECT_EQ(world->diagnostics.errors(), 0u);
+    const Node& layer = *world->scope.names.at("L");
+    EXPECT_EQ(fieldName(layer, *layer.type().find("pickable")), name);
+    const std::string text = writeWorld(*world, "", Encoding::x3dClassic);
+    EXPECT_NE(text.find(std::string(" ") + name + " FALSE"), text.npos) << text;
+  }
+}
+
 // A name that was mapped is mapped to itself, so several layers may ask.
 TEST(Versions, OurNamesAreMappedToThemselves) {
   for (const char* version : {"2.0", "3.3", "4.0"})
@@ -78,8 +90,8 @@ TEST(Versions, FieldsTakeEventsSinceTheVersionThatSaysSo) {
   old.replace(old.find("inputOutput"), 11, "exposedField");
   EXPECT_EQ(messagesOf(*load("2.0", old)),
             std::vector<std::string>{
-                "a.wrl:2:75: error: field 'description' of Viewpoint cannot be exposedField 'd' of "
-                "the interface (4.8.2): it takes the value of the instance, but no events"});
+                "a.wrl:2:69: warning: field 'description' of Viewpoint cannot be exposedField 'd' "
+                "of the interface (4.8.2): it takes the value of the instance, but no events"});
   // ISO/IEC 19775-1:2023 13.3.2, 13.3.3, 15.4.1
   const std::string parts = "Shape { geometry DEF C Cone { } } DEF S BooleanFilter { }\n"
                             "ROUTE S.inputTrue TO C.set_bottom";

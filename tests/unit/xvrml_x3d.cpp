@@ -186,12 +186,12 @@ TEST(X3d, GroupsWithoutImplementationKeepWhatTheyHold) {
                 "sensors see its children",
                 "test.x3dv:5:1: warning: 'HAnimHumanoid' is not supported wholly: its skin stays "
                 "as it is at rest",
-                "test.x3dv:5:107: error: no node is named 'J' by a DEF above; did you mean 'A'?",
-                "test.x3dv:5:129: warning: 'HAnimJoint' is not supported wholly: it moves its "
+                "test.x3dv:5:108: error: no node is named 'J' by a DEF above",
+                "test.x3dv:5:125: warning: 'HAnimJoint' is not supported wholly: it moves its "
                 "children, but does not bend the skin",
                 "test.x3dv:6:1: warning: 'RigidBodyCollection' is not supported wholly: bodies do "
                 "not move",
-                "test.x3dv:6:56: warning: 'CollidableShape' is not supported wholly: it does not "
+                "test.x3dv:6:57: warning: 'CollidableShape' is not supported wholly: it does not "
                 "move by itself"}));
   for (const char* name : {"A", "B", "C", "D", "K"})
     EXPECT_TRUE(world->scope.names.contains(name)) << name;

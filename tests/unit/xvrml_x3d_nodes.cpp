@@ -105,7 +105,7 @@ constexpr Interface interfaces[] = {
     {"37.4.3", "CollidableShape", 0, 5, 3, 0},
     {"37.4.4", "CollisionCollection", 0, 13, 2, 0},
     {"37.4.10", "RigidBody", 0, 25, 2, 0},
-    {"37.4.11", "RigidBodyCollection", 0, 16, 3, 0},
+    {"37.4.11", "RigidBodyCollection", 1, 16, 3, 0},
     {"38.4.2", "PickableGroup", 2, 6, 2, 0},
     {"39.4.1", "ColorChaser", 2, 0, 3, 2},
     {"39.4.2", "ColorDamper", 2, 2, 3, 2},

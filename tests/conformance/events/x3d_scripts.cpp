@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
         Language{"python", "python:\ndef go(v, t):\n    script.two = len(script.w.children)\n"
                            "    script.three = len(script.l.children)\n"
                            "    script.on = script.c.enabled\n    script.c.enabled = False\n"
-                           "    Browser.add_route(script.w, 'children_changed', script.me, 'got')\n"
+                           "    browser.add_route(script.w, 'children_changed', script.me, 'got')\n"
                            "    script.w.addChildren = [script.n]\n"
                            "def got(v, t): script.now = len(v)"}),
     [](const testing::TestParamInfo<Language>& info) { return std::string(info.param.name); });
