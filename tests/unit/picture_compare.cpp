@@ -193,6 +193,24 @@ TEST_F(Noises, ABrighterSquareIsFoundAndNamed) {
   }
 }
 
+// Most of it is without noise, and a change is not taken for samples that a filter has spread.
+TEST_F(Noises, AShadowIsFoundInAPictureWithHardlyAnyNoise) {
+  std::normal_distribution<float> tiny(0, 1e-3f);
+  const auto smooth = [&] {
+    int i = 0;
+    return made([&] { return 1 + float(i++ / 3 % side) / side + tiny(random); });
+  };
+  for (const int size : {12, 20, 30}) {
+    Picture b = smooth();
+    add(b, 4, 5, size, 10, -.9f);
+    for (const Noise noise : {Noise::equal, Noise::unknown}) {
+      const NoiseTest test = testNoise(smooth(), b, noise);
+      EXPECT_FALSE(test.isSame) << size;
+      EXPECT_LT(test.correlation, 2.5) << size;
+    }
+  }
+}
+
 // A change as large as those that the test says it would have found.
 TEST_F(Noises, ChangesAreFoundThatWouldBe) {
   const SmallestChange least = testNoise(normal(16), normal(16), Noise::equal).least.back();
