@@ -36,9 +36,9 @@ struct Correlation {
   bool isSmooth = false;
 };
 
-// Returns how far the differences of neighbours are alike: the median over the tiles of 32x32
-// pixels that have any. If they are more alike than by a reconstruction filter, they are smooth,
-// and the factor is 1.
+// Returns how far the differences of neighbours are alike, from their order alone: a change of the
+// mean leaves that of most neighbours as it is. If they are more alike than by a reconstruction
+// filter, they are smooth, and the factor is 1.
 Correlation correlationOf(const Differences& differences);
 
 } // namespace picture

@@ -69,17 +69,38 @@ Cells doubled(const Cells& cells) {
   return larger;
 }
 
+// Returns the largest loss and the largest gain of a pixel by a bright sample. Where the darker
+// picture changes by as much between the pixels around, the difference is that of an edge.
+std::array<double, 2> brightestJumps(const Differences& d) {
+  std::array<double, 2> most{};
+  const auto isEdge = [&d](size_t k, int x, int y, float jump) {
+    float brightest = -std::numeric_limits<float>::max(), darkest = -brightest;
+    for (int j = std::max(0, y - 1); j <= std::min(d.height - 1, y + 1); ++j)
+      for (int i = std::max(0, x - 1); i <= std::min(d.width - 1, x + 1); ++i) {
+        const size_t at = size_t(j) * size_t(d.width) + size_t(i);
+        const float light = d.before[k][at] + (jump < 0 ? d.of[k][at] : 0);
+        brightest = std::max(brightest, light);
+        darkest = std::min(darkest, light);
+      }
+    return brightest - darkest >= std::abs(jump);
+  };
+  for (size_t k = 0; k < 3; ++k)
+    for (int y = 0; y < d.height; ++y)
+      for (int x = 0; x < d.width; ++x) {
+        const float jump = d.of[k][size_t(y) * size_t(d.width) + size_t(x)];
+        double& largest = most[jump > 0 ? 1 : 0];
+        if (double(std::abs(jump)) > largest && !isEdge(k, x, y, jump))
+          largest = double(std::abs(jump));
+      }
+  return most;
+}
+
 // Judges squares of four cells, at every cell, for cells of every size.
 class Squares {
  public:
   Squares(const Differences& differences, Noise noise, double correlation, double rate)
-      : d_(differences), noise_(noise), correlation_(correlation), rate_(rate) {
-    for (const std::vector<float>& plane : d_.of)
-      for (const float v : plane) {
-        most_[0] = std::max(most_[0], -double(v));
-        most_[1] = std::max(most_[1], double(v));
-      }
-  }
+      : d_(differences), noise_(noise), correlation_(correlation), rate_(rate),
+        most_(brightestJumps(differences)) {}
 
   void judge() {
     for (Cells cells = smallestCells(d_);; cells = doubled(cells)) {
@@ -152,8 +173,8 @@ class Squares {
   }
 
   // Returns the probability that the darker picture has missed light here that comes in rare bright
-  // samples. They are as bright as the largest difference of the picture the other way; the light
-  // of so many of them is missing, and a Poisson variable is 0 with this probability.
+  // samples. They are as bright as the brightest one of that kind in the other pixels; the light of
+  // so many of them is missing, and a Poisson variable is 0 with this probability.
   double chanceOfMissedLight(double sum) const {
     if (noise_ == Noise::equal) return 0;
     const double brightest = most_[sum < 0 ? 1 : 0] * correlation_;
@@ -171,7 +192,7 @@ class Squares {
   const Differences& d_;
   const Noise noise_;
   const double correlation_, rate_;
-  std::array<double, 2> most_{}; // the largest loss and the largest gain of a pixel
+  const std::array<double, 2> most_; // the largest loss and the largest gain of a pixel
   std::vector<Level> levels_;
   std::vector<ChangedPlace> places_;
   size_t count_ = 0;

@@ -106,6 +106,33 @@ TEST_F(Noises, OfFewSamplesAgainstManyIsNoDifference) {
       0);
 }
 
+// The same where the rare light is weaker than the rest, which has no noise; and at the edge of a
+// lamp there is noise that is no rare light.
+TEST_F(Noises, OfWeakRareLightIsNoDifference) {
+  const auto weak = [&](int samples) {
+    std::binomial_distribution<int> hits(samples, .001);
+    return made([&] { return 1 + 4.8f * float(hits(random)) / float(samples); });
+  };
+  EXPECT_EQ(falseAlarms(
+                100, [&] { return weak(16); }, [&] { return weak(4096); }, Noise::unknown),
+            0);
+}
+
+TEST_F(Noises, AnEdgeHidesNoDifference) {
+  const auto withLamp = [&](float level) {
+    Picture picture = normal(64);
+    add(picture, 0, 0, side, side, level);
+    std::uniform_real_distribution<float> cover(8, 16); // pixels that the lamp covers in part
+    for (int x = 8; x < 16; ++x) add(picture, x, 7, 1, 1, cover(random));
+    add(picture, 8, 8, 8, 8, 16);
+    return picture;
+  };
+  EXPECT_EQ(falseAlarms(
+                60, [&] { return withLamp(0); }, [&] { return withLamp(0); }, Noise::unknown),
+            0);
+  EXPECT_FALSE(testNoise(withLamp(0), withLamp(.05f), Noise::unknown).isSame);
+}
+
 // Few samples miss rare light nearly everywhere, which equal noise cannot. Whoever says that the
 // noise is equal where it is not is told of a difference.
 TEST_F(Noises, MustBeEqualWhereThatIsSaid) {
@@ -163,6 +190,24 @@ TEST_F(Noises, ABrighterSquareIsFoundAndNamed) {
     EXPECT_GT(place.change, .05);
     EXPECT_LT(place.chance, 1e-9);
     EXPECT_NEAR(place.before, 1, .1);
+  }
+}
+
+// Most of it is without noise, and a change is not taken for samples that a filter has spread.
+TEST_F(Noises, AShadowIsFoundInAPictureWithHardlyAnyNoise) {
+  std::normal_distribution<float> tiny(0, 1e-3f);
+  const auto smooth = [&] {
+    int i = 0;
+    return made([&] { return 1 + float(i++ / 3 % side) / side + tiny(random); });
+  };
+  for (const int size : {12, 20, 30}) {
+    Picture b = smooth();
+    add(b, 4, 5, size, 10, -.9f);
+    for (const Noise noise : {Noise::equal, Noise::unknown}) {
+      const NoiseTest test = testNoise(smooth(), b, noise);
+      EXPECT_FALSE(test.isSame) << size;
+      EXPECT_LT(test.correlation, 2.5) << size;
+    }
   }
 }
 

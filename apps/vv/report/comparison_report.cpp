@@ -50,9 +50,10 @@ std::string comparisonText(const Comparison& c) {
   std::string text = fmt::format("{} and {}: {}x{} pixels of {}\n", printable(c.names[0]),
                                  printable(c.names[1]), c.pictures[0].width, c.pictures[0].height,
                                  c.pictures[0].linear ? "radiance" : "display colours");
-  text += test.isSame ? "same      yes: noise explains all differences"
-                      : fmt::format("same      no: noise does not explain {} of {} tests",
-                                    test.found, test.squares + test.pixels);
+  text += test.different == 0 && test.notFinite == 0 ? "same      yes: there is no difference"
+          : test.isSame ? "same      yes: noise explains all differences"
+                        : fmt::format("same      no: noise does not explain {} of {} tests",
+                                      test.found, test.squares + test.pixels);
   text += fmt::format(" (false alarms: {:g})\n", picture::falseAlarmRate);
   for (const ChangedPlace& place : test.changes) text += "change    " + placeText(place) + "\n";
   text += "noise     " + noiseText(c) + "\n";
