@@ -120,9 +120,11 @@ void StudioSet::place(const Studio& studio, bool linear, const xvrml::CameraSett
   const Vec above{m[4], m[5], m[6]}, back{m[8], m[9], m[10]}, eye{m[12], m[13], m[14]};
   const bool isAbove = dot(eye, up) >= bottom;
   const Vec top = up * (isAbove ? 1.0 : -1.0);
-  // towards the viewer: back, or for a camera that looks down, the lower edge of the picture
-  Vec front = unit(back) + unit(above) * -1;
-  if (!isAbove) front = unit(back) + unit(above);
+  // Towards the viewer: back, or for a camera that looks straight down or up, the lower edge of the
+  // picture. So top and bottom have the same light. From below, the world's up is often the
+  // picture's.
+  const bool hangs = dot(unit(above), top) < -1e-6;
+  Vec front = unit(back) + unit(above) * (hangs ? 1.0 : -1.0);
   front = front + top * -dot(front, top);
   if (!(dot(front, front) > 1e-12)) {
     const Vec other = std::abs(top.z) < 0.5 ? Vec{0, 0, 1} : Vec{0, -1, 0};

@@ -7,11 +7,18 @@ import subprocess
 import pytest
 from conftest import HEADER
 
-# A ball that comes into the picture after one second and is dear to draw.
-WORLD = HEADER + """Viewpoint { position 0 0 9 }
-DEF T TimeSensor { cycleInterval 2 }
-DEF I PositionInterpolator { key [ 0, .5, .5, 1 ] keyValue [ 900 0 0, 900 0 0, 0 0 0, 1 0 0 ] }
-DEF P Transform { children Shape { appearance Appearance { material Material { } } geometry Sphere { } } }
+# A room with a lamp comes around the viewer after one second. Before, there is nothing to draw.
+WORLD = HEADER + """Viewpoint { position 0 0 4 }
+NavigationInfo { headlight FALSE }
+DEF T TimeSensor { cycleInterval 2 loop TRUE }
+DEF I PositionInterpolator { key [ 0, .5, .5, 1 ] keyValue [ 900 0 0, 900 0 0, 0 0 0, .1 0 0 ] }
+DEF P Transform { children [
+  Shape { appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" options "color reflectance .9 .9 .9" } }
+    geometry IndexedFaceSet { solid FALSE
+      coord Coordinate { point [ -5 -5 -5, 5 -5 -5, 5 5 -5, -5 5 -5, -5 -5 5, 5 -5 5, 5 5 5, -5 5 5 ] }
+      coordIndex [ 0 1 2 3 -1 4 5 6 7 -1 0 1 5 4 -1 2 3 7 6 -1 0 3 7 4 -1 1 2 6 5 ] } }
+  Shape { appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" options "color emission 5 5 5" } }
+    geometry Sphere { radius .3 } } ] }
 ROUTE T.fraction_changed TO I.set_fraction
 ROUTE I.value_changed TO P.set_translation
 """
@@ -56,8 +63,7 @@ def test_jobs_cover_the_film_and_make_its_pictures(film):
 
 
 def test_a_dear_half_gets_more_jobs(film):
-    """The sphere is drawn from frame 30 on. Before, there is nothing but the background."""
-    parts = ranges(jobs_of(film, "--frames", "0-59", "--jobs", "8", "--size", "640x480", "--spp", "64"))
+    parts = ranges(jobs_of(film, "--frames", "0-59", "--jobs", "8", "--size", "128x96", "--spp", "16"))
     assert sum(first >= 28 for first, *_ in parts) > len(parts) / 2
 
 

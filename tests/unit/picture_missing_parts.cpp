@@ -26,7 +26,7 @@ TEST(MissingParts, NamesStateSizes) {
 TEST(MissingParts, OtherNamesStateNone) {
   for (const char* name : {"", "Metric", "0Metric", "R_00aaMetric", "R_0000Metric",
                            "PinHeader_1x04", "P2.54mm", "X_1e9x1e9mm", "X_0x0mm", "X_infxinfmm",
-                           "X_-3x4mm", "D.mm", "3x", "3x4", "3x4x5x6mm", "12x34mm/plain.wrl"})
+                           "X_.x4mm", "D.mm", "3x", "3x4", "3x4x5x6mm", "12x34mm/plain.wrl"})
     EXPECT_FALSE(sizeInName(name)) << name;
 }
 
