@@ -1,8 +1,11 @@
 """Tests the editor in vv's window with real clicks and keys, and what becomes of the file."""
+import os
+import signal
+
 import pytest
 
 from conftest import HEADER
-from editor_window import changed, needs_the_editor, text  # noqa: F401
+from editor_window import changed, needs_the_editor, saved, text  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
 WORLD = HEADER + """
@@ -59,6 +62,18 @@ def test_groups_are_selected_with_ctrl_and_the_file_differs_in_one_value(editor,
     w.key("ctrl+s")
     now = changed(w, vv, lambda t: t != WORLD)
     assert now == WORLD.replace("translation -2 0 0 #", "translation -2 -0.5 0 #")
+    assert w.end() == 0
+
+
+def test_a_key_that_was_held_counts_also_if_vv_is_late(editor, vv):
+    w = editor
+    w.move(-0.25, 0)
+    os.kill(w.program.pid, signal.SIGSTOP)
+    w.tool("keydown", "ctrl", "click", 1, "keyup", "ctrl")
+    w.key("g", "y", "1", "Return")
+    os.kill(w.program.pid, signal.SIGCONT)
+    now = saved(w, vv, lambda t: t != WORLD)
+    assert now == WORLD.replace("translation -2 0 0 #", "translation -2 1 0 #")
     assert w.end() == 0
 
 

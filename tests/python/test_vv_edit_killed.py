@@ -10,7 +10,7 @@ import time
 import pytest
 
 from conftest import HEADER
-from control_server import SMALL, Server
+from control_server import SMALL, Server, module
 from editor_window import skip_without_editor
 from page_client import Served
 from serve_edit_tools import select
@@ -114,9 +114,10 @@ def on_a_page(folder, seed):
 def test_edits_of_programs_and_pages(vv, tmp_path, face):
     if face is on_a_page and "without libwebsockets" in vv("serve", "no.wrl").talk:
         pytest.skip("vv is built without libwebsockets")
+    module()  # is loaded by one thread
     with concurrent.futures.ThreadPoolExecutor(4) as threads:
         for done in [threads.submit(face, tmp_path / str(seed), seed) for seed in range(8)]:
-            done.result(60)
+            done.result()
 
 
 def test_edits_in_the_window(vv, screen, tmp_path):  # noqa: F811

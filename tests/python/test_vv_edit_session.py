@@ -8,7 +8,7 @@ import time
 import pytest
 
 from conftest import HEADER, ROOT
-from editor_window import changed, needs_the_editor, press  # noqa: F401
+from editor_window import changed, needs_the_editor, press, saved  # noqa: F401
 from control_server import SMALL, start  # noqa: F401
 from window_driver import screen, window  # noqa: F401
 
@@ -132,8 +132,7 @@ def test_the_first_session_of_the_page(window, vv):
     w.key("u", "b")
     press(w, 60, LAMP_ROW)
     w.key("g", "y", "minus", "period", "3", "Return")
-    w.key("ctrl+s")
-    now = changed(w, vv, lambda t: t != desk)
+    now = saved(w, vv, lambda t: t != desk)
     assert changes(desk, now) == told.split("\n")
     assert w.end() == 0
 

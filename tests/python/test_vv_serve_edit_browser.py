@@ -273,7 +273,7 @@ def test_a_lens_and_a_lamp_are_changed(browser, serve, vv):
     until_title(browser, "LENS  Shape")
     browser.script("document.querySelector('#look .link').dispatchEvent("
                    "new MouseEvent('contextmenu', { cancelable: true }))")
-    until_script(browser, "document.querySelector('pre')?.textContent ==="
+    until_script(browser, "document.querySelector('#content pre')?.textContent ==="
                  " '--shader LENS=glass/Glass:index=1.5'")
     browser.script("document.getElementById('panel').close()")
     until_script(browser, "document.querySelector('#look .link').textContent === 'Glass'")

@@ -128,7 +128,7 @@ def test_the_printed_command_has_the_shader_of_the_viewpoint(window, vv):
       name "ThinLens" options [ "1f radius .5" "1f focus 7" "1i blades 5" ] } }""")
     w.drag(0, 0.8, 0.2, 0.7)
     command = check_the_printed_command(w, vv)
-    assert command[command.index("--camera-shader") + 1] == "ThinLens:radius=.5:focus=7:blades=5"
+    assert command[command.index("--camera-shader") + 1] == "ThinLens:radius=0.5:focus=7:blades=5"
 
 
 def test_examine_turns_moves_and_zooms(window):

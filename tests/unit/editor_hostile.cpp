@@ -114,8 +114,12 @@ TEST_F(Shown, WhatAScriptTakesAwayStaysSelected) {
   model.update(world.editor, front(), false, 0);
   EXPECT_EQ(model.takeMessage(), "");
   EXPECT_NE(world.editor.editor().text().find("intensity 0.5 # by day"), std::string::npos);
-  removeSelected(world.editor);
-  EXPECT_EQ(world.editor.editor().text().find("PointLight"), std::string::npos);
+  try {
+    removeSelected(world.editor);
+    ADD_FAILURE() << "it has no place";
+  } catch (const EditError& error) {
+    EXPECT_NE(std::string(error.what()).find("a Script has taken"), std::string::npos);
+  }
   while (!world.editor.undo().empty()) {}
   EXPECT_EQ(world.editor.editor().text(), text);
 }

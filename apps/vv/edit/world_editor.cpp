@@ -92,6 +92,10 @@ NodeSlot WorldEditor::placeOf(const Node& node, const Accepts& accepts) {
   std::vector<NodeSlot> places = editor_.placesOf(node);
   if (accepts) std::erase_if(places, [&](const NodeSlot& place) { return !accepts(place); });
   if (places.size() == 1) return places.front();
+  if (places.empty() && !accepts && editor_.stands(node))
+    throw EditError(fmt::format("a Script has taken this {} out of the world; its values can be "
+                                "edited, its place once the world is loaded again",
+                                node.type().name));
   throw EditError(places.empty()
                       ? fmt::format("this {} does not stand {}", node.type().name,
                                     accepts ? "there" : "in the world's own file")

@@ -1,5 +1,6 @@
 #include "session/light_reader.h"
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -36,13 +37,15 @@ std::string textOf(WorldEditor& editor, const SurfaceSeen& seen) {
         text += ", " + look.substr(0, 64);
     text += "\n";
   }
-  const auto three = [](const std::array<double, 3>& v) {
-    return fmt::format("{:.4g} {:.4g} {:.4g}", v[0], v[1], v[2]);
-  };
   const double distance = hit.distance * std::hypot(seen.ray.direction[0], seen.ray.direction[1],
                                                     seen.ray.direction[2]);
-  return text + fmt::format("at {}, {:.4g} from the viewer\nnormal {}", three(hit.point), distance,
-                            three(hit.normal));
+  // Rounding errors are shown as 0.
+  const auto three = [](const std::array<double, 3>& v, double size) {
+    const auto shown = [size](double x) { return std::abs(x) < 1e-6 * size ? 0 : x; };
+    return fmt::format("{:.4g} {:.4g} {:.4g}", shown(v[0]), shown(v[1]), shown(v[2]));
+  };
+  return text + fmt::format("at {}, {:.4g} from the viewer\nnormal {}", three(hit.point, distance),
+                            distance, three(hit.normal, 1));
 }
 
 } // namespace

@@ -82,6 +82,7 @@ struct Screen::Impl {
   std::vector<uint32_t> pixels; // scratch storage for the picture
   bool changed = true, isHand = false, pressed = false;
   std::string typed; // what the last key types by its name
+  int modifiers = 0; // keys that were held when the present event came; SDL knows those of now
 
   ~Impl() {
     gui.reset();
@@ -102,7 +103,7 @@ struct Screen::Impl {
     event.kind = kind;
     event.x = (2 * x + 1.0) / std::max(1, w) - 1;
     event.y = 1 - (2 * y + 1.0) / std::max(1, h);
-    setModifiers(event, SDL_GetModState());
+    setModifiers(event, modifiers);
     return event;
   }
 
@@ -145,6 +146,9 @@ struct Screen::Impl {
 
   void take(const SDL_Event& e, std::vector<InputEvent>& out) {
     using Kind = InputEvent::Kind;
+    if (e.type == SDL_KEYDOWN || e.type == SDL_KEYUP) modifiers = e.key.keysym.mod;
+    if (e.type == SDL_WINDOWEVENT && e.window.event == SDL_WINDOWEVENT_FOCUS_GAINED)
+      modifiers = SDL_GetModState();
     if (gui && gui->take(e)) return;
     switch (e.type) {
     case SDL_QUIT: out.push_back(pointer(Kind::quit, 0, 0)); break;
