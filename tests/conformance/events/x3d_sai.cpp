@@ -55,7 +55,7 @@ constexpr EcmaRow rows[] = {
      "print(n.getNodeTypeName(), n.translation.y);"
      "['Nothing', 'Group { } Group', ''].forEach(function(name) {"
      "try { s.createNode(name); print('made'); } catch (e) { print('refused'); } });",
-     "Transform 5\nrefused\nrefused\nrefused"},
+     "Transform 5\nrefused\nrefused\nrefused\n1: 'Nothing' is not a known node type"},
     {"CreatesInstancesOfPrototypes", "",
      "var p = s.createProto('Ball'); print(p.getNodeTypeName(), p.size); p.size = 7;"
      "print(s.createProto('Ball').size, s.getNamedNode('P').size);"
@@ -160,9 +160,10 @@ TEST_F(EcmaSai, NewerProgramsSaySo) {
 // Every role of the .node files is an abstract type of X3D, or one that X3D does not have.
 TEST(AbstractTypes, RolesAreKnown) {
   const std::vector<std::string_view> own = {
-      "surfaced",  "repeating",       "declaring", "lines",   "sided",
-      "faces",     "exact",           "parent",    "flat",    "placedLight",
-      "selecting", "indexedGeometry", "shader",    "slotted", "splineInterpolator"};
+      "surfaced",  "repeating",       "declaring",       "lines",    "sided",
+      "faces",     "exact",           "parent",          "flat",     "placedLight",
+      "selecting", "indexedGeometry", "shader",          "slotted",  "splineInterpolator",
+      "listing",   "placing",         "placedViewpoint", "geoOrigin"};
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) {
       const bool known = !abstractTypeOfRole(role).empty() ||
