@@ -141,7 +141,7 @@ void Surfaces::setColorPicture(const AppearanceParts& parts, const MaterialValue
 void Surfaces::setMaterial(const AppearanceParts& parts, Surface& surface) {
   const MaterialValues values = xvrml::materialValues(parts.material);
   surface.lit = values.model == Model::phong || values.model == Model::physical;
-  surface.takesIrradiance = values.model == Model::physical;
+  surface.takesIrradiance = xvrml::takesIrradiance(parts.material);
   surface.color = linearOf(values.color);
   surface.opacity = 1 - between0And1(values.transparency);
   surface.emission = linearOf(values.emissiveColor);

@@ -100,6 +100,12 @@ AppearanceParts resolveAppearance(Node* appearance) {
   return parts;
 }
 
+bool takesIrradiance(const Node* material) {
+  if (nodeCast<nodes::PhysicalMaterial>(material)) return true;
+  const auto* matt = nodeCast<nodes::Material>(material);
+  return matt && versionOf(*matt).encoding == Encoding::gltf;
+}
+
 MaterialValues materialValues(Node* material) {
   Node* node = renderedNode(material);
   if (const auto* m = nodeCast<nodes::Material>(node)) return valuesOf(*m);

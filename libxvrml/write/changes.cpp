@@ -11,7 +11,7 @@ namespace {
 
 // Nodes of the world's own file that mean something else in the written one.
 struct Counts {
-  size_t textured = 0, inlines = 0, limited = 0, bright = 0;
+  size_t textured = 0, inlines = 0, limited = 0, bright = 0, lights = 0, matt = 0;
 };
 
 bool isWhite(const Color& c) { return c.r == 1 && c.g == 1 && c.b == 1; }
@@ -40,6 +40,8 @@ Counts countOf(const World& world, const FileVersion& to) {
   walk(std::move(open), [&](const Node& node, std::vector<const Node*>& next) {
     const FileVersion& from = versionOf(node);
     counts.textured += from.texturesMultiply() != to.texturesMultiply() && mixesTexture(node);
+    counts.lights += node.type().is("light");
+    counts.matt += from.encoding == Encoding::gltf && nodeCast<nodes::Material>(&node);
     counts.bright += from.major >= 4 && to.major < 4 && intensityOf(node) > 1;
     if (node.type().index == nodes::Inline::typeIndex) {
       ++counts.inlines;
@@ -78,6 +80,10 @@ std::vector<std::string> changesByWriting(const World& world, Encoding encoding)
   if (counts.bright > 0)
     changes.push_back(fmt::format("before X3D 4 an intensity ends at 1: {} will be weaker",
                                   several(counts.bright, "light")));
+  if (counts.matt > 0 && counts.lights > 0)
+    changes.push_back(fmt::format("outside of glTF a Material is pi times as bright in a light: so "
+                                  "will be {} without reflection",
+                                  several(counts.matt, "surface")));
   return changes;
 }
 

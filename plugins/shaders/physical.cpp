@@ -162,8 +162,8 @@ struct Physical : rts::Surface<Physical> {
       0,           1,         rts::PerVertex};
   rts::Param<float> metallic{"metallic", 1, "0: dielectric; 1: metal", 0, 1};
   rts::Param<float> roughness{"roughness", 1, "root of the width alpha of GGX; 0: polished", 0, 1};
-  rts::Param<float> ior{"ior", 1.5f, "index of refraction of the dielectric; 1.5: F0 is 0.04", 1,
-                        5};
+  rts::Param<float> ior{
+      "ior", 1.5f, "index of refraction of the dielectric; 1.5: F0 is 0.04; 1: no boundary", 1, 5};
   rts::Param<rts::Color> emissiveColor{"emissiveColor", {0, 0, 0}, "emitted radiance"};
   rts::Param<float> emissiveStrength{"emissiveStrength", 1, "multiplies emissiveColor", 0, 1e6f};
   rts::Param<float> transparency{"transparency", 0, "1 - alpha; needs alphaMode 1 or 2", 0, 1};
@@ -196,8 +196,8 @@ struct Physical : rts::Surface<Physical> {
 
   uint32_t needs() const {
     const bool polished = roughness * roughness <= microfacet::minAlpha;
-    uint32_t traits = RTS_GLOSSY;
-    if (polished || metallicRoughnessTexture->id) traits |= RTS_SPECULAR;
+    uint32_t traits = isMatt() ? 0u : uint32_t(RTS_GLOSSY);
+    if (!isMatt() && (polished || metallicRoughnessTexture->id)) traits |= RTS_SPECULAR;
     if (irradiance) traits |= RTS_IRRADIANCE;
     return traits;
   }
@@ -230,6 +230,10 @@ struct Physical : rts::Surface<Physical> {
   }
 
  private:
+  // Returns whether nothing is reflected before the diffuse base: where the indices on both sides
+  // are equal, there is no boundary. Schlick's approximation would reflect at grazing angles.
+  bool isMatt() const { return ior == 1 && metallic == 0; }
+
   void addLobes(const rts::Hit& hit, rts::Color base, float shown, rts::Closures& out) const {
     const rts::Vec4 factors = texel(hit, metallicRoughnessTexture);
     const float metal = unit(metallic * factors.z), rough = unit(roughness * factors.y);
@@ -240,6 +244,7 @@ struct Physical : rts::Surface<Physical> {
       normal = mapped(hit);
       out.normal(normal);
     }
+    if (isMatt()) return out.diffuse(shown * base);
     out.coat(metal < .5f); // a dielectric's highlight does not have the colour of the surface
     if (rough * rough > microfacet::minAlpha)
       out.custom({shown, shown, shown},

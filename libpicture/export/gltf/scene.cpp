@@ -157,7 +157,7 @@ void Scene::draw(const xvrml::DrawnShape& shape) {
   if (!use) return;
   grow(use->box, shape.matrix());
   const xvrml::AppearanceParts& look = shape.appearance();
-  const bool physical = nodeCast<nodes::PhysicalMaterial>(look.material) && !look.shader;
+  const bool physical = !look.shader && xvrml::takesIrradiance(look.material);
   hasPhysical_ |= physical;
   hasOthers_ |= !physical &&
                 (look.shader || (look.material && !nodeCast<nodes::UnlitMaterial>(look.material)));

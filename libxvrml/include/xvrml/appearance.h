@@ -62,6 +62,10 @@ struct MaterialValues {
 // Returns the values of a material, which may be null or a prototype instance. Those of a
 // TwoSidedMaterial are the ones of its front.
 MaterialValues materialValues(Node* material);
+// Returns whether the intensity of a light is its irradiance at surfaces of the material, as
+// docs/worlds.md has it: a PhysicalMaterial, or a Material that stands for a surface of a glTF
+// file.
+bool takesIrradiance(const Node* material);
 // Returns the values of the back of faces if it differs from the front: those of backMaterial or of
 // the back of a TwoSidedMaterial.
 std::optional<MaterialValues> backValues(const AppearanceParts& parts);

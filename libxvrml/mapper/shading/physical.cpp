@@ -43,6 +43,8 @@ template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
                 t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
 }
 
+constexpr float standardIndex = 1.5f; // a reflectance of 0.04
+
 void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m,
                  const AppearanceParts& parts, Textures& textures, bool linear) {
   shader.integer("lit", 1);
@@ -50,8 +52,21 @@ void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m,
   shader.color("baseColor", convert(m.baseColor, linear));
   shader.number("metallic", m.metallic, 0, 1);
   shader.number("roughness", m.roughness, 0, 1);
+  shader.number("ior", standardIndex, 1, 5);
   shader.texture("texture", textures.ofNode(colorTexture(parts)));
   shader.texture("metallicRoughnessTexture", textures.ofData(m.metallicRoughnessTexture.get()));
+}
+
+// A surface of glTF that does not reflect at its boundary.
+void setMaterial(ShaderSetup& shader, const nodes::Material& m, const AppearanceParts& parts,
+                 Textures& textures, bool linear) {
+  shader.integer("lit", 1);
+  shader.integer("irradiance", 1);
+  shader.color("baseColor", convert(m.diffuseColor, linear));
+  shader.number("metallic", 0, 0, 1);
+  shader.number("roughness", 1, 0, 1);
+  shader.number("ior", 1, 1, 5);
+  shader.texture("texture", textures.ofNode(colorTexture(parts)));
 }
 
 // The picture of an UnlitMaterial is its emissiveTexture; an appearance's texture stands for it.
@@ -81,7 +96,7 @@ void warnOfMappings(const Node& material, std::initializer_list<const std::strin
 }
 
 bool isPhysical(Node* material) {
-  return nodeCast<nodes::PhysicalMaterial>(material) || nodeCast<nodes::UnlitMaterial>(material);
+  return takesIrradiance(material) || nodeCast<nodes::UnlitMaterial>(material);
 }
 
 bool hasPictures(Node& material) {
@@ -104,6 +119,15 @@ void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, Textures& te
                      {&m->baseTextureMapping, &m->emissiveTextureMapping,
                       &m->metallicRoughnessTextureMapping, &m->normalTextureMapping},
                      world);
+  } else if (const auto* matt = nodeCast<nodes::Material>(parts.material)) {
+    setCommon(shader, *matt, parts, textures, world, linear);
+    setMaterial(shader, *matt, parts, textures, linear);
+    const auto& rare = matt->rare.get();
+    if (shader.fresh())
+      warnOfMappings(
+          *matt,
+          {&rare.diffuseTextureMapping, &rare.emissiveTextureMapping, &rare.normalTextureMapping},
+          world);
   } else if (const auto* flat = nodeCast<nodes::UnlitMaterial>(parts.material)) {
     setCommon(shader, *flat, parts, textures, world, linear);
     setMaterial(shader, *flat, parts, textures);
