@@ -128,7 +128,8 @@ void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, 
   if (!whole && !viewer.below.rgb.empty()) {
     const bool fades = frame.purpose == LiveFrame::Purpose::still && viewer.below.preview;
     const double weight = fades ? stillWeight(out.samples, frame.samples, seconds) : 1;
-    if (fades && out.covered == 1) viewer.fade.learn(viewer.below.rgb, out.rgb, out.samples);
+    if (fades && out.covered == 1)
+      viewer.fade.learn(viewer.below.rgb, out.rgb, out.samples, weight);
     if (fadeIn(viewer.below.rgb, samples, weight, viewer.fade, out.width, out.rgb))
       out.preview = viewer.below.preview;
   }

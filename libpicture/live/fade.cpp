@@ -26,8 +26,9 @@ void Fade::begin(int width, int height) {
   downBlocks_ = neighbours(int(rows_), height);
 }
 
-void Fade::learn(const std::vector<uint8_t>& below, const std::vector<uint8_t>& rgb,
-                 double samples) {
+void Fade::learn(const std::vector<uint8_t>& below, const std::vector<uint8_t>& rgb, double samples,
+                 double weight) {
+  const bool begins = !isKnown_;
   const bool measures = earlierSamples_ > 0 && samples >= moreSamples * earlierSamples_;
   isKnown_ |= measures;
   for (size_t row = 0; row < rows_ && isKnown_; row++)
@@ -45,11 +46,13 @@ void Fade::learn(const std::vector<uint8_t>& below, const std::vector<uint8_t>& 
         }
       const double per = 1 / double(3 * (right - left) * (bottom - top));
       Block& block = blocks_[blockOf(column, row)];
+      if (begins) block.limit = lastWeight_;
       if (measures) block.variance = change * per / (1 / earlierSamples_ - 1 / samples);
       const double noise = block.variance / samples, wrong = std::max(0.0, apart * per - noise);
       const double visible = std::max(0.0, noise - invisible * invisible);
       block.limit = std::max(block.limit, visible > 0 ? wrong / (wrong + visible) : 1);
     }
+  lastWeight_ = weight;
   if (earlierSamples_ > 0 && !measures) return;
   earlier_ = rgb;
   earlierSamples_ = samples;

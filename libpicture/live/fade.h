@@ -17,8 +17,10 @@ class Fade {
   // Begins with a still picture of this size over another preview. There is no limit yet.
   void begin(int width, int height);
   // Learns from a state of the still picture that has samples in each pixel. below, rgb: the bytes
-  // of the preview and of the still picture. samples: per pixel. Limits never fall again.
-  void learn(const std::vector<uint8_t>& below, const std::vector<uint8_t>& rgb, double samples);
+  // of the preview and of the still picture. samples: per pixel. weight: the one that is wanted;
+  // the limits never fall below what was shown before.
+  void learn(const std::vector<uint8_t>& below, const std::vector<uint8_t>& rgb, double samples,
+             double weight);
 
   // The limits along a row of pixels, 0 to 1.
   class Row {
@@ -46,6 +48,7 @@ class Fade {
   std::vector<Neighbours> acrossBlocks_, downBlocks_; // for each column and row of pixels
   std::vector<uint8_t> earlier_;                      // an earlier state of the still picture
   double earlierSamples_ = 0;                         // 0: there is none
+  double lastWeight_ = 0;                             // the wanted weight before
   bool isKnown_ = false;                              // the noise is
 };
 

@@ -104,9 +104,9 @@ enum {
    * through. For callers that rebuild pictures from few samples. It changes no other channel. */
   RT_FOLLOW_IMAGES = 14,
   /* 0 (default) or 1: a picture with one sample per pixel takes it anywhere in the pixel, as chosen
-   * by the seed, and not in the middle. Consecutive seeds fill the pixel evenly: each 2^k of them,
-   * from a multiple of 2^k on, are a (0,k,2)-net. For callers that combine frames of several
-   * seeds. */
+   * by the seed, and not in the middle. The first samples of consecutive seeds fill the pixel
+   * evenly: each 2^k of them, from a multiple of 2^k on, are a (0,k,2)-net. For callers that
+   * combine frames of several seeds. */
   RT_JITTER = 15,
   /* 1 (default) .. 4: light is followed in one pixel of each block of so many pixels each way. The
    * others take one sample: they have the channels of its first hit, no colour and RT_SAMPLES 0, or

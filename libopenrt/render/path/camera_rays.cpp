@@ -49,17 +49,18 @@ void startSamples(const FilmSamples& film, PathSamples& samples) {
 
 namespace {
 
-// Draws the places in the pixels where the seed counts the points of one sequence.
-void drawInTurn(const FilmSamples& film, Arena& arena, float* xy[2]) {
+// Draws the places of first samples in their pixels, where the seed counts the points of one
+// sequence.
+void drawInTurn(const FilmSamples& film, Arena& arena, float* const xy[2]) {
   constexpr uint32_t sequence = 0x706c6163;
-  const uint32_t n = film.count();
+  const auto n = uint32_t(film.pixels.size());
   PathSamples places;
   places.allocate(arena, n);
-  uint32_t path = 0;
-  for (const uint32_t pixel : film.pixels)
-    for (uint32_t s = 0; s < film.perPixel; s++)
-      places.set(path++, pixel, sequence, film.replicates.seed);
-  randomNumbersAtStart(places, n, arena).drawPair(0, arena, xy);
+  for (uint32_t i = 0; i < n; i++) places.set(i, film.pixels[i], sequence, film.replicates.seed);
+  float* drawn[2];
+  randomNumbersAtStart(places, n, arena).drawPair(0, arena, drawn);
+  for (int k = 0; k < 2; k++)
+    for (uint32_t i = 0; i < n; i++) xy[k][i * film.perPixel] = drawn[k][i];
 }
 
 } // namespace
@@ -68,10 +69,9 @@ void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& aren
   const uint32_t n = film.count();
   if (film.centred)
     for (int k = 0; k < 2; k++) std::fill_n(xy[k] = arena.take<float>(padded(n)), n, 0.5f);
-  else if (film.inTurn)
-    drawInTurn(film, arena, xy);
   else
     randomNumbersAtStart(samples, n, arena).drawPair(0, arena, xy);
+  if (!film.centred && film.inTurn && film.first == 0) drawInTurn(film, arena, xy);
   uint32_t path = 0;
   for (uint32_t pixel : film.pixels) {
     const auto x = float(pixel % film.width), y = float(pixel / film.width);

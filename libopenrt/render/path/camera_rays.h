@@ -19,7 +19,7 @@ struct FilmSamples {
   uint32_t first, perPixel;
   Replicates replicates;
   bool centred; // all positions are in the middles of the pixels
-  bool inTurn;  // consecutive seeds take consecutive points of a sequence of the pixel (RT_JITTER)
+  bool inTurn;  // first samples of consecutive seeds are consecutive points of a sequence
 
   uint32_t count() const { return uint32_t(pixels.size()) * perPixel; }
 };

@@ -94,8 +94,8 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   ArenaScope scope(arena);
   const auto pixels = std::span<const uint32_t>(pixels_).subspan(range.begin, range.count());
   const bool centred = paths_.centred || scene_.frame.measure != RT_MEASURE_NOTHING;
-  const bool inTurn = scene_.frame.jitter && scene_.frame.samples == 1;
-  const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred, inTurn};
+  const FilmSamples film{pixels,      width_,  firstSample,        samples,
+                         replicates_, centred, scene_.frame.jitter};
   const uint32_t n = film.count();
   PixelSamples found;
   found.allocate(arena, n);
