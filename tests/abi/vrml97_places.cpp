@@ -155,9 +155,9 @@ TEST(Vrml97Lights, ShadowsAreATrait) {
   FakeHost host;
   for (const char* name : {"VRML97DirectionalLight", "VRML97PointLight", "VRML97SpotLight"}) {
     ParamBlock p = block(name);
-    EXPECT_EQ(stock(name).traits(&host, p.get()), 0u);
+    EXPECT_EQ(stock(name).traits(&host, p.get()), unsigned(RTS_IRRADIANCE));
     p.setInt("shadows", 0);
-    EXPECT_EQ(stock(name).traits(&host, p.get()), unsigned(RTS_NO_SHADOW));
+    EXPECT_EQ(stock(name).traits(&host, p.get()), unsigned(RTS_IRRADIANCE | RTS_NO_SHADOW));
   }
 }
 

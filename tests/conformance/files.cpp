@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "xvrml/world.h"
+#include "conformance/lost_values.h"
 
 namespace {
 
@@ -44,17 +44,8 @@ class Good : public testing::TestWithParam<std::string> {};
 class Bad : public testing::TestWithParam<std::string> {};
 
 // A world that is written and read again is equal, and is written as the same text.
-// Returns whether an encoding cannot hold a value of the world, as the writer says of lights that
-// are brighter than a version allows.
-bool losesValues(const World& world, Encoding encoding) {
-  const std::vector<std::string> changes = changesByWriting(world, encoding);
-  return std::any_of(changes.begin(), changes.end(), [](const std::string& one) {
-    return one.find("will be weaker") != std::string::npos;
-  });
-}
-
 void expectRoundTrip(const World& world, const std::string& name, Encoding encoding) {
-  if (losesValues(world, encoding)) return;
+  if (test::losesValues(world, encoding)) return;
   const std::string text = writeWorld(world, "", encoding);
   const auto again = loadWorldFromMemory(text, name);
   EXPECT_EQ(again->head.version.encoding, encoding);

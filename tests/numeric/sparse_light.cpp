@@ -105,7 +105,7 @@ TEST_F(SparseLampPaths, AndLitPixelsAddUpToTheWholeLight) {
   drawing::drawIn(drawing::contextWith(1), [] {
     draw();
     expectEqualLight(2, 200);
-    expectEqualLight(3, 100);
+    expectEqualLight(3, 200);
     RTstats stats{};
     stats.size = sizeof stats;
     rtGetStats(&stats);

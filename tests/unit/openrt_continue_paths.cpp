@@ -85,6 +85,8 @@ struct ScalarRays {
     if (!specular) ray.previous = lightSampleContext(points, i, transmitsAt(hits.batch, i));
     const PathClass before = ray.flags.pathClass();
     if (sample.deflected) {
+      ray.flags.set(PathFlags::connectableBit,
+                    !specular && before == PathClass::specularFirst && !ray.flags.scattered());
       if (hits.batch.lobes[sample.lobe].coat && !ray.flags.scattered())
         ray.flags.set(PathFlags::reflectedBit, true);
       if (before == PathClass::undeflected)
