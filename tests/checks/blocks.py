@@ -113,7 +113,7 @@ def blocks_of(root, page):
 def small(command):
     """Returns a shell line with a small picture size, unless its pictures are small already."""
     if not re.search(r"(^|[\s;|&])vv .*-o ", command) or re.search(
-            r"--(compare|audit|crop|intrinsics)\b|\bvv (merge|compare)\b", command):
+            r"--(compare|audit|crop|intrinsics)\b|\bvv (merge|compare|film)\b", command):
         return command
     size = re.search(r"--size (\d+)x(\d+)", command)
     if size and int(size.group(1)) * int(size.group(2)) < 160 * 120:
