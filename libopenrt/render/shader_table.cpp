@@ -71,7 +71,8 @@ ShaderTable::ShaderTable(const ShaderTable& before, const std::vector<uint32_t>&
                          const RtsHost& host)
     : slots_(before.slots_), blocks_(before.blocks_), classes_(before.classes_),
       media_(before.media_), users_(before.users_), numbers_(before.numbers_),
-      bodies_(before.bodies_), slotOf_(before.slotOf_), defaultShader_(before.defaultShader_) {
+      allTraits_(before.allTraits_), bodies_(before.bodies_), slotOf_(before.slotOf_),
+      defaultShader_(before.defaultShader_) {
   for (uint32_t id : changed) {
     const auto slot = slotOf_->find(id);
     const auto values = scene.shaders.find(id);

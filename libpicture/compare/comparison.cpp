@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,11 +34,11 @@ void setErrors(Picture& picture, const std::string& name, std::optional<int> sam
   const size_t pixels = picture.planes.at(RT_RGBA).size() / 4;
   const bool counted = !samples && counts != picture.planes.end();
   std::vector<float>&error = picture.planes[RT_ERROR], &trust = picture.planes[RT_TRUST];
+  const std::vector<float> own = std::exchange(trust, std::vector<float>(pixels, 0.0f));
   error.assign(3 * pixels, 0);
-  trust.assign(pixels, 0);
   for (size_t i = 0; i < pixels; ++i) {
     const float n = samples ? float(*samples) : counted ? counts->second[i] : 1;
-    bool known = (!samples && !counted) || n >= fewest;
+    bool known = ((!samples && !counted) || n >= fewest) && (own.empty() || own[i] > 0);
     for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
       const float v = variance->second[k] / std::max(1.0f, n);
       error[k] = float(halfWidthOfNormal) * std::sqrt(std::max(0.0f, v));
@@ -92,6 +93,9 @@ Comparison comparisonOf(std::array<std::string, 2> names, std::array<Picture, 2>
               facts.samples ? std::optional((*facts.samples)[i]) : std::nullopt);
   if (facts.samples && (*facts.samples)[0] == (*facts.samples)[1]) c.noise = Noise::equal;
   c.test = testNoise(a, b, c.noise);
+  if (c.test.notFinite == rgbaOf(a).size() / 4)
+    throw CompareError(
+        fmt::format("{} and {} have no pixel with finite numbers in both", c.names[0], c.names[1]));
   c.difference = compare(rgbaOf(b), rgbaOf(a));
   c.flip = flipOf(a, b);
   return c;
@@ -136,7 +140,8 @@ std::string comparisonJson(const Comparison& c) {
       {"flip", c.flip.mean},
       {"flip_exposures", c.flip.exposures},
       {"different", test.different},
-      {"not_finite", test.notFinite}};
+      {"not_finite", test.notFinite},
+      {"one_sided", test.oneSided}};
   return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 

@@ -87,13 +87,16 @@ Differences::Differences(const Picture& a, const Picture& b) : width(a.width), h
   }
   for (size_t i = 0; i < pixels; ++i) {
     double most = 0;
-    bool finite = true;
+    bool finiteBefore = true, finiteNow = true;
     for (size_t k = 4 * i; k < 4 * i + 3; ++k) {
-      finite = finite && std::abs(first[k]) < largest && std::abs(second[k]) < largest;
+      finiteBefore = finiteBefore && std::abs(first[k]) < largest;
+      finiteNow = finiteNow && std::abs(second[k]) < largest;
       most = std::max({most, std::abs(double(first[k])), std::abs(double(second[k]))});
     }
+    const bool finite = finiteBefore && finiteNow;
     isInfinite_[i] = !finite;
     notFinite += !finite;
+    oneSided += finiteBefore != finiteNow;
     const double margin = a.linear ? rounding * most : step;
     for (size_t k = 0; finite && k < 3; ++k) {
       const double d = double(second[4 * i + k]) - double(first[4 * i + k]);

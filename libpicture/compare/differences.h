@@ -23,7 +23,8 @@ struct Differences {
   // For each colour, the second picture less the first one, and the first one. A difference within
   // the rounding of the files is 0, and so are all of a pixel that is not finite.
   std::array<std::vector<float>, 3> of, before;
-  uint64_t notFinite = 0; // pixels
+  uint64_t notFinite = 0; // pixels that one picture or both have no finite number for
+  uint64_t oneSided = 0;  // such pixels for which the other picture has a finite number
   Differences(const Picture& a, const Picture& b);
   bool isFinite(size_t pixel) const { return !isInfinite_[pixel]; }
 

@@ -233,6 +233,7 @@ NoiseTest testNoise(const Picture& a, const Picture& b, Noise noise, double rate
   const Differences differences(a, b);
   NoiseTest test;
   test.notFinite = differences.notFinite;
+  test.oneSided = differences.oneSided;
   const Correlation correlation = correlationOf(differences);
   test.correlation = correlation.factor;
   test.isSmooth = correlation.isSmooth;
@@ -249,7 +250,7 @@ NoiseTest testNoise(const Picture& a, const Picture& b, Noise noise, double rate
   for (const ChangedPlace& place : places) chances.push_back(place.chance);
   const std::vector<size_t> found = holm::significantOf(chances, rate, count);
   test.found = found.size();
-  test.isSame = found.empty();
+  test.isSame = found.empty() && test.oneSided == 0;
   for (const size_t i : found) {
     if (test.changes.size() == mostPlaces) break;
     if (std::none_of(test.changes.begin(), test.changes.end(),

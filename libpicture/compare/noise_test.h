@@ -50,6 +50,7 @@ struct NoiseTest {
   bool isSmooth = false;
   uint64_t different = 0;            // pixels that differ by more than the files have rounded
   uint64_t notFinite = 0;            // pixels left out because a value is not finite
+  uint64_t oneSided = 0;             // those of them that are finite in one picture: never noise
   std::vector<ChangedPlace> changes; // the surest first, at most 5, which do not overlap
   std::vector<SmallestChange> least; // from small squares to the whole picture
 };

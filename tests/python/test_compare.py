@@ -22,6 +22,18 @@ def test_pictures_of_two_seeds(box):
     assert xvrml.compare(a.array, b.array)["rmse"] == said["rmse"]
 
 
+def test_numbers_that_are_not_finite_are_no_noise():
+    image = np.ones((16, 16, 3), np.float32)
+    for wrong in (np.nan, np.inf, 1e38):
+        half = image.copy()
+        half[3, 4] = wrong
+        said = xvrml.compare(image, half)
+        assert said["same"] is False and said["one_sided"] == 1 and said["not_finite"] == 1
+        assert xvrml.compare(half, half)["same"] is True
+        with pytest.raises(ValueError, match="no pixel with finite numbers in both"):
+            xvrml.compare(image, image * np.float32(wrong))
+
+
 def test_error_bars_of_pictures_are_used(box):
     a, b = pictures(box, 1, 2, spp=64, channels=("error", "trust"))
     said = xvrml.compare(a, b)

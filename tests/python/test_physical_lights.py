@@ -130,3 +130,14 @@ def test_a_mixed_world_says_what_changes(tmp_path):
     world = xvrml.loads(HEAD + LIGHTS["sun"] + PHYSICAL + PHYSICAL.replace("PhysicalMaterial { " + FIELDS, "Material { "))
     world.save(str(tmp_path / "a.gltf"))
     assert lights_of(tmp_path / "a.gltf") == pytest.approx([.7 * math.pi], rel=1e-6)
+
+
+def test_every_frame_has_the_same_light(vv):
+    """A frame that keeps the shaders of the one before takes the lights as the first one did."""
+    (vv.folder / "w.x3dv").write_text(HEAD + LIGHTS["sun"] + PHYSICAL)
+    done = vv("w.x3dv", "-o", "f{frame}.pfm", "--frames", "0-2", "--size", "8x8", "--spp", "1", "-q")
+    assert done.returncode == 0, done.talk
+    light = [np.frombuffer((vv.folder / f"f{n}.pfm").read_bytes()[-8 * 8 * 12:], "<f4") for n in range(3)]
+    assert light[0].mean() > 0.05
+    for later in light[1:]:
+        assert later.mean() == pytest.approx(light[0].mean(), rel=1e-4)

@@ -156,6 +156,10 @@ def test_what_cannot_be_joined_is_refused(film):
         done = film("film", "--join", *words, "-o", "x.gif")
         assert done.returncode == code and text in done.talk, done.talk
     assert not (film.folder / "x.gif").exists()
+    own = film("film", "--join", names[0], names[1], "-o", "a.gif")
+    assert own.returncode == 0
+    again = film("film", "--join", "a.gif", "-o", "a.gif")
+    assert again.returncode and "a picture of vv film" in again.talk, again.talk
     assert film("film", "--join", names[0], "-o", "x.png").returncode == 2
     assert film("film", "--join", names[0], "-o", "x.gif", "--spp", "4").returncode == 2
     assert film("film", names[0], "-o", "x.gif").returncode == 2

@@ -78,6 +78,21 @@ TEST_F(EditorOptions, FollowADrag) {
   EXPECT_EQ(world.editor.editor().undoName(), "");
 }
 
+// The reader of options takes numbers in quotes, too.
+TEST(EditorQuotedOptions, AreSetToZero) {
+  EditedWorld world{
+      "#VRML V2.0 utf8\nShape { appearance ORTAppearance { shader DEF S ORTShader {\n"
+      "name \"Glass\" options [ \"1f index '1.50'\" \"color tint '.50' .25 1\" ] } } }\n"};
+  world.editor.select({world.node("S")});
+  EditModel model;
+  model.update(world.editor, front(), false, 0);
+  model.drag(world.node("S"), *model.sheet().find("tint")->field, Value(Color{.5f, 0, 1}));
+  model.setActive(false);
+  model.update(world.editor, front(), false, 0);
+  EXPECT_NE(world.editor.editor().text().find("color tint '.50' 0 1"), std::string::npos)
+      << world.editor.editor().text();
+}
+
 // A text stays in the options, and the field that is declared takes its place.
 TEST_F(EditorOptions, OthersAreDeclared) {
   set("scattering", Color{1, 1, 1});

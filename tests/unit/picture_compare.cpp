@@ -283,16 +283,20 @@ TEST_F(Noises, RoundingIsNoDifference) {
 }
 
 TEST_F(Noises, NumbersThatAreNotFiniteAreLeftOut) {
-  const Picture a = normal(16);
+  Picture a = normal(16);
   Picture b = normal(16);
   b.planes[RT_RGBA][0] = std::numeric_limits<float>::quiet_NaN();
   b.planes[RT_RGBA][4] = std::numeric_limits<float>::infinity();
   b.planes[RT_RGBA][8] = -3e38f;
   const NoiseTest test = testNoise(a, b, Noise::unknown);
-  EXPECT_TRUE(test.isSame);
+  EXPECT_EQ(test.found, 0u);
   EXPECT_EQ(test.notFinite, 3u);
+  EXPECT_EQ(test.oneSided, 3u);
+  EXPECT_FALSE(test.isSame) << "no noise makes a pixel that is not finite";
   EXPECT_TRUE(std::isfinite(flipOf(a, b).mean));
   for (const float z : standardErrors(a, b)) EXPECT_TRUE(std::isfinite(z));
+  for (const size_t i : {0, 4, 8}) a.planes[RT_RGBA][i] = b.planes[RT_RGBA][i];
+  EXPECT_TRUE(testNoise(a, b, Noise::unknown).isSame) << "they are so in both";
 }
 
 TEST_F(Noises, StandardErrorsAreThoseOfTheNoise) {

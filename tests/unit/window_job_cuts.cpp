@@ -68,6 +68,9 @@ TEST(JobCuts, CommandsAreReadBackByAShell) {
   range.step = 2;
   EXPECT_EQ(jobCommand(words, range),
             R"(vv 'my world.wrl' -o 'f-{frame:4}.png' -D 'A.b='\''c'\''' --frames 10-30/2)");
+  EXPECT_EQ(jobCommand({"vv", "--jobs", "2", "-o", "a.gif", "--", "--frames"}, range),
+            "vv -o a.gif --frames 10-30/2 -- --frames")
+      << "words after -- are files";
 }
 
 } // namespace

@@ -122,7 +122,8 @@ std::string withNumbers(std::string_view text, const Value& value) {
     const size_t begin = std::min(text.find_first_not_of(blanks), text.size());
     const size_t end = std::min(text.find_first_of(blanks, begin), text.size());
     const std::string word(text.substr(begin, end - begin));
-    const bool stays = decltype(number)(std::strtod(word.c_str(), nullptr)) == number;
+    const char* const digits = word.c_str() + (word.starts_with('\'') ? 1 : 0); // may be quoted
+    const bool stays = decltype(number)(std::strtod(digits, nullptr)) == number;
     out += std::string(text.substr(0, begin)) + (stays ? word : fmt::format("{}", number));
     text.remove_prefix(end);
   };
@@ -142,7 +143,9 @@ void setParameter(WorldEditor& editor, const NodeRef& shader, const std::string&
   if (const auto* const node = nodeCast<nodes::ORTShader>(shader)) {
     const auto options = optionsOf(*node);
     const auto option = options.find(name);
-    if (option != options.end() && countOf(option->second) == countOf(value)) {
+    const bool isInteger = std::holds_alternative<int32_t>(value);
+    if (option != options.end() && countOf(option->second) == countOf(value) &&
+        isInteger == (option->second.type == ShaderOption::Type::integer)) {
       const auto& [begin, end] = std::pair(option->second.begin, option->second.end);
       MFString texts = node->options;
       std::string& text = texts.at(option->second.element);

@@ -52,8 +52,10 @@ std::string comparisonText(const Comparison& c) {
                                  c.pictures[0].linear ? "radiance" : "display colours");
   text += test.different == 0 && test.notFinite == 0 ? "same      yes: there is no difference"
           : test.isSame ? "same      yes: noise explains all differences"
-                        : fmt::format("same      no: noise does not explain {} of {} tests",
-                                      test.found, test.squares + test.pixels);
+          : test.found  ? fmt::format("same      no: noise does not explain {} of {} tests",
+                                      test.found, test.squares + test.pixels)
+                        : fmt::format("same      no: {} pixels are finite in one picture alone",
+                                      test.oneSided);
   text += fmt::format(" (false alarms: {:g})\n", picture::falseAlarmRate);
   for (const ChangedPlace& place : test.changes) text += "change    " + placeText(place) + "\n";
   text += "noise     " + noiseText(c) + "\n";

@@ -63,9 +63,20 @@ cutIntoJobs(const SequenceCosts& costs, const std::vector<long long>& numbers, s
 }
 
 std::string jobCommand(const std::vector<std::string>& words, const FrameRange& frames) {
+  const std::string range = fmt::format("--frames {}-{}", frames.first, frames.last) +
+                            (frames.step > 1 ? fmt::format("/{}", frames.step) : "");
   std::string command;
+  bool areFiles = false; // words after "--"
   for (size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
+    if (word == "--" && !areFiles) {
+      areFiles = true;
+      command += ' ' + range;
+    }
+    if (areFiles) {
+      command += ' ' + quoted(word);
+      continue;
+    }
     if (word == "--jobs" || word == "--frames") {
       ++i; // its value
       continue;
@@ -73,8 +84,7 @@ std::string jobCommand(const std::vector<std::string>& words, const FrameRange& 
     if (word.starts_with("--jobs=") || word.starts_with("--frames=")) continue;
     command += (command.empty() ? "" : " ") + quoted(word);
   }
-  command += fmt::format(" --frames {}-{}", frames.first, frames.last);
-  return command + (frames.step > 1 ? fmt::format("/{}", frames.step) : "");
+  return areFiles ? command : command + ' ' + range;
 }
 
 } // namespace vv

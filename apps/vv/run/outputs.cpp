@@ -58,6 +58,7 @@ std::vector<Named> outputsOf(const Options& options) {
 std::vector<Named> inputsOf(const Options& options) {
   std::vector<Named> all;
   for (const std::string& part : options.merge) all.push_back({"a file of vv merge", part});
+  for (const std::string& one : options.joined) all.push_back({"a picture of vv film", one});
   for (const std::string& one : options.compared.files)
     all.push_back({"a picture of vv compare", one});
   const std::vector<Named> named = {{"the world that is read", options.input},

@@ -3,6 +3,7 @@ xvrml.ray have in common. A worker keeps the world of a film between its tasks a
 that n frames cost n steps and one parse for each thread, not n²/2 steps and n parses.
 """
 import io
+import math
 import os
 import pathlib
 import tempfile
@@ -94,9 +95,11 @@ class Farm:
 def render_film(farm, world, times, out, fps, in_flight, options, browser):
     """Renders the world at these times; xvrml.dask.render_frames documents the arguments."""
     times, fps, suffix = list(times), float(fps), None
-    if not fps > 0:
-        raise ValueError("fps: a number above 0 expected")
-    if any(later < earlier for earlier, later in zip([0, *times], times)):
+    if not 0 < fps < math.inf:
+        raise ValueError("fps: a finite number above 0 expected")
+    if in_flight is not None and in_flight < 1:
+        raise ValueError("in_flight: a number from 1 on expected")
+    if not all(math.isfinite(time) for time in times) or any(later < earlier for earlier, later in zip([0, *times], times)):
         raise ValueError("times: from 0 on, in their order expected")
     if out is not None:
         suffix = pathlib.Path(str(out)).suffix
