@@ -1,5 +1,8 @@
 // object.cpp: the Browser object of Scripts and programs (ISO/IEC 14772-1 4.12.10): its properties,
 // loading, and the replacement of one world by another. [the browser's thread]
+#include <algorithm>
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "behaviour/viewer/interaction.h"
@@ -25,13 +28,29 @@ std::vector<NodeRef> breakCycles(const std::vector<NodeRef>& cyclic) {
   return kept;
 }
 
-// Returns the version that a text follows which is given without a header. caller: that of the
+// Returns the version that a header of ClassicVRML or VRML97 states; none: there is no header.
+std::optional<FileVersion> versionOfHeader(std::string_view text) {
+  constexpr std::string_view x3d = "#X3D V", vrml = "#VRML V2.0";
+  if (text.starts_with(vrml)) return FileVersion();
+  if (!text.starts_with(x3d) || text.size() < x3d.size() + 3) return {};
+  const char major = text[x3d.size()], minor = text[x3d.size() + 2];
+  if ((major != '3' && major != '4') || text[x3d.size() + 1] != '.' || minor < '0' || minor > '9')
+    return {};
+  FileVersion version{Encoding::x3dClassic, 3, 3};
+  version.major = decltype(version.major)(major - '0');
+  version.minor = decltype(version.minor)(minor - '0');
+  return version;
+}
+
+// Returns the version that a text follows: that of its header, if it has one. caller: that of the
 // file that gives it. An element of XML and an object of JSON stand for themselves; files in XML
 // and JSON may also give ClassicVRML.
 FileVersion versionOfText(std::string_view text, const FileVersion& caller,
                           const FileVersion& world) {
   const size_t first = text.find_first_not_of(" \t\r\n");
   const char begin = first == text.npos ? ' ' : text[first];
+  if (const auto stated = versionOfHeader(text.substr(std::min(first, text.size()))))
+    return *stated;
   const FileVersion& known = caller.isX3d() ? caller : world;
   for (const auto& [mark, encoding] :
        {std::pair('<', Encoding::x3dXml), std::pair('{', Encoding::x3dJson)})

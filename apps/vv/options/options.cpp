@@ -115,10 +115,11 @@ const JobInfo* Options::job() const {
   return nullptr;
 }
 
-// Returns whether a word is a whole number, perhaps a negative one, which the option then refuses.
-bool isWholeNumber(std::string_view word) {
+// Returns whether a word is a number without exponent, perhaps one that the option then refuses.
+bool isPlainNumber(std::string_view word) {
   if (word.starts_with('-')) word.remove_prefix(1);
-  return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
+  return !word.empty() && word.find_first_not_of("0123456789.") == word.npos &&
+         word.find_first_of("0123456789") != word.npos;
 }
 
 // Returns the job of a command without dashes, such as `vv serve`; null for other command
@@ -222,7 +223,7 @@ void refuseUselessEquals(std::string_view word) {
 }
 
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
-// its argument only if it is a whole number, or may be a topic of --help. The words after "--" are
+// its argument only if it is a number, or may be a topic of --help. The words after "--" are
 // files: they go to `files`.
 std::vector<std::string> withOptionalArguments(int argc, char** argv,
                                                std::vector<std::string>& files) {
@@ -242,7 +243,7 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv,
     const OptionInfo* const option = optionCalled(argv[i]);
     if (!option || option->argument[0] != '[') continue;
     out.back() = longName(*option);
-    const bool given = i + 1 < argc && (isWholeNumber(argv[i + 1]) || out.back() == "--help");
+    const bool given = i + 1 < argc && (isPlainNumber(argv[i + 1]) || out.back() == "--help");
     out.back() += std::string("=") + (given ? argv[++i] : "-");
   }
   std::reverse(out.begin(), out.end()); // CLI11 expects a vector in reverse order

@@ -56,6 +56,11 @@ constexpr EcmaRow rows[] = {
      "['Nothing', 'Group { } Group', ''].forEach(function(name) {"
      "try { s.createNode(name); print('made'); } catch (e) { print('refused'); } });",
      "Transform 5\nrefused\nrefused\nrefused\n1: 'Nothing' is not a known node type"},
+    {"TextsHaveTheVersionOfTheirHeader", "",
+     "['#X3D V3.2', '#X3D V4.0', '#VRML V2.0'].forEach(function(head) {"
+     "print(Browser.createX3DFromString(head + ' utf8\\nSpotLight { }').rootNodes[0].beamWidth > "
+     "1); });",
+     "true\nfalse\ntrue"},
     {"CreatesInstancesOfPrototypes", "",
      "var p = s.createProto('Ball'); print(p.getNodeTypeName(), p.size); p.size = 7;"
      "print(s.createProto('Ball').size, s.getNamedNode('P').size);"
