@@ -177,6 +177,15 @@ std::string writeTables(const Component& component, const std::string& plugin) {
 
 namespace {
 
+// Returns the function `name`, which returns a table of `type`. rows: its lines; empty: no table.
+std::string tableFunction(const char* type, const char* name, const std::string& rows) {
+  const std::string body = rows.empty() ? "return {};"
+                                        : fmt::format("static constexpr {} table[] = {{\n{}  }};\n"
+                                                      "  return table;",
+                                                      type, rows);
+  return fmt::format("std::span<const {}> {}() {{\n  {}\n}}\n\n", type, name, body);
+}
+
 // The fields that hold nodes where X3D's XML does not say it, by node and by abstract type.
 std::string writeContainers(const Model& model) {
   std::string rows;
@@ -184,10 +193,7 @@ std::string writeContainers(const Model& model) {
     for (const TypeSpec& type : component.types)
       if (!type.container.empty())
         rows += fmt::format("      {{{}, {}}},\n", cppString(type.name), cppString(type.container));
-  const std::string body =
-      rows.empty() ? "return {};"
-                   : "static constexpr Container table[] = {\n" + rows + "  };\n  return table;";
-  return "std::span<const Container> containers() {\n  " + body + "\n}\n\n";
+  return tableFunction("Container", "containers", rows);
 }
 
 // Returns the table of what is not done of nodes that the library has.
@@ -197,10 +203,7 @@ std::string writeLacks(const Model& model) {
     if (!type.lacks.empty())
       rows += fmt::format("      {{{}, {}}},\n", cppString(type.name), cppString(type.lacks));
   });
-  const std::string body =
-      rows.empty() ? "return {};"
-                   : "static constexpr Lack table[] = {\n" + rows + "  };\n  return table;";
-  return "std::span<const Lack> lacks() {\n  " + body + "\n}\n\n";
+  return tableFunction("Lack", "lacks", rows);
 }
 
 // Calls use(revision, field, number of the node) for each field of each `since`, in the order of
@@ -242,10 +245,7 @@ std::string writeAbsent(const Model& model) {
     for (const AbsentNode& one : component.absent)
       rows += fmt::format("      {{{}, {}, {}, {}}},\n", cppString(one.node.name),
                           cppString(one.clause), cppString(one.kind), cppString(one.loss));
-  const std::string body =
-      rows.empty() ? "return {};"
-                   : "static constexpr AbsentNode table[] = {\n" + rows + "  };\n  return table;";
-  return "std::span<const AbsentNode> absentNodes() {\n  " + body + "\n}\n\n";
+  return tableFunction("AbsentNode", "absentNodes", rows);
 }
 
 } // namespace

@@ -155,7 +155,7 @@ TEST_F(EcmaSai, NewerProgramsSaySo) {
     EXPECT_EQ(messages[0].find(std::string(row.message) + " is newer than ECMAScript 5.1"), 0u)
         << messages[0];
   }
-  // What does not compile for another reason keeps its own message; words may be names.
+  // A program that does not compile for another reason keeps its own message; words may be names.
   EcmaWorld r(header + EcmaWorld::script("inputOnly SFBool go", "var let_ = { of: 1 }; var ("));
   const Log messages = r.messages();
   ASSERT_FALSE(messages.empty());

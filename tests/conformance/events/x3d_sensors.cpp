@@ -186,7 +186,7 @@ TEST(LoadSensor, WaitsForInlinesUntilTheTimeIsOver) {
                          "3 loadTime 3", "3 isActive FALSE"}));
 }
 
-// What is watched stands where else it is used: the pointer meets nothing at the sensor, and a walk
+// Watched nodes stand where else they are used: the pointer meets nothing at the sensor, and a walk
 // over what is drawn finds it once.
 TEST(LoadSensor, PlacesNothing) {
   const Folder folder;
