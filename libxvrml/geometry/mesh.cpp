@@ -6,6 +6,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "geometry/thick.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -87,6 +88,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   for (const TryBuild build : builders)
     if (build(node, options, mesh, faults)) break;
   generateTextureCoordinates(*node, options, mesh);
+  thicken(mesh, options, faults);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }

@@ -80,6 +80,9 @@ struct MeshOptions {
   // If not null, those of the mesh that was built of this node before; only the node's points have
   // changed since. A mesh that is still built of them takes them.
   MeshTopology* former = nullptr;
+  // Diameters in the units of the node: points become balls, and lines rods (thick.h). 0: they are
+  // thin.
+  float pointSize = 0, lineWidth = 0;
 };
 
 // Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if

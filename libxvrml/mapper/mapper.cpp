@@ -216,6 +216,10 @@ bool OpenRTMapper::seesAll(const CameraSettings& camera, double aspect) const {
 
 void OpenRTMapper::setExactShapes(bool exact) { impl_->graph.meshes.setExactShapes(exact); }
 
+void OpenRTMapper::setThickness(double points, double lines) {
+  impl_->graph.meshes.setThickness(float(points), float(lines));
+}
+
 void OpenRTMapper::setMultiplyTextures(bool multiply) {
   impl_->surfaces.multiplyTextures = multiply;
 }

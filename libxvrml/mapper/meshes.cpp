@@ -118,6 +118,17 @@ bool Meshes::needTexture(int32_t mesh) {
 void Meshes::setExactShapes(bool exact) {
   if (exactShapes_ == exact) return;
   exactShapes_ = exact;
+  rebuildAll();
+}
+
+void Meshes::setThickness(float points, float lines) {
+  if (points == pointSize_ && lines == lineWidth_) return;
+  pointSize_ = points;
+  lineWidth_ = lines;
+  rebuildAll();
+}
+
+void Meshes::rebuildAll() {
   for (size_t mesh = 0; mesh < entries_.size(); ++mesh)
     if (entries_[mesh].geometry) changed(int32_t(mesh));
 }
@@ -141,6 +152,15 @@ void Meshes::setDynamic(int32_t mesh, bool dynamic) {
     entry.known = false; // grouped when it is built again
 }
 
+namespace {
+// Returns whether the mesh of a geometry node has balls or rods in place of points or lines.
+bool isThick(const Mesh& mesh, Node& geometry) {
+  if (mesh.kind != Mesh::Kind::triangles) return false;
+  const Node* rendered = renderedNode(&geometry);
+  return rendered && rendered->type().is("lines");
+}
+} // namespace
+
 const Mesh& Meshes::get(int32_t mesh) {
   // Equal meshes share the arrays of the first of their group.
   if (const int32_t first = equal(mesh); first != mesh) return get(first);
@@ -152,8 +172,14 @@ const Mesh& Meshes::get(int32_t mesh) {
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
-  MeshOptions options{entry.textured, &limits,      entry.said ? &silent : &world_.diagnostics,
-                      name,           exactShapes_, entry.topology.get()};
+  const MeshOptions options{.needTexCoords = entry.textured,
+                            .limits = &limits,
+                            .diagnostics = entry.said ? &silent : &world_.diagnostics,
+                            .limitName = name,
+                            .exactShapes = exactShapes_,
+                            .former = entry.topology.get(),
+                            .pointSize = pointSize_,
+                            .lineWidth = lineWidth_};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
@@ -164,6 +190,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   entry.extent.kind = entry.mesh->kind;
   entry.extent.alpha = !entry.mesh->alphas.empty();
   entry.extent.byNormal = looksUpByNormal(*entry.geometry);
+  entry.extent.thick = isThick(*entry.mesh, *entry.geometry);
   entry.extent.primitives = primitivesOf(*entry.mesh);
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
       entry.extent.primitives >= minimumComparedPrimitives)

@@ -160,7 +160,11 @@ void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
 
 SurfaceUse Objects::useOf(const Item& item) const {
   Node& geometry = graph_.meshes.geometry(item.mesh);
-  return {item.lines && !item.viaMesh, hasVertexAlpha(geometry), looksUpByNormal(geometry)};
+  const bool lines = item.lines && !item.viaMesh;
+  return {.lines = lines,
+          .thick = lines && graph_.meshes.extent(item.mesh).thick,
+          .vertexAlpha = hasVertexAlpha(geometry),
+          .byNormal = looksUpByNormal(geometry)};
 }
 
 // Writes a shape. Its number is the name of everything it draws, so that the id channel tells
@@ -248,7 +252,7 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
                     textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
   // Lines and points use emissiveColor.
-  const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles;
+  const bool plain = m.colors.empty() && surface.lines;
   const int components = m.alphas.empty() ? 3 : 4;
   if (!m.colors.empty() && !linear && m.alphas.empty()) {
     rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());

@@ -135,8 +135,8 @@ class Summary {
     Node& geometry = graph_.meshes.geometry(item.mesh);
     const bool reached = graph_.meshes.dynamic(item.mesh) && !item.merged;
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
-    const bool lines = geometry.type().is("lines") || extent.kind == Mesh::Kind::lines ||
-                       extent.kind == Mesh::Kind::points;
+    const bool lines = geometry.type().is("lines") || extent.thick ||
+                       extent.kind == Mesh::Kind::lines || extent.kind == Mesh::Kind::points;
     item.shapes = 1;
     item.triangles = extent.kind == Mesh::Kind::triangles ? extent.primitives : 0;
     item.lines = lines;
