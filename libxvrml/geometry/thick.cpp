@@ -75,7 +75,7 @@ class Thickener {
   const Mesh& thin_;
   const double radius_;
   const uint32_t rows_;
-  const Mesh ball_; // of radius 1
+  const Mesh ball_; // its radius is 1
   uint64_t triangles_ = 0, vertices_ = 0;
   Mesh made_;
 };
