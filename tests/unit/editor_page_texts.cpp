@@ -302,6 +302,31 @@ TEST(EditorPageTexts, ProbesHaveUnitsAndMarks) {
   EXPECT_EQ(Json::parse(edit::probesText(probes))["list"][1]["state"], "waiting");
 }
 
+TEST(EditorPageTexts, APointerHasWhatIsSeenAndItsLight) {
+  EXPECT_EQ(edit::pointerText(nullptr, true), R"({"type":"pointer"})");
+  vv::PointerReading pointer{0.5, -0.25, {}, {}};
+  EXPECT_EQ(edit::pointerText(&pointer, true), R"({"type":"pointer"})") << "not looked for yet";
+  pointer.seen = "Shape";
+  const Json waiting = Json::parse(edit::pointerText(&pointer, false));
+  EXPECT_EQ(waiting["seen"], "Shape");
+  EXPECT_EQ(waiting["x"], 0.5);
+  EXPECT_EQ(waiting["y"], -0.25);
+  EXPECT_EQ(waiting["readable"], false);
+  EXPECT_FALSE(waiting.contains("luminance"));
+  picture::PixelReading light;
+  light.luminance = light.radiance[1] = 7;
+  light.luminanceHalfWidth = std::numeric_limits<float>::infinity();
+  light.samples = 3;
+  pointer.light = light;
+  const Json read = Json::parse(edit::pointerText(&pointer, true));
+  EXPECT_EQ(read["luminance"], 7);
+  EXPECT_TRUE(read["half_width"].is_null());
+  EXPECT_EQ(read["radiance"], Json({0, 7, 0}));
+  EXPECT_EQ(read["radiance_half_width"], Json({0, 0, 0}));
+  EXPECT_EQ(read["samples"], 3);
+  EXPECT_EQ(read["trusted"], false);
+}
+
 TEST(EditorPageTexts, AComparisonIsOfTheLeadersPicture) {
   vv::Comparison comparison;
   const Json none = Json::parse(edit::comparisonText(comparison, true, {}));

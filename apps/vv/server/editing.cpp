@@ -155,6 +155,7 @@ void Editing::showLight(uint64_t page, Face& face) {
   tell(page, face, "probes", edit::probesText(light_.probes()));
   tell(page, face, "marks", edit::marksText(light_.probes(), viewOf(page)));
   tell(page, face, "comparison", light_.comparisonText(page, isLeaders));
+  tell(page, face, "pointer", light_.pointerText(page, isLeaders));
   tell(page, face, "progress", edit::progressText(light_.progress(page)));
   if (!isLeaders) return;
   const uint64_t cover = light_.cover();

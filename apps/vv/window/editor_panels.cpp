@@ -85,6 +85,7 @@ void EditorPanels::draw() {
   free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
   drawProbes();
   drawProblems(model_, free_);
+  hasPointer_ = ImGui::GetIO().WantCaptureMouse;
   model_.setActive(ImGui::IsAnyItemActive());
 }
 

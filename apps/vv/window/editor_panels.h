@@ -28,6 +28,8 @@ class EditorPanels {
   void setView(const EditView& view) { view_ = view; }
   // The part of the picture between the panels, as they were drawn last.
   const FreePart& freePart() const { return free_; }
+  // Tells whether the pointer is over a panel, a menu or a question.
+  bool hasPointer() const { return hasPointer_; }
   // Tells, once, whether the user has asked for a report.
   bool takeReportWish() { return std::exchange(wantsReport_, false); }
   // Opens the menu of what can be added.
@@ -55,7 +57,7 @@ class EditorPanels {
   bool isResized_ = false;                                 // the user drags the edge of a panel
   FreePart free_;
   OutlineRow menuRow_; // the row that the menu is about
-  bool opensMenu_ = false;
+  bool opensMenu_ = false, hasPointer_ = false;
 
   EditModel& model_;
   Probes& probes_;

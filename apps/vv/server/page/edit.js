@@ -50,7 +50,7 @@ class Editor {
     const isOpen = () => this.isOpen() && this.mayEdit;
     this.tools = new Tools($("stage"), page.picture, { edit, say, isOpen });
     this.importer = new Importer(edit, say, isOpen);
-    this.light = new Light($("stage"), $("probes"), page.picture, edit);
+    this.light = new Light($("stage"), $("probes"), page.picture, { edit, isOpen });
     this.problems = new Problems($("problems"), $("show-problems"), edit);
     this.keys = new EditorKeys(this);
     this.listen();
@@ -65,6 +65,7 @@ class Editor {
     page.on_choices = (message) => this.nodes.onChoices(message);
     page.on_probes = (message) => this.light.onProbes(message);
     page.on_comparison = (message) => this.light.onComparison(message);
+    page.on_pointer = (message) => this.light.onPointer(message);
     page.on_cover = (message) => this.light.onCover(message);
     page.on_problems = (message) => this.problems.onProblems(message);
     page.on_import = (message) => this.importer.onImport(message);
