@@ -241,17 +241,17 @@ def test_what_is_seen_under_a_pointer_that_rests(serve):
 
 
 def test_a_reading_under_the_pointer_gets_sharper_while_it_rests(serve):
-    # Light that comes by way of the floor alone has noise.
+    # Light that comes by way of the wall has noise.
     world = HEADER + """
 Viewpoint { position 0 1 6 }
 NavigationInfo { headlight FALSE }
-DEF ROOM Shape { appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" } }
+PointLight { location 0 2 1 }
+Shape { appearance DEF LOOK ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" } }
   geometry Box { size 8 .1 8 } }
-DEF SKY Shape { appearance ORTAppearance { shader ORTShader { name "Emitter" file "emitter" } }
-  geometry Sphere { radius 1 } }
+Transform { translation 0 2 -1 children Shape { appearance USE LOOK geometry Box { size 8 4 .1 } } }
 """
     page = serve(world, "--edit", "--spp", 1024).join_editor()
-    page.edit("point", x=0.5, y=-0.6)
+    page.edit("point", x=0.1, y=-0.6)
     page.still()
     page.edit("step", name="Grow", edits=[{"edit": "insert", "vrml": "Group { }"}])
     known = lambda t: t.get("half_width") is not None and t["luminance"] > 0

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "as_json/field_json.h"
+#include "base64.h"
+#include "libpicture/files/formats.h"
 #include "server/limits.h"
 #include "xvrml/numbers.h"
 
@@ -182,6 +184,22 @@ std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
     out += text;
   }
   return out + fmt::format(R"(],"hidden":{}}})", sheet.rows.size() - shown);
+}
+
+std::string thumbnailsText(const TextureThumbnails& thumbnails, json::NodeNumbers& numbers) {
+  Json list = Json::array();
+  for (const NodeRef& node : thumbnails.nodes()) {
+    Json one = {{"node", numbers.of(node)}};
+    const Thumbnail& shown = *thumbnails.of(*node);
+    if (shown.error.empty()) {
+      one["image"] = base64Of(picture::pngOf(shown.rgba, shown.width, shown.height, 4));
+      one["scale"] = shown.magnification();
+    } else {
+      one["error"] = shortened(shown.error, mostNoteBytes);
+    }
+    list.push_back(std::move(one));
+  }
+  return jsonLine({{"type", "thumbnails"}, {"list", list}});
 }
 
 std::string looksText(const std::vector<ShownLook>& looks) {

@@ -78,6 +78,7 @@ const std::vector<NewNode>& otherNodes() {
 } // namespace
 
 void EditorPanels::draw() {
+  thumbnails_.bound();
   drawFrames();
   drawOutline();
   drawSheet();
@@ -278,10 +279,11 @@ void EditorPanels::drawSheet() {
       ImGui::PushID(sheet.node.get());
       ImGui::TextUnformatted(sheet.title.c_str());
       if (!sheet.note.empty()) ImGui::TextWrapped("%s", printable(sheet.note).c_str());
+      drawThumbnail(model_, *sheet.node, thumbnails_);
       ImGui::Separator();
       ImGui::BeginDisabled(!model_.readOnly().empty());
       if (sheet.hasLook) isChoosingLook_ = drawLook(model_, library_, thumbnails_);
-      for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row);
+      for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row, thumbnails_);
       ImGui::EndDisabled();
       ImGui::PopID();
     }

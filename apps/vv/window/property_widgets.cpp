@@ -226,7 +226,7 @@ void drawLong(const PropertyRow& row) {
 
 } // namespace
 
-void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
+void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row, Thumbnails& thumbnails) {
   const FieldInfo& field = *row.field;
   const bool holdsNodes = field.type == FieldType::SFNode || field.type == FieldType::MFNode;
   ImGui::PushID(field.name.data(), field.name.data() + field.name.size());
@@ -238,7 +238,7 @@ void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   }
   if (row.isLong) drawLong(row);
   if (holdsNodes) {
-    drawNodes(model, node, row);
+    drawNodes(model, node, row, thumbnails);
   } else if (!row.isLong && drawValue(row)) {
     model.drag(node, field, row.value);
   }

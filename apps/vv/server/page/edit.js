@@ -13,6 +13,7 @@ import { Light } from "./light.js";
 import { Nodes } from "./nodes.js";
 import { Outline } from "./outline.js";
 import { Problems, reportPanel } from "./reports.js";
+import { Thumbnails } from "./thumbnails.js";
 import { Tools, clickDistance } from "./tools.js";
 
 const $ = (id) => document.getElementById(id);
@@ -39,7 +40,9 @@ class Editor {
     const edit = (command, members) => this.edit(command, members);
     this.layOut();
     this.chooser = new Chooser();
-    this.nodes = new Nodes(this.chooser, edit, (text) => page.on_command({ text }));
+    this.thumbnails = new Thumbnails();
+    const showText = (text) => page.on_command({ text });
+    this.nodes = new Nodes(this.chooser, this.thumbnails, edit, showText);
     this.outline = new Outline($("rows"), edit, (row, item) => this.openRow(row, item));
     this.fields = new Fields($("fields"), {
       drag: (drag, ends) => this.dragTo(drag, ends),
@@ -61,6 +64,7 @@ class Editor {
     page.on_handles = (message) => this.onHandles(message);
     page.on_marks = (message) => this.tools.onMarks(message);
     page.on_tool = (message) => this.onTool(message);
+    page.on_thumbnails = (message) => this.thumbnails.onThumbnails(message);
     page.on_looks = (message) => this.nodes.onLooks(message);
     page.on_choices = (message) => this.nodes.onChoices(message);
     page.on_probes = (message) => this.light.onProbes(message);
@@ -167,6 +171,7 @@ class Editor {
       { id: "sheet", label: "Fields" },
       make("h2", { id: "title" }),
       make("p", { id: "note" }),
+      make("div", { id: "texture" }),
       rename,
       make("div", { id: "look", label: "Look" }),
       make("div", { id: "fields" }),
@@ -352,6 +357,10 @@ class Editor {
     $("title").textContent = message.title;
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);
+    if (message.node !== this.fields.message?.node) {
+      const own = message.node === null ? [] : [this.thumbnails.placeOf(message.node)];
+      $("texture").replaceChildren(...own);
+    }
     this.nodes.showLook($("look"), message.look, this.readOnly === "");
     this.fields.show(message);
     this.showName();
