@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "as_json/perform_step.h"
+#include "base64.h"
 #include "editor_support.h"
 #include "server/edit_nodes.h"
 #include "server/edit_texts.h"
@@ -300,6 +301,23 @@ TEST(EditorPageTexts, ProbesHaveUnitsAndMarks) {
   probes.addSensor(picture::sensorAt(other, normal, seen));
   probes.take(readings);
   EXPECT_EQ(Json::parse(edit::probesText(probes))["list"][1]["state"], "waiting");
+}
+
+TEST(EditorPageTexts, TexturesHaveSmallPictures) {
+  Shown shown("Shape { appearance DEF A Appearance { texture DEF T PixelTexture {\n"
+              "image 2 1 3 0xff0000 0x00ff00 } } }\n");
+  shown.sheetOf("A");
+  const auto list = [&] {
+    return Json::parse(edit::thumbnailsText(shown.model.thumbnails(), shown.numbers))["list"];
+  };
+  ASSERT_EQ(list().size(), 1u);
+  EXPECT_EQ(list()[0]["node"], shown.number("T"));
+  EXPECT_EQ(list()[0]["scale"], 32);
+  std::string png;
+  ASSERT_TRUE(appendBytesOfBase64(list()[0]["image"].get<std::string>(), png));
+  EXPECT_TRUE(png.starts_with("\x89PNG"));
+  shown.sheetOf("T");
+  EXPECT_EQ(list()[0]["node"], shown.number("T")) << "its own sheet shows it, too";
 }
 
 TEST(EditorPageTexts, APointerHasWhatIsSeenAndItsLight) {
