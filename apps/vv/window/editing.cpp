@@ -224,6 +224,14 @@ bool Editing::press(const InputEvent& event) {
   case EditorAction::showWiper: toggle(Comparison::Shown::wiper); break;
   case EditorAction::showDifference: toggle(Comparison::Shown::difference); break;
   case EditorAction::frame: wantsFrame_ = true; break;
+  case EditorAction::panels:
+    panels_->toggle();
+    screen_.redraw();
+    break;
+  case EditorAction::keyboard:
+    panels_->passKeyboard();
+    screen_.redraw();
+    break;
   case EditorAction::escape: escape(); break;
   }
   return true;

@@ -19,8 +19,10 @@ using namespace xvrml;
 
 namespace {
 
-constexpr ImGuiWindowFlags panelFlags =
-    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar;
+// The keys are the picture's until a panel is clicked or gets them.
+constexpr ImGuiWindowFlags panelFlags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                                        ImGuiWindowFlags_NoTitleBar |
+                                        ImGuiWindowFlags_NoFocusOnAppearing;
 constexpr ImU32 frameColour = IM_COL32(255, 170, 40, 220);
 
 // A button that can be pressed only if `active`.
@@ -80,14 +82,41 @@ const std::vector<NewNode>& otherNodes() {
 void EditorPanels::draw() {
   thumbnails_.bound();
   drawFrames();
-  drawOutline();
-  drawSheet();
   const auto width = double(ImGui::GetIO().DisplaySize.x);
-  free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
+  if (isHidden_) {
+    free_ = {};
+    isChoosingLook_ = false;
+  } else {
+    drawOutline();
+    drawSheet();
+    free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
+  }
   drawProbes();
   drawProblems(model_, free_);
   hasPointer_ = ImGui::GetIO().WantCaptureMouse;
   model_.setActive(ImGui::IsAnyItemActive());
+}
+
+void EditorPanels::passKeyboard() {
+  ImGuiIO& io = ImGui::GetIO();
+  // The mouse or Escape may have given the keys back to the picture.
+  if (!(io.ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard)) keyboard_ = Keyboard::picture;
+  keyboard_ = keyboard_ == Keyboard::picture   ? Keyboard::outline
+              : keyboard_ == Keyboard::outline ? Keyboard::sheet
+                                               : Keyboard::picture;
+  passesKeyboard_ = keyboard_ != Keyboard::picture;
+  if (passesKeyboard_) {
+    isHidden_ = false;
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  } else {
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(nullptr);
+  }
+}
+
+// Tells, once, whether a panel gets the keyboard.
+bool EditorPanels::takesKeyboard(Keyboard panel) {
+  return keyboard_ == panel && std::exchange(passesKeyboard_, false);
 }
 
 void EditorPanels::drawFrames() const {
@@ -187,6 +216,10 @@ void EditorPanels::drawOutline() {
     if (model_.hiddenCount() > 0)
       ImGui::TextWrapped("%zu nodes are hidden: View, Show all", model_.hiddenCount());
     ImGui::SetNextItemWidth(-1);
+    if (takesKeyboard(Keyboard::outline)) {
+      ImGui::SetWindowFocus();
+      ImGui::SetKeyboardFocusHere();
+    }
     if (ImGui::InputTextWithHint("##search", "Search names, types and fields", &search_))
       model_.search(search_);
     if (ImGui::BeginChild("##rows")) {
@@ -271,6 +304,7 @@ void EditorPanels::drawSheet() {
   isChoosingLook_ = false;
   if (ImGui::Begin("##sheet", nullptr, panelFlags)) {
     watchWidth(sheetWidth_, widths_.sheet);
+    if (takesKeyboard(Keyboard::sheet)) ImGui::SetWindowFocus();
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
       ImGui::TextWrapped("Click on something in the picture or in the outline to select it. "

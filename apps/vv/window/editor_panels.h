@@ -32,12 +32,22 @@ class EditorPanels {
   bool hasPointer() const { return hasPointer_; }
   // Tells, once, whether the user has asked for a report.
   bool takeReportWish() { return std::exchange(wantsReport_, false); }
+  // Hides the outline and the fields, or shows them again.
+  void toggle() { isHidden_ = !isHidden_; }
+  // Lets keys work the outline, then the fields, then the picture again.
+  void passKeyboard();
   // Opens the menu of what can be added.
-  void openAddMenu() { opensAdd_ = true; }
+  void openAddMenu() {
+    opensAdd_ = true;
+    isHidden_ = false;
+  }
   // Tells whether the user is choosing a look.
   bool isChoosingLook() const { return isChoosingLook_; }
 
  private:
+  enum class Keyboard : uint8_t { picture, outline, sheet };
+
+  bool takesKeyboard(Keyboard panel);
   void drawOutline();
   void drawTools();
   void drawReports();
@@ -57,7 +67,9 @@ class EditorPanels {
   bool isResized_ = false;                                 // the user drags the edge of a panel
   FreePart free_;
   OutlineRow menuRow_; // the row that the menu is about
-  bool opensMenu_ = false, hasPointer_ = false;
+  bool opensMenu_ = false, hasPointer_ = false, isHidden_ = false;
+  Keyboard keyboard_ = Keyboard::picture; // what keys work
+  bool passesKeyboard_ = false;           // it does not have the keyboard yet
 
   EditModel& model_;
   Probes& probes_;

@@ -32,6 +32,8 @@ enum class EditorAction : uint8_t {
   showWiper,
   showDifference,
   frame,
+  panels,
+  keyboard,
   escape
 };
 
@@ -41,6 +43,7 @@ struct EditorKeyInfo {
   // The actions of the keys, in their order. Rows without actions are explained only: the mouse,
   // keys of a tool that is in use, of menus and of the window.
   std::array<EditorAction, 3> actions{};
+  bool isOfWindow = false; // pages leave it to their browser
 };
 std::span<const EditorKeyInfo> editorTable();
 
