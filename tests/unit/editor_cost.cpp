@@ -22,7 +22,7 @@ std::string nodes(int count) {
   return text;
 }
 
-// What an editor takes before anybody edits, and what it takes then.
+// The bytes that an editor takes before anybody edits, and those that it takes then.
 struct Cost {
   size_t opened, editing;
 };

@@ -18,7 +18,7 @@ using namespace xvrml;
 
 namespace {
 
-constexpr int samplesAlong = 5; // of a part, in each direction, at most
+constexpr int samplesAlong = 5; // the most pixels of a part, in each direction
 
 // Where the pixels of a part lie along one axis.
 struct Span {
@@ -168,7 +168,9 @@ bool TextureThumbnails::look(const World& world, const PropertySheet& sheet) {
     }
     entries_.push_back(std::move(entry));
   }
-  return isNew || entries_.size() != before.size();
+  isNew |= entries_.size() != before.size();
+  if (isNew) ++count_;
+  return isNew;
 }
 
 // Reads the next file, and lets it be decoded. Returns whether it has failed at once.

@@ -38,6 +38,8 @@ class TextureThumbnails {
   // Returns the thumbnail of a node of the sheet, or of the sheet's own; null: there is none, or
   // not yet, and nothing is wrong.
   const Thumbnail* of(const xvrml::Node& node) const;
+  // Grows when others are shown.
+  uint64_t count() const { return count_; }
   // Returns the nodes that have one.
   std::vector<xvrml::NodeRef> nodes() const;
 
@@ -62,7 +64,7 @@ class TextureThumbnails {
   void show(Entry& entry, Thumbnail thumbnail);
 
   std::vector<Entry> entries_; // those of the present sheet
-  uint64_t count_ = 0;         // thumbnails so far
+  uint64_t count_ = 0;         // thumbnails, and sets of them, so far
   Decoding decoding_;
 };
 

@@ -144,21 +144,15 @@ void Editing::show(uint64_t page, Face& face) {
   }
   tell(page, face, "rows", edit::rowsText(face.model, face.numbers, face.first, face.count));
   tell(page, face, "sheet", edit::sheetText(face.model.sheet(), face.numbers));
-  showThumbnails(page, face);
+  // Their pictures are encoded only when there are others.
+  const TextureThumbnails& thumbnails = face.model.thumbnails();
+  if (!face.told.contains("thumbnails") || thumbnails.count() != face.thumbnails)
+    tell(page, face, "thumbnails", edit::thumbnailsText(thumbnails, face.numbers));
+  face.thumbnails = thumbnails.count();
   tell(page, face, "problems", edit::problemsText(face.model.problems(), face.numbers));
   tell(page, face, "frames", edit::framesText(face.model));
   if (const int row = face.model.takeScroll(); row >= 0)
     host_.sendText(page, "reveal", edit::revealText(row));
-}
-
-// Pictures are encoded only when there are others.
-void Editing::showThumbnails(uint64_t page, Face& face) {
-  const TextureThumbnails& thumbnails = face.model.thumbnails();
-  std::vector<uint64_t> numbers;
-  for (const NodeRef& node : thumbnails.nodes()) numbers.push_back(thumbnails.of(*node)->number);
-  if (face.told.contains("thumbnails") && numbers == face.thumbnails) return;
-  face.thumbnails = std::move(numbers);
-  tell(page, face, "thumbnails", edit::thumbnailsText(thumbnails, face.numbers));
 }
 
 void Editing::showLight(uint64_t page, Face& face) {

@@ -54,7 +54,7 @@ class Editing {
     int first = 0, count = 0;                // the rows of the outline that it shows
     std::map<std::string, std::string> told; // the last message of each type
     uint64_t cover = 0;                      // the number of the last cover that it was sent
-    std::vector<uint64_t> thumbnails;        // the numbers of the thumbnails that it was sent
+    uint64_t thumbnails = 0;                 // TextureThumbnails::count() when it was sent them
     bool isDragging = false;
     // The parameter of a shader that is dragged, which gets a field at the end.
     struct Parameter {
@@ -78,7 +78,6 @@ class Editing {
   void say(uint64_t page, const std::string& text, bool isError);
   void tell(uint64_t page, Face& face, const std::string& type, std::string text);
   void show(uint64_t page, Face& face);
-  void showThumbnails(uint64_t page, Face& face);
   void showLight(uint64_t page, Face& face);
 
   void perform(uint64_t page, Face& face, const edit::ShowRows& rows);
