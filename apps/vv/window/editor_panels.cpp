@@ -222,7 +222,7 @@ void EditorPanels::drawOutline() {
     }
     if (ImGui::InputTextWithHint("##search", "Search names, types and fields", &search_))
       model_.search(search_);
-    if (ImGui::BeginChild("##rows")) {
+    if (ImGui::BeginChild("##rows", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened)) {
       const std::vector<OutlineRow>& rows = model_.rows();
       if (const int row = model_.takeScroll(); row >= 0)
         ImGui::SetScrollY(std::max(0.f, float(row - 3) * ImGui::GetTextLineHeightWithSpacing()));
