@@ -113,6 +113,24 @@ def test_keys_alone_select_change_and_undo(keys, vv):
     assert w.end() == 0
 
 
+def test_a_node_is_renamed(keys, vv):
+    w = keys.window
+    w.click(0, 0)
+    w.key("F2")
+    w.tool("type", "CRATE")
+    w.key("Return")
+    saved(w, vv, lambda t: t == WORLD.replace("DEF BOX", "DEF CRATE"))
+    w.key("F2")
+    w.tool("type", "LAMP")  # another node has this name: the edit is refused
+    w.key("Return")
+    w.key("ctrl+z", "ctrl+s")
+    saved(w, vv, lambda t: t == WORLD)
+    w.key("F2")
+    w.key("Escape")  # closes the question alone
+    w.key("shift+d")
+    saved(w, vv, lambda t: "BOX_2" in t)
+
+
 def test_a_texture_has_a_small_picture(keys):
     assert keys.sheet(is_green) < 50
     keys.find("GREEN")

@@ -211,6 +211,10 @@ bool Editing::press(const InputEvent& event) {
   case EditorAction::duplicate: model_->request(duplicateSelected); break;
   case EditorAction::group: model_->request(wrapSelected); break;
   case EditorAction::remove: model_->request(removeSelected); break;
+  case EditorAction::rename:
+    panels_->askForName();
+    screen_.redraw();
+    break;
   case EditorAction::undo: model_->request([](WorldEditor& editor) { editor.undo(); }); break;
   case EditorAction::redo: model_->request([](WorldEditor& editor) { editor.redo(); }); break;
   case EditorAction::save: save(); break;

@@ -307,11 +307,12 @@ void EditorPanels::drawSheet() {
     if (takesKeyboard(Keyboard::sheet)) ImGui::SetWindowFocus();
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
+      asksForName_ = false;
       ImGui::TextWrapped("Click on something in the picture or in the outline to select it. "
                          "V or U measures the light where the pointer is. F1 lists all keys.");
     } else {
       ImGui::PushID(sheet.node.get());
-      ImGui::TextUnformatted(sheet.title.c_str());
+      drawTitle();
       if (!sheet.note.empty()) ImGui::TextWrapped("%s", printable(sheet.note).c_str());
       drawThumbnail(model_, *sheet.node, thumbnails_);
       ImGui::Separator();
@@ -323,6 +324,35 @@ void EditorPanels::drawSheet() {
     }
   }
   ImGui::End();
+}
+
+// Draws the title of the sheet, and the question for another name of its node.
+void EditorPanels::drawTitle() {
+  const PropertySheet& sheet = model_.sheet();
+  const bool isWritable = model_.readOnly().empty();
+  ImGui::TextUnformatted(sheet.title.c_str());
+  if (isWritable) hint("A click, or F2, gives it another name");
+  if (const bool asks = std::exchange(asksForName_, false) || ImGui::IsItemClicked();
+      asks && isWritable) {
+    name_ = sheet.node->defName;
+    ImGui::OpenPopup("##name");
+  }
+  if (!ImGui::BeginPopup("##name")) return;
+  closeOnEscape();
+  ImGui::TextUnformatted("Name (DEF)");
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  bool isGiven =
+      ImGui::InputText("##defname", &name_,
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::SameLine();
+  isGiven |= ImGui::Button("Rename");
+  if (isGiven && !name_.empty()) {
+    model_.edit([node = sheet.node, name = name_](WorldEditor& editor) {
+      editor.editor().rename(*node, name);
+    });
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
 }
 
 void EditorPanels::drawProbes() {

@@ -36,6 +36,11 @@ class EditorPanels {
   void toggle() { isHidden_ = !isHidden_; }
   // Lets keys work the outline, then the fields, then the picture again.
   void passKeyboard();
+  // Asks for another name of the node that was selected last.
+  void askForName() {
+    asksForName_ = true;
+    isHidden_ = false;
+  }
   // Opens the menu of what can be added.
   void openAddMenu() {
     opensAdd_ = true;
@@ -58,6 +63,7 @@ class EditorPanels {
   void drawRowMenu();
   void watchWidth(float& drawn, float& chosen);
   void drawSheet();
+  void drawTitle();
   void drawFrames() const;
   void drawProbes();
   void drawProbeMenu(const Probe& probe);
@@ -76,10 +82,10 @@ class EditorPanels {
   LookLibrary& library_;
   Thumbnails thumbnails_;
   EditView view_;
-  std::string search_, path_; // what the user has typed: the path of a file to be imported
+  std::string search_, path_, name_; // what the user types: path_: of a file to be imported
   const std::function<void()> save_;
   bool wantsReport_ = false, isChoosingLook_ = false;
-  bool opensAdd_ = false, opensFile_ = false; // menus are to be opened
+  bool opensAdd_ = false, opensFile_ = false, asksForName_ = false; // are to be opened
 };
 
 // Draws the list of the messages about the world, if it is open.

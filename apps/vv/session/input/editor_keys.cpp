@@ -26,6 +26,7 @@ constexpr EditorKeyInfo table[] = {
     {"Shift+A", "the menu of what can be added; type to find more", {menu}},
     {"Shift+D, Ctrl+G", "duplicate, group what is selected", {duplicate, group}},
     {"X, Delete", "remove what is selected", {remove, remove}},
+    {"F2", "gives the selected node another name (DEF)", {rename}},
     {"Ctrl+Z, Ctrl+Y", "undo, redo", {undo, redo}},
     {"Ctrl+Shift+Z", "redo", {redo}},
     {"Ctrl+S", "saves the file in place", {save}},

@@ -21,6 +21,7 @@ enum class EditorAction : uint8_t {
   duplicate,
   group,
   remove,
+  rename,
   undo,
   redo,
   save,
