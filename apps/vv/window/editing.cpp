@@ -203,17 +203,14 @@ bool Editing::press(const InputEvent& event) {
   case EditorAction::scale: return beginTool(TransformTool::Kind::scale, -1, pointer_);
   case EditorAction::menu:
     panels_->openAddMenu();
-    for (int frame = 0; frame < framesToOpen; ++frame) {
-      screen_.redraw();
-      screen_.present();
-    }
+    openAtOnce();
     break;
   case EditorAction::duplicate: model_->request(duplicateSelected); break;
   case EditorAction::group: model_->request(wrapSelected); break;
   case EditorAction::remove: model_->request(removeSelected); break;
   case EditorAction::rename:
     panels_->askForName();
-    screen_.redraw();
+    openAtOnce();
     break;
   case EditorAction::undo: model_->request([](WorldEditor& editor) { editor.undo(); }); break;
   case EditorAction::redo: model_->request([](WorldEditor& editor) { editor.redo(); }); break;
@@ -234,11 +231,19 @@ bool Editing::press(const InputEvent& event) {
     break;
   case EditorAction::keyboard:
     panels_->passKeyboard();
-    screen_.redraw();
+    openAtOnce();
     break;
   case EditorAction::escape: escape(); break;
   }
   return true;
+}
+
+// Draws what a key has opened, so that it gets the keys that follow.
+void Editing::openAtOnce() {
+  for (int frame = 0; frame < framesToOpen; ++frame) {
+    screen_.redraw();
+    screen_.present();
+  }
 }
 
 // Places a probe, or lets the next drag be a rectangle.

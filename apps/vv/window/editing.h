@@ -74,6 +74,7 @@ class Editing {
   // Asks once whether the edits that an earlier session has left are used.
   void offerLeft(WorldEditor& editor);
   bool press(const InputEvent& event);
+  void openAtOnce();
   void measure(EditorAction action);
   void toggle(Comparison::Shown shown);
   void escape();
