@@ -120,7 +120,7 @@ Thumbnail thumbnailOf(const Image& image) {
 
 bool TextureThumbnails::update(const World& world, const PropertySheet& sheet, bool isRead) {
   bool isNew = take();
-  if (isRead) isNew |= look(world, sheet);
+  if (isRead) isNew |= look(sheet);
   if (!decoding_.result.valid()) isNew |= begin(world);
   return isNew;
 }
@@ -145,7 +145,7 @@ void TextureThumbnails::show(Entry& entry, Thumbnail thumbnail) {
 
 // Finds the textures of the sheet and what has changed about them. The pixels of a PixelTexture are
 // at hand.
-bool TextureThumbnails::look(const World& world, const PropertySheet& sheet) {
+bool TextureThumbnails::look(const PropertySheet& sheet) {
   std::vector<Entry> before = std::exchange(entries_, {});
   bool isNew = false;
   for (const NodeRef& node : texturesOf(sheet)) {

@@ -58,7 +58,7 @@ class TextureThumbnails {
     std::future<Thumbnail> result;
   };
 
-  bool look(const xvrml::World& world, const PropertySheet& sheet);
+  bool look(const PropertySheet& sheet);
   bool begin(const xvrml::World& world);
   bool take();
   void show(Entry& entry, Thumbnail thumbnail);
