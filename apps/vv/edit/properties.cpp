@@ -66,6 +66,7 @@ PropertyRow rowOf(WorldEditor& editor, Node& node, const FieldInfo& field) {
   row.range = rangeIn(node, field);
   row.help = helpOf(field, field.text, row.range);
   row.choices = choicesOf(field);
+  row.isLinear = field.declared && node.type().is("shader");
   if (holdsNodes(field)) {
     row.addable = typesFor(field);
     row.usable = nodesFor(editor.browser().world(), field, mostUsable);
@@ -103,6 +104,7 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
     row.help = helpOf(*field, field->text, field->range);
     row.isDefault = true;
     row.isDeclared = false;
+    row.isLinear = true;
     if (const auto option = options.find(field->name); option != options.end()) {
       const std::optional<Value> set = valueOf(option->second, parameter);
       row.isInOptions = true;
