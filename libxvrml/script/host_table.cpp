@@ -148,6 +148,18 @@ struct HostTable : HostCalls {
       });
     });
   }
+  static XsResult otherName(Host table, XsNode self, XsNode number, uint32_t index,
+                            XsString* out) {
+    return enter(table, self, [&](ScriptHost&, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        const auto& fields = node.type().fields;
+        const std::string_view other =
+            index < fields.size() ? otherFieldName(node, fields[index]) : std::string_view();
+        if (other.empty() || !out) return noField(script, node, "other name of field", "");
+        return giveText(script, std::string(other), out);
+      });
+    });
+  }
   static XsResult findField(Host table, XsNode self, XsNode number, const char* name,
                             XsField* out) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
@@ -356,7 +368,9 @@ ScriptHost::Table::Table(ScriptHost& host)
              HostScene::createInstance,
              HostScene::nodeWithin,
              HostScene::nodeTypes,
-             HostScene::writeNode},
+             HostScene::writeNode,
+             HostScene::writeScene,
+             HostTable::otherName},
       host(host) {}
 
 } // namespace xvrml
