@@ -54,8 +54,7 @@ struct Target {
     const double number = rounded(v), minimum = rounded(r.minimum), maximum = rounded(r.maximum);
     const bool low = r.minimumOpen ? number <= minimum : number < minimum;
     const bool high = r.maximumOpen ? number >= maximum : number > maximum;
-    if ((low || high) && number != r.also)
-      wrongValue(fmt::format("in {}, not {}", describe(r), v));
+    if ((low || high) && number != r.also) wrongValue(fmt::format("in {}, not {}", describe(r), v));
   }
 };
 

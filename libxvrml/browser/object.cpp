@@ -90,8 +90,7 @@ LoadedUrl loadFirst(const LoadCall& call, World& caller, const BudgetPtr& budget
     std::string reason = resolved.error;
     if (reason.empty()) {
       try {
-        return {budget ? loadWorldInto(budget, resolved.path, caller.options,
-                                       call.depth)
+        return {budget ? loadWorldInto(budget, resolved.path, caller.options, call.depth)
                        : loadWorld(resolved.path, caller.options),
                 resolved.fragment};
       } catch (const LoadError& error) { reason = error.diagnostic.text(); }
@@ -120,8 +119,8 @@ class TemporaryCharge {
   uint64_t before_;
 };
 
-// Tells the Scripts of an instance how many Scripts made one another before them. Their file is that
-// of the prototype, and its depth does not grow.
+// Tells the Scripts of an instance how many Scripts made one another before them. Their file is
+// that of the prototype, and its depth does not grow.
 void markMakers(const Scope& made, uint32_t makers) {
   walk<Node>(rootsOf(made), [makers](Node& node, std::vector<Node*>& open) {
     if (auto* script = nodeCast<ScriptNode>(&node)) script->makers = makers;
@@ -227,8 +226,8 @@ MFNode Browser::Impl::create(std::string_view text, const std::string& base,
   const FileVersion& own = world->head.version;
   const FileVersion version =
       versionOfText(text, caller.file ? fileVersion(caller.file) : own, own);
-  const auto loaded = loadFragment(text, name, loading, TemporaryCharge(*world).budget(),
-                                   depth, {version, prototypes});
+  const auto loaded = loadFragment(text, name, loading, TemporaryCharge(*world).budget(), depth,
+                                   {version, prototypes});
   if (!prototypes.empty()) markMakers(loaded->scope, uint32_t(depth));
   MFNode nodes = adopt(*loaded);
   settle();

@@ -42,17 +42,15 @@ Node* inlineAbove(const Node& script) {
 // The content of an Inline, and nodes that a program has made, have no head of their own; the file
 // of the first node says which version they follow. Nodes of no file follow the world's.
 FileVersion versionOfNodes(const World& world, const MFNode& nodes) {
-  const auto first = std::find_if(nodes.begin(), nodes.end(), [](const NodeRef& node) {
-    return node && node->source.file;
-  });
+  const auto first = std::find_if(nodes.begin(), nodes.end(),
+                                  [](const NodeRef& node) { return node && node->source.file; });
   return first == nodes.end() ? world.head.version : versionOf(**first);
 }
 
 // Returns whether XML is asked for; throws if it is neither XML nor VRML.
 bool wantsXml(const std::string& encoding) {
   if (encoding != "XML" && encoding != "VRML")
-    throw std::runtime_error(
-        fmt::format("'{}' is no encoding: expected XML or VRML", encoding));
+    throw std::runtime_error(fmt::format("'{}' is no encoding: expected XML or VRML", encoding));
   return encoding == "XML";
 }
 

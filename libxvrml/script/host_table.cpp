@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "graph/field_access.h"
-#include "xvrml/versions.h"
 #include "script/host_calls.h"
 #include "script/host_scene.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -148,8 +148,7 @@ struct HostTable : HostCalls {
       });
     });
   }
-  static XsResult otherName(Host table, XsNode self, XsNode number, uint32_t index,
-                            XsString* out) {
+  static XsResult otherName(Host table, XsNode self, XsNode number, uint32_t index, XsString* out) {
     return enter(table, self, [&](ScriptHost&, Script& script) {
       return withNode(script, number, [&](Node& node) {
         const auto& fields = node.type().fields;

@@ -79,8 +79,8 @@ class Reader {
                      path_.empty() ? "" : " at value" + path_));
   }
   [[noreturn]] void wrongNumber(double got) const {
-    fail(fmt::format("numbers in {} were expected, not {}{}", describe(rangeIn(owner_, field_)), got,
-                     path_.empty() ? "" : " at value" + path_));
+    fail(fmt::format("numbers in {} were expected, not {}{}", describe(rangeIn(owner_, field_)),
+                     got, path_.empty() ? "" : " at value" + path_));
   }
 
   // Calls `read` for an element and notes its place meanwhile.

@@ -40,8 +40,8 @@ bool isEven(const double m[16]) {
   const double square = scaleOf(m) * scaleOf(m);
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k <= i; ++k) {
-      const double product = m[4 * i] * m[4 * k] + m[4 * i + 1] * m[4 * k + 1] +
-                             m[4 * i + 2] * m[4 * k + 2];
+      const double product =
+          m[4 * i] * m[4 * k] + m[4 * i + 1] * m[4 * k + 1] + m[4 * i + 2] * m[4 * k + 2];
       if (!(std::abs(product - (i == k ? square : 0)) <= same * square)) return false;
     }
   return true;
@@ -321,7 +321,8 @@ template <class T> Place Scene::placeLight(const T& node, const State& state, De
   light.attenuation = {positive(node.attenuation.x, largest), positive(node.attenuation.y, largest),
                        positive(node.attenuation.z, largest)};
   if (!isEven(state.matrix))
-    remarks_.change("a light falls off alike in all directions, though an uneven scale is above it");
+    remarks_.change(
+        "a light falls off alike in all directions, though an uneven scale is above it");
   constexpr double endless = 0.999e9; // readers of glTF say 1e9, as a float
   const double range = double(positive(node.radius, largest)) * light.scale;
   if (range > 0 && range < endless) light.object["range"] = float(range);

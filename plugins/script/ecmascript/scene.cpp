@@ -150,9 +150,8 @@ duk_ret_t written(duk_context* ctx, const char* encoding) {
   nodesForHost(ctx, self, -1, encoding);
   const uint32_t count = mfData(ctx, -1)->count;
   XsString text{"", 0};
-  const XsResult result =
-      self.host->writeScene(self.host, self.self, count, self.handles.data(),
-                            {encoding, std::strlen(encoding)}, &text);
+  const XsResult result = self.host->writeScene(self.host, self.self, count, self.handles.data(),
+                                                {encoding, std::strlen(encoding)}, &text);
   if (result != XS_OK) throwHost(ctx, self, result, encoding);
   pushString(ctx, text);
   return 1;

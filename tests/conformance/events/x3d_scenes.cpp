@@ -26,7 +26,8 @@ class EcmaScenes : public EcmaScript {
 
 std::string scriptThat(const std::string& program) {
   return EcmaWorld::script("directOutput TRUE",
-                           "function initialize() { var s = Browser.currentScene; " + program + " }");
+                           "function initialize() { var s = Browser.currentScene; " + program +
+                               " }");
 }
 
 // Returns how often a text holds another one.
@@ -95,20 +96,17 @@ TEST_F(EcmaScenes, RoutesOfProgramsAreWritten) {
 
 // A text of VRML97 stays one, also in a world of X3D.
 TEST_F(EcmaScenes, AMadeSceneHasTheVersionOfItsText) {
-  folder_.write("w.x3dv",
-                header + scriptThat("print(Browser.createX3DFromString("
-                                    "'#VRML V2.0 utf8\\nSwitch { choice Group { } }')"
-                                    ".toVRMLString());"));
+  folder_.write("w.x3dv", header + scriptThat("print(Browser.createX3DFromString("
+                                              "'#VRML V2.0 utf8\\nSwitch { choice Group { } }')"
+                                              ".toVRMLString());"));
   EXPECT_EQ(printed(folder_ / "w.x3dv").find("#VRML V2.0 utf8\n\nSwitch {\n  choice"), 0u)
       << printed(folder_ / "w.x3dv");
 }
 
 TEST_F(EcmaScenes, PrototypesThatMakeThemselvesEndAtTheLimit) {
-  folder_.write("w.x3dv",
-                header +
-                    "PROTO P [ ] { " +
-                    scriptThat("print('made'); Browser.currentScene.createProto('P');") +
-                    " }\nP { }\n");
+  folder_.write("w.x3dv", header + "PROTO P [ ] { " +
+                              scriptThat("print('made'); Browser.currentScene.createProto('P');") +
+                              " }\nP { }\n");
   for (const int most : {3, 7, 32}) {
     LoadOptions options;
     options.limits.inlineDepth = uint64_t(most);
