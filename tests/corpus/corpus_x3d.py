@@ -25,13 +25,17 @@ UNKNOWN = re.compile(r"nodes of type '([^']*)' are not supported|'([^']*)' is no
                      r"|field '([^']*)' of (\w+) is not supported|(IMPORT|mappings) (?:is|are) not supported")
 
 
+def folder_of():
+    """Returns the folder of files that is used if no other one is given."""
+    return pathlib.Path(os.environ.get("OPENRT_CORPUS_X3D") or ROOT.parent / "shared/corpus-x3d")
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vv", type=pathlib.Path, required=True)
     parser.add_argument("--corpus",
                         type=pathlib.Path,
-                        default=os.environ.get("OPENRT_CORPUS_X3D") or
-                        ROOT.parent / "shared/corpus-x3d")
+                        default=folder_of())
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/corpus-x3d")
     parser.add_argument("--only", default="", help="files whose path holds this text")
     parser.add_argument("--jobs", type=int, default=2)

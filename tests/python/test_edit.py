@@ -260,7 +260,7 @@ def test_files_on_disk(lamp, tmp_path):
 
 
 def test_refusals(lamp):
-    with pytest.raises(ValueError, match="from 0 to 1"):
+    with pytest.raises(ValueError, match=r"in \[0,1\]"):
         lamp.edit.set(lamp["L"], "intensity", 2)
     with pytest.raises(TypeError):
         lamp.edit.set(lamp["L"], "intensity", "much")

@@ -38,7 +38,7 @@ constexpr Interface interfaces[] = {
     {"12.4.3", "LineProperties", 0, 3, 0, 0},
     {"12.4.6", "PhysicalMaterial", 0, 17, 0, 0},
     {"12.4.6", "TwoSidedMaterial", 0, 13, 0, 0},
-    {"12.4.8", "PointProperties", 0, 4, 0, 0},
+    {"12.4.7", "PointProperties", 0, 4, 0, 0},
     {"12.4.10", "UnlitMaterial", 0, 7, 0, 0},
     {"14.3.1", "Arc2D", 0, 0, 3, 0},
     {"14.3.2", "ArcClose2D", 0, 0, 5, 0},

@@ -37,10 +37,6 @@ Rotation rotationOf(const M33d& m) {
   return gltf::rotationOf(q.v.x, q.v.y, q.v.z, q.r);
 }
 
-// A size of 0 along one axis makes a figure flat. A Transform has no such scale (6.52), so one that
-// is this part of the largest size stands for it.
-constexpr double flatness = 1e-6;
-
 // Returns the axis along which a scale is 0, or -1 if there is none or more than one.
 int flatAxis(const double (&scale)[3]) {
   int axis = -1, zeros = 0;
@@ -56,7 +52,9 @@ double flatSize(const double (&scale)[3]) {
   return flatness * std::max({std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2])});
 }
 
-// Writes the fields of a Transform for any matrix. A matrix without shear has its columns' lengths
+} // namespace
+
+// A matrix without shear has its columns' lengths
 // as scale. Any other is a rotation times a symmetric matrix (polar decomposition), whose
 // eigenvectors are scaleOrientation.
 void writeMatrix(NodeStream& out, const M44d& m) {
@@ -103,8 +101,6 @@ void writeMatrix(NodeStream& out, const M44d& m) {
   out.set("scale", vec3f(s));
 }
 
-} // namespace
-
 Rotation rotationOf(double x, double y, double z, double w) {
   const double axis = std::sqrt(x * x + y * y + z * z);
   if (!(axis > 0) || !std::isfinite(axis) || !std::isfinite(w)) return {};
@@ -119,7 +115,8 @@ Scene::Scene(const MeshFile& file, NodeStream& nodes, const Item& root, Accessor
       lights_(root.extension("KHR_lights_punctual").list("lights")), skins_(root.list("skins")),
       scene_(root.index("scene", scenes_.size())), children_(nodes_.size()),
       parents_(nodes_.size(), nodes_.size()), defs_(nodes_.size()), isJoint_(nodes_.size()),
-      hasMorphAnimation_(nodes_.size()), inThisScene_(nodes_.size()) {
+      hasMorphAnimation_(nodes_.size()), hasScaleAnimation_(nodes_.size()),
+      inThisScene_(nodes_.size()) {
   findParents();
   findAnimated(root);
 }
@@ -152,8 +149,12 @@ void Scene::findAnimated(const Item& root) {
   for (const Item& animation : root.list("animations")) {
     for (const Item& channel : animation.list("channels")) {
       const Item target = channel.object("target");
-      if (target.text("path") != "weights") continue;
-      if (const auto node = target.index("node", nodes_.size())) hasMorphAnimation_[*node] = true;
+      const std::string path = target.text("path");
+      std::vector<bool>* const has = path == "weights" ? &hasMorphAnimation_
+                                     : path == "scale" ? &hasScaleAnimation_
+                                                       : nullptr;
+      const auto node = has ? target.index("node", nodes_.size()) : std::nullopt;
+      if (node) (*has)[*node] = true;
     }
   }
 }
@@ -209,8 +210,7 @@ void Scene::writeNode(size_t number, uint64_t depth) {
   writeMesh(number);
   if (const auto camera = node.index("camera", cameras_.size()))
     gltf::writeCamera(out_, cameras_[*camera]);
-  if (const auto light = node.extension("KHR_lights_punctual").index("light", lights_.size()))
-    gltf::writeLight(out_, lights_[*light]);
+  writeLight(number);
   for (const size_t child : children_[number]) writeNode(child, depth + 1);
   out_.closeField();
   out_.close();
@@ -228,6 +228,18 @@ void Scene::writePlace(const Item& node) {
   double scale[3] = {given.x, given.y, given.z};
   if (const int axis = flatAxis(scale); axis >= 0) scale[axis] = flatSize(scale);
   out_.set("scale", vec3f({scale[0], scale[1], scale[2]}));
+}
+
+void Scene::writeLight(size_t number) {
+  const Item& node = nodes_[number];
+  const auto light = node.extension("KHR_lights_punctual").index("light", lights_.size());
+  if (!light) return;
+  for (size_t above = number; above != nodes_.size(); above = parents_[above]) {
+    if (!hasScaleAnimation_[above]) continue;
+    node.warn("an animation scales a light, and its distances with it");
+    break;
+  }
+  gltf::writeLight(out_, lights_[*light], worldMatrix(number));
 }
 
 std::vector<double> Scene::weightsOf(const Item& node) const {

@@ -33,6 +33,7 @@ class Scene {
   void writeNode(size_t node, uint64_t depth);
   void writePlace(const Item& node);
   void writeMesh(size_t node);
+  void writeLight(size_t node);
   void writeSkinned();
   std::vector<double> weightsOf(const Item& node) const;
   const std::vector<Imath::M44d>& jointsOf(size_t skin);
@@ -50,16 +51,22 @@ class Scene {
   std::vector<std::vector<size_t>> children_;
   std::vector<size_t> parents_; // size(): none
   std::vector<std::string_view> defs_;
-  std::vector<bool> isJoint_, hasMorphAnimation_, inThisScene_;
+  std::vector<bool> isJoint_, hasMorphAnimation_, hasScaleAnimation_, inThisScene_;
   std::vector<size_t> skinned_; // nodes of this scene whose mesh has a skin
   std::map<size_t, std::vector<Primitives::Morph>> morphs_;
   std::map<size_t, std::vector<Imath::M44d>> joints_; // matrices of joints, by skin
-  std::unordered_map<size_t, Imath::M44d> worlds_;    // matrices of joints and the nodes above
+  std::unordered_map<size_t, Imath::M44d> worlds_;    // joints, lights and what is above
 };
 
+// A size of 0 along one axis makes a figure flat. A Transform has no such scale (ISO/IEC 14772-1
+// 6.52), so one that is this part of the largest size stands for it.
+constexpr double flatness = 1e-6;
+// Writes the fields of a Transform for any matrix of row vectors.
+void writeMatrix(NodeStream& out, const Imath::M44d& matrix);
+
 // The lights of KHR_lights_punctual and the cameras, into the open list of nodes. They look along
-// -z of the node that holds them.
-void writeLight(NodeStream& out, const Item& light);
+// -z of the node that holds them. world: the node's matrix.
+void writeLight(NodeStream& out, const Item& light, const Imath::M44d& world);
 void writeCamera(NodeStream& out, const Item& camera);
 
 // Returns the angle and axis of a quaternion x y z w; no rotation if it has no length.
