@@ -18,7 +18,7 @@ struct Circle {
   MFDouble knots{0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}, weights;
 
   Circle() {
-    const int corners[9][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0},
+    const int corners[9][2] = {{1, 0},   {1, 1},  {0, 1},  {-1, 1}, {-1, 0},
                                {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
     for (int i = 0; i < 9; i++) {
       const double w = i % 2 ? half : 1;
@@ -47,9 +47,8 @@ NodeRef circle2d(double radius, double shift, bool turned = false, int tessellat
 }
 
 // Makes a surface of revolution about the y axis of points (distance, height, weight).
-template <class Node>
-void revolve(Node& patch, const std::vector<std::array<double, 3>>& profile, const MFDouble& knots,
-             int order) {
+template <class Node> void revolve(Node& patch, const std::vector<std::array<double, 3>>& profile,
+                                   const MFDouble& knots, int order) {
   const Circle circle;
   MFVec3d points;
   patch.weight.clear();
@@ -273,10 +272,29 @@ NodeRef contour(NodeRef curve) {
   node->children = {std::move(curve)};
   return node;
 }
-size_t openEdgesOf(const Built& built) { return openEdges(built.mesh); }
+NodeRef circleOfLines(double radius, bool turned) {
+  Made<nodes::ContourPolyline2D> line("ContourPolyline2D");
+  for (int i = 0; i < 40; i++) {
+    const double angle = (turned ? 40 - i : i) * std::numbers::pi / 20;
+    line->controlPoint.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return line;
+}
+// Puts the triangles of two meshes into one.
+Mesh together(const Mesh& a, const Mesh& b) {
+  Mesh both;
+  both.kind = Mesh::Kind::triangles;
+  for (const Mesh* part : {&a, &b}) {
+    const uint32_t first = uint32_t(both.ownPoints.size());
+    both.ownPoints.insert(both.ownPoints.end(), part->points.begin(), part->points.end());
+    for (const uint32_t index : part->indices) both.ownIndices.push_back(first + index);
+  }
+  both.viewOwn();
+  return both;
+}
 
 TEST(Nurbs, ContoursLeaveWhatIsOnTheirLeft) {
-  const double disk = 200 * std::sin(2 * std::numbers::pi / 200) / 2 * 4; // of radius 2
+  const double disk = 200 * std::sin(2 * std::numbers::pi / 200) / 2 * 4; // a circle's, radius 2
   Made<nodes::NurbsTrimmedSurface> surface("NurbsTrimmedSurface");
   makeSquare(*surface);
   EXPECT_NEAR(area(build(surface).mesh), 64, 1e-4);
@@ -308,30 +326,22 @@ TEST(Nurbs, ATrimmedSurfaceHasNoGaps) {
   surface->controlPoint = coordinate(points);
   surface->uDimension = surface->vDimension = surface->uOrder = surface->vOrder = 3;
   surface->uKnot = surface->vKnot = {-4, -4, -4, 4, 4, 4};
-  for (const double radius : {1.0, 2.0, 2.3}) {
-    surface->trimmingContour = {contour(circle2d(radius, 0, false, 40))};
+  for (const double radius : {1.0, 2.0, 2.3}) { // 1 and 2 touch lines between cells
+    surface->trimmingContour = {contour(circleOfLines(radius, false))};
     const Built inner = build(surface);
-    EXPECT_EQ(openEdgesOf(inner), size_t(inner.mesh.points.size() ? openEdgesOf(inner) : 1));
-    surface->trimmingContour = {contour(circle2d(radius, 0, true, 40))};
+    surface->trimmingContour = {contour(circleOfLines(radius, true))};
     const Built outer = build(surface);
-    Mesh both;
-    both.kind = Mesh::Kind::triangles;
-    for (const Built* part : {&inner, &outer}) {
-      const uint32_t first = uint32_t(both.ownPoints.size());
-      both.ownPoints.insert(both.ownPoints.end(), part->mesh.points.begin(),
-                            part->mesh.points.end());
-      for (const uint32_t index : part->mesh.indices) both.ownIndices.push_back(first + index);
-    }
-    both.viewOwn();
-    // What is left open is the outline of the square: 8 edges on each side.
-    EXPECT_EQ(openEdges(both), 32u) << radius;
+    expectSound(inner.mesh);
+    expectSound(outer.mesh);
+    EXPECT_GE(openEdges(inner.mesh), 40u);
+    // The outline of the square has 8 edges on each side; all others have a neighbour.
+    EXPECT_EQ(openEdges(together(inner.mesh, outer.mesh)), 32u) << radius;
   }
 }
 
 TEST(Nurbs, APeriodicSurfaceIsSmoothAtItsSeam) {
   Made<nodes::NurbsCurve> curve("NurbsCurve");
-  curve->controlPoint =
-      coordinate({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {1, 0, 0}});
+  curve->controlPoint = coordinate({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {1, 0, 0}});
   curve->closed = true;
   curve->tessellation = 8;
   Faults faults;

@@ -13,7 +13,7 @@ namespace {
 // A curve that sweeps or is swept. At a corner there are two points, one for each side.
 struct SweptCurve {
   std::vector<V2d> points, tangents;
-  std::vector<double> fractions; // of the way along the texture
+  std::vector<double> fractions; // texture coordinates
 };
 
 SweptCurve sweptCurveOf(const NodeRef& node, const MeshOptions& options, Faults& faults) {
