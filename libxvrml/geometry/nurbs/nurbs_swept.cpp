@@ -40,7 +40,7 @@ struct Station {
   double parameter = 0;
   V3d place, first, second;
   SpineFrame frame;
-  V3d turn; // angular velocity of the frame
+  V3d turn{0, 0, 0}; // angular velocity of the frame
 };
 
 // Lays the planes of an Extrusion at the points of a curve, at right angles to its tangents.

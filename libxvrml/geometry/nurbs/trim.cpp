@@ -29,8 +29,7 @@ struct HalfPlane {
   V2d crossing(V2d a, V2d b) const {
     if (b[axis] < a[axis] || (b[axis] == a[axis] && b[1 - axis] < a[1 - axis])) std::swap(a, b);
     const double share = (limit - a[axis]) / (b[axis] - a[axis]);
-    V2d p;
-    p[axis] = limit;
+    V2d p(limit, limit);
     p[1 - axis] = a[1 - axis] + (b[1 - axis] - a[1 - axis]) * share;
     return p;
   }
