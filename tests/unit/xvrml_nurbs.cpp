@@ -1,6 +1,7 @@
 // xvrml_nurbs.cpp: Tests the nodes of NURBS (ISO/IEC 19775-1 clause 27) against circles, cylinders,
 // spheres and tori, which rational B-splines are exactly, and with fields that do not fit.
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 #include "geometry/nurbs/fields.h"
@@ -12,10 +13,16 @@ namespace {
 
 const double half = std::numbers::sqrt2 / 2;
 
+MFDouble numbers(std::initializer_list<double> values) {
+  MFDouble result;
+  for (const double value : values) result.push_back({value});
+  return result;
+}
+
 // A circle of nine homogeneous control points, counterclockwise from (1, 0): x, y and weight.
 struct Circle {
   std::vector<std::array<double, 3>> points;
-  MFDouble knots{0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}, weights;
+  MFDouble knots = numbers({0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}), weights;
 
   Circle() {
     const int corners[9][2] = {{1, 0},   {1, 1},  {0, 1},  {-1, 1}, {-1, 0},
@@ -23,7 +30,7 @@ struct Circle {
     for (int i = 0; i < 9; i++) {
       const double w = i % 2 ? half : 1;
       points.push_back({w * corners[i][0], w * corners[i][1], w});
-      weights.push_back(w);
+      weights.push_back({w});
     }
   }
 };
@@ -48,21 +55,21 @@ NodeRef circle2d(double radius, double shift, bool turned = false, int tessellat
 
 // Makes a surface of revolution about the y axis of points (distance, height, weight).
 template <class Node> void revolve(Node& patch, const std::vector<std::array<double, 3>>& profile,
-                                   const MFDouble& knots, int order) {
+                                   std::initializer_list<double> knots, int order) {
   const Circle circle;
   MFVec3d points;
   patch.weight.clear();
   for (const auto& [r, y, w] : profile)
     for (const auto& [cx, cz, cw] : circle.points) {
       points.push_back({r * cx, y * cw, -r * cz});
-      patch.weight.push_back(w * cw);
+      patch.weight.push_back({w * cw});
     }
   patch.controlPoint = inDouble(points);
   patch.uDimension = 9;
   patch.uKnot = circle.knots;
   patch.uOrder = 3;
   patch.vDimension = int(profile.size());
-  patch.vKnot = knots;
+  patch.vKnot = numbers(knots);
   patch.vOrder = order;
 }
 
@@ -236,8 +243,8 @@ TEST(Nurbs, ASwungCircleIsATorusAndAHalfOneASphere) {
   EXPECT_GT(signedVolume(torus.mesh), 0);
 
   profile->controlPoint = {{-1, 0}, {-half, half}, {0, 1}, {half, half}, {1, 0}};
-  profile->weight = {1, half, 1, half, 1};
-  profile->knot = {0, 0, 0, 1, 1, 2, 2, 2};
+  profile->weight = numbers({1, half, 1, half, 1});
+  profile->knot = numbers({0, 0, 0, 1, 1, 2, 2, 2});
   const Built sphere = build(swung);
   expectSound(sphere.mesh);
   EXPECT_EQ(openEdges(sphere.mesh), 0u);
@@ -264,7 +271,7 @@ TEST(Nurbs, CornersOfALineStaySharp) {
 void makeSquare(nodes::NurbsTrimmedSurface& surface) {
   surface.controlPoint = coordinate({{-4, -4, 0}, {4, -4, 0}, {-4, 4, 0}, {4, 4, 0}});
   surface.uDimension = surface.vDimension = surface.uOrder = surface.vOrder = 2;
-  surface.uKnot = surface.vKnot = {-4, -4, 4, 4};
+  surface.uKnot = surface.vKnot = numbers({-4, -4, 4, 4});
   surface.uTessellation = surface.vTessellation = 8; // lines at the contours' outermost points
 }
 NodeRef contour(NodeRef curve) {
@@ -325,7 +332,7 @@ TEST(Nurbs, ATrimmedSurfaceHasNoGaps) {
       points.push_back({4.0f * float(i - 1), 4.0f * float(j - 1), i == 1 && j == 1 ? 9.0f : 0.0f});
   surface->controlPoint = coordinate(points);
   surface->uDimension = surface->vDimension = surface->uOrder = surface->vOrder = 3;
-  surface->uKnot = surface->vKnot = {-4, -4, -4, 4, 4, 4};
+  surface->uKnot = surface->vKnot = numbers({-4, -4, -4, 4, 4, 4});
   for (const double radius : {1.0, 2.0, 2.3}) { // 1 and 2 touch lines between cells
     surface->trimmingContour = {contour(circleOfLines(radius, false))};
     const Built inner = build(surface);
@@ -367,7 +374,7 @@ TEST(Nurbs, TextureCoordinatesFollowTheirPoints) {
   EXPECT_NEAR(four.mesh.texCoords[4].y, 1.5, 1e-6);
   Made<nodes::NurbsTextureCoordinate> texture("NurbsTextureCoordinate");
   texture->controlPoint = {{0, 0}, {0.5f, 0}, {1, 0}, {0, 1}, {0.5f, 1}, {1, 1}};
-  texture->weight = {1, 0.5, 1, 1, 0.5, 1};
+  texture->weight = numbers({1, 0.5, 1, 1, 0.5, 1});
   texture->uDimension = 3;
   texture->vDimension = texture->vOrder = 2;
   patch->texCoord = texture;
@@ -388,15 +395,15 @@ TEST(Nurbs, FieldsThatDoNotFitHaveTheStandardsDefaults) {
   const float right = build(curve).mesh.points[1].y;
   EXPECT_FLOAT_EQ(right, 1);
   for (const MFDouble& knots :
-       {MFDouble{0, 1}, MFDouble{0, 0, 0, 1, 0, 1}, MFDouble{0, 0, 0, 0, 1, 1},
-        MFDouble{0, 0, 0, NAN, 1, 1}, MFDouble{1, 1, 1, 1, 1, 1}}) {
+       {numbers({0, 1}), numbers({0, 0, 0, 1, 0, 1}), numbers({0, 0, 0, 0, 1, 1}),
+        numbers({0, 0, 0, NAN, 1, 1}), numbers({1, 1, 1, 1, 1, 1})}) {
     curve->knot = knots;
     const Built built = build(curve);
     EXPECT_EQ(built.mesh.points[1].y, right);
     EXPECT_EQ(built.diagnostics.list().size(), 1u);
   }
   curve->knot.clear();
-  for (const MFDouble& weights : {MFDouble{1, 2}, MFDouble{1, 0, 1}, MFDouble{1, -1, 1}}) {
+  for (const MFDouble& weights : {numbers({1, 2}), numbers({1, 0, 1}), numbers({1, -1, 1})}) {
     curve->weight = weights;
     const Built built = build(curve);
     EXPECT_EQ(built.mesh.points[1].y, right);

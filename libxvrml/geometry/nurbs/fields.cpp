@@ -8,6 +8,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "xvrml/world.h"
 
 namespace xvrml {
 namespace {
@@ -17,7 +18,7 @@ struct Side {
   std::string_view prefix;
   int32_t order;
   int64_t dimension;
-  std::span<const double> knot;
+  std::span<const Double> knot;
 
   std::string name(std::string_view field) const {
     if (prefix.empty()) return std::string(field);
@@ -81,7 +82,7 @@ KnotVector knotsOf(const Side& side, bool closed, Faults& faults) {
 }
 
 // Sets the weights of points, which are 1. Weights that do not fit are ignored (27.4.7).
-void setWeights(std::vector<V4d>& points, std::span<const double> weights, Faults& faults) {
+void setWeights(std::vector<V4d>& points, std::span<const Double> weights, Faults& faults) {
   if (weights.empty()) return;
   if (weights.size() != points.size()) {
     faults.note(fmt::format("weight has {} values for {} control points: all weights are 1",
@@ -92,7 +93,7 @@ void setWeights(std::vector<V4d>& points, std::span<const double> weights, Fault
                                 [](double w) { return !(w > 0) || !std::isfinite(w); });
   if (bad != weights.end()) {
     faults.note(fmt::format("weight[{}] is {}, expected a number above 0: all weights are 1",
-                            bad - weights.begin(), *bad));
+                            bad - weights.begin(), double(*bad)));
     return;
   }
   for (size_t i = 0; i < points.size(); i++) points[i].w = weights[i];
@@ -145,7 +146,7 @@ std::optional<RationalCurve> makeCurve(const Node& node, bool closed, Faults& fa
 struct Net {
   Side u, v;
   std::vector<V4d> points;
-  std::span<const double> weights;
+  std::span<const Double> weights;
 };
 
 // Repeats the first columns of a net behind its last one.

@@ -6,6 +6,7 @@
 #include "geometry/extrusion_frames.h"
 #include "geometry/nurbs/fields.h"
 #include "geometry/nurbs/surface_grid.h"
+#include "xvrml/world.h"
 
 namespace xvrml {
 namespace {
