@@ -22,6 +22,7 @@ void addGroupingBehaviours(const AddBehaviour& add);
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addSplineInterpolatorBehaviours(const AddBehaviour& add);
 void addSquadInterpolatorBehaviours(const AddBehaviour& add);
+void addNurbsInterpolatorBehaviours(const AddBehaviour& add);
 void addEaseBehaviours(const AddBehaviour& add);
 void addEventUtilityBehaviours(const AddBehaviour& add); // filters and triggers
 void addSequencerBehaviours(const AddBehaviour& add);

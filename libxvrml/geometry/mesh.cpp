@@ -20,9 +20,17 @@ void Mesh::viewOwn() {
   alphas = ownAlphas;
 }
 
-std::span<const Vec3f> coordinates(const NodeRef& node) {
-  auto* coordinate = nodeCast<nodes::Coordinate>(renderedNode(node.get()));
-  return coordinate ? std::span<const Vec3f>(coordinate->point) : std::span<const Vec3f>();
+Coordinates coordinates(const NodeRef& node) {
+  Coordinates result;
+  Node* rendered = renderedNode(node.get());
+  if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
+    result.points = coordinate->point;
+  } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
+    result.own.reserve(exact->point.size());
+    for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
+    result.points = result.own;
+  }
+  return result;
 }
 
 std::span<const Vec3f> normalVectors(const NodeRef& node) {
