@@ -1,5 +1,7 @@
 #include "libpicture/raster/large_mesh.h"
 
+#include "xvrml/deformed.h"
+
 namespace picture::raster {
 
 using xvrml::GeometryArrays;
@@ -28,7 +30,7 @@ GeometryArrays arraysOf(const xvrml::DrawnShape& shape) {
   if (!points) return shape.mesh();
   GeometryArrays arrays;
   arrays.kind = GeometryArrays::Kind::triangles;
-  arrays.points = points->point;
+  arrays.points = xvrml::drawnPoints(*points);
   arrays.indices.reserve(set->coordIndex.size() / 4 * 3);
   for (size_t i = 0; i < set->coordIndex.size(); i += 4)
     for (size_t k = i; k < i + 3; ++k) arrays.indices.push_back(uint32_t(set->coordIndex[k]));

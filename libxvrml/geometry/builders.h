@@ -54,8 +54,8 @@ struct ColorValues {
   std::vector<float> alphas; // opacity of each colour, 0 to 1; empty for a Color
 };
 
-// Return the arrays of property nodes, also through a prototype instance. They return an empty span
-// for NULL and for nodes of another type.
+// Return the arrays of property nodes as they are drawn, also through a prototype instance. They
+// return an empty span for NULL and for nodes of another type.
 std::span<const Vec3f> coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
 ColorValues colorValues(const NodeRef& node);

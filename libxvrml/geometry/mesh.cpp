@@ -6,6 +6,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "xvrml/deformed.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -21,12 +22,12 @@ void Mesh::viewOwn() {
 
 std::span<const Vec3f> coordinates(const NodeRef& node) {
   auto* coordinate = nodeCast<nodes::Coordinate>(renderedNode(node.get()));
-  return coordinate ? std::span<const Vec3f>(coordinate->point) : std::span<const Vec3f>();
+  return coordinate ? drawnPoints(*coordinate) : std::span<const Vec3f>();
 }
 
 std::span<const Vec3f> normalVectors(const NodeRef& node) {
   auto* normal = nodeCast<nodes::Normal>(renderedNode(node.get()));
-  return normal ? std::span<const Vec3f>(normal->vector) : std::span<const Vec3f>();
+  return normal ? drawnNormals(*normal) : std::span<const Vec3f>();
 }
 
 ColorValues colorValues(const NodeRef& node) {

@@ -4,7 +4,6 @@
 
 #include <map>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "parse/mesh/gltf/primitives.h"
@@ -22,7 +21,6 @@ class Scene {
   size_t size() const { return nodes_.size(); }
   // DEF name of a node's Transform; empty: it is in no scene.
   std::string_view defOf(size_t node) const { return defs_[node]; }
-  bool isJoint(size_t node) const { return isJoint_[node]; }
   const std::vector<Primitives::Morph>* morphsOf(size_t node) const;
 
  private:
@@ -33,28 +31,24 @@ class Scene {
   void writeNode(size_t node, uint64_t depth);
   void writePlace(const Item& node);
   void writeMesh(size_t node);
-  void writeSkinned();
+  void findSkinned(const std::vector<size_t>& roots);
+  void writeFigure(const std::vector<size_t>& roots);
+  Deformation deformationOf(size_t node);
   std::vector<double> weightsOf(const Item& node) const;
-  const std::vector<Imath::M44d>& jointsOf(size_t skin);
-  Imath::M44d matrixOf(const Item& node) const;
-  const Imath::M44d& worldMatrix(size_t node);
 
   const MeshFile& file_;
   NodeStream& out_;
-  Accessors& accessors_;
-  Scratch scratch_;
   Materials materials_;
   Primitives primitives_;
-  std::vector<Item> nodes_, scenes_, cameras_, lights_, skins_;
+  std::vector<Item> nodes_, scenes_, cameras_, lights_;
+  Skins skins_;
   std::optional<size_t> scene_;
   std::vector<std::vector<size_t>> children_;
   std::vector<size_t> parents_; // size(): none
   std::vector<std::string_view> defs_;
-  std::vector<bool> isJoint_, hasMorphAnimation_, inThisScene_;
+  std::vector<bool> hasMorphAnimation_, inThisScene_;
   std::vector<size_t> skinned_; // nodes of this scene whose mesh has a skin
   std::map<size_t, std::vector<Primitives::Morph>> morphs_;
-  std::map<size_t, std::vector<Imath::M44d>> joints_; // matrices of joints, by skin
-  std::unordered_map<size_t, Imath::M44d> worlds_;    // matrices of joints and the nodes above
 };
 
 // The lights of KHR_lights_punctual and the cameras, into the open list of nodes. They look along
