@@ -124,9 +124,12 @@ Vec3f moveNormal(const Matrix& m, const Vec3f& normal) {
   return {float(n.x / length), float(n.y / length), float(n.z / length)};
 }
 
+// Returns the point itself where floats cannot hold its new place.
 Vec3f movePoint(const Matrix& m, const Vec3f& point) {
   const Vector p = transformPoint(m, vector(point));
-  return {float(p.x), float(p.y), float(p.z)};
+  const Vec3f moved{float(p.x), float(p.y), float(p.z)};
+  const bool fits = std::isfinite(moved.x) && std::isfinite(moved.y) && std::isfinite(moved.z);
+  return fits ? moved : point;
 }
 
 // Draws vectors in place of the node's own; null: its own. Returns whether that is a change.
