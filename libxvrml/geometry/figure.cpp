@@ -81,6 +81,12 @@ std::vector<Joint> jointsOf(const nodes::HAnimHumanoid& figure) {
   return joints;
 }
 
+// Returns where a vertex goes; its former place if floats cannot hold the new one.
+Vec3f finiteOr(const Vec3f& former, const Vec3f& moved) {
+  return std::isfinite(moved.x) && std::isfinite(moved.y) && std::isfinite(moved.z) ? moved
+                                                                                    : former;
+}
+
 // Moves vertices by displacers, each by its weight.
 void displace(const MFNode& displacers, Vertices& vertices) {
   for (const NodeRef& one : displacers) {
@@ -92,7 +98,7 @@ void displace(const MFNode& displacers, Vertices& vertices) {
       Vec3f* const p = vertices.at(displacer->coordIndex[i]);
       if (!p || weight == 0) continue;
       const Vec3f& d = displacer->displacements[i];
-      *p = {p->x + weight * d.x, p->y + weight * d.y, p->z + weight * d.z};
+      *p = finiteOr(*p, {p->x + weight * d.x, p->y + weight * d.y, p->z + weight * d.z});
       vertices.moved = true;
     }
   }
@@ -124,12 +130,9 @@ Vec3f moveNormal(const Matrix& m, const Vec3f& normal) {
   return {float(n.x / length), float(n.y / length), float(n.z / length)};
 }
 
-// Returns the point itself where floats cannot hold its new place.
 Vec3f movePoint(const Matrix& m, const Vec3f& point) {
   const Vector p = transformPoint(m, vector(point));
-  const Vec3f moved{float(p.x), float(p.y), float(p.z)};
-  const bool fits = std::isfinite(moved.x) && std::isfinite(moved.y) && std::isfinite(moved.z);
-  return fits ? moved : point;
+  return finiteOr(point, {float(p.x), float(p.y), float(p.z)});
 }
 
 // Draws vectors in place of the node's own; null: its own. Returns whether that is a change.
