@@ -189,9 +189,8 @@ void Scene::writeRoots(const std::vector<size_t>& roots) {
   skinned_.clear();
   findSkinned(roots);
   skins_.beginFigure();
-  for (const size_t node : skinned_)
-    if (const auto mesh = nodes_[node].index("mesh", primitives_.size()))
-      primitives_.addTo(deformationOf(node), *mesh);
+  for (const auto& [node, skinned] : skinned_)
+    if (skinned.mesh) primitives_.addTo(deformationOf(node), *skinned.mesh);
   if (!skins_.empty()) return writeFigure(roots);
   for (const size_t root : roots) writeNode(root, 1);
 }
@@ -205,9 +204,8 @@ void Scene::findSkinned(const std::vector<size_t>& roots) {
     open.pop_back();
     if (!nodes_[number] || seen[number] || !defs_[number].empty()) continue;
     seen[number] = true;
-    if (nodes_[number].index("mesh", primitives_.size()) &&
-        nodes_[number].index("skin", skins_.size()))
-      skinned_.push_back(number);
+    if (const auto skin = nodes_[number].index("skin", skins_.size()))
+      skinned_[number] = {nodes_[number].index("mesh", primitives_.size()), *skin};
     open.insert(open.end(), children_[number].rbegin(), children_[number].rend());
   }
 }
@@ -221,17 +219,15 @@ void Scene::writeFigure(const std::vector<size_t>& roots) {
   for (const size_t root : roots) writeNode(root, 1);
   out_.closeField();
   out_.openField("skin");
-  for (const size_t node : skinned_)
-    if (const auto mesh = nodes_[node].index("mesh", primitives_.size()))
-      primitives_.write(*mesh, deformationOf(node));
+  for (const auto& [node, skinned] : skinned_)
+    if (skinned.mesh) primitives_.write(*skinned.mesh, deformationOf(node));
   out_.closeField();
   skins_.writeList(out_);
   out_.close();
 }
 
 Deformation Scene::deformationOf(size_t number) {
-  const auto skin = nodes_[number].index("skin", skins_.size());
-  return {weightsOf(nodes_[number]), skin ? &skins_ : nullptr, number, skin.value_or(0)};
+  return {weightsOf(nodes_[number]), &skins_, number, skinned_.at(number).skin};
 }
 
 void Scene::writeNode(size_t number, uint64_t depth) {
@@ -281,9 +277,9 @@ std::vector<double> Scene::weightsOf(const Item& node) const {
 
 void Scene::writeMesh(size_t number) {
   const Item& node = nodes_[number];
+  if (skinned_.contains(number)) return; // part of the figure
   const auto mesh = node.index("mesh", primitives_.size());
   if (!mesh) return;
-  if (node.index("skin", skins_.size())) return; // part of the figure
   primitives_.keepMorphs(hasMorphAnimation_[number]);
   primitives_.write(*mesh, {weightsOf(node)});
   if (hasMorphAnimation_[number]) morphs_[number] = primitives_.takeMorphs();

@@ -47,7 +47,11 @@ class Scene {
   std::vector<size_t> parents_; // size(): none
   std::vector<std::string_view> defs_;
   std::vector<bool> hasMorphAnimation_, inThisScene_;
-  std::vector<size_t> skinned_; // nodes of this scene whose mesh has a skin
+  struct Skinned {
+    std::optional<size_t> mesh;
+    size_t skin;
+  };
+  std::map<size_t, Skinned> skinned_; // nodes of this scene that have a skin
   std::map<size_t, std::vector<Primitives::Morph>> morphs_;
 };
 
