@@ -193,6 +193,7 @@ void Scene::writeRoots(const std::vector<size_t>& roots) {
     if (skinned.mesh) primitives_.addTo(deformationOf(node), *skinned.mesh);
   if (!skins_.empty()) return writeFigure(roots);
   for (const size_t root : roots) writeNode(root, 1);
+  writeSkinned(); // points alone
 }
 
 // Finds the nodes of the next scene that have a mesh with a skin and are not written yet.
@@ -219,11 +220,15 @@ void Scene::writeFigure(const std::vector<size_t>& roots) {
   for (const size_t root : roots) writeNode(root, 1);
   out_.closeField();
   out_.openField("skin");
-  for (const auto& [node, skinned] : skinned_)
-    if (skinned.mesh) primitives_.write(*skinned.mesh, deformationOf(node));
+  writeSkinned();
   out_.closeField();
   skins_.writeList(out_);
   out_.close();
+}
+
+void Scene::writeSkinned() {
+  for (const auto& [node, skinned] : skinned_)
+    if (skinned.mesh) primitives_.write(*skinned.mesh, deformationOf(node));
 }
 
 Deformation Scene::deformationOf(size_t number) {

@@ -33,6 +33,7 @@ class Scene {
   void writeMesh(size_t node);
   void findSkinned(const std::vector<size_t>& roots);
   void writeFigure(const std::vector<size_t>& roots);
+  void writeSkinned();
   Deformation deformationOf(size_t node);
   std::vector<double> weightsOf(const Item& node) const;
 
