@@ -3,6 +3,7 @@
 // drawn in another way.
 #include "event/engine.h"
 #include "geometry/figure.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 

@@ -4,6 +4,7 @@
 // (ISO/IEC 19774-1 4.9), so a weight that is missing to 1 leaves that part of the vertex at rest.
 #include "geometry/figure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <span>
