@@ -65,8 +65,8 @@ struct Coordinates {
   std::vector<Vec3f> own;
 };
 
-// Return the arrays of property nodes, also through a prototype instance. They return an empty span
-// for NULL and for nodes of another type.
+// Return the arrays of property nodes as they are drawn, also through a prototype instance. They
+// return an empty span for NULL and for nodes of another type.
 Coordinates coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
 ColorValues colorValues(const NodeRef& node);

@@ -7,6 +7,7 @@
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
 #include "geometry/thick.h"
+#include "xvrml/deformed.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -24,7 +25,7 @@ Coordinates coordinates(const NodeRef& node) {
   Coordinates result;
   Node* rendered = renderedNode(node.get());
   if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
-    result.points = coordinate->point;
+    result.points = drawnPoints(*coordinate);
   } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
     result.own.reserve(exact->point.size());
     for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
@@ -35,7 +36,7 @@ Coordinates coordinates(const NodeRef& node) {
 
 std::span<const Vec3f> normalVectors(const NodeRef& node) {
   auto* normal = nodeCast<nodes::Normal>(renderedNode(node.get()));
-  return normal ? std::span<const Vec3f>(normal->vector) : std::span<const Vec3f>();
+  return normal ? drawnNormals(*normal) : std::span<const Vec3f>();
 }
 
 ColorValues colorValues(const NodeRef& node) {

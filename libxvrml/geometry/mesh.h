@@ -77,8 +77,8 @@ struct MeshOptions {
   std::string_view limitName = {};
   // Cylinders and cones get exact surfaces beside their triangles.
   bool exactShapes = false;
-  // If not null, those of the mesh that was built of this node before; only the node's points have
-  // changed since. A mesh that is still built of them takes them.
+  // If not null, those of the mesh that was built of this node before; only the node's points or
+  // normals have changed since. A mesh that is still built of them takes them.
   MeshTopology* former = nullptr;
   // Diameters in the units of the node: points become balls, and lines rods (thick.h). 0: they are
   // thin.

@@ -133,11 +133,11 @@ void Meshes::rebuildAll() {
     if (entries_[mesh].geometry) changed(int32_t(mesh));
 }
 
-void Meshes::changed(int32_t mesh, bool pointsOnly) {
+void Meshes::changed(int32_t mesh, bool vectorsOnly) {
   leave(mesh);
   forgetCorners();
   Entry& entry = entries_[size_t(mesh)];
-  if (!pointsOnly) entry.topology.reset();
+  if (!vectorsOnly) entry.topology.reset();
   entry.mesh.reset();
   entry.known = false;
 }

@@ -43,9 +43,9 @@ class Meshes {
     return entry.known && (entry.extent.alpha != hasVertexAlpha(*entry.geometry) ||
                            entry.extent.byNormal != looksUpByNormal(*entry.geometry));
   }
-  // Invalidates the mesh because fields of the node have changed, or only the points of its
-  // Coordinate.
-  void changed(int32_t mesh, bool pointsOnly = false);
+  // Invalidates the mesh because fields of the node have changed, or only the vectors of its
+  // Coordinate or Normal.
+  void changed(int32_t mesh, bool vectorsOnly = false);
   // Sets whether events reach the geometry. A dynamic mesh is never grouped with equal ones.
   void setDynamic(int32_t mesh, bool dynamic);
   bool dynamic(int32_t mesh) const { return entries_[size_t(mesh)].dynamic; }

@@ -113,12 +113,14 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
 // Handles a change of a geometry node or of a node that it holds.
 void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
   SeenNodes visited;
+  const bool vectorsOnly = first.type().index == nodes::Coordinate::typeIndex ||
+                           first.type().index == nodes::Normal::typeIndex;
   walkHolders(first, visited, [&](Node& node) {
     const int32_t mesh = graph.meshes.find(&node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
     const bool otherSurface = graph.meshes.switchedSurface(mesh);
-    graph.meshes.changed(mesh, first.type().index == nodes::Coordinate::typeIndex);
+    graph.meshes.changed(mesh, vectorsOnly);
     work.meshes.push_back(mesh);
     boundsStale = countsStale = true;
     forEachShape(graph, node, [&](ItemId shape) {

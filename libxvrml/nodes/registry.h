@@ -30,7 +30,7 @@ std::string_view containerOf(const NodeType& type);
 namespace nodes {
 struct AbsentNode;
 }
-// Returns what of a node is not done: "its skin stays as it is at rest". "" for most types. [any
+// Returns what of a node is not done: "bodies do not move". "" for most types. [any
 // thread]
 std::string_view lackOf(const NodeType& type);
 // Returns the row of a node of X3D that the library does not have; null for every other name. [any

@@ -184,11 +184,7 @@ TEST(X3d, GroupsWithoutImplementationKeepWhatTheyHold) {
                 "space of the world, without a viewport or a viewpoint of its own",
                 "test.x3dv:3:1: warning: 'PickableGroup' is not supported wholly: all picking "
                 "sensors see its children",
-                "test.x3dv:5:1: warning: 'HAnimHumanoid' is not supported wholly: its skin stays "
-                "as it is at rest",
                 "test.x3dv:5:108: error: no node is named 'J' by a DEF above",
-                "test.x3dv:5:125: warning: 'HAnimJoint' is not supported wholly: it moves its "
-                "children, but does not bend the skin",
                 "test.x3dv:6:1: warning: 'RigidBodyCollection' is not supported wholly: bodies do "
                 "not move",
                 "test.x3dv:6:57: warning: 'CollidableShape' is not supported wholly: it does not "

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "geometry/descend.h"
+#include "geometry/figure.h"
 #include "geometry/half_space.h"
 #include "mapper/graph/graph.h"
 #include "nodes/bindable.h"
@@ -125,8 +126,9 @@ void planCadLayer(PlanContext&, Node& node, Plan& plan) {
 }
 
 // Groups that are placed without all that they can do (NodeType's `lacks`).
-void planPlacing(PlanContext&, Node& node, Plan& plan) {
+void planPlacing(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
+  if (!node.live && deforms(node.type())) deform(node, &context.world.diagnostics);
   appendPlaced(node, plan.children);
 }
 
