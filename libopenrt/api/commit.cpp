@@ -210,6 +210,7 @@ class CommitBuilder {
       e.parent = state.parent;
       e.object = state.object;
       e.shader = state.shader;
+      e.fog = state.fog;
       e.matrix = toEdit(state.matrix);
       e.visible = state.visible;
       e.userData = state.userData;

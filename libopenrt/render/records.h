@@ -101,7 +101,7 @@ struct Record {
   bool cull = false;
   bool flip = false;   // the kernel's geometric normal points to the back
   uint32_t shader = 0; // index into ShaderTable
-  // Index into the buckets (class, light set); hits of a bucket are shaded together.
+  // Index into the buckets (class, light set, fog); hits of a bucket are shaded together.
   uint32_t bucket = 0;
   uint32_t name = 0, instance = 0;
   uint32_t primitives = 0; // number of triangles, segments or points
@@ -140,6 +140,7 @@ struct Record {
 struct Bucket {
   const RtsClass* shaderClass = nullptr;
   uint32_t lightSet = 0;
+  uint32_t fog = 0; // the environment shader whose fog lies in front of the hits; 0: the scene's
 };
 
 } // namespace openrt

@@ -62,6 +62,7 @@ struct Instance {
   uint64_t userData = 0;
   uint32_t name = 0;
   bool dynamic = false;
+  uint32_t fog = 0; // an environment shader; 0: the fog around the instance
 };
 
 struct Light {

@@ -121,6 +121,7 @@ class Writer {
       e.parent = instance.parent;
       e.object = instance.object;
       e.shader = shader(instance.shader);
+      e.fog = shader(instance.fog);
       e.matrix = openrt::makeEdit(instance.matrix);
       e.visible = instance.visible;
       e.userData = instance.userData;

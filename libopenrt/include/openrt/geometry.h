@@ -165,6 +165,11 @@ RT_API void rtInstanceVisible(RTid instance, int visible);
 /* Overrides the shaders of everything below this instance; 0 removes the override.
  * [context-thread] */
 RT_API void rtInstanceShader(RTid instance, RTid shader);
+/* Sets the fog in front of everything below this instance: a shader of an environment class, of
+ * which only the fog counts (`attenuate`), in the axes of the world. It replaces the fog of
+ * rtUseEnvironment; the fog of the innermost instance counts. A class without fog is clear air.
+ * 0: the fog around the instance. [context-thread] */
+RT_API void rtInstanceFog(RTid instance, RTid shader);
 
 /* Hints tell how often an instance's matrix and visibility, or an object's definition, will change.
  * Pictures differ between the two hints in the last bits alone.

@@ -34,10 +34,11 @@ bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
 
 } // namespace
 
-uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
-  const auto key = std::make_pair(input_->shaders[slot].shaderClass, lightSet);
-  const auto [found, fresh] = buckets_.try_emplace(key, uint32_t(accel_->buckets.size()));
-  if (fresh) accel_->buckets.push_back({key.first, lightSet});
+uint32_t AccelBuilder::bucketOf(uint32_t slot, const Inherited& path) {
+  const RtsClass* shaderClass = input_->shaders[slot].shaderClass;
+  const auto [found, fresh] = buckets_.try_emplace({shaderClass, path.lightSet, path.fog},
+                                                   uint32_t(accel_->buckets.size()));
+  if (fresh) accel_->buckets.push_back({shaderClass, path.lightSet, path.fog});
   return found->second;
 }
 
@@ -66,7 +67,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.shader = input_->shaders.slotOf(path.shader ? path.shader : g.shader);
   // The back faces of a body with a medium are needed, even if the geometry asks for culling.
   r.cull = g.cull && !input_->shaders[r.shader].shaderClass->medium;
-  r.bucket = bucketOf(r.shader, path.lightSet);
+  r.bucket = bucketOf(r.shader, path);
   r.name = g.name ? g.name : path.name;
   r.instance = path.instance;
   r.userData = path.userData;
