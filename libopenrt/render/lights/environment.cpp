@@ -77,9 +77,9 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
 
 Fog fogAt(const RtsBatch& batch) {
   const RenderScene& scene = batch.scene;
-  RoleSlot source = scene.environment;
-  if (batch.fog) source = {scene.shaders->role(batch.fog, RTS_ENVIRONMENT), {}, {}};
-  const ShaderSlot& shader = source.shader;
+  const bool own = batch.fog != 0; // the fog of an instance has the axes of the world
+  const ShaderSlot shader =
+      own ? scene.shaders->role(batch.fog, RTS_ENVIRONMENT) : scene.environment.shader;
   Fog fog;
   if (!shader.shaderClass || !shader.shaderClass->attenuate) return fog;
   const RtsHits& h = batch.points->hits;
@@ -90,7 +90,7 @@ Fog fogAt(const RtsBatch& batch) {
     const bool deflected = batch.states->flagsOf(batch.order[std::min(i, n - 1)]).deflected();
     const Vec3f toHit =
         deflected ? load(h.direction, i) * h.distance[i] : load(h.position, i) - scene.eye;
-    store(source.toLocal.direction(toHit), fromEye, i);
+    store(own ? toHit : scene.environment.toLocal.direction(toHit), fromEye, i);
   }
   for (auto& a : fog.airlight) a = batch.arena.takeZero<float>(size);
   fog.transmittance = batch.arena.takeZero<float>(size);

@@ -1,5 +1,7 @@
 #include "mapper/shading/fogs.h"
 
+#include <map>
+
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -46,22 +48,21 @@ int32_t Fogs::outermost(const Graph& graph, const Places& places) {
 }
 
 void Fogs::updateForFrame(const Graph& graph, Places& places) {
-  std::vector<int32_t> counting; // places of LocalFogs
+  std::map<int32_t, int32_t> counting; // by place of a group: that of its LocalFog
   for (size_t i = 0; i < places.all.size(); ++i) {
     Place& place = places.all[i];
-    if (isFog(graph, place) && place.parent != 0) {
-      if (!counting.empty() && places.all[size_t(counting.back())].parent == place.parent) {
-        removeFog(places.all[size_t(counting.back())]);
-        counting.pop_back();
-      }
-      counting.push_back(int32_t(i));
-    } else if (place.fog != 0) {
+    if (!isFog(graph, place) || place.parent == 0) {
       removeFog(place);
+      continue;
     }
+    const auto [last, fresh] = counting.try_emplace(place.parent, int32_t(i));
+    if (fresh) continue;
+    removeFog(places.all[size_t(last->second)]);
+    last->second = int32_t(i);
   }
-  for (const int32_t i : counting) {
+  for (const auto& [parent, i] : counting) {
     Place& place = places.all[size_t(i)];
-    const RTid group = places.all[places.splitAbove(place.parent)].instance;
+    const RTid group = places.all[places.splitAbove(parent)].instance;
     if (group == 0) { // the group could not be placed
       removeFog(place);
       continue;
