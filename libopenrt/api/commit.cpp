@@ -141,6 +141,7 @@ class CommitBuilder {
     e->cull = built.state.cull;
     e->clockwise = built.state.clockwise;
     e->width = built.state.width;
+    e->texGen = built.state.texGen;
     e->points = addArray(built.points);
     e->indices = addArray(built.indices);
     e->normals = addArray(built.normals);

@@ -114,6 +114,7 @@ struct Record {
   // The geometry's own values of shader parameters, already validated.
   const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;
+  edit::TexGen texGen = edit::TexGen::Off;
   float scale = 1; // not instanced: vertices times scale are in render space
   const RecordFrames* frames = &noFrames;
   const AnalyticSurface* surface = nullptr;

@@ -267,7 +267,8 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
                                  array(g->colors),
                                  {},
                                  AnalyticSurface::make(g->primitive, g->surface),
-                                 array(g->rest)});
+                                 array(g->rest),
+                                 g->texGen});
     for (const auto& p : g->parameters)
       if (p)
         target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});

@@ -40,6 +40,7 @@ struct Geometry {
   // For a mesh that deforms: the points that its tree is built of, before it is refitted to
   // `points`. Null: `points`.
   ArrayPtr rest;
+  edit::TexGen texGen = edit::TexGen::Off;
 
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };

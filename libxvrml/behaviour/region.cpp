@@ -144,8 +144,8 @@ bool meets(const Region& region, const PickBox& box, const Matrix& place) {
 }
 
 // Finds the first place of the sensor and of its target where the target's bounding box meets the
-// region, and the matrix from the target's coordinate system to the sensor's. A target that a Switch
-// does not show is nowhere.
+// region, and the matrix from the target's coordinate system to the sensor's. A target in a choice
+// that a Switch does not show is nowhere.
 bool targetInside(Events& events, const Node& node, const Region& region, Node& target,
                   Matrix& targetToSensor) {
   constexpr size_t places = 64; // a hostile world has more, and ends

@@ -64,7 +64,8 @@ void removedParameters(const RuleContext& f, const Report& report) {
 void unmappedTextures(const RuleContext& f, const Report& report) {
   for (const auto& [id, object] : f.scene.objects)
     for (const Geometry& g : object.geometries) {
-      if (g.primitive == edit::Primitive::Sphere || g.surface || g.texCoords || g.shader == 0)
+      if (g.primitive == edit::Primitive::Sphere || g.surface || g.texCoords || g.shader == 0 ||
+          g.texGen != edit::TexGen::Off)
         continue;
       const auto values = f.scene.shaders.find(g.shader);
       if (values == f.scene.shaders.end()) continue;
