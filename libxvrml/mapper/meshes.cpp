@@ -20,7 +20,8 @@ template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
 }
 
 uint64_t contentHash(const Mesh& m) {
-  const uint64_t flags = uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9;
+  const uint64_t flags =
+      uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9 | uint64_t(m.texGen) << 16;
   const uint64_t colorless =
       hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags))));
   return hashed(m.alphas, hashed(m.colors, colorless));
@@ -203,7 +204,7 @@ const Mesh& Meshes::get(int32_t mesh) {
 
 bool Meshes::sameContent(int32_t a, int32_t b) {
   const Mesh &m = get(a), &n = get(b);
-  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw &&
+  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && m.texGen == n.texGen &&
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
          equalBytes(m.colors, n.colors) && equalBytes(m.alphas, n.alphas);
@@ -402,6 +403,7 @@ void compact(const Mesh& mesh, Mesh& out) {
   out.kind = mesh.kind;
   out.solid = mesh.solid;
   out.ccw = mesh.ccw;
+  out.texGen = mesh.texGen;
   for (const uint32_t i : used) {
     out.ownPoints.push_back(mesh.points[i]);
     if (!mesh.normals.empty()) out.ownNormals.push_back(mesh.normals[i]);

@@ -11,6 +11,8 @@
 namespace xvrml::mapper {
 
 namespace {
+static_assert(int(TexGen::sphereReflection) == RT_TEX_GEN_SPHERE_REFLECTION);
+
 constexpr double farthestFloat = 1e38;
 constexpr double farthestDrawn = 1e20; // by the renderer (decision 62)
 
@@ -31,6 +33,7 @@ const Mesh& withLinearColors(const Mesh& mesh, Mesh& storage) {
   storage.alphas = mesh.alphas;
   storage.solid = mesh.solid;
   storage.ccw = mesh.ccw;
+  storage.texGen = mesh.texGen;
   for (const Color& color : mesh.colors) storage.ownColors.push_back(convert(color, true));
   storage.colors = storage.ownColors;
   return storage;
@@ -230,6 +233,7 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   rtPointSize(surface.pointSize);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
+  rtTexGen(textured ? RTenum(m.texGen) : RTenum(RT_TEX_GEN_OFF));
   if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
   } else if (!m.exact.empty()) {

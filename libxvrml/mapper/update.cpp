@@ -64,7 +64,7 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
     case Change::geometry: geometryChanged(work, node); break;
     case Change::appearance:
     case Change::shader: appearanceChanged(work, node); break;
-    case Change::light: lightChanged(work, node); break;
+    case Change::light: switchChanged(work, node); break;
     case Change::view:
       environment.changed(node);
       viewsStale = true;
@@ -190,13 +190,15 @@ void OpenRTMapper::Impl::textured(Work& work, ItemId shape) {
   work.regroup = true; // it no longer equals meshes without texture coordinates
 }
 
-void OpenRTMapper::Impl::lightChanged(Work& work, Node& node) {
+// Handles a change of a light or a LocalFog.
+void OpenRTMapper::Impl::switchChanged(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
   // The headlight of a NavigationInfo is read every frame.
-  if (id == 0 || !isLight(graph.items[id].kind)) return;
+  if (id == 0 || !isSwitched(graph.items[id].kind)) return;
   const bool scoped = graph.items[id].scoped;
-  graph.readLight(id);
+  graph.readSwitch(id);
   lights.changed(node);
+  fogs.changed(node);
   environment.changed(node);
   if (graph.items[id].on && !graph.items[id].placeDependent) work.regroup = true;
   if (graph.items[id].scoped != scoped) work.regroup = true;
@@ -222,6 +224,7 @@ void OpenRTMapper::Impl::regroup() {
   objects.placingChanged(changed);
   objects.regrouped(gone);
   lights.remove(gone);
+  fogs.remove(gone);
   lights.forget(graph);
   rebind();
   viewsStale = boundsStale = namesStale = lightStale = true;

@@ -105,6 +105,13 @@ void planEnvironmentLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::EnvironmentLight>(node, Kind::environmentLight, plan);
 }
 
+// The fog of a group and all below it (ISO/IEC 19775-1 24.4.4).
+void planLocalFog(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::localFog;
+  plan.on = static_cast<nodes::LocalFog&>(node).enabled;
+  plan.scoped = true;
+}
+
 void planOrtLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::ORTLight>(node, Kind::localLight, plan);
 }
@@ -176,6 +183,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
     set(nodes::EnvironmentLight::typeIndex, planEnvironmentLight);
+    set(nodes::LocalFog::typeIndex, planLocalFog);
     set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::ORTSensor::typeIndex, planSensor);
     set(nodes::ClipPlane::typeIndex, planClipPlane);
