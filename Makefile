@@ -145,10 +145,10 @@ accuracy:
 corpus: build
 	@$(PYTHON) tests/corpus/corpus.py --vv $(R)/bin/vv --corpus $(CORPUS) --out build/corpus
 
-## make corpus-x3d    table of a folder of X3D, VRML 1.0 and glTF files (CORPUS_X3D=...) into build/corpus-x3d; SHEETS=1 pictures
+## make corpus-x3d    table of a folder of X3D, VRML 1.0 and glTF files (CORPUS_X3D=...) into build/corpus-x3d; SHEETS=1 pictures, BESIDE="FOLDER ..." differences to other browsers' pictures
 corpus-x3d:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders scripts
-	@$(PYTHON) tests/corpus/corpus_x3d.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(SHEETS),--sheets)
+	@$(PYTHON) tests/corpus/corpus_x3d.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(SHEETS),--sheets) $(if $(BESIDE),--beside $(BESIDE))
 
 ## make round-trip    writes each file of that folder in every encoding, and compares the pictures, into build/round-trip
 round-trip:

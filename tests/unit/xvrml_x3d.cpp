@@ -89,6 +89,26 @@ TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
   EXPECT_EQ(world->scope.roots.size(), 2u);
 }
 
+// Nodes that one browser has are known by name, so that the message says whose they are. A file of
+// VRML97 that does not declare them is wrong (4.9), and keeps what such a node holds.
+TEST(X3d, NodesOfOtherBrowsersAreKnownByName) {
+  const std::string text = "Shape { geometry Teapot { } }\nShape { geometry Teapot { } }\n"
+                           "TouchGroup { children Shape { } }";
+  const auto world = load("#X3D V3.3 utf8\n" + text);
+  EXPECT_EQ(
+      messagesOf(*world),
+      (Messages{"test.x3dv:2:18: warning: nodes of type 'Teapot' (geometry of Castle Game "
+                "Engine) are not supported and are left out here and below, with all that "
+                "they hold: Shapes with it are not drawn",
+                "test.x3dv:4:1: warning: nodes of type 'TouchGroup' (grouping of Titania) are "
+                "not supported and are left out here and below, with all that they hold: what "
+                "it holds is not drawn"}));
+  EXPECT_EQ(world->diagnostics.errors(), 0u);
+  const auto older = load("#VRML V2.0 utf8\n" + text, "a.wrl");
+  EXPECT_EQ(older->diagnostics.errors(), 3u);
+  EXPECT_NE(nodeCast<nodes::Group>(older->scope.roots.back()), nullptr);
+}
+
 // Clause 31: programs for graphics processors are reported once, however many a file has.
 TEST(X3d, ProgramsForGraphicsProcessorsAreSaidOnce) {
   const auto world = load("#X3D V3.3 utf8\nShape { appearance Appearance { shaders [ DEF S "
