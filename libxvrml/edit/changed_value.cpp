@@ -76,9 +76,10 @@ std::string changed(std::string_view text, FieldType type, const Value& before, 
   // what their bytes say.
   const bool isText =
       type == FieldType::SFString || (type == FieldType::MFString && text.find('"') == text.npos);
-  const bool isWhole = syntax.isXml() && (isText || text.find('&') != text.npos);
-  if (isWhole) return whole(type, after, indent, syntax);
   const ValueWords olds(type, before), news(type, after);
+  const bool isWhole = (syntax.isXml() && (isText || text.find('&') != text.npos)) ||
+                       (syntax.isJson && news.size() == 0); // there are no comments to keep
+  if (isWhole) return whole(type, after, indent, syntax);
   const bool isList = isMultiple(type) && type != FieldType::MFImage &&
                       (syntax.isXml() || (text.starts_with('[') && text.ends_with(']')));
   ValueEdit edit(text, syntax, olds, news, indent);

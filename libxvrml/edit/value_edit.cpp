@@ -172,12 +172,14 @@ void ValueEdit::insert(size_t old, size_t first, size_t last) {
 
 void ValueEdit::insertBefore(size_t first, size_t last) {
   copy(elements_[0].begin);
-  const std::string_view comma = usesCommas(0) ? "," : "";
   const bool inLines = startsLine(0) && standsAlone(0);
-  const std::string between = inLines ? feed_ + std::string(*indentationOf(0)) : " ";
+  const std::string between =
+      inLines ? (usesCommas(0) ? "," : "") + feed_ + std::string(*indentationOf(0))
+              : std::string(separatorBeside(0));
+  const std::string_view within = separatorWithin(0);
   for (size_t now = first; now < last; ++now) {
-    appendElement(now);
-    out_.append(comma).append(between);
+    appendElement(now, within);
+    out_ += between;
   }
 }
 
@@ -188,12 +190,13 @@ void ValueEdit::insertBehind(size_t old, size_t first, size_t last) {
   const std::optional<std::string_view> indentation = indentationOf(old);
   copy(end);
   if (!indentation || !standsAlone(old))
-    return appendInLine(first, last, commas ? ", " : " ", false);
+    return appendInLine({first, last}, separatorBeside(old), separatorWithin(old), false);
   if (commas && !hadComma) out_ += ',';
   copy(lineEnd(text_, end));
+  const std::string_view within = separatorWithin(old);
   for (size_t now = first; now < last; ++now) {
     out_.append(feed_).append(*indentation);
-    appendElement(now);
+    appendElement(now, within);
     if (commas && (hadComma || now + 1 < last)) out_ += ',';
   }
 }
@@ -206,15 +209,15 @@ bool ValueEdit::fill() {
   copy(lineBegin(text_, close));
   out_.append(indentationAt(text_, close)).append("  ");
   const bool commas = news_.wordsOfElement() > 1 || syntax_.isJson;
-  appendInLine(0, news_.size(), commas ? ", " : " ", true);
+  appendInLine({0, news_.size()}, commas ? ", " : " ", syntax_.isJson ? ", " : " ", true);
   out_ += feed_;
   return true;
 }
 
-void ValueEdit::appendElement(size_t now) {
+void ValueEdit::appendElement(size_t now, std::string_view within) {
   bool isFirst = true;
   for (const std::string& word : news_.words(now, syntax_)) {
-    if (!isFirst) out_ += syntax_.isJson ? ", " : " ";
+    if (!isFirst) out_ += within;
     append(word);
     isFirst = false;
   }
@@ -222,11 +225,12 @@ void ValueEdit::appendElement(size_t now) {
 
 // Writes elements one behind the other, in lines that are not too long. The first one may need a
 // separator, too. Strings of XML stay in one line, whose end would have to be escaped.
-void ValueEdit::appendInLine(size_t first, size_t last, std::string_view separator, bool isFirst) {
+void ValueEdit::appendInLine(const TextSpan& elements, std::string_view separator,
+                             std::string_view within, bool isFirst) {
   const bool mayBreak = !syntax_.isXml() || !news_.hasStrings();
   size_t line = out_.size(); // where the line begins, or what is added to it
-  for (size_t now = first; now < last; ++now) {
-    if (now > first || !isFirst) out_ += separator;
+  for (size_t now = elements.begin; now < elements.end; ++now) {
+    if (now > elements.begin || !isFirst) out_ += separator;
     if (mayBreak && out_.size() - line > lineWidth) {
       const bool isOwnLine = lineBegin(out_, out_.size()) > 0;
       const std::string inner =
@@ -235,7 +239,7 @@ void ValueEdit::appendInLine(size_t first, size_t last, std::string_view separat
       out_.append(feed_).append(inner);
       line = out_.size();
     }
-    appendElement(now);
+    appendElement(now, within);
   }
 }
 
@@ -277,6 +281,31 @@ bool ValueEdit::usesCommas(size_t old) const {
   if (syntax_.isJson || hasComma(old)) return true;
   if (old + 1 < elements_.size()) return false;
   return old > 0 ? hasComma(old - 1) : olds_.wordsOfElement() > 1;
+}
+
+// Returns a part of the text if it separates words and does not end a line; else the other one.
+std::string_view ValueEdit::separatorOr(size_t begin, size_t end, std::string_view other) const {
+  const std::string_view gap = text_.substr(begin, end - begin);
+  return gap.empty() || gap.find_first_not_of(" \t,") != gap.npos ? other : gap;
+}
+
+// Returns what stands between elements beside an old one, or between the words of one.
+std::string_view ValueEdit::separatorBeside(size_t old) const {
+  std::string_view usual = usesCommas(old) ? ", " : " ";
+  if (old > 0) usual = separatorOr(elements_[old - 1].end, elements_[old].begin, usual);
+  if (old + 1 == elements_.size()) return usual;
+  return separatorOr(elements_[old].end, elements_[old + 1].begin, usual);
+}
+std::string_view ValueEdit::separatorWithin(size_t old) const {
+  const TextSpan& element = elements_[old];
+  std::vector<size_t> ends; // of the first word, and where the second one begins
+  forEachToken(text_.substr(element.begin, element.size()), syntax_, [&](std::string_view token) {
+    const size_t begin = size_t(token.data() - text_.data());
+    ends.push_back(ends.empty() ? begin + token.size() : begin);
+    return ends.size() < 2;
+  });
+  const std::string_view usual = syntax_.isJson ? ", " : " ";
+  return ends.size() < 2 ? usual : separatorOr(ends[0], ends[1], usual);
 }
 
 // Returns the indentation of the line that an element begins, or that the next one begins.

@@ -42,11 +42,15 @@ class ValueEdit {
   void insertBefore(size_t first, size_t last);
   void insertBehind(size_t old, size_t first, size_t last);
   bool fill();
-  void appendElement(size_t now);
-  void appendInLine(size_t first, size_t last, std::string_view separator, bool isFirst);
+  void appendElement(size_t now, std::string_view within);
+  void appendInLine(const TextSpan& elements, std::string_view separator, std::string_view within,
+                    bool isFirst);
   bool standsAlone(size_t old) const;
   bool hasComma(size_t old) const;
   bool usesCommas(size_t old) const;
+  std::string_view separatorOr(size_t begin, size_t end, std::string_view other) const;
+  std::string_view separatorBeside(size_t old) const;
+  std::string_view separatorWithin(size_t old) const;
   std::optional<std::string_view> indentationOf(size_t old) const;
   bool startsLine(size_t old) const;
   size_t endOfGap(size_t old) const;
