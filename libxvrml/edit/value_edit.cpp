@@ -298,7 +298,7 @@ std::string_view ValueEdit::separatorBeside(size_t old) const {
 }
 std::string_view ValueEdit::separatorWithin(size_t old) const {
   const TextSpan& element = elements_[old];
-  std::vector<size_t> ends; // of the first word, and where the second one begins
+  std::vector<size_t> ends; // where the first word ends, and the second one begins
   forEachToken(text_.substr(element.begin, element.size()), syntax_, [&](std::string_view token) {
     const size_t begin = size_t(token.data() - text_.data());
     ends.push_back(ends.empty() ? begin + token.size() : begin);

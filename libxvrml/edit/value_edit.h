@@ -60,7 +60,7 @@ class ValueEdit {
   const ValueWords &olds_, &news_;
   const size_t indent_;
   const std::string feed_;
-  std::vector<TextSpan> elements_; // of the old value
+  std::vector<TextSpan> elements_; // where those of the old value stand
   std::string out_;
   size_t at_ = 0; // the first byte of the text that is neither copied nor left out
 };

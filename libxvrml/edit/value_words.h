@@ -41,7 +41,7 @@ class ValueWords {
  private:
   struct ImagePlace {
     const Image* image;
-    size_t element; // of this image
+    size_t element; // counted in this image
   };
   ImagePlace imageAt(size_t element) const;
 

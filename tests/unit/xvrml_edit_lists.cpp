@@ -39,7 +39,7 @@ const std::vector<Syntax> syntaxes = {
 struct List {
   std::string text;
   MFVec3f points;
-  std::vector<size_t> begins, ends; // of the elements in the text
+  std::vector<size_t> begins, ends; // where the elements stand in the text
   std::vector<std::string> comments;
 };
 
