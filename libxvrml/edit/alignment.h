@@ -10,8 +10,8 @@
 namespace xvrml {
 
 using Keys = std::span<const uint64_t>;
-// Has for each element of the new list the old one that stays for it, or `fresh`. Those that stay keep
-// their order.
+// Has for each element of the new list the old one that stays for it, or `fresh`. Those that stay
+// keep their order.
 using Alignment = std::vector<size_t>;
 inline constexpr size_t fresh = ~size_t(0);
 
