@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include <fmt/format.h>
+
 #include "base/lexer.h"
 #include "edit/alignment.h"
 #include "edit/lines.h"
@@ -174,7 +176,7 @@ void ValueEdit::insertBefore(size_t first, size_t last) {
   copy(elements_[0].begin);
   const bool inLines = startsLine(0) && standsAlone(0);
   const std::string between =
-      inLines ? (usesCommas(0) ? "," : "") + feed_ + std::string(*indentationOf(0))
+      inLines ? fmt::format("{}{}{}", usesCommas(0) ? "," : "", lines_.feed, *indentationOf(0))
               : std::string(separatorBeside(0));
   const std::string_view within = separatorWithin(0);
   for (size_t now = first; now < last; ++now) {
@@ -195,7 +197,7 @@ void ValueEdit::insertBehind(size_t old, size_t first, size_t last) {
   copy(lineEnd(text_, end));
   const std::string_view within = separatorWithin(old);
   for (size_t now = first; now < last; ++now) {
-    out_.append(feed_).append(*indentation);
+    out_.append(lines_.feed).append(*indentation);
     appendElement(now, within);
     if (commas && (hadComma || now + 1 < last)) out_ += ',';
   }
@@ -210,7 +212,7 @@ bool ValueEdit::fill() {
   out_.append(indentationAt(text_, close)).append("  ");
   const bool commas = news_.wordsOfElement() > 1 || syntax_.isJson;
   appendInLine({0, news_.size()}, commas ? ", " : " ", syntax_.isJson ? ", " : " ", true);
-  out_ += feed_;
+  out_ += lines_.feed;
   return true;
 }
 
@@ -233,10 +235,10 @@ void ValueEdit::appendInLine(const TextSpan& elements, std::string_view separato
     if (now > elements.begin || !isFirst) out_ += separator;
     if (mayBreak && out_.size() - line > lineWidth) {
       const bool isOwnLine = lineBegin(out_, out_.size()) > 0;
-      const std::string inner =
-          isOwnLine ? std::string(indentationAt(out_, out_.size())) : std::string(indent_ + 2, ' ');
+      const std::string inner = isOwnLine ? std::string(indentationAt(out_, out_.size()))
+                                          : std::string(lines_.indent + 2, ' ');
       stripLine(false);
-      out_.append(feed_).append(inner);
+      out_.append(lines_.feed).append(inner);
       line = out_.size();
     }
     appendElement(now, within);

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "edit/lines.h"
 #include "edit/value_words.h"
 #include "parse/xml_index.h"
 
@@ -17,11 +16,9 @@ namespace xvrml {
 // An edit of one text, from the old value, which it has, to the new one. Refers to all of them.
 class ValueEdit {
  public:
-  // indent: the number of blanks before the line in which the value begins.
   ValueEdit(std::string_view text, const ValueSyntax& syntax, const ValueWords& olds,
-            const ValueWords& news, size_t indent)
-      : text_(text), syntax_(syntax), olds_(olds), news_(news), indent_(indent),
-        feed_(lineFeedOf(text)) {}
+            const ValueWords& news, const ValueLines& lines)
+      : text_(text), syntax_(syntax), olds_(olds), news_(news), lines_(lines) {}
 
   // Return the new text; nothing if the text has other words than the old value, or no place for
   // the new ones. The first is for values with equally many elements, the second for a list, which
@@ -58,8 +55,7 @@ class ValueEdit {
   const std::string_view text_;
   const ValueSyntax& syntax_;
   const ValueWords &olds_, &news_;
-  const size_t indent_;
-  const std::string feed_;
+  const ValueLines lines_;
   std::vector<TextSpan> elements_; // where those of the old value stand
   std::string out_;
   size_t at_ = 0; // the first byte of the text that is neither copied nor left out

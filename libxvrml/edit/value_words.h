@@ -19,6 +19,12 @@ struct ValueSyntax {
   bool isXml() const { return quote != 0; }
 };
 
+// The lines of a file, for values that take several.
+struct ValueLines {
+  size_t indent = 0; // blanks before the line in which the value begins
+  std::string_view feed = "\n";
+};
+
 // The elements of a list, or the only one of a single value. The three numbers before the pixels of
 // an image, and each pixel, count as elements. Nodes have none. Refers to the value.
 class ValueWords {

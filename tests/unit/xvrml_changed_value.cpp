@@ -21,7 +21,7 @@ std::string changed(FieldType type, std::string_view text, std::string_view afte
   std::string problem;
   const auto before = parseValue(type, text, problem), now = parseValue(type, after, problem);
   EXPECT_TRUE(before && now) << problem;
-  const std::string out = changedValue(text, type, *before, *now, 2);
+  const std::string out = changedValue(text, type, *before, *now, {2, lineFeedOf(text)});
   const auto read = parseValue(type, out, problem);
   EXPECT_TRUE(read && *read == *now) << out << ": " << problem;
   return out;
@@ -123,7 +123,7 @@ TEST(ChangedValue, PixelsChangeInTheirPlaces) {
 
 TEST(ChangedValue, AttributesOfXml) {
   const auto change = [](std::string_view text, MFString before, MFString after) {
-    return changedAttribute(text, FieldType::MFString, before, after, 0, '\'');
+    return changedAttribute(text, FieldType::MFString, before, after, {}, '\'');
   };
   EXPECT_EQ(change("\"a\"  \"b\"", {"a", "b"}, {"a", "c"}), "\"a\"  \"c\"");
   EXPECT_EQ(change("a", {"a"}, {"a", "b"}), "\"a\" \"b\"") << "a list without quotes";
@@ -132,17 +132,17 @@ TEST(ChangedValue, AttributesOfXml) {
             "\"x\" \"b\" \"d\" \"c\"");
   EXPECT_EQ(change("\"a\" \"b\"", {"a", "b"}, {}), "");
   const auto points = [](std::string_view text, MFVec2f before, MFVec2f after) {
-    return changedAttribute(text, FieldType::MFVec2f, before, after, 4, '\'');
+    return changedAttribute(text, FieldType::MFVec2f, before, after, {4}, '\'');
   };
   EXPECT_EQ(points("0 0,\n  1.0 1,\n  2 2", {{0, 0}, {1, 1}, {2, 2}},
                    {{9, 9}, {0, 0}, {1, 1}, {5, 5}, {2, 2}, {3, 3}}),
             "9 9, 0 0,\n  1.0 1,\n  5 5,\n  2 2,\n  3 3");
   EXPECT_EQ(points("0 0,\n  1.0 1,\n  2 2", {{0, 0}, {1, 1}, {2, 2}}, {{1, 1}}), "1.0 1");
   EXPECT_EQ(changedAttribute("1 2 1 0x0A 7", FieldType::SFImage, Image{1, 2, 1, {10, 7}},
-                             Image{1, 2, 1, {200, 9}}, 0, '"'),
+                             Image{1, 2, 1, {200, 9}}, {}, '"'),
             "1 2 1 0xC8 9");
-  EXPECT_EQ(changedAttribute("TRUE", FieldType::SFBool, true, false, 0, '"'), "FALSE");
-  EXPECT_EQ(changedAttribute("true", FieldType::SFBool, true, false, 0, '"'), "false");
+  EXPECT_EQ(changedAttribute("TRUE", FieldType::SFBool, true, false, {}, '"'), "FALSE");
+  EXPECT_EQ(changedAttribute("true", FieldType::SFBool, true, false, {}, '"'), "false");
 }
 
 // Returns how many elements two lists have in common in the same order, found by trying all.
