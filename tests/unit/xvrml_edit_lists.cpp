@@ -189,7 +189,7 @@ TEST_P(EditedList, PixelsOfATextureChangeInTheirPlaces) {
     editor.reset();
     load(textOf(), isXml ? syntaxes[2].head : syntaxes[0].head, isXml ? "w.x3d" : "w.wrl");
     Image image = field<SFImage>(node("C"), "image");
-    for (const size_t pixel : {1, 3, 1000}) image.pixels[3 * pixel] = 0xAB;
+    for (const size_t pixel : {1u, 3u, 1000u}) image.pixels[3 * pixel] = 0xAB;
     editor->set(node("C"), "image", image);
     words[1] = words[1000] = "0xABF020";
     words[3] = std::to_string(0xAB0203);
