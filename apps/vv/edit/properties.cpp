@@ -33,7 +33,8 @@ template <class T> size_t bytesOf(const T& value) {
 }
 
 // A value is read where it stands, and not copied if it is long: it may have millions of elements.
-void readValue(WorldEditor& editor, Node& node, PropertyRow& row) {
+// A node that is only read gets no block of rare fields.
+void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
   visitStorage(row.field->type, node.storage(*row.field), [&row](const auto& value) {
     using T = std::remove_cvref_t<decltype(value)>;
     const T* const byDefault = std::get_if<T>(&row.defaultValue);
