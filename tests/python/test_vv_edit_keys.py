@@ -80,7 +80,7 @@ def test_tab_hides_the_panels_and_shows_them_again(keys, vv):
     w.key("shift+a")  # its menu belongs to a panel
     keys.until_shown(True)
     w.key("Escape")
-    press(w, 80, 110)  # the search field has the keyboard now
+    press(w, 80, 143)  # the search field has the keyboard now
     w.key("Tab")
     w.tool("type", "x")
     keys.until_shown(True)
