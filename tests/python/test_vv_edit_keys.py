@@ -73,6 +73,7 @@ def test_tab_hides_the_panels_and_shows_them_again(keys, vv):
     w.key("shift+d")
     saved(w, vv, lambda t: "BOX_2" in t)
     w.key("ctrl+z")
+    saved(w, vv, lambda t: t == WORLD)
     w.key("Tab")
     keys.until_shown(True)
     w.key("Tab")

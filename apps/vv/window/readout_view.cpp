@@ -30,7 +30,9 @@ void drawReadout(const PointerReading& pointer, bool isReadable, const FreePart&
   if (ImGui::Begin("##readout", nullptr,
                    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoInputs)) {
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + std::max(width, 1.f)); // names may be long
     for (std::string_view rest : split(text, '\n')) drawParts(printable(std::string(rest)), width);
+    ImGui::PopTextWrapPos();
   }
   ImGui::End();
   ImGui::PopStyleVar();
