@@ -23,7 +23,7 @@ bool Editing::mayAsk(WorldEditor& editor, const InputEvent& event) const {
   case Kind::open: return true;
   case Kind::release: return event.alt || !isOpen_; // it may work an Anchor
   case Kind::down: {
-    // What follows may be typed into what the key opens.
+    // The keys behind it may be typed into what this one opens.
     const EditorAction opens = editorActionOf(event);
     return action == Action::quit || action == Action::reload || opens == EditorAction::save ||
            opens == EditorAction::menu || opens == EditorAction::rename ||
