@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include <imgui.h>
 
@@ -10,6 +11,20 @@
 #include "window/parts.h"
 
 namespace vv {
+
+namespace {
+
+// Makes what stands behind a comma a part of its own.
+std::string inParts(std::string_view line) {
+  std::string text;
+  for (size_t i = 0; i < line.size(); ++i) {
+    text += line[i];
+    if (line[i] == ' ' && i > 0 && line[i - 1] == ',') text += ' ';
+  }
+  return text;
+}
+
+} // namespace
 
 void drawReadout(const PointerReading& pointer, bool isReadable, const FreePart& free) {
   const std::string text = pointerText(pointer, isReadable);
@@ -31,7 +46,7 @@ void drawReadout(const PointerReading& pointer, bool isReadable, const FreePart&
                    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoInputs)) {
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + std::max(width, 1.f)); // names may be long
-    for (std::string_view rest : split(text, '\n')) drawParts(printable(std::string(rest)), width);
+    for (std::string_view rest : split(text, '\n')) drawParts(printable(inParts(rest)), width);
     ImGui::PopTextWrapPos();
   }
   ImGui::End();
