@@ -32,12 +32,15 @@ void drawReadout(const PointerReading& pointer, bool isReadable, const FreePart&
   constexpr float gap = 14; // to the pointer, which stays free
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const auto column = [&size](double x) { return float(1 + x) / 2 * size.x; };
-  // Where there is more room between the panels.
+  // Where there is more room between the panels. Above or below the pointer it may also reach to
+  // the other side.
   const bool isRight = pointer.x<free.middle(), isBelow = pointer.y> 0;
-  const float x = column(pointer.x) + (isRight ? gap : -gap),
+  const float left = column(free.left), right = column(free.right),
+              most = std::min(right - left, size.x / 3), at = column(pointer.x),
+              x = isRight ? std::max(left, std::min(at + gap, right - most))
+                          : std::min(right, std::max(at - gap, left + most)),
               y = float(1 - pointer.y) / 2 * size.y + (isBelow ? gap : -gap),
-              room = isRight ? column(free.right) - x : x - column(free.left),
-              width = std::min(room, size.x / 3) - 2 * ImGui::GetStyle().WindowPadding.x;
+              width = most - 2 * ImGui::GetStyle().WindowPadding.x;
   ImGui::SetNextWindowPos(ImVec2(x, y), ImGuiCond_Always,
                           ImVec2(isRight ? 0.f : 1.f, isBelow ? 0.f : 1.f));
   ImGui::SetNextWindowBgAlpha(0.8f);
