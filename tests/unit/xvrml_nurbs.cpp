@@ -411,7 +411,7 @@ TEST(Nurbs, TextureCoordinatesFollowTheirPoints) {
   EXPECT_NEAR(four.mesh.texCoords[4].x, 1, 1e-6);
   EXPECT_NEAR(four.mesh.texCoords[4].y, 1.5, 1e-6);
   Made<nodes::NurbsTextureCoordinate> texture("NurbsTextureCoordinate");
-  texture->controlPoint = {{0, 0}, {0.5f, 0}, {1, 0}, {0, 1}, {0.5f, 1}, {1, 1}};
+  texture->controlPoint = {{0, 0}, {0.5f, 0}, {1, 0}, {0, 1}, {0.5f, 0.5f}, {1, 1}};
   texture->weight = numbers({1, 0.5, 1, 1, 0.5, 1});
   texture->uDimension = 3;
   texture->vDimension = texture->vOrder = 2;
