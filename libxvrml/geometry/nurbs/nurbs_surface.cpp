@@ -101,7 +101,7 @@ std::vector<Contour> contoursOf(const nodes::NurbsTrimmedSurface& node,
     if (std::abs(area) > std::abs(largest)) largest = area;
     contours.push_back(std::move(points));
   }
-  if (largest < 0) contours.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  if (largest < -1e-9) contours.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   return contours;
 }
 
