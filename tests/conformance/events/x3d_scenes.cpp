@@ -122,8 +122,8 @@ TEST_F(EcmaScenes, ChainsOfTextsAndPrototypesEndAtTheLimit) {
   folder_.write("w.x3dv",
                 header + "PROTO P [ ] { " +
                     scriptThat("print('made'); kept = Browser.createX3DFromString("
-                               "'Script { url \\\"javascript: function initialize() { "
-                               "kept = Browser.currentScene.createProto(\\\\'P\\\\'); }\\\" }');") +
+                               "'Script { url \"javascript: function initialize() { "
+                               "kept = Browser.currentScene.createProto(\\'P\\'); }\" }');") +
                     " }\nP { }\n");
   LoadOptions options;
   options.limits.inlineDepth = 6;
