@@ -272,7 +272,7 @@ def test_ranges():
     with pytest.raises(ValueError):
         w["S"].radius = 0
     group = xvrml.Group(bboxSize=(-1, -1, -1))
-    with pytest.raises(ValueError, match=r"in \[0,inf\) or -1, not -2"):
+    with pytest.raises(ValueError, match=r"in \(0,inf\) or -1, not -2"):
         group.bboxSize = (-2, -2, -2)
 
 

@@ -104,9 +104,10 @@ TEST_F(EcmaScenes, AMadeSceneHasTheVersionOfItsText) {
 }
 
 TEST_F(EcmaScenes, PrototypesThatMakeThemselvesEndAtTheLimit) {
-  folder_.write("w.x3dv", header + "PROTO P [ ] { " +
-                              scriptThat("print('made'); Browser.currentScene.createProto('P');") +
-                              " }\nP { }\n");
+  folder_.write("w.x3dv",
+                header + "PROTO P [ ] { " +
+                    scriptThat("print('made'); kept = Browser.currentScene.createProto('P');") +
+                    " }\nP { }\n");
   for (const int most : {3, 7, 32}) {
     LoadOptions options;
     options.limits.inlineDepth = uint64_t(most);
@@ -120,9 +121,9 @@ TEST_F(EcmaScenes, PrototypesThatMakeThemselvesEndAtTheLimit) {
 TEST_F(EcmaScenes, ChainsOfTextsAndPrototypesEndAtTheLimit) {
   folder_.write("w.x3dv",
                 header + "PROTO P [ ] { " +
-                    scriptThat("print('made'); Browser.createX3DFromString("
-                               "'Script { url \\\"javascript: function initialize() { "
-                               "Browser.currentScene.createProto(\\\\'P\\\\'); }\\\" }');") +
+                    scriptThat("print('made'); kept = Browser.createX3DFromString("
+                               "'Script { url \"javascript: function initialize() { "
+                               "kept = Browser.currentScene.createProto(\\'P\\'); }\" }');") +
                     " }\nP { }\n");
   LoadOptions options;
   options.limits.inlineDepth = 6;
