@@ -70,6 +70,8 @@ struct RenderScene {
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
       lightSources; // light tracing; null if there is nothing to trace
+  // How many of their light paths go with one camera path (path/light_path_trial.h).
+  uint32_t lightPathsOfCameraPath = 1;
   // Light paths that a glossy surface scatters first (lights/light_path_weights.h); null: camera
   // paths make all of these.
   std::shared_ptr<const LightSources> glossySources;

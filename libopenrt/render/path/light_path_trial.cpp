@@ -1,5 +1,6 @@
 #include "render/path/light_path_trial.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "render/lights/emitters.h"
@@ -52,10 +53,12 @@ class Trial {
   // Traces camera paths in blocks of pixels. The first call also finds the weights of pixels.
   CameraTrial tryCameraPaths();
   // Traces light paths from sources. rays: gets their number for each camera path, where there are
-  // `cameras` camera paths for a light path.
-  LightPathGain tryLightPaths(const LightSources& sources, uint32_t cameras, double& rays) {
+  // `cameras` camera paths for a light path. Each number tells of other paths.
+  LightPathGain tryLightPaths(const LightSources& sources, uint32_t cameras, double& rays,
+                              uint32_t number = 0) {
     LightTracer tracer(scene_);
-    const LightPathGain gain = tracer.tryPaths(sources, lightPaths, trialSeed, weights_, stop_);
+    const LightPathGain gain =
+        tracer.tryPaths(sources, lightPaths, trialSeed + number, weights_, stop_);
     rays = raysOf(tracer.counters()) / (lightPaths * cameras);
     return gain;
   }
@@ -118,45 +121,78 @@ CameraTrial Trial::tryCameraPaths() {
   return out;
 }
 
-// The variance and the rays of one sample of a pixel, with the sharing that has been taken so far.
+// The variance and the rays of one sample of a pixel, with what has been taken so far.
 struct Expectation {
   double variance, rays;
+  double lightRays = 0;  // rays of the light paths that begin at mirrors and glass
   bool weighted = false; // camera paths have weights
 
   // Takes a sharing if that lowers the product. without, with: the second moments of the light that
   // may be shared. more: the rays that it adds.
   bool take(double without, double with, double more) {
     const double then = rays * (weighted ? 1 : costOfWeights) + more;
-    const bool pays = (variance + with) * then < (variance + without) * rays;
+    const bool pays =
+        (variance + with) * (then + lightRays) < (variance + without) * (rays + lightRays);
     variance += pays ? with : without;
     if (pays) rays = then;
     weighted |= pays;
     return pays;
   }
+  // Takes a number of light paths for each camera path, and returns it. light: the part of the
+  // variance that falls with it. Twice as many have to lower the product by a tenth.
+  uint32_t takeLightPaths(double light) {
+    constexpr uint32_t most = 8;
+    const double others = variance - light;
+    const auto product = [&](uint32_t number) {
+      return (others + light / number) * (rays + lightRays * number);
+    };
+    uint32_t number = 1;
+    while (number < most && product(2 * number) < .9 * product(number)) number *= 2;
+    variance = others + light / number;
+    lightRays *= number;
+    return number;
+  }
 };
+
+// Decides about the light paths that begin at mirrors and glass.
+void chooseMirrorPaths(RenderScene& scene, Trial& trial, Expectation& expected) {
+  const EmissiveShapes* shapes = scene.emitters->shapes();
+  const bool sharable = shapes && !shapes->empty();
+  scene.sharesMirrors = sharable; // the light paths are traced in any case
+  const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays),
+                      again = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays, 1);
+  if (sharable)
+    scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
+  else
+    expected.variance += gain.light;
+  // The smaller of two results: a single bright path must not decide.
+  const double light = scene.sharesMirrors ? std::min(gain.ofLight, again.ofLight)
+                                           : std::min(gain.light, again.light);
+  scene.lightPathsOfCameraPath = expected.takeLightPaths(light);
+}
+
+// Forgets what was decided.
+void shareNothing(RenderScene& scene) {
+  scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  scene.lightPathsOfCameraPath = 1;
+}
 
 } // namespace
 
 bool tryLightPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.glossySources = nullptr;
-  scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  shareNothing(scene);
   if (!canTrace(scene)) return true;
-  const EmissiveShapes* shapes = scene.emitters->shapes();
   const auto sources =
       std::make_shared<const LightSources>(scene, nullptr, LightSources::Kind::glossy);
-  const bool mirrors = scene.lightSources && shapes && !shapes->empty();
-  if (!mirrors && sources->empty()) return true;
+  if (!scene.lightSources && sources->empty()) return true;
   Trial trial(scene, stop);
   const CameraTrial camera = trial.tryCameraPaths();
   if (stop) return false;
   Expectation expected{camera.variance, camera.rays};
-  double rays = 0;
-  if (mirrors) {
-    scene.sharesMirrors = true; // the light paths are traced in any case
-    const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, rays);
-    scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
-  }
+  if (scene.lightSources) chooseMirrorPaths(scene, trial, expected);
   if (!sources->empty()) {
+    double rays = 0;
     scene.glossySources = sources;
     scene.showsGlossy = true;
     const LightPathGain gain = trial.tryLightPaths(*sources, camerasPerGlossyPath, rays);
@@ -168,7 +204,7 @@ bool tryLightPaths(RenderScene& scene, const std::atomic<bool>& stop) {
     scene.connectsGlossy = expected.take(more.camera, more.both, connected.rays - camera.rays);
     scene.showsGlossy = shows;
   }
-  if (stop) scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  if (stop) shareNothing(scene);
   if (!scene.showsGlossy && !scene.connectsGlossy) scene.glossySources = nullptr;
   return !stop;
 }
