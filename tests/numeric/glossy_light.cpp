@@ -132,12 +132,9 @@ class GlossyLight : public Scene {
   static void aRoomWithAGlobeLamp() {
     constexpr double half = 1, reflectance = .6;
     const RTid wall = square(matt(reflectance), half);
-    for (const auto& [degrees, x, y] : {std::array{0., 1., 0.},
-                                        {90., 1., 0.},
-                                        {180., 1., 0.},
-                                        {-90., 1., 0.},
-                                        {90., 0., 1.},
-                                        {-90., 0., 1.}}) {
+    constexpr double turns[6][3] = {{0, 1, 0},   {90, 1, 0}, {180, 1, 0},
+                                    {-90, 1, 0}, {90, 0, 1}, {-90, 0, 1}};
+    for (const auto& [degrees, x, y] : turns) {
       rtPushMatrix();
       rtRotated(degrees, x, y, 0);
       rtTranslated(0, 0, -half);
