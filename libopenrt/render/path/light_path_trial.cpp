@@ -154,21 +154,27 @@ struct Expectation {
   }
 };
 
-// Decides about the light paths that begin at mirrors and glass.
+// Decides about the light paths that begin at mirrors and glass. Where a target error or a time
+// limit leaves the number of camera paths open, light paths are traced first, and one of them goes
+// with a camera path.
 void chooseMirrorPaths(RenderScene& scene, Trial& trial, Expectation& expected) {
+  const edit::FrameSettingsT& frame = scene.frame;
   const EmissiveShapes* shapes = scene.emitters->shapes();
   const bool sharable = shapes && !shapes->empty();
   scene.sharesMirrors = sharable; // the light paths are traced in any case
-  const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays),
-                      again = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays, 1);
+  const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays);
   if (sharable)
     scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
   else
     expected.variance += gain.light;
-  // The smaller of two results: a single bright path must not decide.
-  const double light = scene.sharesMirrors ? std::min(gain.ofLight, again.ofLight)
-                                           : std::min(gain.light, again.light);
-  scene.lightPathsOfCameraPath = expected.takeLightPaths(light);
+  if (frame.targetError > 0 || frame.timeLimit > 0) return;
+  // The smaller of two results counts: a single bright path must not decide.
+  const bool shared = scene.sharesMirrors;
+  scene.sharesMirrors = sharable;
+  const LightPathGain again = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays, 1);
+  scene.sharesMirrors = shared;
+  scene.lightPathsOfCameraPath = expected.takeLightPaths(
+      shared ? std::min(gain.ofLight, again.ofLight) : std::min(gain.light, again.light));
 }
 
 // Forgets what was decided.
