@@ -13,7 +13,7 @@ PYTEST = PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) -m pytest -q -p no:cacheprov
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-debian-12 test-often campaign fuzz-targets test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board bench-fast-view
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d round-trip fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays test-gltf bench-isa bench-parts clean help wheel deb container test-embree4 test-debian-12 test-often campaign fuzz-targets test-wheel cross-aarch64 cross-wheel-aarch64 test-wheel-aarch64 bench-board bench-fast-view
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -145,10 +145,15 @@ accuracy:
 corpus: build
 	@$(PYTHON) tests/corpus/corpus.py --vv $(R)/bin/vv --corpus $(CORPUS) --out build/corpus
 
-## make corpus-x3d    table of a folder of X3D, VRML 1.0 and glTF files (CORPUS_X3D=...) into build/corpus-x3d; SHEETS=1 pictures
+## make corpus-x3d    table of a folder of X3D, VRML 1.0 and glTF files (CORPUS_X3D=...) into build/corpus-x3d; SHEETS=1 pictures, BESIDE="FOLDER ..." differences to other browsers' pictures
 corpus-x3d:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders scripts
-	@$(PYTHON) tests/corpus/corpus_x3d.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(SHEETS),--sheets)
+	@$(PYTHON) tests/corpus/corpus_x3d.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(SHEETS),--sheets) $(if $(BESIDE),--beside $(BESIDE))
+
+## make round-trip    writes each file of that folder in every encoding, and compares the pictures, into build/round-trip
+round-trip:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders scripts
+	@$(PYTHON) tests/corpus/round_trip.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS)
 
 ## make fuzz          every fuzz target for FUZZ_SECONDS (default 60) each
 fuzz: fuzz-targets

@@ -31,6 +31,13 @@ PixelReading readPixel(const Picture& picture, int x, int y) {
   return reading;
 }
 
+PixelReading readPlace(const Picture& picture, double x, double y) {
+  const auto pixel = [](double part, int count) {
+    return std::clamp(int(part / 2 * count), 0, count - 1);
+  };
+  return readPixel(picture, pixel(1 + x, picture.width), pixel(1 - y, picture.height));
+}
+
 PixelLights::PixelLights(const Picture& picture)
     : rgba_(picture.planes.at(RT_RGBA)), error_(picture.planes.at(RT_ERROR)),
       trust_(picture.planes.at(RT_TRUST)) {}

@@ -25,6 +25,9 @@ struct PixelReading {
 
 // picture: has readingChannels, and linear light. x, y: from the left upper corner.
 PixelReading readPixel(const Picture& picture, int x, int y);
+// Reads the pixel at a place, from -1 at the left and bottom of the picture to 1 at its right and
+// top.
+PixelReading readPlace(const Picture& picture, double x, double y);
 
 // The luminances of all pixels of a picture that has rgba, error and trust. The picture must live
 // as long.

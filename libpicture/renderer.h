@@ -55,9 +55,10 @@ struct RenderSettings {
   int threads = 0;          // 0: as many threads as the process may use
   std::string isa = "auto"; // instruction set of the ray kernels (isa=NAME of rtNewContext)
   bool linear = true;
-  ViewTransform view;            // how files for screens, and screens, show linear light
-  bool exactShapes = false;      // value of xvrml::OpenRTMapper::setExactShapes
-  bool multiplyTextures = false; // value of xvrml::OpenRTMapper::setMultiplyTextures
+  ViewTransform view;                  // how files for screens, and screens, show linear light
+  bool exactShapes = false;            // value of xvrml::OpenRTMapper::setExactShapes
+  double pointSize = 0, lineWidth = 0; // values of xvrml::OpenRTMapper::setThickness
+  bool multiplyTextures = false;       // value of xvrml::OpenRTMapper::setMultiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
   std::string backend = "local";

@@ -200,6 +200,7 @@ void Stage::makeMapper() {
   mapper_.reset(); // destroy first: two mappers would both own the context's scene
   mapper_ = std::make_unique<xvrml::OpenRTMapper>(*world_, options);
   mapper_->setExactShapes(settings.exactShapes);
+  mapper_->setThickness(settings.pointSize, settings.lineWidth);
   mapper_->setMultiplyTextures(settings.multiplyTextures);
   meshSeconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
 }

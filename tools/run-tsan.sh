@@ -14,7 +14,7 @@ tests=${TESTS:-test_vv_serve test_vv_serve_access test_vv_serve_files test_contr
   test_control_clients test_vv_window test_vv_window_input test_vv_window_previews
   test_vv_window_cluster test_vv_cluster
   test_control_edit test_vv_edit test_vv_edit_hostile test_vv_edit_compare test_vv_serve_edit
-  test_vv_serve_edit_tools
+  test_vv_edit_keys test_vv_serve_edit_tools
   test_cluster_faults test_vv_time}
 races=$folder/races
 rm -rf "$races"

@@ -13,6 +13,7 @@
 #include "numbers.h"
 #include "objects.h"
 #include "xvrml/numbers.h"
+#include "xvrml/value_text.h"
 #include "xvrml/value_words.h"
 #include "xvrml/versions.h"
 #include "xvrml/viewed.h"
@@ -53,10 +54,7 @@ struct Target {
     const double number = rounded(v), minimum = rounded(r.minimum), maximum = rounded(r.maximum);
     const bool low = r.minimumOpen ? number <= minimum : number < minimum;
     const bool high = r.maximumOpen ? number >= maximum : number > maximum;
-    if ((low || high) && number != r.also)
-      wrongValue(fmt::format("from {} to {}{}{}, not {}", r.minimum, r.maximum,
-                             r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "",
-                             std::isnan(r.also) ? "" : fmt::format(" or {}", r.also), v));
+    if ((low || high) && number != r.also) wrongValue(fmt::format("in {}, not {}", describe(r), v));
   }
 };
 

@@ -348,19 +348,20 @@ void defineMeasurement(py::module_& module) {
 void defineRender(py::object worldClass) {
   using A = RenderArguments;
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
-  defineMethod(world, "measure", measureForPython, parameterList(),
-               parameterList(
-                   parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
-                   parameter("threads", &A::threads), qualityParameter<long long>(RT_MAX_DEPTH),
-                   qualityParameter<std::string>(RT_TRANSPORT),
-                   qualityParameter<double>(RT_TARGET_ERROR),
-                   qualityParameter<double>(RT_TIME_LIMIT), parameter("cluster", &A::cluster),
-                   parameter("progress", &A::progress), parameter("exact_shapes", &A::exactShapes)),
-               "Reads the ORTSensors of the world in its current state and returns a list of "
-               "Measurement, in the order of the file: lux or cd/m2 with 95 % intervals. The "
-               "options are those of vv --measure. spp: samples per point (default 4096; with "
-               "error and time_limit the maximum). error: the mean relative half-width at which "
-               "sampling ends.");
+  defineMethod(
+      world, "measure", measureForPython, parameterList(),
+      parameterList(parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
+                    parameter("threads", &A::threads), qualityParameter<long long>(RT_MAX_DEPTH),
+                    qualityParameter<std::string>(RT_TRANSPORT),
+                    qualityParameter<double>(RT_TARGET_ERROR),
+                    qualityParameter<double>(RT_TIME_LIMIT), parameter("cluster", &A::cluster),
+                    parameter("progress", &A::progress), parameter("exact_shapes", &A::exactShapes),
+                    parameter("point_size", &A::pointSize), parameter("line_width", &A::lineWidth)),
+      "Reads the ORTSensors of the world in its current state and returns a list of "
+      "Measurement, in the order of the file: lux or cd/m2 with 95 % intervals. The "
+      "options are those of vv --measure. spp: samples per point (default 4096; with "
+      "error and time_limit the maximum). error: the mean relative half-width at which "
+      "sampling ends.");
   defineMethod(
       world, "render", render,
       parameterList(
@@ -382,7 +383,8 @@ void defineRender(py::object worldClass) {
                     parameter("crop", &A::crop), qualityParameter<std::string>(RT_DEPTH_ALONG),
                     parameter("preset", &A::preset), parameter("studio", &A::studio),
                     parameter("from_", &A::from), parameter("ortho", &A::ortho),
-                    parameter("raster", &A::raster)),
+                    parameter("raster", &A::raster), parameter("point_size", &A::pointSize),
+                    parameter("line_width", &A::lineWidth)),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
       "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "

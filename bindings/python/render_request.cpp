@@ -162,6 +162,14 @@ void setFlag(const char*, const Given& given, RenderRequest& request) {
   request.settings.*member = given.*argument;
 }
 
+template <double Given::*argument, double Settings::*member>
+void setThickness(const char* name, const Given& given, RenderRequest& request) {
+  const double size = given.*argument;
+  if (!(size >= 0 && size < 1e18))
+    throw py::value_error(fmt::format("{}: a diameter of at least 0 expected, not {}", name, size));
+  request.settings.*member = size;
+}
+
 // Sets all quality settings except the number of samples.
 void setQuality(const char*, const Given& given, RenderRequest& request) {
   for (const RTqualityInfo& info : picture::qualityTable())
@@ -340,6 +348,8 @@ constexpr Rule rules[] = {
     {"quality settings", setQuality},
     {"multiply_textures", setFlag<&Given::multiplyTextures, &Settings::multiplyTextures>},
     {"exact_shapes", setFlag<&Given::exactShapes, &Settings::exactShapes>},
+    {"point_size", setThickness<&Given::pointSize, &Settings::pointSize>},
+    {"line_width", setThickness<&Given::lineWidth, &Settings::lineWidth>},
     {"colour", setColour},
     {"headlight", setHeadlight},
     {"spp", setSamples},

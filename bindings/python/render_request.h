@@ -27,6 +27,7 @@ struct RenderArguments {
   py::object cluster = py::none();
   py::object progress = py::none();
   bool multiplyTextures = false, exactShapes = false, raster = false;
+  double pointSize = 0, lineWidth = 0;
   std::optional<std::string> up;
   py::object background = py::none();
   std::string isa = "auto";

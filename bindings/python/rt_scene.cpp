@@ -560,6 +560,16 @@ void defineRtScene(py::module_& module) {
           "The shader for all parts of the instance; None: each part's own shader. Can only be "
           "assigned.")
       .def_property(
+          "fog", unread,
+          [](const RtInstance& self, const py::object& fog) {
+            const RtShader* given = shaderOf(self.context, fog);
+            const CurrentContext use(self.context);
+            rtInstanceFog(self.id, given ? given->id : 0);
+            use.check();
+          },
+          "The fog in front of all parts of the instance: a shader for environments; None: the fog "
+          "around the instance. Can only be assigned.")
+      .def_property(
           "user_data", unread,
           [](const RtInstance& self, uint64_t data) {
             const CurrentContext use(self.context);

@@ -260,7 +260,8 @@ void defineViewer(py::module_& module) {
                     qualityParameter<std::string>(RT_TRANSPORT), qualityParameter<double>(RT_CLAMP),
                     parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
                     parameter("background", &A::background), parameter("isa", &A::isa),
-                    parameter("exact_shapes", &A::exactShapes), parameter("studio", &A::studio)),
+                    parameter("exact_shapes", &A::exactShapes), parameter("studio", &A::studio),
+                    parameter("point_size", &A::pointSize), parameter("line_width", &A::lineWidth)),
       "The options are those of World.render().");
   viewer.def("close", &Viewer::close)
       .def_property_readonly("is_open", &Viewer::isOpen)

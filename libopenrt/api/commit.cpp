@@ -141,6 +141,7 @@ class CommitBuilder {
     e->cull = built.state.cull;
     e->clockwise = built.state.clockwise;
     e->width = built.state.width;
+    e->texGen = built.state.texGen;
     e->points = addArray(built.points);
     e->indices = addArray(built.indices);
     e->normals = addArray(built.normals);
@@ -210,6 +211,7 @@ class CommitBuilder {
       e.parent = state.parent;
       e.object = state.object;
       e.shader = state.shader;
+      e.fog = state.fog;
       e.matrix = toEdit(state.matrix);
       e.visible = state.visible;
       e.userData = state.userData;

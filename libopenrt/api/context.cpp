@@ -97,7 +97,7 @@ void Context::requireOutsideDefinition() const {
 
 GeometryState Context::latch(edit::Primitive primitive) {
   scene.requireKind(boundShader, RTS_SURFACE);
-  GeometryState state{boundShader, name, matrices.top(), cull, clockwise, 1};
+  GeometryState state{boundShader, name, matrices.top(), cull, clockwise, 1, texGen};
   if (primitive == edit::Primitive::Lines) state.width = lineWidth;
   if (primitive == edit::Primitive::Points) state.width = pointSize;
   return state;

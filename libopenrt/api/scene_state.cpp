@@ -178,14 +178,15 @@ void SceneState::deleteShader(RTid id) {
   for (const auto& [lightId, light] : lights.entries)
     if (light.shader == id) itsLights.push_back(lightId);
   for (const auto& [instanceId, instance] : instances.entries)
-    if (instance.shader == id) itsInstances.push_back(instanceId);
+    if (instance.shader == id || instance.fog == id) itsInstances.push_back(instanceId);
   reserveMore(lights.deleted, itsLights.size());
   reserveMore(instances.dirty, itsInstances.size());
   reserveMore(shaders.deleted);
   for (RTid lightId : itsLights) lights.erase(lightId, lights.entries[lightId]);
   for (RTid instanceId : itsInstances) {
     InstanceState& instance = instances.entries[instanceId];
-    instance.shader = 0;
+    for (RTid* shader : {&instance.shader, &instance.fog})
+      if (*shader == id) *shader = 0;
     instances.markDirty(instanceId, instance);
   }
   for (RoleState* role : {&camera, &environment, &defaultShader, &transport})

@@ -42,7 +42,7 @@ struct ObjectState {
 };
 
 struct InstanceState {
-  RTid parent = 0, object = 0, shader = 0;
+  RTid parent = 0, object = 0, shader = 0, fog = 0;
   uint32_t name = 0;
   Matrix4d matrix;
   bool visible = true, dynamic = false;

@@ -101,7 +101,7 @@ struct Record {
   bool cull = false;
   bool flip = false;   // the kernel's geometric normal points to the back
   uint32_t shader = 0; // index into ShaderTable
-  // Index into the buckets (class, light set); hits of a bucket are shaded together.
+  // Index into the buckets (class, light set, fog); hits of a bucket are shaded together.
   uint32_t bucket = 0;
   uint32_t name = 0, instance = 0;
   uint32_t primitives = 0; // number of triangles, segments or points
@@ -114,6 +114,7 @@ struct Record {
   // The geometry's own values of shader parameters, already validated.
   const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;
+  edit::TexGen texGen = edit::TexGen::Off;
   float scale = 1; // not instanced: vertices times scale are in render space
   const RecordFrames* frames = &noFrames;
   const AnalyticSurface* surface = nullptr;
@@ -140,6 +141,7 @@ struct Record {
 struct Bucket {
   const RtsClass* shaderClass = nullptr;
   uint32_t lightSet = 0;
+  uint32_t fog = 0; // the environment shader whose fog lies in front of the hits; 0: the scene's
 };
 
 } // namespace openrt

@@ -109,8 +109,9 @@ class Flattener {
     const uint32_t id = children[top.next++];
     const Instance& instance = scene_.instances.at(id);
     if (!(instance.visible || instance.dynamic) || !drawable(instance.object)) return;
-    const Inherited path = result_.inherit(
-        top.path, {id, instance.shader, lightSetOf(id), instance.name, instance.userData});
+    const Inherited path =
+        result_.inherit(top.path, {id, instance.shader, lightSetOf(id), instance.fog, instance.name,
+                                   instance.userData});
     const auto object = scene_.objects.find(instance.object);
     if (instance.dynamic || (object != scene_.objects.end() && object->second.dynamic)) {
       const uint32_t part = partOf(instance.object);
@@ -219,7 +220,9 @@ uint32_t Flattened::lightSet(const std::vector<uint32_t>& ids) {
 Inherited Flattened::inherit(const Inherited& outer, const Inherited& inner) {
   return {outer.instance ? outer.instance : inner.instance,
           outer.shader ? outer.shader : inner.shader,
-          uniteLightSets(outer.lightSet, inner.lightSet), inner.name ? inner.name : outer.name,
+          uniteLightSets(outer.lightSet, inner.lightSet),
+          inner.fog ? inner.fog : outer.fog,
+          inner.name ? inner.name : outer.name,
           inner.userData ? inner.userData : outer.userData};
 }
 

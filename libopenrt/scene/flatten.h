@@ -23,6 +23,7 @@ struct Inherited {       // attributes inherited along a path of instances
   uint32_t instance = 0; // outermost instance
   uint32_t shader = 0;   // override of the outermost instance that has one
   uint32_t lightSet = 0; // index into Flattened::lightSets
+  uint32_t fog = 0;      // environment shader of the innermost instance that has a fog
   uint32_t name = 0;     // name of the innermost instance that has one
   uint64_t userData = 0; // data of the innermost instance that has any
 };

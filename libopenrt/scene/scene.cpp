@@ -186,7 +186,8 @@ void Scene::applyEdit(const edit::AnyUnion& any, SceneChanges& changes) {
 
 void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
   Instance next{edit.parent,  edit.object,   edit.shader, toMatrix(edit.matrix.get()),
-                edit.visible, edit.userData, edit.name,   edit.dynamic};
+                edit.visible, edit.userData, edit.name,   edit.dynamic,
+                edit.fog};
   const auto [found, fresh] = instances.try_emplace(edit.id, next);
   if (fresh) {
     std::vector<uint32_t>& siblings = children_[edit.parent];
@@ -200,7 +201,8 @@ void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
   if (history_) history_->changeInstance(edit.id, known);
   const bool placeOnly = known.dynamic && next.dynamic && known.parent == next.parent &&
                          known.object == next.object && known.shader == next.shader &&
-                         known.userData == next.userData && known.name == next.name;
+                         known.userData == next.userData && known.name == next.name &&
+                         known.fog == next.fog;
   if (placeOnly)
     changes.moved.push_back(edit.id);
   else
@@ -265,7 +267,8 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
                                  array(g->colors),
                                  {},
                                  AnalyticSurface::make(g->primitive, g->surface),
-                                 array(g->rest)});
+                                 array(g->rest),
+                                 g->texGen});
     for (const auto& p : g->parameters)
       if (p)
         target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});

@@ -40,6 +40,7 @@ struct Geometry {
   // For a mesh that deforms: the points that its tree is built of, before it is refitted to
   // `points`. Null: `points`.
   ArrayPtr rest;
+  edit::TexGen texGen = edit::TexGen::Off;
 
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };
@@ -62,6 +63,7 @@ struct Instance {
   uint64_t userData = 0;
   uint32_t name = 0;
   bool dynamic = false;
+  uint32_t fog = 0; // an environment shader; 0: the fog around the instance
 };
 
 struct Light {

@@ -89,6 +89,7 @@ class Writer {
     e->texCoords = number(g.texCoords);
     e->colors = number(g.colors);
     e->rest = number(g.rest);
+    e->texGen = g.texGen;
     if (g.surface) e->surface = g.surface->numbers();
     for (const GeometryParameter& own : g.parameters) {
       if (e->shader == 0) break; // parameters belong to the shader's class
@@ -121,6 +122,7 @@ class Writer {
       e.parent = instance.parent;
       e.object = instance.object;
       e.shader = shader(instance.shader);
+      e.fog = shader(instance.fog);
       e.matrix = openrt::makeEdit(instance.matrix);
       e.visible = instance.visible;
       e.userData = instance.userData;

@@ -21,19 +21,22 @@ Color scaled(const Color& c, double factor) {
 
 double notNegative(double v) { return v > 0 ? v : 0; }
 
-// Returns how many nodes of a path lead to the group that a light shines on. A light that is not
-// global shines on its parent group, any other on the Inline that it is in.
-size_t scopeOf(const RenderState& light, bool global) {
-  size_t count = light.path.size() - 1;
-  if (global) {
-    while (count > 0 && !xvrml::inlineScope(*light.path[count - 1])) --count;
-    return count;
-  }
-  while (count > 0 && xvrml::nodeCast<xvrml::ProtoInstance>(light.path[count - 1])) --count;
-  return count;
+} // namespace
+
+GroupPath scopeOf(const RenderState& state, bool global) {
+  const auto leaves = [&](const Node& above) {
+    return global ? !xvrml::inlineScope(above)
+                  : xvrml::nodeCast<xvrml::ProtoInstance>(&above) != nullptr;
+  };
+  size_t count = state.path.size() - 1;
+  while (count > 0 && leaves(*state.path[count - 1])) --count;
+  return {state.path.begin(), state.path.begin() + ptrdiff_t(count)};
 }
 
-} // namespace
+bool isWithin(const GroupPath& scope, const RenderState& shape) {
+  return shape.path.size() >= scope.size() &&
+         std::equal(scope.begin(), scope.end(), shape.path.begin());
+}
 
 template <class T> void Lamp::setLight(const T& light, bool linear) {
   const Color color = linear ? linearOf(light.color) : light.color;
@@ -93,14 +96,8 @@ std::optional<Lamp> Lamp::of(const Node& node, const RenderState& state, bool li
   const std::optional<Affine> inverse = lamp.toWorld_.inverse();
   if (!on || !inverse) return {};
   lamp.fromWorld_ = *inverse;
-  const auto path = state.path.first(scopeOf(state, global));
-  lamp.scope_.assign(path.begin(), path.end());
+  lamp.scope_ = scopeOf(state, global);
   return lamp;
-}
-
-bool Lamp::reaches(const RenderState& shape) const {
-  return shape.path.size() >= scope_.size() &&
-         std::equal(scope_.begin(), scope_.end(), shape.path.begin());
 }
 
 Incident Lamp::incidentAt(const Vec& point) const {

@@ -16,6 +16,14 @@ struct Incident {
   xvrml::Color direct, ambient;
 };
 
+// The path to a group; empty: everything.
+using GroupPath = std::vector<const xvrml::Node*>;
+// Returns the scope of a node that acts on its parent group, or, if it is global, on the Inline
+// that it is in.
+GroupPath scopeOf(const xvrml::RenderState& state, bool global);
+// Returns whether a shape is within the scope.
+bool isWithin(const GroupPath& scope, const xvrml::RenderState& shape);
+
 class Lamp {
  public:
   // Returns a parallel light, as a headlight is. asNode: it shines as a light node does.
@@ -27,7 +35,7 @@ class Lamp {
   static std::optional<Lamp> of(const xvrml::Node& node, const xvrml::RenderState& state,
                                 bool linear);
   // Returns whether a shape is within the group that the lamp shines on.
-  bool reaches(const xvrml::RenderState& shape) const;
+  bool reaches(const xvrml::RenderState& shape) const { return isWithin(scope_, shape); }
   Incident incidentAt(const Vec& point) const;
   // Returns the factor of the direct light at a surface that takes intensities as irradiances.
   float irradianceFactor() const { return isNode_ ? float(1 / std::numbers::pi) : 1.0f; }
@@ -45,7 +53,7 @@ class Lamp {
   Vec location_, axis_;        // axis_: where the light travels to
   Vec attenuation_{1, 0, 0};
   double radius_ = 0, beam_ = 0, cut_ = 0;
-  std::vector<const xvrml::Node*> scope_; // path to the group that is lit; empty: everything
+  GroupPath scope_;
 };
 
 // More lamps than this light nothing, so that a hostile world ends.

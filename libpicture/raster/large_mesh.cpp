@@ -1,5 +1,7 @@
 #include "libpicture/raster/large_mesh.h"
 
+#include "xvrml/deformed.h"
+
 namespace picture::raster {
 
 using xvrml::GeometryArrays;
@@ -28,7 +30,8 @@ GeometryArrays arraysOf(const xvrml::DrawnShape& shape) {
   if (!points) return shape.mesh();
   GeometryArrays arrays;
   arrays.kind = GeometryArrays::Kind::triangles;
-  arrays.points = points->point;
+  const std::span<const xvrml::Vec3f> drawn = xvrml::drawnPoints(*points);
+  arrays.points.assign(drawn.begin(), drawn.end());
   arrays.indices.reserve(set->coordIndex.size() / 4 * 3);
   for (size_t i = 0; i < set->coordIndex.size(); i += 4)
     for (size_t k = i; k < i + 3; ++k) arrays.indices.push_back(uint32_t(set->coordIndex[k]));

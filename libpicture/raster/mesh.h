@@ -9,6 +9,7 @@
 #include "libpicture/export/surface.h"
 #include "libpicture/raster/eye.h"
 #include "libpicture/raster/lamps.h"
+#include "libpicture/raster/surroundings.h"
 
 namespace picture::raster {
 
@@ -17,6 +18,7 @@ struct Look {
   Surface surface;
   float ambient = 0; // share of the ambient light that the surface reflects
   bool linear = true;
+  const Haze* haze = nullptr; // the fog in front of it; null: none
 
   // Returns whether a pixel of a face may show what is behind it.
   bool letsThrough() const { return surface.alpha != Surface::Alpha::opaque; }

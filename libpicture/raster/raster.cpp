@@ -35,13 +35,29 @@ class Surroundings : public xvrml::Renderer {
     if (const std::optional<Haze> found = Haze::of(node, view_.linear);
         found && !haze && isBound(node, bound.fog, state))
       haze = found;
+    if (localHazes.size() < maximumLocalFogs)
+      if (std::optional<Haze> found = Haze::local(node, state, view_.linear))
+        localHazes.push_back(std::move(*found));
     const auto* navigation = xvrml::nodeCast<xvrml::nodes::NavigationInfo>(&node);
     if (navigation && !headlight && isBound(node, bound.navigationInfo, state))
       headlight = navigation->headlight;
     return Visit::children;
   }
 
+  // Returns the fog in front of a shape: that of the nearest group, of several there the last one.
+  const Haze* hazeBefore(const RenderState& shape) const {
+    const Haze* nearest = haze ? &*haze : nullptr;
+    size_t depth = 0;
+    for (const Haze& local : localHazes) {
+      if (local.depth() < depth || !local.reaches(shape)) continue;
+      nearest = &local;
+      depth = local.depth();
+    }
+    return nearest;
+  }
+
   std::deque<Lamp> lamps; // meshes point to them
+  std::deque<Haze> localHazes;
   std::optional<Sky> sky;
   std::optional<Haze> haze;
   std::optional<bool> headlight;
@@ -63,7 +79,7 @@ class Shapes : public xvrml::Renderer {
   Shapes(const xvrml::World& world, const RasterView& view, const Eye& eye,
          const Surroundings& around, Frame& frame)
       : view_(view), around_(around), textures_(world, view.linear),
-        surfaces_(textures_, view.shaderPath, remarks_), shading_(eye, textures_, around.haze),
+        surfaces_(textures_, view.shaderPath, remarks_), shading_(eye, textures_),
         batch_(eye, shading_, frame) {}
 
   Visit renderShape(xvrml::nodes::Shape&, const RenderState&) override { return Visit::draw; }
@@ -90,6 +106,7 @@ class Shapes : public xvrml::Renderer {
     look.ambient =
         between0And1(xvrml::materialValues(shape.appearance().material).ambientIntensity);
     look.linear = view_.linear;
+    look.haze = around_.hazeBefore(shape.state);
     Surface& surface = look.surface;
     // A clear body is drawn in a part of the pixels: what is behind it is seen, though not bent.
     if (surface.transmission > 0) {

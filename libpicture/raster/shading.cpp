@@ -106,8 +106,9 @@ bool Shading::coversPixel(const Mesh& mesh, size_t triangle, int x, int y) const
   return alpha > threshold(uint32_t(x) + mesh.number, uint32_t(y) + mesh.number / 4);
 }
 
-Color Shading::seen(const Color& color, const Vec& point) const {
-  return haze_ ? haze_->over(color, length(point + eye_.position() * -1.0)) : color;
+Color Shading::seen(const Mesh& mesh, const Color& color, const Vec& point) const {
+  const Haze* haze = mesh.look.haze;
+  return haze ? haze->over(color, length(point + eye_.position() * -1.0)) : color;
 }
 
 Color Shading::lit(const Mesh& mesh, const Point& point, const Color& diffuse) const {
@@ -139,7 +140,7 @@ Color Shading::colorAt(const Mesh& mesh, size_t triangle, double x, double y) co
       add(mixed, vertexColor(mesh, point.corners[i]), float(point.weights[i]));
     base = product(base, mixed);
   }
-  return seen(surface.lit ? lit(mesh, point, base) : base, point.place);
+  return seen(mesh, surface.lit ? lit(mesh, point, base) : base, point.place);
 }
 
 Color Shading::colorOnLine(const Mesh& mesh, size_t first, size_t second, double t) const {
@@ -153,7 +154,7 @@ Color Shading::colorOnLine(const Mesh& mesh, size_t first, size_t second, double
     if (mesh.look.surface.showsVertexColors)
       add(color, vertexColor(mesh, ends[i]), float(shares[i]));
   }
-  return seen(color, place);
+  return seen(mesh, color, place);
 }
 
 } // namespace picture::raster

@@ -5,16 +5,14 @@
 
 #include "libpicture/raster/eye.h"
 #include "libpicture/raster/mesh.h"
-#include "libpicture/raster/surroundings.h"
 #include "libpicture/raster/textures.h"
 
 namespace picture::raster {
 
 class Shading {
  public:
-  // All must outlive the object. haze: may be null.
-  Shading(const Eye& eye, const Textures& textures, const std::optional<Haze>& haze)
-      : eye_(eye), textures_(textures), haze_(haze) {}
+  // Both must outlive the object.
+  Shading(const Eye& eye, const Textures& textures) : eye_(eye), textures_(textures) {}
   // Returns the colour of a triangle in a pixel, whose centre is at x and y.
   xvrml::Color colorAt(const Mesh& mesh, size_t triangle, double x, double y) const;
   // Returns whether a triangle that lets light through is drawn in a pixel: the share of pixels
@@ -27,11 +25,10 @@ class Shading {
   struct Point;
   Point pointAt(const Mesh& mesh, size_t triangle, double x, double y) const;
   xvrml::Color lit(const Mesh& mesh, const Point& point, const xvrml::Color& diffuse) const;
-  xvrml::Color seen(const xvrml::Color& color, const Vec& point) const;
+  xvrml::Color seen(const Mesh& mesh, const xvrml::Color& color, const Vec& point) const;
 
   const Eye& eye_;
   const Textures& textures_;
-  const std::optional<Haze>& haze_;
 };
 
 } // namespace picture::raster

@@ -69,17 +69,31 @@ Sky::Seen Sky::along(const Vec& direction) const {
   return {at(sky_, angle), alpha_};
 }
 
+template <class T> Haze Haze::from(const T& fog, bool linear) {
+  Haze haze;
+  haze.color_ = linear ? linearOf(fog.color) : fog.color;
+  haze.range_ = fog.visibilityRange;
+  haze.exponential_ = fog.fogType == "EXPONENTIAL";
+  return haze;
+}
+
 std::optional<Haze> Haze::of(const xvrml::Node& node, bool linear) {
   const auto* fog = xvrml::nodeCast<xvrml::nodes::Fog>(&node);
   if (!fog || !(fog->visibilityRange > 0)) return {};
-  Haze haze;
-  haze.color_ = linear ? linearOf(fog->color) : fog->color;
-  haze.range_ = fog->visibilityRange;
-  haze.exponential_ = fog->fogType == "EXPONENTIAL";
+  return from(*fog, linear);
+}
+
+std::optional<Haze> Haze::local(const xvrml::Node& node, const xvrml::RenderState& state,
+                                bool linear) {
+  const auto* fog = xvrml::nodeCast<xvrml::nodes::LocalFog>(&node);
+  if (!fog || !fog->enabled) return {};
+  Haze haze = from(*fog, linear);
+  haze.scope_ = scopeOf(state, false);
   return haze;
 }
 
 Color Haze::over(const Color& shape, double distance) const {
+  if (!(range_ > 0)) return shape;
   const double left = range_ - distance;
   double clear = 0;
   if (left > 0) clear = exponential_ ? std::exp(-distance / left) : left / range_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libpicture/raster/affine.h"
+#include "libpicture/raster/lamps.h"
 #include "xvrml/renderer.h"
 
 namespace picture::raster {
@@ -36,18 +37,30 @@ class Sky {
   float alpha_ = 1;
 };
 
-// Fog (6.19). Distances are those of the world, also where the node is scaled.
+// Fog (6.19) and LocalFog (ISO/IEC 19775-1 24.4.4). Distances are those of the world, also where
+// the node is scaled.
 class Haze {
  public:
   // Returns nothing for a node that is no Fog, or is clear air.
   static std::optional<Haze> of(const xvrml::Node& node, bool linear);
+  // Returns nothing for a node that is no LocalFog, or is not enabled.
+  static std::optional<Haze> local(const xvrml::Node& node, const xvrml::RenderState& state,
+                                   bool linear);
   // Returns the colour of a shape at this distance.
   xvrml::Color over(const xvrml::Color& shape, double distance) const;
+  bool reaches(const xvrml::RenderState& shape) const { return isWithin(scope_, shape); }
+  size_t depth() const { return scope_.size(); } // groups above a LocalFog
 
  private:
+  template <class T> static Haze from(const T& fog, bool linear);
+
+  GroupPath scope_;
   xvrml::Color color_;
   double range_ = 0;
   bool exponential_ = false;
 };
+
+// More LocalFogs than this hide nothing, so that a hostile world ends.
+inline constexpr size_t maximumLocalFogs = 256;
 
 } // namespace picture::raster

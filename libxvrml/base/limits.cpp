@@ -10,7 +10,8 @@ namespace {
 constexpr std::array<LimitInfo, 13> table = {{
     {"nesting", &Limits::nesting, "depth of nodes within nodes and of statements"},
     {"protoDepth", &Limits::protoDepth, "depth of prototypes that instantiate prototypes"},
-    {"inlineDepth", &Limits::inlineDepth, "depth of files within files"},
+    {"inlineDepth", &Limits::inlineDepth,
+     "depth of files within files, and of Scripts that Scripts make"},
     {"expandedNodes", &Limits::expandedNodes, "nodes after all prototypes and USEs are expanded"},
     {"worldBytes", &Limits::worldBytes,
      "estimated memory of everything made from a world's files; 0: an eighth of the machine's"},

@@ -100,7 +100,7 @@ const FieldInfo* NodeType::findEventOut(std::string_view eventName) const {
 
 Value Node::get(const FieldInfo& field) const {
   if (!hasStorage(field)) return xvrml::defaultValue(field.type);
-  return visitStorage(field.type, const_cast<void*>(storage(field)), [](const auto& value) {
+  return visitStorage(field.type, storage(field), [](const auto& value) {
     return Value(std::in_place_type<std::decay_t<decltype(value)>>, value);
   });
 }

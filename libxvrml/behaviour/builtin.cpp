@@ -11,6 +11,7 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addInterpolatorBehaviours(add);
   addSplineInterpolatorBehaviours(add);
   addSquadInterpolatorBehaviours(add);
+  addNurbsInterpolatorBehaviours(add);
   addEaseBehaviours(add);
   addEventUtilityBehaviours(add);
   addSequencerBehaviours(add);

@@ -15,13 +15,15 @@ void addBuiltinBehaviours(const AddBehaviour& add);
 void addBindingBehaviours(const AddBehaviour& add); // Viewpoint, NavigationInfo, Background, Fog
 // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
 void addPointingBehaviours(const AddBehaviour& add);
-void addRegionBehaviours(const AddBehaviour& add); // ProximitySensor, VisibilitySensor
+// ProximitySensor, TransformSensor, VisibilitySensor
+void addRegionBehaviours(const AddBehaviour& add);
 void addInlineBehaviours(const AddBehaviour& add); // set_url loads the content
 // addChildren, removeChildren; the level of an LOD
 void addGroupingBehaviours(const AddBehaviour& add);
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addSplineInterpolatorBehaviours(const AddBehaviour& add);
 void addSquadInterpolatorBehaviours(const AddBehaviour& add);
+void addNurbsInterpolatorBehaviours(const AddBehaviour& add);
 void addEaseBehaviours(const AddBehaviour& add);
 void addEventUtilityBehaviours(const AddBehaviour& add); // filters and triggers
 void addSequencerBehaviours(const AddBehaviour& add);

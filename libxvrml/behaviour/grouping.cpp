@@ -1,5 +1,5 @@
 // grouping.cpp: addChildren and removeChildren of all grouping nodes (clause 4.6.5), and of LOD and
-// Switch (ISO/IEC 19775-1 23.4.3 and 10.4.4).
+// Switch (ISO/IEC 19775-1 23.4.3 and 10.4.4); the same of NURBS (27.4.1, 27.4.9, 27.4.14).
 #include <algorithm>
 
 #include "behaviour/builtin.h"
@@ -13,6 +13,8 @@ namespace {
 // Returns the field that holds the children.
 const FieldInfo& listOf(const Node& node) {
   if (nodeCast<nodes::LOD>(&node)) return *fieldNamed<"level">(node);
+  if (nodeCast<nodes::NurbsSet>(&node)) return *fieldNamed<"geometry">(node);
+  if (nodeCast<nodes::NurbsTrimmedSurface>(&node)) return *fieldNamed<"trimmingContour">(node);
   return nodeCast<nodes::Switch>(&node) ? *fieldNamed<"choice">(node)
                                         : *fieldNamed<"children">(node);
 }
@@ -20,8 +22,8 @@ const FieldInfo& listOf(const Node& node) {
 // Adds or removes children. children is an exposedField, so a change sends children_changed. Adding
 // a present child or removing an absent one has no effect and sends no event.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
-  const bool adds = isField<"addChildren">(node, in);
-  if (!adds && !isField<"removeChildren">(node, in)) return;
+  const bool adds = in.name.starts_with("add");
+  if (in.access != Access::eventIn || (!adds && !in.name.starts_with("remove"))) return;
   const FieldInfo& children = listOf(node);
   auto list = std::get<MFNode>(node.get(children));
   const MFNode before = list;
@@ -47,6 +49,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
 void addGroupingBehaviours(const AddBehaviour& add) {
   for (const NodeType* type : nodeTypes())
     if (type->find("addChildren")) add(*type, {.receive = receive});
+  add(nodes::NurbsSet::nodeType(), {.receive = receive});
+  add(nodes::NurbsTrimmedSurface::nodeType(), {.receive = receive});
   add(nodes::LOD::nodeType(), {.begin = beginLod, .receive = receive, .look = lookLod});
 }
 

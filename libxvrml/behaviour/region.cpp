@@ -1,6 +1,7 @@
 // region.cpp: ProximitySensor and VisibilitySensor (clauses 6.38, 6.54): boxes that the viewer
-// enters or sees. They are evaluated once per tick, after its events, and after jumps. A sensor
-// that is USEd several times senses the union of its boxes.
+// enters or sees, and TransformSensor (ISO/IEC 19775-1 22.4.2): a box that a group or a Shape
+// enters. They are evaluated once per tick, after its events, and after jumps. A sensor that is
+// USEd several times senses the union of its boxes.
 #include <array>
 #include <cmath>
 
@@ -21,7 +22,7 @@ struct RegionState : NodeState {
   bool active = false;
   Vec3f position; // last value sent
   Rotation orientation;
-  Vec3f center;
+  Vec3f center; // that is, centerOfRotation_changed
 };
 
 struct Region {
@@ -48,6 +49,19 @@ void setActive(Events& events, Node& node, bool active) {
     sendFrom<"enterTime">(events, node, events.now());
   else
     sendFrom<"exitTime">(events, node, events.now());
+}
+
+// Sends where something inside of the box is. place: from its coordinate system to the sensor's.
+void sendPlace(Events& events, Node& node, const Matrix& place, bool entered) {
+  auto& state = static_cast<RegionState&>(*events.state(node));
+  const Vector p = transformPoint(place, Vector(0));
+  const Vec3f position{float(p.x), float(p.y), float(p.z)};
+  const Rotation orientation = rotationOf(place);
+  if (entered || position != state.position) sendFrom<"position_changed">(events, node, position);
+  if (entered || orientation != state.orientation)
+    sendFrom<"orientation_changed">(events, node, orientation);
+  state.position = position;
+  state.orientation = orientation;
 }
 
 // Finds the first of the sensor's boxes that contains the viewer, and the matrix from the viewer to
@@ -94,18 +108,78 @@ void lookProximity(Events& events, Node& node) {
   const bool entered = inside && !state.active;
   if (inside != state.active) setActive(events, node, inside);
   if (!inside) return;
-  const Vector p = transformPoint(viewer, Vector(0));
-  const Vec3f position{float(p.x), float(p.y), float(p.z)};
-  const Rotation orientation = rotationOf(viewer);
-  if (entered || position != state.position) sendFrom<"position_changed">(events, node, position);
-  if (entered || orientation != state.orientation)
-    sendFrom<"orientation_changed">(events, node, orientation);
-  state.position = position;
-  state.orientation = orientation;
+  sendPlace(events, node, viewer, entered);
   Vec3f center;
   if (!centerOfRotation(events, viewer, center)) return;
   if (entered || center != state.center) sendFrom<"centerOfRotation_changed">(events, node, center);
   state.center = center;
+}
+
+// Returns whether a box that is placed by a matrix meets the region: no axis separates them, which
+// for two parallelepipeds is a normal of a face or a normal to an edge of each (S. Gottschalk, M.
+// C. Lin, D. Manocha, "OBBTree", SIGGRAPH 1996).
+bool meets(const Region& region, const PickBox& box, const Matrix& place) {
+  const Vector middle = transformPoint(place, (box.low + box.high) / 2) - region.center;
+  const Vector size = box.high - box.low;
+  Vector own[3], half[3]; // half of the edges of the region, and of the box
+  for (int i = 0; i < 3; ++i) {
+    own[i] = half[i] = Vector(0);
+    own[i][i] = region.half[i];
+    half[i][i] = size[i] / 2;
+    half[i] = transformDirection(place, half[i]);
+  }
+  const auto separates = [&](const Vector& axis) {
+    double reach = 0;
+    for (int i = 0; i < 3; ++i) reach += std::abs(own[i].dot(axis)) + std::abs(half[i].dot(axis));
+    return std::abs(middle.dot(axis)) > reach * (1 + 1e-12);
+  };
+  for (int i = 0; i < 3; ++i) {
+    Vector axis(0);
+    axis[i] = 1;
+    if (separates(axis) || separates(half[i].cross(half[(i + 1) % 3]))) return false;
+    for (const Vector& edge : half)
+      if (separates(axis.cross(edge))) return false;
+  }
+  return std::isfinite(middle.length());
+}
+
+// Finds the first place of the sensor and of its target where the target's bounding box meets the
+// region, and the matrix from the target's coordinate system to the sensor's. A target in a choice
+// that a Switch does not show is nowhere.
+bool targetInside(Events& events, const Node& node, const Region& region, Node& target,
+                  Matrix& targetToSensor) {
+  constexpr size_t places = 64; // a hostile world has more, and ends
+  Interaction& interaction = interactionOf(events);
+  const PickBox box = interaction.picker.bounds({NodeRef(&target)}); // in the group around it
+  if (box.empty()) return false;
+  const Matrix view = interaction.viewer.view();
+  const std::vector<Path> targets = pathsTo(target, places);
+  for (const Path& path : pathsTo(node, places)) {
+    Matrix toSensor;
+    if (!invert(Picker::toWorld(path, view), toSensor)) continue;
+    for (const Path& to : targets) {
+      const Path around(to.begin(), to.end() - 1);
+      if (!isChosen(to) || !meets(region, box, compose(toSensor, Picker::toWorld(around, view))))
+        continue;
+      targetToSensor = compose(toSensor, Picker::toWorld(to, view));
+      return true;
+    }
+  }
+  return false;
+}
+
+void lookTransform(Events& events, Node& node) {
+  const auto& state = static_cast<const RegionState&>(*events.state(node));
+  const auto& sensor = static_cast<nodes::TransformSensor&>(node);
+  const Region region = regionOf(sensor);
+  // A box without volume senses nothing.
+  const bool senses = sensor.enabled && sensor.targetObject && region.half.x > 0 &&
+                      region.half.y > 0 && region.half.z > 0;
+  Matrix place;
+  const bool inside = senses && targetInside(events, node, region, *sensor.targetObject, place);
+  const bool entered = inside && !state.active;
+  if (inside != state.active) setActive(events, node, inside);
+  if (inside) sendPlace(events, node, place, entered);
 }
 
 // Clips a convex polygon to the inner side of a plane through the eye (Sutherland and Hodgman
@@ -181,6 +255,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
 void addRegionBehaviours(const AddBehaviour& add) {
   add(nodes::ProximitySensor::nodeType(),
       {.begin = begin, .receive = receive, .look = lookProximity});
+  add(nodes::TransformSensor::nodeType(),
+      {.begin = begin, .receive = receive, .look = lookTransform});
   add(nodes::VisibilitySensor::nodeType(),
       {.begin = begin, .receive = receive, .look = lookVisibility});
 }

@@ -10,6 +10,7 @@
 #include "graph/field_access.h"
 #include "parse/loader.h"
 #include "xvrml/versions.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -72,6 +73,7 @@ struct LoadCall {
   std::vector<std::string> urls;
   std::string base;     // the URLs are relative to it
   SourcePosition where; // the calling Script; of other programs the running world
+  uint64_t depth;       // depthOfMade()
 };
 
 struct LoadedUrl {
@@ -88,8 +90,7 @@ LoadedUrl loadFirst(const LoadCall& call, World& caller, const BudgetPtr& budget
     std::string reason = resolved.error;
     if (reason.empty()) {
       try {
-        return {budget ? loadWorldInto(budget, resolved.path, caller.options,
-                                       fileDepth(call.where.file) + 1)
+        return {budget ? loadWorldInto(budget, resolved.path, caller.options, call.depth)
                        : loadWorld(resolved.path, caller.options),
                 resolved.fragment};
       } catch (const LoadError& error) { reason = error.diagnostic.text(); }
@@ -117,6 +118,20 @@ class TemporaryCharge {
   BudgetPtr budget_;
   uint64_t before_;
 };
+
+// Tells the Scripts of an instance how many Scripts made one another before them. Their file is
+// that of the prototype, and its depth does not grow.
+void markMakers(const Scope& made, uint32_t makers) {
+  walk<Node>(rootsOf(made), [makers](Node& node, std::vector<Node*>& open) {
+    if (auto* script = nodeCast<ScriptNode>(&node)) script->makers = makers;
+    if (auto* instance = nodeCast<ProtoInstance>(&node)) {
+      appendRoots(instance->body, open);
+      for (const Route& route : instance->body.routes)
+        open.insert(open.end(), {route.from.get(), route.to.get()});
+    }
+    appendChildren(node, open);
+  });
+}
 
 } // namespace
 
@@ -157,6 +172,11 @@ SourcePosition Browser::Impl::callerPosition() const {
   const Node* script = scripts ? scripts->runningNode() : nullptr;
   return script ? script->source
                 : SourcePosition{std::make_shared<const std::string>(world->path), 0, 0};
+}
+
+uint64_t Browser::Impl::depthOfMade() const {
+  const auto* script = nodeCast<ScriptNode>(scripts ? scripts->runningNode() : nullptr);
+  return script ? std::max<uint64_t>(fileDepth(script->source.file), script->makers) + 1 : 1;
 }
 
 MFNode Browser::Impl::adopt(World& loaded) {
@@ -201,12 +221,14 @@ MFNode Browser::Impl::create(std::string_view text, const std::string& base,
   LoadOptions loading = world->options;
   uint64_t& most = loading.limits.expandedNodes;
   most -= std::min<uint64_t>(most, engine->nodes());
+  const uint64_t depth = depthOfMade();
   const SourcePosition caller = callerPosition();
   const FileVersion& own = world->head.version;
   const FileVersion version =
       versionOfText(text, caller.file ? fileVersion(caller.file) : own, own);
-  const auto loaded = loadFragment(text, name, loading, TemporaryCharge(*world).budget(),
-                                   fileDepth(caller.file) + 1, {version, prototypes});
+  const auto loaded = loadFragment(text, name, loading, TemporaryCharge(*world).budget(), depth,
+                                   {version, prototypes});
+  if (!prototypes.empty()) markMakers(loaded->scope, uint32_t(depth));
   MFNode nodes = adopt(*loaded);
   settle();
   return nodes;
@@ -224,7 +246,7 @@ NodeRef Browser::createInstance(const ProtoPtr& prototype, const std::string& ba
 void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node,
                                 std::string_view eventIn, const std::string& base) {
   LoadCall call{"createVrmlFromURL", urls, base.empty() ? impl_->world->path : base,
-                impl_->callerPosition()};
+                impl_->callerPosition(), impl_->depthOfMade()};
   impl_->addJob([this, call = std::move(call), to = NodeRef(&node),
                  in = std::string(ownName(node, eventIn))] {
     World& world = *impl_->world;
@@ -237,7 +259,8 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
 
 void Browser::loadUrl(const std::vector<std::string>& urls,
                       const std::vector<std::string>& parameters, const std::string& base) {
-  LoadCall call{"loadURL", urls, base.empty() ? impl_->world->path : base, impl_->callerPosition()};
+  LoadCall call{"loadURL", urls, base.empty() ? impl_->world->path : base, impl_->callerPosition(),
+                impl_->depthOfMade()};
   impl_->addJob([this, call = std::move(call), parameters] {
     if (impl_->options.loadUrl && impl_->options.loadUrl(call.urls, parameters, call.base)) return;
     const auto bind = [&](const std::string& name) {

@@ -20,6 +20,9 @@ struct Browser::Impl {
   void runJobs();
   void addJob(std::function<void()> job);
   SourcePosition callerPosition() const; // the calling Script, else the world's file
+  // Returns how many files and Scripts are around what the calling Script makes: it grows along a
+  // chain of Scripts that make one another, by text or by prototypes.
+  uint64_t depthOfMade() const;
   // Makes nodes of a text, which may use the prototypes.
   MFNode create(std::string_view text, const std::string& base,
                 std::span<const ProtoPtr> prototypes);

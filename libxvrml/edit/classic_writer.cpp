@@ -8,7 +8,6 @@
 #include "edit/lines.h"
 #include "edit/node_writer.h"
 #include "graph/field_access.h"
-#include "write/value_writer.h"
 
 namespace xvrml {
 namespace {
@@ -118,9 +117,7 @@ class ClassicWriter : public NodeWriter {
       return this->node(static_cast<const NodeRef*>(node.storage(field))->get(), indentation, {});
     if (field.type == FieldType::MFNode)
       return inBrackets(*static_cast<const MFNode*>(node.storage(field)), indentation);
-    std::string value;
-    writeValue(value, field.type, node.storage(field), indentation.size());
-    return value;
+    return valueText(field.type, node.get(field), {indentation.size(), feed_});
   }
 
   // Returns a list with a line for each node.
@@ -139,9 +136,9 @@ class ClassicWriter : public NodeWriter {
     const Value* const original = editedFrom(node, field);
     if (!original) return;
     text_.copy(text, place.value.begin);
-    text_.out += changedValue(
-        std::string_view(text.text).substr(place.value.begin, place.value.size()), field.type,
-        *original, node.get(field), indentationAt(text, place.whole.begin).size());
+    text_.out +=
+        changedValue(std::string_view(text.text).substr(place.value.begin, place.value.size()),
+                     field.type, *original, node.get(field), linesAt(text, place.whole.begin));
     text_.at = place.value.end;
   }
 

@@ -231,9 +231,9 @@ class ElementWriter : public NodeWriter {
     const Value* const original = editedFrom(node, field);
     if (!original) return;
     const std::string_view present = std::string_view(text.text).substr(value.begin, value.size());
-    changes.push_back({value, changedAttribute(present, field.type, *original, node.get(field),
-                                               indentationAt(text, element.begin).size(),
-                                               text.text[value.begin - 1])});
+    changes.push_back(
+        {value, changedAttribute(present, field.type, *original, node.get(field),
+                                 linesAt(text, element.begin), text.text[value.begin - 1])});
   }
 
   // Adds a field that the text does not have: an attribute, child elements or a fieldValue.
@@ -241,7 +241,7 @@ class ElementWriter : public NodeWriter {
                 const DocumentText& text, const XmlElement& element, const Node& node,
                 const FieldInfo& field) {
     const char quote = quoteOf(text, element);
-    const size_t indent = indentationAt(text, element.begin).size();
+    const ValueLines lines = linesAt(text, element.begin);
     if (nodeCast<ProtoInstance>(&node)) {
       lists.push_back(
           {{Kind::behind, {}, {}, [this, &node, &field, quote](std::string_view indentation, bool) {
@@ -251,7 +251,7 @@ class ElementWriter : public NodeWriter {
       lists.push_back(itemsOf(text, {}, nodesOf(node, field), {&node, &field}));
     } else {
       added.push_back(
-          {spelled(node, field.name), attributeText(field.type, node.get(field), indent, quote)});
+          {spelled(node, field.name), attributeText(field.type, node.get(field), lines, quote)});
     }
   }
 
@@ -259,10 +259,10 @@ class ElementWriter : public NodeWriter {
                          char quote) {
     std::string out = "<fieldValue" + attribute("name", field.name, quote);
     if (!holdsNodes(field))
-      return out +
-             fmt::format(" value={}{}{}/>", quote,
-                         attributeText(field.type, node.get(field), indentation.size(), quote),
-                         quote);
+      return out + fmt::format(" value={}{}{}/>", quote,
+                               attributeText(field.type, node.get(field),
+                                             {indentation.size(), feed_}, quote),
+                               quote);
     out += ">";
     const std::string inner = deeper(indentation);
     for (const NodeRef& child : nodesOf(node, field))
@@ -282,9 +282,9 @@ class ElementWriter : public NodeWriter {
     if (place.value.begin > 0)
       changeValue(changes, text, element, node, field, place.value);
     else if (editedFrom(node, field))
-      added.push_back({"value", attributeText(field.type, node.get(field),
-                                              indentationAt(text, element.begin).size(),
-                                              quoteOf(text, element))});
+      added.push_back(
+          {"value", attributeText(field.type, node.get(field), linesAt(text, element.begin),
+                                  quoteOf(text, element))});
     writeTag(text, element, std::move(changes), added);
     text_.copy(text, element.end);
   }

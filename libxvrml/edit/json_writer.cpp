@@ -306,7 +306,8 @@ class JsonWriter : public NodeWriter {
                          const JsonStyle& style) {
     const std::string name(spelled(node, field.name));
     if (!holdsNodes(field))
-      return style.member("@" + name, jsonText(field.type, node.get(field), indentation.size()));
+      return style.member("@" + name,
+                          jsonText(field.type, node.get(field), {indentation.size(), feed_}));
     const MFNode nodes = nodesOf(node, field);
     return style.member("-" + name, field.type == FieldType::SFNode && !nodes.empty()
                                         ? this->node(nodes[0].get(), indentation, {&node, &field})
@@ -318,7 +319,8 @@ class JsonWriter : public NodeWriter {
     const std::string value =
         holdsNodes(field)
             ? style.member("-children", inBrackets(nodesOf(node, field), indentation, {}))
-            : style.member("@value", jsonText(field.type, node.get(field), indentation.size()));
+            : style.member("@value",
+                           jsonText(field.type, node.get(field), {indentation.size(), feed_}));
     return "{" + style.member("@name", jsonString(field.name)) + ", " + value + "}";
   }
 
@@ -331,16 +333,16 @@ class JsonWriter : public NodeWriter {
       return writeNodes(text, node, field, place, isOwn ? Holder{&node, &field} : Holder());
     const Value* const original = editedFrom(node, field);
     if (!original) return;
-    const size_t indent = indentationAt(text, place.whole.begin).size();
+    const ValueLines lines = linesAt(text, place.whole.begin);
     if (place.value.begin == 0)
       return append(text, {place.whole.begin + 1, place.whole.end}, {[&](std::string_view) {
                       return JsonStyle(text.text, place.whole.begin)
-                          .member("@value", jsonText(field.type, node.get(field), indent));
+                          .member("@value", jsonText(field.type, node.get(field), lines));
                     }});
     text_.copy(text, place.value.begin);
     text_.out +=
         changedJson(std::string_view(text.text).substr(place.value.begin, place.value.size()),
-                    field.type, *original, node.get(field), indent);
+                    field.type, *original, node.get(field), lines);
     text_.at = place.value.end;
   }
 

@@ -12,6 +12,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "edit/changed_value.h"
 #include "edit/list_steps.h"
 #include "edit/node_comments.h"
 #include "edit/text_copier.h"
@@ -118,6 +119,9 @@ class NodeWriter {
   // Returns the blanks at the beginning of a line. Cheap for places that follow each other, also in
   // a text that is a single line.
   std::string_view indentationAt(const DocumentText& text, size_t at) const;
+  ValueLines linesAt(const DocumentText& text, size_t at) const {
+    return {indentationAt(text, at).size(), feed_};
+  }
   // Returns the name of a field or event in the file's standard.
   std::string_view spelled(const Node& node, std::string_view field) const;
   static std::string deeper(std::string_view indentation);

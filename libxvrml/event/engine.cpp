@@ -92,6 +92,7 @@ void Engine::settle() {
   if (settling_) return;
   deliverAll();
   renewExpansions();
+  moveFigures();
   sweep();
   if (scripts) scripts->finish();
 }

@@ -122,7 +122,7 @@ class Engine final : public Events {
   void unlisten(Node& node, uint64_t number);
   void markReach(Node& node, const FieldInfo& in, const std::string& reason);
   FieldChanges takeChanges();
-  bool hasChanges() const { return !changes_.empty() || !outdated_.empty(); }
+  bool hasChanges() const { return !changes_.empty() || !outdated_.empty() || figuresOutdated_; }
   uint64_t delivered() const { return delivered_; } // number of events so far
   // Grows whenever nodes get or lose a parent, or become or cease to be roots.
   uint64_t structure() const { return structure_; }
@@ -183,6 +183,8 @@ class Engine final : public Events {
   void sweep();
   void renewExpansions();
   void renewExpansion(Node& node);
+  void addFigures(const std::vector<NodeRef>& nodes);
+  void moveFigures();
   void reuseNodes(Node& old, Node& fresh);
   using Watchers = std::map<uint32_t, Node*>; // by Live::order
   void callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&));
@@ -192,7 +194,7 @@ class Engine final : public Events {
   double now_ = 0;
   std::vector<Live*> lives_;
   std::deque<Event> queue_;
-  Watchers ticking_, looking_;
+  Watchers ticking_, looking_, deforming_;
   FieldChanges changes_;
   std::vector<NodeRef> outdated_; // plug-in nodes whose expansion may have changed
   std::vector<NodeRef> swept_;    // nodes with deleted links
@@ -200,7 +202,8 @@ class Engine final : public Events {
   uint64_t structure_ = 0, cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0,
            listeners_ = 0;
   uint32_t order_ = 0;
-  bool settling_ = false, overflow_ = false, scriptsToStart_ = false, destroying_ = false;
+  bool settling_ = false, overflow_ = false, scriptsToStart_ = false, destroying_ = false,
+       figuresOutdated_ = false;
 };
 
 } // namespace xvrml

@@ -76,6 +76,7 @@ void Engine::forget(LiveBase* base) noexcept {
   }
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
+  engine.deforming_.erase(live->order);
   engine.observer->forgotten(*live->node);
   if (auto* instance = nodeCast<ProtoInstance>(live->node)) engine.disconnectBody(*instance);
   if (auto* script = nodeCast<ScriptNode>(live->node); script && engine.scripts)
@@ -214,6 +215,7 @@ void Engine::complete(AdoptedNodes& adopted) {
       part(*node).state = behaviour->begin(*this, *node);
     }
   }
+  addFigures(adopted.nodes);
 }
 
 void Engine::adoptScope(const Scope& scope, bool roots) {
@@ -365,6 +367,7 @@ void Engine::changed(Node& node, const FieldInfo& field) {
   if (node.type().expand && node.live) outdated_.emplace_back(&node);
   if (field.change == Change::none || !node.live || node.type().index < 0) return;
   Live& live = *liveOf(node);
+  figuresOutdated_ = figuresOutdated_ || !deforming_.empty();
   observer->changed(node, field);
   if (!reaches(node, field.change)) markReach(node, field, "it has been changed");
   const size_t index = size_t(&field - node.type().fields.data());
@@ -377,6 +380,7 @@ void Engine::changed(Node& node, const FieldInfo& field) {
 
 FieldChanges Engine::takeChanges() {
   renewExpansions();
+  moveFigures();
   for (const FieldChange& change : changes_)
     if (change.node && change.node->live) liveOf(*change.node)->changed = 0;
   return std::exchange(changes_, {});

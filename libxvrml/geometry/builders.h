@@ -40,7 +40,12 @@ namespace xvrml {
   X(ArcClose2D)                                                                                    \
   X(ORTQuadric)                                                                                    \
   X(ORTAsphere)                                                                                    \
-  X(GeoElevationGrid)
+  X(GeoElevationGrid)                                                                              \
+  X(NurbsPatchSurface)                                                                             \
+  X(NurbsTrimmedSurface)                                                                           \
+  X(NurbsCurve)                                                                                    \
+  X(NurbsSweptSurface)                                                                             \
+  X(NurbsSwungSurface)
 
 #define XVRML_DECLARE_BUILDER(name)                                                                \
   Mesh build##name(const nodes::name& node, const MeshOptions& options, Faults& faults);
@@ -54,9 +59,15 @@ struct ColorValues {
   std::vector<float> alphas; // opacity of each colour, 0 to 1; empty for a Color
 };
 
-// Return the arrays of property nodes, also through a prototype instance. They return an empty span
-// for NULL and for nodes of another type.
-std::span<const Vec3f> coordinates(const NodeRef& node);
+// The points of a Coordinate or CoordinateDouble.
+struct Coordinates {
+  std::span<const Vec3f> points; // the node's, or `own`
+  std::vector<Vec3f> own;
+};
+
+// Return the arrays of property nodes as they are drawn, also through a prototype instance. They
+// return an empty span for NULL and for nodes of another type.
+Coordinates coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
 ColorValues colorValues(const NodeRef& node);
 std::span<const Vec2f> textureCoordinates(const NodeRef& node);

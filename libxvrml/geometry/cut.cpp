@@ -49,6 +49,7 @@ class Cutter {
     out_.kind = mesh.kind;
     out_.solid = mesh.solid;
     out_.ccw = mesh.ccw;
+    out_.texGen = mesh.texGen;
   }
 
   Cut run(Mesh& result) {

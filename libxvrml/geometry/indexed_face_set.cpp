@@ -161,7 +161,8 @@ bool buildInPlace(const nodes::IndexedFaceSet& node, const FaceSet& set, const M
 Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options,
                          Faults& faults) {
   FaceSet set;
-  set.points = coordinates(node.coord);
+  Coordinates given = coordinates(node.coord);
+  set.takePoints(given.points, std::move(given.own));
   if (node.coordIndex.empty()) return {};
   if (set.points.size() >= noValue / 2 || node.coordIndex.size() >= noValue / 2) {
     faults.note("too many points or indices");
@@ -172,7 +173,7 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
   set.normals.values = normalVectors(node.normal);
   set.texCoords.values = textureCoordinates(node.texCoord);
   Mesh mesh;
-  if (buildInPlace(node, set, options, mesh)) return mesh;
+  if (set.ownPoints.empty() && buildInPlace(node, set, options, mesh)) return mesh;
 
   set.solid = node.solid;
   set.ccw = node.ccw;

@@ -22,10 +22,11 @@ struct Lines {
 class LineReader {
  public:
   LineReader(const Lines& node, Faults& faults)
-      : node_(node), faults_(faults), points_(coordinates(node.coord)),
+      : node_(node), faults_(faults), given_(coordinates(node.coord)), points_(given_.points),
         values_(colorValues(node.color)), colors_(values_.rgb) {
     // Colours that match the points one to one need no extra vertices.
-    ownVertices_ = !allFinite(points_) || !allFinite(colors_) || !values_.alphas.empty() ||
+    ownVertices_ = !given_.own.empty() || !allFinite(points_) || !allFinite(colors_) ||
+                   !values_.alphas.empty() ||
                    (!colors_.empty() && (!node.colorPerVertex || !node.colorIndex.empty() ||
                                          colors_.size() < points_.size()));
   }
@@ -118,6 +119,7 @@ class LineReader {
 
   const Lines& node_;
   Faults& faults_;
+  Coordinates given_;
   std::span<const Vec3f> points_;
   ColorValues values_;
   std::span<const Color> colors_;
@@ -133,7 +135,7 @@ Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions&, 
 }
 
 Mesh buildLineSet(const nodes::LineSet& node, const MeshOptions&, Faults& faults) {
-  const size_t points = coordinates(node.coord).size();
+  const size_t points = coordinates(node.coord).points.size();
   if (points >= INT32_MAX || node.vertexCount.size() >= INT32_MAX) {
     faults.note("too many points or lines");
     return {};

@@ -6,6 +6,8 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "geometry/thick.h"
+#include "xvrml/deformed.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -19,14 +21,22 @@ void Mesh::viewOwn() {
   alphas = ownAlphas;
 }
 
-std::span<const Vec3f> coordinates(const NodeRef& node) {
-  auto* coordinate = nodeCast<nodes::Coordinate>(renderedNode(node.get()));
-  return coordinate ? std::span<const Vec3f>(coordinate->point) : std::span<const Vec3f>();
+Coordinates coordinates(const NodeRef& node) {
+  Coordinates result;
+  Node* rendered = renderedNode(node.get());
+  if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
+    result.points = drawnPoints(*coordinate);
+  } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
+    result.own.reserve(exact->point.size());
+    for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
+    result.points = result.own;
+  }
+  return result;
 }
 
 std::span<const Vec3f> normalVectors(const NodeRef& node) {
   auto* normal = nodeCast<nodes::Normal>(renderedNode(node.get()));
-  return normal ? std::span<const Vec3f>(normal->vector) : std::span<const Vec3f>();
+  return normal ? drawnNormals(*normal) : std::span<const Vec3f>();
 }
 
 ColorValues colorValues(const NodeRef& node) {
@@ -87,6 +97,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   for (const TryBuild build : builders)
     if (build(node, options, mesh, faults)) break;
   generateTextureCoordinates(*node, options, mesh);
+  thicken(mesh, options, faults);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }

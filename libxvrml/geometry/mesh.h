@@ -31,6 +31,10 @@ struct ExactSurface {
   double height = 0;
 };
 
+// Texture coordinates that a renderer makes in the camera's frame, in the order of RT_TEX_GEN_*
+// (openrt/geometry.h).
+enum class TexGen : uint8_t { off, position, normal, reflection, sphereNormal, sphereReflection };
+
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
@@ -42,7 +46,9 @@ struct Mesh {
   std::span<const Vec2f> texCoords;
   std::span<const Color> colors;
   std::span<const float> alphas; // opacity, 0 to 1, of the colours of a ColorRGBA
-  bool solid = true;             // back faces are culled
+  // Takes the place of texCoords, which are those of the same mode in the frame of the geometry.
+  TexGen texGen = TexGen::off;
+  bool solid = true; // back faces are culled
   bool ccw = true;
   float radius = 0;   // radius of a sphere
   bool plain = false; // points are the node's, and triangles its faces in their order
@@ -77,9 +83,12 @@ struct MeshOptions {
   std::string_view limitName = {};
   // Cylinders and cones get exact surfaces beside their triangles.
   bool exactShapes = false;
-  // If not null, those of the mesh that was built of this node before; only the node's points have
-  // changed since. A mesh that is still built of them takes them.
+  // If not null, those of the mesh that was built of this node before; only the node's points or
+  // normals have changed since. A mesh that is still built of them takes them.
   MeshTopology* former = nullptr;
+  // Diameters in the units of the node: points become balls, and lines rods (thick.h). 0: they are
+  // thin.
+  float pointSize = 0, lineWidth = 0;
 };
 
 // Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if

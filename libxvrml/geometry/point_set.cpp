@@ -8,7 +8,8 @@ namespace xvrml {
 
 Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faults) {
   Mesh mesh;
-  std::span<const Vec3f> points = coordinates(node.coord);
+  Coordinates given = coordinates(node.coord);
+  const std::span<const Vec3f> points = given.points;
   ColorValues values = colorValues(node.color);
   const std::span<const Color> colors = values.rgb;
   if (points.empty() || points.size() >= UINT32_MAX) return mesh;
@@ -29,6 +30,7 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
     std::iota(mesh.ownIndices.begin(), mesh.ownIndices.end(), 0);
     mesh.viewOwn();
   } else {
+    mesh.ownPoints = std::move(given.own); // keeps its storage
     mesh.points = points;
     mesh.indices = mesh.ownIndices;
     if (!colors.empty() && (colors.size() < points.size() || !values.alphas.empty())) {

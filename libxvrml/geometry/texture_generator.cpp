@@ -1,6 +1,6 @@
 // texture_generator.cpp: modes by the vertex and its normal in the frame of the geometry. A mesh
-// has one set of coordinates for all viewers, so modes of the camera's frame are computed in the
-// geometry's frame, too, with a warning.
+// has one set of coordinates for all viewers, so modes of the camera's frame have those of the
+// geometry's frame, too; the mesh tells the renderer which they stand for (Mesh::texGen).
 #include "geometry/texture_generator.h"
 
 #include <algorithm>
@@ -18,19 +18,20 @@ enum class Kind { position, normal, sphere, reflection, noise };
 struct Mode {
   const char* name;
   Kind kind;
-  bool camera; // the standard means the camera's frame
+  bool camera = false;         // the standard means the camera's frame
+  TexGen texGen = TexGen::off; // what a renderer makes there
 };
 constexpr Mode modes[] = {
-    {"COORD", Kind::position, false},
-    {"COORD-EYE", Kind::position, true},
-    {"CAMERASPACEPOSITION", Kind::position, true},
-    {"CAMERASPACENORMAL", Kind::normal, true},
-    {"CAMERASPACEREFLECTIONVECTOR", Kind::normal, true},
-    {"SPHERE", Kind::sphere, true},
-    {"SPHERE-LOCAL", Kind::sphere, false},
-    {"SPHERE-REFLECT", Kind::sphere, true},
-    {"SPHERE-REFLECT-LOCAL", Kind::reflection, false},
-    {"NOISE", Kind::noise, false},
+    {"COORD", Kind::position},
+    {"COORD-EYE", Kind::position, true, TexGen::position},
+    {"CAMERASPACEPOSITION", Kind::position, true, TexGen::position},
+    {"CAMERASPACENORMAL", Kind::normal, true, TexGen::normal},
+    {"CAMERASPACEREFLECTIONVECTOR", Kind::normal, true, TexGen::reflection},
+    {"SPHERE", Kind::sphere, true, TexGen::sphereNormal},
+    {"SPHERE-LOCAL", Kind::sphere},
+    {"SPHERE-REFLECT", Kind::sphere, true, TexGen::sphereReflection},
+    {"SPHERE-REFLECT-LOCAL", Kind::reflection},
+    {"NOISE", Kind::noise},
     {"NOISE-EYE", Kind::noise, true},
 };
 
@@ -203,12 +204,14 @@ void generateTextureCoordinates(Node& geometry, const MeshOptions& options, Mesh
                 "mode is \"" + node->mode.substr(0, 40) +
                     "\", expected COORD, SPHERE or another name of ISO/IEC 19775-1 18.4.8: the "
                     "coordinates are those without texCoord");
-  if (mode->camera)
+  mesh.texGen = mode->texGen;
+  if (mode->camera && mode->texGen == TexGen::off)
     warn(options, *node,
          "mode " + node->mode +
              " is computed in the frame of the shape, not of the camera: the picture does not "
              "move with the viewer");
-  if (mode->kind == Kind::reflection && !node->parameter.empty() && node->parameter[0] != 0)
+  const bool refracts = mode->kind == Kind::reflection || mode->texGen == TexGen::sphereReflection;
+  if (refracts && !node->parameter.empty() && node->parameter[0] != 0)
     warn(options, *node, "the index of refraction in parameter is not used");
   const bool byNormal = mode->kind != Kind::position && mode->kind != Kind::noise;
   if (byNormal && mesh.normals.empty()) separateFaces(mesh);

@@ -127,7 +127,8 @@ constexpr float smoothAll = 4; // more than any angle between faces
 // Returns a set with the values of a node and no faces.
 template <class Node> FaceSet valuesOf(const Node& node) {
   FaceSet set;
-  set.points = coordinates(node.coord);
+  Coordinates given = coordinates(node.coord);
+  set.takePoints(given.points, std::move(given.own));
   set.solid = node.solid;
   set.ccw = node.ccw;
   ColorValues colors = colorValues(node.color);
@@ -173,7 +174,7 @@ Mesh buildIndexedTriangleSet(const nodes::IndexedTriangleSet& node, const MeshOp
                              Faults& faults) {
   const FaceSet set = valuesOf(node);
   Mesh mesh;
-  if (set.points.size() < noValue / 2 && node.index.size() < noValue / 2 &&
+  if (set.ownPoints.empty() && set.points.size() < noValue / 2 && node.index.size() < noValue / 2 &&
       buildPlain({node.index, false, node.normalPerVertex ? smoothAll : 0, node.solid, node.ccw},
                  set, options, mesh))
     return mesh;

@@ -95,9 +95,10 @@ class Comparison {
     for (size_t i = 0; i < a->type().fields.size(); ++i) {
       const FieldInfo &x = a->type().fields[i], &y = b->type().fields[i];
       if (!holdsValue(x)) continue;
-      const bool same = visitStorage(x.type, a->storage(x), [&](auto& value) {
-        return values(value,
-                      *static_cast<const std::remove_reference_t<decltype(value)>*>(b->storage(y)));
+      const Node &one = *a, &other = *b; // only read
+      const bool same = visitStorage(x.type, one.storage(x), [&](const auto& value) {
+        using T = std::remove_cvref_t<decltype(value)>;
+        return values(value, *static_cast<const T*>(other.storage(y)));
       });
       if (!same) return at(fmt::format("{} {}.{}", a->defName, a->type().name, x.name));
     }

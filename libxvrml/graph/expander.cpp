@@ -37,8 +37,8 @@ template <class T> uint64_t bytesOutside(const T&) { return 0; }
 } // namespace
 
 uint64_t valueBytes(FieldType type, const void* storage) {
-  return visitStorage(type, const_cast<void*>(storage), [](auto& value) -> uint64_t {
-    using T = std::remove_reference_t<decltype(value)>;
+  return visitStorage(type, storage, [](const auto& value) -> uint64_t {
+    using T = std::remove_cvref_t<decltype(value)>;
     if constexpr (isList<T>) {
       uint64_t bytes = value.size() * sizeof(ElementOf<T>);
       if constexpr (!Numeric<ElementOf<T>>)

@@ -1,12 +1,19 @@
-// inline_node.cpp: built-in nodes, types that nodes have of their own, and the content of Inlines.
+// inline_node.cpp: makes built-in nodes, types that nodes have of their own, and the content of
+// Inlines.
 #include "graph/inline_node.h"
 
+#include "base/deformable.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
 
 NodeRef makeStaticNode(const NodeType& type) {
-  return NodeRef(type.index == nodes::Inline::typeIndex ? new InlineNode() : type.create(type));
+  switch (type.index) {
+  case nodes::Inline::typeIndex: return NodeRef(new InlineNode());
+  case nodes::Coordinate::typeIndex: return NodeRef(new Deformable<nodes::Coordinate>());
+  case nodes::Normal::typeIndex: return NodeRef(new Deformable<nodes::Normal>());
+  default: return NodeRef(type.create(type));
+  }
 }
 
 NodeRef makeLike(const Node& staticNode) {

@@ -29,6 +29,15 @@ std::string_view fieldName(const Node& node, const FieldInfo& field) {
                            : std::string_view(field.name);
 }
 
+std::string_view otherFieldName(const Node& node, const FieldInfo& field) {
+  if (node.type().index < 0) return {};
+  const std::string_view own = field.name;
+  if (fieldName(node, field) != own) return own;
+  constexpr int newest = 4;
+  const std::string_view other = x3dName(node.type().name, own, newest);
+  return other == own ? std::string_view() : other;
+}
+
 const FieldInfo* findField(const Node& node, std::string_view name) {
   return node.type().find(ownName(node, name));
 }

@@ -86,7 +86,7 @@ std::string placeReason(const Graph& graph, const Item& item, const Part& part) 
   if (item.kind == Kind::lod) return "split: LOD follows the viewer";
   if (item.kind == Kind::billboard) return "split: Billboard follows the viewer";
   if (isSplit(item.objectReason)) return itemReason(graph, item, part);
-  return item.scopesLight ? "split: scope of a DirectionalLight" : "";
+  return item.scopes ? "split: scope of a light or a LocalFog" : "";
 }
 
 } // namespace

@@ -22,6 +22,7 @@ OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
     : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), cubes(w, textures),
       custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, cubes, custom),
       objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes, custom),
+      fogs(w, o.linearColor, classes),
       environment(w, o.linearColor, classes, textures, cubes, custom),
       camera(cameraOf(nullptr, Matrix(), o.aspect)) {
   summarise(graph, world.diagnostics);
@@ -35,6 +36,7 @@ OpenRTMapper::Impl::~Impl() {
   if (!context || rtGetCurrent() != context) return;
   try {
     lights.clear(places);
+    fogs.clear(places);
     objects.clear();
     environment.clear();
     surfaces.clear();
@@ -216,6 +218,10 @@ bool OpenRTMapper::seesAll(const CameraSettings& camera, double aspect) const {
 
 void OpenRTMapper::setExactShapes(bool exact) { impl_->graph.meshes.setExactShapes(exact); }
 
+void OpenRTMapper::setThickness(double points, double lines) {
+  impl_->graph.meshes.setThickness(float(points), float(lines));
+}
+
 void OpenRTMapper::setMultiplyTextures(bool multiply) {
   impl_->surfaces.multiplyTextures = multiply;
 }
@@ -264,8 +270,13 @@ void OpenRTMapper::map(const CameraSettings& camera) {
     around.background = {};
     around.backgroundPlace = none;
   }
+  if (const int32_t fog = Fogs::outermost(m.graph, m.places); fog != none) {
+    around.fog = m.graph.items[m.places.all[size_t(fog)].item].node;
+    around.fogPlace = fog;
+  }
   m.environment.updateForFrame(m.graph, m.places, around);
   m.objects.updateForFrame();
+  m.fogs.updateForFrame(m.graph, m.places);
   m.lights.updateForFrame(m.graph, m.places);
   m.lights.atCamera(m.lightsModel() ? CameraLight::model
                     : m.headlight() ? CameraLight::head
@@ -322,7 +333,8 @@ MapStats OpenRTMapper::stats() const {
   s.objectsDefined = m.objects.definitions();
   s.instancesMoved = m.objects.moves();
   s.parametersSet = m.surfaces.parametersSet() + m.custom.parametersSet() +
-                    m.lights.parametersSet() + m.environment.parametersSet();
+                    m.lights.parametersSet() + m.fogs.parametersSet() +
+                    m.environment.parametersSet();
   s.texturesLoaded = m.textures.loaded();
   s.lightsChanged = m.lights.changes();
   s.regroupings = m.regroupings;

@@ -11,6 +11,7 @@
 #include "mapper/shading/appearance.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
+#include "mapper/shading/fogs.h"
 #include "mapper/shading/lights.h"
 #include "mapper/views.h"
 #include "xvrml/mapper.h"
@@ -30,6 +31,7 @@ struct OpenRTMapper::Impl {
   mapper::Surfaces surfaces;
   mapper::Objects objects;
   mapper::Lights lights;
+  mapper::Fogs fogs;
   mapper::Environment environment;
   std::optional<mapper::Bound> given; // set by bind(); its places may be out of date
   mapper::Bound bound;
@@ -72,7 +74,7 @@ struct OpenRTMapper::Impl {
   void transformChanged(Work& work, Node& node);
   void geometryChanged(Work& work, Node& node);
   void appearanceChanged(Work& work, Node& node);
-  void lightChanged(Work& work, Node& node);
+  void switchChanged(Work& work, Node& node);
   void newSurfaces(Work& work);
   void textured(Work& work, mapper::ItemId shape);
   void regroup();

@@ -20,7 +20,8 @@ template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
 }
 
 uint64_t contentHash(const Mesh& m) {
-  const uint64_t flags = uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9;
+  const uint64_t flags =
+      uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9 | uint64_t(m.texGen) << 16;
   const uint64_t colorless =
       hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags))));
   return hashed(m.alphas, hashed(m.colors, colorless));
@@ -118,15 +119,26 @@ bool Meshes::needTexture(int32_t mesh) {
 void Meshes::setExactShapes(bool exact) {
   if (exactShapes_ == exact) return;
   exactShapes_ = exact;
+  rebuildAll();
+}
+
+void Meshes::setThickness(float points, float lines) {
+  if (points == pointSize_ && lines == lineWidth_) return;
+  pointSize_ = points;
+  lineWidth_ = lines;
+  rebuildAll();
+}
+
+void Meshes::rebuildAll() {
   for (size_t mesh = 0; mesh < entries_.size(); ++mesh)
     if (entries_[mesh].geometry) changed(int32_t(mesh));
 }
 
-void Meshes::changed(int32_t mesh, bool pointsOnly) {
+void Meshes::changed(int32_t mesh, bool vectorsOnly) {
   leave(mesh);
   forgetCorners();
   Entry& entry = entries_[size_t(mesh)];
-  if (!pointsOnly) entry.topology.reset();
+  if (!vectorsOnly) entry.topology.reset();
   entry.mesh.reset();
   entry.known = false;
 }
@@ -141,6 +153,15 @@ void Meshes::setDynamic(int32_t mesh, bool dynamic) {
     entry.known = false; // grouped when it is built again
 }
 
+namespace {
+// Returns whether the mesh of a geometry node has balls or rods in place of points or lines.
+bool isThick(const Mesh& mesh, Node& geometry) {
+  if (mesh.kind != Mesh::Kind::triangles) return false;
+  const Node* rendered = renderedNode(&geometry);
+  return rendered && rendered->type().is("lines");
+}
+} // namespace
+
 const Mesh& Meshes::get(int32_t mesh) {
   // Equal meshes share the arrays of the first of their group.
   if (const int32_t first = equal(mesh); first != mesh) return get(first);
@@ -152,8 +173,14 @@ const Mesh& Meshes::get(int32_t mesh) {
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
-  MeshOptions options{entry.textured, &limits,      entry.said ? &silent : &world_.diagnostics,
-                      name,           exactShapes_, entry.topology.get()};
+  const MeshOptions options{.needTexCoords = entry.textured,
+                            .limits = &limits,
+                            .diagnostics = entry.said ? &silent : &world_.diagnostics,
+                            .limitName = name,
+                            .exactShapes = exactShapes_,
+                            .former = entry.topology.get(),
+                            .pointSize = pointSize_,
+                            .lineWidth = lineWidth_};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
@@ -164,6 +191,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   entry.extent.kind = entry.mesh->kind;
   entry.extent.alpha = !entry.mesh->alphas.empty();
   entry.extent.byNormal = looksUpByNormal(*entry.geometry);
+  entry.extent.thick = isThick(*entry.mesh, *entry.geometry);
   entry.extent.primitives = primitivesOf(*entry.mesh);
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
       entry.extent.primitives >= minimumComparedPrimitives)
@@ -176,7 +204,7 @@ const Mesh& Meshes::get(int32_t mesh) {
 
 bool Meshes::sameContent(int32_t a, int32_t b) {
   const Mesh &m = get(a), &n = get(b);
-  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw &&
+  return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && m.texGen == n.texGen &&
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
          equalBytes(m.colors, n.colors) && equalBytes(m.alphas, n.alphas);
@@ -375,6 +403,7 @@ void compact(const Mesh& mesh, Mesh& out) {
   out.kind = mesh.kind;
   out.solid = mesh.solid;
   out.ccw = mesh.ccw;
+  out.texGen = mesh.texGen;
   for (const uint32_t i : used) {
     out.ownPoints.push_back(mesh.points[i]);
     if (!mesh.normals.empty()) out.ownNormals.push_back(mesh.normals[i]);

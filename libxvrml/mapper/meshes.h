@@ -22,6 +22,8 @@ class Meshes {
   explicit Meshes(World& world) : world_(world), quota_(world, "meshes") {}
   // Sets whether cylinders and cones are drawn without facets. Meshes are then built again.
   void setExactShapes(bool exact);
+  // Sets the diameters of points and lines; 0: they are thin. Meshes are then built again.
+  void setThickness(float points, float lines);
   // Returns the mesh number of a geometry node and adds a user. textured: the user has a texture.
   int32_t add(Node& geometry, bool textured);
   void drop(int32_t mesh); // removes one user
@@ -41,9 +43,9 @@ class Meshes {
     return entry.known && (entry.extent.alpha != hasVertexAlpha(*entry.geometry) ||
                            entry.extent.byNormal != looksUpByNormal(*entry.geometry));
   }
-  // Invalidates the mesh because fields of the node have changed, or only the points of its
-  // Coordinate.
-  void changed(int32_t mesh, bool pointsOnly = false);
+  // Invalidates the mesh because fields of the node have changed, or only the vectors of its
+  // Coordinate or Normal.
+  void changed(int32_t mesh, bool vectorsOnly = false);
   // Sets whether events reach the geometry. A dynamic mesh is never grouped with equal ones.
   void setDynamic(int32_t mesh, bool dynamic);
   bool dynamic(int32_t mesh) const { return entries_[size_t(mesh)].dynamic; }
@@ -57,6 +59,7 @@ class Meshes {
     double reach = 0;      // largest absolute coordinate
     bool alpha = false;    // it has opacities
     bool byNormal = false; // looksUpByNormal
+    bool thick = false;    // balls or rods in place of points or lines
   };
   Extent extent(int32_t mesh);
   // Returns the mesh whose object also draws this one: a mesh with equal content, perhaps itself.
@@ -74,6 +77,7 @@ class Meshes {
   void release();
 
  private:
+  void rebuildAll();
   static constexpr int32_t none_ = -1;
   struct Entry {
     NodeRef geometry;
@@ -108,6 +112,7 @@ class Meshes {
 
   World& world_;
   bool exactShapes_ = false;
+  float pointSize_ = 0, lineWidth_ = 0;
   Quota quota_; // quota for the meshes that are built now
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;

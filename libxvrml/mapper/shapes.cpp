@@ -11,6 +11,8 @@
 namespace xvrml::mapper {
 
 namespace {
+static_assert(int(TexGen::sphereReflection) == RT_TEX_GEN_SPHERE_REFLECTION);
+
 constexpr double farthestFloat = 1e38;
 constexpr double farthestDrawn = 1e20; // by the renderer (decision 62)
 
@@ -31,6 +33,7 @@ const Mesh& withLinearColors(const Mesh& mesh, Mesh& storage) {
   storage.alphas = mesh.alphas;
   storage.solid = mesh.solid;
   storage.ccw = mesh.ccw;
+  storage.texGen = mesh.texGen;
   for (const Color& color : mesh.colors) storage.ownColors.push_back(convert(color, true));
   storage.colors = storage.ownColors;
   return storage;
@@ -160,7 +163,11 @@ void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
 
 SurfaceUse Objects::useOf(const Item& item) const {
   Node& geometry = graph_.meshes.geometry(item.mesh);
-  return {item.lines && !item.viaMesh, hasVertexAlpha(geometry), looksUpByNormal(geometry)};
+  const bool lines = item.lines && !item.viaMesh;
+  return {.lines = lines,
+          .thick = lines && graph_.meshes.extent(item.mesh).thick,
+          .vertexAlpha = hasVertexAlpha(geometry),
+          .byNormal = looksUpByNormal(geometry)};
 }
 
 // Writes a shape. Its number is the name of everything it draws, so that the id channel tells
@@ -226,6 +233,7 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   rtPointSize(surface.pointSize);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
+  rtTexGen(textured ? RTenum(m.texGen) : RTenum(RT_TEX_GEN_OFF));
   if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
   } else if (!m.exact.empty()) {
@@ -248,7 +256,7 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
                     textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
   // Lines and points use emissiveColor.
-  const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles;
+  const bool plain = m.colors.empty() && surface.lines;
   const int components = m.alphas.empty() ? 3 : 4;
   if (!m.colors.empty() && !linear && m.alphas.empty()) {
     rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());

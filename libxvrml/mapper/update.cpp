@@ -64,7 +64,7 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
     case Change::geometry: geometryChanged(work, node); break;
     case Change::appearance:
     case Change::shader: appearanceChanged(work, node); break;
-    case Change::light: lightChanged(work, node); break;
+    case Change::light: switchChanged(work, node); break;
     case Change::view:
       environment.changed(node);
       viewsStale = true;
@@ -113,12 +113,14 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
 // Handles a change of a geometry node or of a node that it holds.
 void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
   SeenNodes visited;
+  const bool vectorsOnly = first.type().index == nodes::Coordinate::typeIndex ||
+                           first.type().index == nodes::Normal::typeIndex;
   walkHolders(first, visited, [&](Node& node) {
     const int32_t mesh = graph.meshes.find(&node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
     const bool otherSurface = graph.meshes.switchedSurface(mesh);
-    graph.meshes.changed(mesh, first.type().index == nodes::Coordinate::typeIndex);
+    graph.meshes.changed(mesh, vectorsOnly);
     work.meshes.push_back(mesh);
     boundsStale = countsStale = true;
     forEachShape(graph, node, [&](ItemId shape) {
@@ -188,13 +190,15 @@ void OpenRTMapper::Impl::textured(Work& work, ItemId shape) {
   work.regroup = true; // it no longer equals meshes without texture coordinates
 }
 
-void OpenRTMapper::Impl::lightChanged(Work& work, Node& node) {
+// Handles a change of a light or a LocalFog.
+void OpenRTMapper::Impl::switchChanged(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
   // The headlight of a NavigationInfo is read every frame.
-  if (id == 0 || !isLight(graph.items[id].kind)) return;
+  if (id == 0 || !isSwitched(graph.items[id].kind)) return;
   const bool scoped = graph.items[id].scoped;
-  graph.readLight(id);
+  graph.readSwitch(id);
   lights.changed(node);
+  fogs.changed(node);
   environment.changed(node);
   if (graph.items[id].on && !graph.items[id].placeDependent) work.regroup = true;
   if (graph.items[id].scoped != scoped) work.regroup = true;
@@ -220,6 +224,7 @@ void OpenRTMapper::Impl::regroup() {
   objects.placingChanged(changed);
   objects.regrouped(gone);
   lights.remove(gone);
+  fogs.remove(gone);
   lights.forget(graph);
   rebind();
   viewsStale = boundsStale = namesStale = lightStale = true;

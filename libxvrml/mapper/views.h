@@ -54,8 +54,9 @@ bool seesAll(std::span<const Vector> points, const CameraSettings& camera, doubl
 // on).
 bool hasHeadlight(const Bound& bound);
 
-// Sets Background, TextureBackground, Fog and EnvironmentLight as the scene's environment: one
-// shader of the class VRML97Environment, or the shader of an ORTBackground.
+// Sets Background, TextureBackground, EnvironmentLight, and Fog or the LocalFog of the top level,
+// as the scene's environment: one shader of the class VRML97Environment, or the shader of an
+// ORTBackground.
 class Environment {
  public:
   Environment(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
@@ -81,7 +82,6 @@ class Environment {
   void picturesOfBackground(Faces& pictures);
   CubeMap picturesOfLight();
   int32_t findLight(const Graph& graph, const Places& places);
-  void setFog(ShaderSetup& shader);
   void useCustom(nodes::ORTBackground& node);
 
   World& world_;

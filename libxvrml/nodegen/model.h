@@ -70,13 +70,14 @@ struct Revision {
   std::vector<FieldSpec> fields;
 };
 
-// A node of X3D that has no stanza, because the library does not have it: a line of a statement
-// `absent`.
+// A node of X3D, or of one browser, that has no stanza, because the library does not have it: a
+// line of a statement `absent`.
 struct AbsentNode {
   Reference node;
-  std::string clause;
-  std::string kind; // geometry, sensor, ...
-  std::string loss; // a clause of a message: "shapes with it are not drawn"
+  std::string origin; // the browser that has it; empty: it is X3D's
+  std::string clause; // empty: it is a browser's
+  std::string kind;   // geometry, sensor, ...
+  std::string loss;   // a clause of a message: "shapes with it are not drawn"
 };
 
 // Holds the contents of one .node file.

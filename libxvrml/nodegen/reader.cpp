@@ -143,15 +143,17 @@ class Reader {
   }
 
   // absent ::= "absent" kind string "{" { name clause } "}"
+  //          | "absent" kind "of" string string "{" { name } "}"
   void readAbsent() {
     AbsentNode one;
     SourcePosition source;
     readName(one.kind, source, "what the nodes are, such as geometry or sensor");
+    if (acceptWord("of")) one.origin = readText("the browser that has the nodes");
     one.loss = readText("what is lost where they are left out");
     expect(TokenKind::braceOpen, "{");
     while (!lexer_.peek().is(TokenKind::braceClose)) {
       readName(one.node, "the name of a node");
-      one.clause = readClause();
+      if (one.origin.empty()) one.clause = readClause();
       component_.absent.push_back(one);
     }
     take();

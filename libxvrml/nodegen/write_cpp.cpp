@@ -238,13 +238,14 @@ std::string writeRevisions(const Model& model) {
   return "std::span<const FieldRevision> revisions() {\n  " + body + "\n}\n\n";
 }
 
-// Returns the table of the nodes of X3D that the library does not have.
+// Returns the table of the nodes that the library does not have.
 std::string writeAbsent(const Model& model) {
   std::string rows;
   for (const Component& component : model.components)
     for (const AbsentNode& one : component.absent)
-      rows += fmt::format("      {{{}, {}, {}, {}}},\n", cppString(one.node.name),
-                          cppString(one.clause), cppString(one.kind), cppString(one.loss));
+      rows += fmt::format("      {{{}, {}, {}, {}, {}}},\n", cppString(one.node.name),
+                          cppString(one.origin), cppString(one.clause), cppString(one.kind),
+                          cppString(one.loss));
   return tableFunction("AbsentNode", "absentNodes", rows);
 }
 

@@ -30,11 +30,11 @@ std::string_view containerOf(const NodeType& type);
 namespace nodes {
 struct AbsentNode;
 }
-// Returns what of a node is not done: "its skin stays as it is at rest". "" for most types. [any
+// Returns what of a node is not done: "bodies do not move". "" for most types. [any
 // thread]
 std::string_view lackOf(const NodeType& type);
-// Returns the row of a node of X3D that the library does not have; null for every other name. [any
-// thread]
+// Returns the row of a node of X3D, or of another browser, that the library does not have; null for
+// every other name. [any thread]
 const nodes::AbsentNode* findAbsentNode(std::string_view type);
 
 namespace nodes {
@@ -55,10 +55,11 @@ std::span<const Lack> lacks();
 // the versions. Written by nodegen.
 std::span<const FieldRevision> revisions();
 
-// The nodes of X3D that the library does not have. Written by nodegen.
+// The nodes of X3D and of other browsers that the library does not have. Written by nodegen.
 struct AbsentNode {
   std::string_view name;
-  std::string_view clause; // ISO/IEC 19775-1
+  std::string_view origin; // the browser that has it; empty: it is X3D's
+  std::string_view clause; // ISO/IEC 19775-1; empty: it is a browser's
   std::string_view kind;   // geometry, sensor, ...
   std::string_view loss;   // a clause of a message: "shapes with it are not drawn"
 };

@@ -58,16 +58,18 @@ bool Builder::isMissingField(const NodeType& type, const Name& name) {
 // Reports a node type that is not known. In an X3D file each type is reported once.
 void Builder::reportUnknownNode(const Name& type) {
   const nodes::AbsentNode* const absent = findAbsentNode(type.text);
-  if (isX3d() && absent && absent->kind == "program") return reportGpuProgram(type);
+  const bool ofX3d = absent && absent->origin.empty();
+  if (isX3d() && ofX3d && absent->kind == "program") return reportGpuProgram(type);
   if (isX3d() && !isFirst(std::string(type.text))) return;
   if (isX3d() && absent) {
-    locator_.warn(type.at, fmt::format("nodes of type {} ({}) are not supported and are left out "
-                                       "here and below, with all that they hold: {}",
-                                       describe(type), absent->kind, absent->loss));
+    locator_.warn(type.at, fmt::format("nodes of type {} ({}{}{}) are not supported and are left "
+                                       "out here and below, with all that they hold: {}",
+                                       describe(type), absent->kind, ofX3d ? "" : " of ",
+                                       absent->origin, absent->loss));
     return;
   }
   locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
-                                      absent ? " (it is X3D's)" : "",
+                                      ofX3d ? " (it is X3D's)" : "",
                                       nearest::suggestion(type.text, nodeTypes())));
 }
 

@@ -350,7 +350,7 @@ std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& opti
                      name,
                      0,
                      0,
-                     fmt::format("Scripts in files of Scripts deeper than limit inlineDepth={}",
+                     fmt::format("Scripts made by Scripts deeper than limit inlineDepth={}",
                                  options.limits.inlineDepth),
                      {},
                      0}};

@@ -115,7 +115,9 @@ void Parser::openBody(const Token& type) {
 // field `children`: a Group with these nodes then takes its place, if one may stand there. All its
 // other fields are left out.
 void Parser::unknownNode(const Token& type) {
-  const bool keeps = !x3d_ && !sink_.typeNamed(type.text) && !findAbsentNode(type.text) &&
+  const nodes::AbsentNode* const absent = findAbsentNode(type.text);
+  const bool ofX3d = absent && absent->origin.empty();
+  const bool keeps = !x3d_ && !sink_.typeNamed(type.text) && !ofX3d &&
                      sink_.wouldAccept(sink_.nodeTarget(), "Group", false);
   bool atChildren = false;
   skipBlock('{', keeps ? &atChildren : nullptr);

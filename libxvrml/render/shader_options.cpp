@@ -213,7 +213,7 @@ std::optional<ShaderOption> declaredOption(const nodes::ORTShader& shader, const
   ShaderOption option;
   option.name = field.name;
   option.field = &field;
-  const bool sets = visitStorage(field.type, const_cast<void*>(shader.storage(field)),
+  const bool sets = visitStorage(field.type, shader.storage(field),
                                  [&](const auto& value) { return Reader{option}(value); });
   return sets ? std::optional(std::move(option)) : std::nullopt;
 }

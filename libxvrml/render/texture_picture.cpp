@@ -11,23 +11,35 @@
 namespace xvrml {
 namespace {
 
+// Decodes the file of a picture. Throws std::exception with the reason why it cannot be used.
+void decode(TexturePicture& picture, const ImageRoom& room) {
+  auto decoded = decodePicture(picture.file, room);
+  if (auto* image = std::get_if<Image>(&decoded))
+    picture.image = std::move(*image);
+  else
+    picture.radiance = std::get<RadianceImage>(std::move(decoded));
+}
+
 // Reads a file into a picture. Throws std::exception with the reason why it cannot be used.
-TexturePicture readPicture(const std::string& path, const World& world, Decode decode) {
+TexturePicture readPicture(const std::string& path, const World& world, Decode mode) {
   const ImageRoom room{world.options.limits, ~uint64_t(0), budgetOf(world).get()};
   TexturePicture picture;
   picture.path = path;
   picture.file = readPictureFile(path, room);
   picture.type = mediaTypeOf(picture.file);
-  if (decode == Decode::no && !picture.type.empty()) return picture;
-  auto decoded = decodePicture(picture.file, room); // says what is wrong with other files
-  if (auto* image = std::get_if<Image>(&decoded))
-    picture.image = std::move(*image);
-  else
-    picture.radiance = std::get<RadianceImage>(std::move(decoded));
+  // Decoding says what is wrong with other files.
+  if (mode == Decode::yes || picture.type.empty()) decode(picture, room);
   return picture;
 }
 
 } // namespace
+
+void decodeTexture(TexturePicture& picture, const Limits& limits) {
+  if (picture.file.empty()) return;
+  try {
+    decode(picture, ImageRoom{limits});
+  } catch (const std::exception& failure) { picture.error = failure.what(); }
+}
 
 TexturePicture texturePicture(const Node& texture, const World& world, Decode decode) {
   TexturePicture picture;

@@ -7,6 +7,7 @@
 #include "event/hierarchy.h"
 #include "geometry/clip_planes.h"
 #include "geometry/descend.h"
+#include "geometry/figure.h"
 #include "nodes/registry.h"
 #include "nodes/visible.h"
 #include "render/call.h"
@@ -59,6 +60,7 @@ void RenderWalk::run() {
 void RenderWalk::visit(const NodeRef& node) {
   // A program may have made a node that contains itself; it is skipped.
   if (!isVisible(*node) || above_.contains(node.get())) return;
+  if (!node->live && deforms(node->type())) deform(*node, nullptr);
   Level level;
   level.node = node;
   level.planesAt = level.planesBelow = planes_.size();

@@ -1,8 +1,11 @@
 #include "script/host_scene.h"
 
+#include <algorithm>
+
 #include "event/hierarchy.h"
 #include "graph/expander.h"
 #include "script/abstract_types.h"
+#include "script/scene_text.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
@@ -27,16 +30,37 @@ ProtoPtr declared(const Scope& scene, const std::string& name) {
   return nullptr;
 }
 
+// Returns the innermost Inline with content above a Script; null: there is none.
+Node* inlineAbove(const Node& script) {
+  const std::vector<Path> paths = pathsTo(script, 1);
+  if (paths.empty()) return nullptr;
+  const auto found = std::find_if(paths[0].rbegin(), paths[0].rend(),
+                                  [](const Node* node) { return inlineScope(*node); });
+  return found == paths[0].rend() ? nullptr : *found;
+}
+
+// The content of an Inline, and nodes that a program has made, have no head of their own; the file
+// of the first node says which version they follow. Nodes of no file follow the world's.
+FileVersion versionOfNodes(const World& world, const MFNode& nodes) {
+  const auto first = std::find_if(nodes.begin(), nodes.end(),
+                                  [](const NodeRef& node) { return node && node->source.file; });
+  return first == nodes.end() ? world.head.version : versionOf(**first);
+}
+
+// Returns whether XML is asked for; throws if it is neither XML nor VRML.
+bool wantsXml(const std::string& encoding) {
+  if (encoding != "XML" && encoding != "VRML")
+    throw std::runtime_error(fmt::format("'{}' is no encoding: expected XML or VRML", encoding));
+  return encoding == "XML";
+}
+
 } // namespace
 
 // Returns the scene that the Script stands in: the content of the innermost Inline above it, else
 // the world's. Bodies of prototypes have no scenes of their own here.
 const Scope& HostScene::sceneOf(ScriptHost& host, const Node& script) {
-  const std::vector<Path> paths = pathsTo(script, 1);
-  if (!paths.empty())
-    for (size_t i = paths[0].size(); i-- > 0;)
-      if (const Scope* content = inlineScope(*paths[0][i])) return *content;
-  return host.world_.scope;
+  const Node* const above = inlineAbove(script);
+  return above ? *inlineScope(*above) : host.world_.scope;
 }
 
 XsResult HostScene::namedNode(Host table, XsNode self, XsString name, XsValue* out) {
@@ -62,19 +86,17 @@ XsResult HostScene::rootNodes(Host table, XsNode self, XsValue* out) {
   });
 }
 
-// The content of an Inline has no head of its own; the file of its first node says what it is.
 XsResult HostScene::sceneFacts(Host table, XsNode self, XsValue* out) {
   return enter(table, self, [&](ScriptHost& host, Script& script) {
     if (!out) return refuse(script, XS_FAILED, "no place for the answer");
     const Scope& scene = sceneOf(host, *script.node);
-    FileVersion version = host.world_.head.version;
+    const bool isWorld = &scene == &host.world_.scope;
+    const FileVersion version =
+        isWorld ? host.world_.head.version : versionOfNodes(host.world_, scene.roots);
     std::string file = host.browser_.worldUrl();
-    const Node* const first =
-        &scene == &host.world_.scope || scene.roots.empty() ? nullptr : scene.roots[0].get();
-    if (first) {
-      version = versionOf(*first);
-      file = first->source.file ? *first->source.file : file;
-    }
+    if (const Node* first = isWorld || scene.roots.empty() ? nullptr : scene.roots[0].get();
+        first && first->source.file)
+      file = *first->source.file;
     MFString facts{fmt::format("{}.{}", version.major, version.minor),
                    encodingText(version.encoding), std::move(file)};
     *out = script.lent.lend(std::move(facts), script.handles);
@@ -130,17 +152,36 @@ XsResult HostScene::writeNode(Host table, XsNode self, XsNode number, XsString e
   return enter(table, self, [&](ScriptHost& host, Script& script) {
     if (!out) return refuse(script, XS_FAILED, "no place for the answer");
     const World& world = host.world_;
-    const std::string wanted = text(host, encoding);
-    if (wanted != "XML" && wanted != "VRML")
-      return refuse(script, XS_FAILED,
-                    fmt::format("'{}' is no encoding: expected XML or VRML", wanted));
-    const Encoding as = wanted == "XML"              ? Encoding::x3dXml
-                        : world.head.version.isX3d() ? Encoding::x3dClassic
-                                                     : Encoding::vrml97;
-    if (number == 0) return giveText(script, writeWorld(world, "", as), out);
-    return withNode(script, number, [&](Node& node) {
-      return giveText(script, xvrml::writeNode(world, node, as), out);
-    });
+    const bool xml = wantsXml(text(host, encoding));
+    if (number != 0)
+      return withNode(script, number, [&](Node& node) {
+        const FileVersion version = versionOfNodes(world, {NodeRef(&node)});
+        return giveText(script, xvrml::writeNode(world, node, textEncoding(version, xml)), out);
+      });
+    auto* const above = nodeCast<InlineNode>(inlineAbove(*script.node));
+    if (!above)
+      return giveText(script, writeWorld(world, "", textEncoding(world.head.version, xml)), out);
+    const FileVersion version = versionOfNodes(world, above->content->roots);
+    return giveText(script, sceneText(*above->content, above->exchange, version, xml), out);
+  });
+}
+
+XsResult HostScene::writeScene(Host table, XsNode self, uint32_t count, const XsNode* numbers,
+                               XsString encoding, XsString* out) {
+  return enter(table, self, [&](ScriptHost& host, Script& script) {
+    if (!out || (count > 0 && !numbers)) return refuse(script, XS_FAILED, "no nodes, or no place");
+    const bool xml = wantsXml(text(host, encoding));
+    MFNode roots;
+    for (uint32_t i = 0; i < count; ++i) {
+      if (numbers[i] == 0) continue;
+      Node* const node = script.handles.find(numbers[i]);
+      if (!node)
+        return refuse(script, XS_NO_NODE,
+                      fmt::format("the Script does not know a node {}", numbers[i]));
+      roots.push_back(NodeRef(node));
+    }
+    const FileVersion version = versionOfNodes(host.world_, roots);
+    return giveText(script, sceneText(scopeOf(roots), nullptr, version, xml), out);
   });
 }
 

@@ -15,6 +15,8 @@ struct HostScene : HostCalls {
   static XsResult nodeTypes(Host table, XsNode self, XsNode number, XsValue* out);
   static XsResult writeNode(Host table, XsNode self, XsNode number, XsString encoding,
                             XsString* out);
+  static XsResult writeScene(Host table, XsNode self, uint32_t count, const XsNode* nodes,
+                             XsString encoding, XsString* out);
 
  private:
   static const Scope& sceneOf(ScriptHost& host, const Node& script);

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "graph/field_access.h"
-#include "xvrml/versions.h"
 #include "script/host_calls.h"
 #include "script/host_scene.h"
+#include "xvrml/versions.h"
 
 namespace xvrml {
 
@@ -145,6 +145,17 @@ struct HostTable : HostCalls {
         const auto& fields = node.type().fields;
         return giveField(script, node, index < fields.size() ? &fields[index] : nullptr,
                          "of that number", out);
+      });
+    });
+  }
+  static XsResult otherName(Host table, XsNode self, XsNode number, uint32_t index, XsString* out) {
+    return enter(table, self, [&](ScriptHost&, Script& script) {
+      return withNode(script, number, [&](Node& node) {
+        const auto& fields = node.type().fields;
+        const std::string_view other =
+            index < fields.size() ? otherFieldName(node, fields[index]) : std::string_view();
+        if (other.empty() || !out) return noField(script, node, "other name of field", "");
+        return giveText(script, std::string(other), out);
       });
     });
   }
@@ -356,7 +367,9 @@ ScriptHost::Table::Table(ScriptHost& host)
              HostScene::createInstance,
              HostScene::nodeWithin,
              HostScene::nodeTypes,
-             HostScene::writeNode},
+             HostScene::writeNode,
+             HostScene::writeScene,
+             HostTable::otherName},
       host(host) {}
 
 } // namespace xvrml

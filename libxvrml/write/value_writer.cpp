@@ -97,8 +97,8 @@ void writeString(std::string& out, std::string_view text) {
 }
 
 void writeValue(std::string& out, FieldType type, const void* storage, size_t indent) {
-  visitStorage(type, const_cast<void*>(storage), [&](auto& value) {
-    using T = std::remove_reference_t<decltype(value)>;
+  visitStorage(type, storage, [&](const auto& value) {
+    using T = std::remove_cvref_t<decltype(value)>;
     if constexpr (std::is_same_v<T, Image>) {
       writeImage(out, value, indent);
     } else if constexpr (std::is_same_v<T, NodeRef> || std::is_same_v<T, MFNode>) {

@@ -40,7 +40,7 @@ size_t lastPrototypeOf(Node* root,
 }
 
 // version: that of the file that is written.
-bool hasOwnValue(Node& node, const FieldInfo& field, const FileVersion& version) {
+bool hasOwnValue(const Node& node, const FieldInfo& field, const FileVersion& version) {
   const Value* standard = &defaultIn(node.type(), field, version);
   if (const auto* instance = nodeCast<ProtoInstance>(&node)) {
     // A default of the prototype's file that a program has assigned again stays a default.
@@ -51,8 +51,8 @@ bool hasOwnValue(Node& node, const FieldInfo& field, const FileVersion& version)
       if (declared && declared->type == field.type) standard = &declared->defaultValue;
     }
   }
-  return visitStorage(field.type, node.storage(field), [&](auto& value) {
-    const auto* other = std::get_if<std::remove_reference_t<decltype(value)>>(standard);
+  return visitStorage(field.type, node.storage(field), [&](const auto& value) {
+    const auto* other = std::get_if<std::remove_cvref_t<decltype(value)>>(standard);
     return !other || !(value == *other);
   });
 }
@@ -207,7 +207,7 @@ Writer::Field Writer::fieldOf(Node& node, const FieldInfo& info) const {
   const bool value = holdsValue(info) && (field.declared ? field.interfaces.empty()
                                                          : hasOwnValue(node, info, version_));
   if (!value) return field;
-  field.value = node.storage(info);
+  field.value = std::as_const(node).storage(info);
   if (hasNormalizedAxes(info)) { // a program may have written to the struct
     field.changed = std::make_shared<Value>(visitStorage(
         info.type, node.storage(info), [](const auto& stored) -> Value { return stored; }));

@@ -3,11 +3,14 @@
 // 200 MB/s (docs/benchmarks.md).
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "xvrml/edit.h"
 #include "xvrml/world.h"
 
 namespace {
@@ -76,6 +79,19 @@ void scanNumbers(benchmark::State& state) {
   countBytes(state, text);
 }
 
+// Reads the file again for the editor, with the places of all its nodes and values.
+void loadForEdits(benchmark::State& state) {
+  const std::string path = std::filesystem::temp_directory_path() / "bench_edits.wrl";
+  std::ofstream(path) << manyNodes();
+  const auto world = xvrml::loadWorld(path);
+  for (auto _ : state) {
+    xvrml::Editor editor(*world);
+    editor.preparation()();
+  }
+  std::filesystem::remove(path);
+  countBytes(state, manyNodes());
+}
+
 void write(benchmark::State& state) {
   const auto world = xvrml::loadWorldFromMemory(bigFaceSet(), "bench.wrl");
   size_t bytes = 0;
@@ -90,6 +106,7 @@ BENCHMARK_CAPTURE(load, bigFaceSet, bigFaceSet)
 BENCHMARK_CAPTURE(load, manyNodes, manyNodes)
     ->Name("parser/manyNodes")
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(loadForEdits)->Name("parser/manyNodesForEdits")->Unit(benchmark::kMillisecond);
 BENCHMARK(write)->Name("writer/bigFaceSet")->Unit(benchmark::kMillisecond);
 
 } // namespace

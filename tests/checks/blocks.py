@@ -32,6 +32,7 @@ READ = {"vrml", "js", "tcl"}
 # Pages that have a test of their own
 BY_TESTS = {
     "docs/python.md": "tests/python/test_docs_python.py",
+    "docs/figures.md": "tests/python/test_docs_python.py",
     "docs/ray-queries.md": "tests/python/test_docs_python.py"
 }
 MARKS = ("unchecked", "syntax only", "in", "inside", "with", "part of")

@@ -7,8 +7,9 @@ The folder (default $OPENRT_CORPUS_X3D or ../shared/corpus-x3d) holds MANIFEST.t
 folder (the origin), path and bytes. Writes table.md (counts by encoding and origin, and what is
 missing most often), files.tsv (a row for each file; what was understood of single files is in
 notes_x3d.tsv beside this program) and, with --sheets, contact sheets of the
-pictures, beside those of another browser where --beside FOLDER has ORIGIN__PATH.png (slashes are
-__). Exit code 0: no file crashes vv or takes longer than 30 s; 77: there is no such folder."""
+pictures. --beside FOLDER ... compares with pictures of other browsers, ORIGIN__PATH.png (slashes
+are __): vv draws as they do (beside.py), beside.tsv has the differences, and the sheets show the
+most different first, theirs on the right. Exit code 0: no file crashes vv or takes longer than 30 s; 77: there is no such folder."""
 import argparse
 import collections
 import concurrent.futures
@@ -25,18 +26,26 @@ UNKNOWN = re.compile(r"nodes of type '([^']*)' are not supported|'([^']*)' is no
                      r"|field '([^']*)' of (\w+) is not supported|(IMPORT|mappings) (?:is|are) not supported")
 
 
+def folder_of():
+    """Returns the folder of files that is used if no other one is given."""
+    return pathlib.Path(os.environ.get("OPENRT_CORPUS_X3D") or ROOT.parent / "shared/corpus-x3d")
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vv", type=pathlib.Path, required=True)
     parser.add_argument("--corpus",
                         type=pathlib.Path,
-                        default=os.environ.get("OPENRT_CORPUS_X3D") or
-                        ROOT.parent / "shared/corpus-x3d")
+                        default=folder_of())
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/corpus-x3d")
     parser.add_argument("--only", default="", help="files whose path holds this text")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--sheets", action="store_true", help="also contact sheets")
-    parser.add_argument("--beside", type=pathlib.Path, help="pictures by another browser")
+    parser.add_argument("--beside",
+                        type=pathlib.Path,
+                        nargs="+",
+                        default=[],
+                        help="folders of pictures by other browsers")
     return parser.parse_args()
 
 
@@ -64,7 +73,12 @@ def draw(args, origin, path):
     world = args.corpus / origin / path
     picture = args.out / "pictures" / (f"{origin}/{path}".replace("/", "__") + ".png")
     picture.unlink(missing_ok=True)
-    run = vv(args.vv, world, picture, "--size", "200x150", "--spp", "4" if args.sheets else "1")
+    spp = "8" if args.beside else "4" if args.sheets else "1"
+    how = ["--size", "200x150"]
+    if args.beside:
+        import beside
+        how = beside.options(args.vv, world)
+    run = vv(args.vv, world, picture, "--spp", spp, *how)
     errors = len(re.findall(r":\d+: error: |^vv: error: ", run["log"], re.M))
     lacks = {next(g for g in m.groups() if g) for m in UNKNOWN.finditer(run["log"])}
     if run["code"] is None:
@@ -120,12 +134,13 @@ def table(rows):
 
 
 def write_sheets(args, rows):
-    """Writes contact sheets: our picture and, on its right, that of the other browser."""
+    """Writes contact sheets: our picture and, on its right, those of the other browsers."""
     from PIL import Image, ImageDraw
-    width = CELL[0] * (2 if args.beside else 1)
+    width = CELL[0] * (1 + len(args.beside))
     shown = [row for row in rows if row["picture"].exists()]
     if args.beside:
-        shown = [r for r in shown if (args.beside / r["picture"].name).exists()]
+        shown = sorted((r for r in shown if r["difference"] is not None),
+                       key=lambda r: -r["difference"])
     per_sheet = COLUMNS * ROWS
     for number in range(0, len(shown), per_sheet):
         sheet = Image.new("RGB", (COLUMNS * (width + 6), ROWS * (CELL[1] + CAPTION)), "white")
@@ -133,12 +148,11 @@ def write_sheets(args, rows):
         for i, row in enumerate(shown[number:number + per_sheet]):
             x, y = i % COLUMNS * (width + 6), i // COLUMNS * (CELL[1] + CAPTION)
             text.text((x, y), f"{row['origin']}/{row['path']}"[-width // 6:], fill="black")
-            pictures = [row["picture"]]
-            if args.beside:
-                pictures.append(args.beside / row["picture"].name)
+            pictures = [row["picture"], *(f / row["picture"].name for f in args.beside)]
             for k, path in enumerate(pictures):
-                picture = Image.open(path).convert("RGB").resize(CELL)
-                sheet.paste(picture, (x + k * CELL[0], y + CAPTION))
+                if path.exists():
+                    picture = Image.open(path).convert("RGB").resize(CELL)
+                    sheet.paste(picture, (x + k * CELL[0], y + CAPTION))
         sheet.save(args.out / f"sheet{number // per_sheet:02d}.png")
 
 
@@ -160,6 +174,10 @@ def main():
         for row in sorted(rows, key=lambda r: (STATES.index(r["state"]), r["origin"], r["path"])):
             file.write(f"{row['state']}\t{row['origin']}/{row['path']}\t{row['seconds']:.1f} s\t"
                        f"{row['mib']:.0f} MiB\t{' '.join(row['lacks'])}\t{row['message']}\n")
+    if args.beside:
+        import beside
+        beside.measure(rows, args.beside)
+        text += "\n" + beside.write(rows, args.beside, args.out / "beside.tsv") + "\n"
     if args.sheets:
         write_sheets(args, rows)
     print(text)

@@ -20,7 +20,7 @@ EMPTY = (26, 26, 26)
 LABEL = (slice(0, 30), slice(100, 240))
 
 
-def load(path):
+def load(path, size=SIZE):
     """Returns RGB on black, or None."""
     if not path or not path.exists():
         return None
@@ -28,16 +28,19 @@ def load(path):
     flat = Image.new("RGBA", picture.size, (0, 0, 0, 255))
     flat.alpha_composite(picture)
     flat = flat.convert("RGB")
-    return flat if flat.size == SIZE else flat.resize(SIZE)
+    return flat if flat.size == size else flat.resize(size)
+
+
+def on_black(picture):
+    """Returns a picture by view3dscene with the standard's empty background."""
+    pixels = numpy.array(picture)
+    pixels[(pixels == EMPTY).all(axis=2)] = 0
+    return Image.fromarray(pixels)
 
 
 def reference(corpus, browser, file):
     picture = load(corpus / "pictures" / browser / (file + ".png"))
-    if picture is not None and browser == "view3dscene":
-        pixels = numpy.array(picture)
-        pixels[(pixels == EMPTY).all(axis=2)] = 0
-        picture = Image.fromarray(pixels)
-    return picture
+    return on_black(picture) if picture is not None and browser == "view3dscene" else picture
 
 
 def distance(a, b, without_label):

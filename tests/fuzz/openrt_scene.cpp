@@ -22,13 +22,21 @@ namespace {
 using namespace openrt;
 
 constexpr uint32_t width = 4, height = 3;
-// Surfaces first, then lights, then cameras.
-constexpr const char* classNames[] = {
-    "VRML97",  "GlobalIllumination", "Glass",           "RoughGlass",        "Fog",
-    "Diffuse", "VRML97PointLight",   "VRML97SpotLight", "PerspectiveCamera", "OrthographicCamera"};
+// Surfaces first, then lights, then cameras, then an environment.
+constexpr const char* classNames[] = {"VRML97",
+                                      "GlobalIllumination",
+                                      "Glass",
+                                      "RoughGlass",
+                                      "Fog",
+                                      "Diffuse",
+                                      "VRML97PointLight",
+                                      "VRML97SpotLight",
+                                      "PerspectiveCamera",
+                                      "OrthographicCamera",
+                                      "VRML97Environment"};
 constexpr uint32_t surfaces = 6, lights = 2, cameras = 2;
-constexpr uint32_t firstClass = 1, firstShader = 11, firstObject = 21, firstInstance = 31,
-                   firstLight = 41;
+constexpr uint32_t firstClass = 1, firstShader = 21, firstObject = 41, firstInstance = 51,
+                   firstLight = 61, sky = firstShader + surfaces + lights + cameras;
 
 const ShaderRegistry& shaders() {
   static const auto* const known = new ShaderRegistry(shaderFolders(""));
@@ -222,6 +230,7 @@ class Game {
     instance.matrix = matrix();
     instance.visible = in_.byte() > 10;
     instance.dynamic = instance.id & 1;
+    if (in_.byte() > 200) instance.fog = sky;
     add(std::move(instance));
   }
 

@@ -10,12 +10,15 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <unistd.h>
 
 #include "fuzz_world.h"
 #include "xvrml/edit.h"
+#include "xvrml/numbers.h"
 #include "xvrml/walk.h"
 
 namespace {
@@ -33,6 +36,42 @@ std::vector<Node*> nodesOf(const World& world) {
     return nodes.size() < mostNodes;
   });
   return nodes;
+}
+
+// Changes elements of a list, or bytes of an image, at the places that two bytes choose.
+template <class T> void changeAtPlaces(T& value, uint8_t one, uint8_t other) {
+  if constexpr (std::is_same_v<T, Image>) {
+    if (value.pixels.empty()) return;
+    for (const uint8_t place : {one, other}) value.pixels[place % value.pixels.size()] ^= place;
+  } else if constexpr (isList<T> && !std::is_same_v<T, MFNode>) {
+    if (value.empty()) value.resize(one % 3u);
+    for (const uint8_t choice : {one, other}) {
+      if (value.empty()) return;
+      const size_t place = choice / 4u % value.size();
+      const auto at = value.begin() + std::ptrdiff_t(place);
+      const ElementOf<T> element = value[(place + 1) % value.size()];
+      switch (choice % 4) {
+      case 0: value.erase(at); break;
+      case 1: value.insert(at, element); break;
+      case 2: value.push_back(element); break;
+      default: value[place] = element;
+      }
+    }
+  }
+}
+
+// Sets a field to its default, or changes a part of its value.
+void setField(Editor& editor, Node& node, std::array<uint8_t, bytesOfStep> choice) {
+  std::vector<const FieldInfo*> fields;
+  for (const FieldInfo& field : node.type().fields)
+    if (holdsValue(field) && field.type != FieldType::SFNode && field.type != FieldType::MFNode)
+      fields.push_back(&field);
+  if (fields.empty()) return;
+  const FieldInfo& field = *fields[choice[0] / 10u % fields.size()];
+  if (choice[2] == choice[3]) return editor.set(node, field.name, field.defaultValue);
+  Value value = node.get(field);
+  std::visit([&](auto& stored) { changeAtPlaces(stored, choice[2], choice[3]); }, value);
+  editor.set(node, field.name, std::move(value));
 }
 
 // Does one edit, which four bytes choose.
@@ -53,12 +92,7 @@ void editOnce(Editor& editor, World& world, std::array<uint8_t, bytesOfStep> cho
                                             : "DEF N Group { }";
   Node& node = any(choice[1]);
   switch (choice[0] % 10) {
-  case 0:
-    for (const FieldInfo& field : node.type().fields)
-      if (holdsValue(field) && field.type != FieldType::SFNode && field.type != FieldType::MFNode &&
-          choice[2]-- == 0)
-        return editor.set(node, field.name, field.defaultValue);
-    return;
+  case 0: return setField(editor, node, choice);
   case 1: editor.insert(slot(choice[2]), inserted); return;
   case 2: return editor.remove(slot(choice[2]));
   case 3: return editor.move(slot(choice[2]), slot(choice[3]));

@@ -39,6 +39,46 @@ TEST_F(Surface, FogIsMeasuredInItsOwnSpace) {
   expectColor(lookFrom(4), {.8 * .8 + .2 * .5, .8 * .8, .8 * .8});
 }
 
+// The fog of an instance replaces that of the environment, and of an instance around it.
+TEST_F(Surface, AnInstanceHasAFogOfItsOwn) {
+  const RTid plane = square(Shader("VRML97"), 1);
+  const RTid outer = rtBeginObject(0);
+  const RTid inside = rtInstantiateObject(plane);
+  rtTranslated(0, 2.5, 0);
+  rtInstantiateObject(plane);
+  rtEndObject();
+  rtPushMatrix();
+  rtTranslated(-2, 0, 0);
+  const RTid left = place(outer);
+  rtTranslated(4, 0, 0);
+  place(outer);
+  rtPopMatrix();
+  use(tilted(0));
+  const auto air = [](double red, int type) {
+    return Shader("VRML97Environment")
+        .set("fogRange", {50}) // look() stands 20 above the squares
+        .set("fogColor", {red, 0, 0})
+        .setInt("fogType", type);
+  };
+  const double lit = .8;
+  const auto fogged = [&](double red) { return Vec{.6 * lit + .4 * red, .6 * lit, .6 * lit}; };
+  rtUseEnvironment(air(.25, 1));
+  expectColor(look(-2), fogged(.25));
+  const RTid fog = air(1, 1);
+  rtInstanceFog(left, fog);
+  expectColor(look(-2), fogged(1));
+  expectColor(look(2), fogged(.25));
+  rtInstanceFog(inside, air(.5, 1)); // at both places, where it is the innermost
+  expectColor(look(-2), fogged(.5));
+  expectColor(look(2), fogged(.5));
+  rtInstanceFog(inside, air(.5, 0)); // clear air
+  expectGrey(look(-2), lit);
+  rtInstanceFog(inside, 0);
+  expectColor(look(-2), fogged(1));
+  rtDeleteShader(fog);
+  expectColor(look(-2), fogged(.25));
+}
+
 TEST_F(Surface, FogDoesNotReachTheBackground) {
   Shader air("VRML97Environment");
   air.setList("skyColor", {.25f, .5f, .75f}).set("fogRange", {1}).setInt("fogType", 1);

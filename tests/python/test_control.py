@@ -36,7 +36,7 @@ def test_errors_say_where_and_what(start):
     refused("field", "Script.sum is an eventOut: it cannot be set", vv.set, "Sum", "sum", 1)
     refused("value", "not an array of 2", vv.set, "Place", "translation", (1, 2))
     refused("value", 'not "x" at value[1]', vv.set, "Place", "translation", (1, "x", 2))
-    refused("value", "numbers from 0 to 1", vv.set, "Paint", "transparency", 2)
+    refused("value", "numbers in [0,1]", vv.set, "Paint", "transparency", 2)
     refused("value", "of 32 bits", vv.set, "Place", "translation", (1e39, 0, 0))
     refused("value", "not a Material", vv.set, "Place", "children", ["Paint"])
     refused("value", "would hold itself", vv.set, "Place", "children", ["Place"])

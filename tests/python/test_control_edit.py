@@ -136,7 +136,7 @@ def test_what_cannot_be_edited(table):
     refused("field", "did you mean intensity?", one, table, "set", node="LAMP", field="intensty",
             value=1)
     refused("field", "it cannot be edited", one, table, "set", node="CLOCK", field="time", value=1)
-    refused("value", "numbers from 0 to 1", one, table, "set", node="LAMP", field="intensity",
+    refused("value", "numbers in [0,1]", one, table, "set", node="LAMP", field="intensity",
             value=2)
     refused("value", "edits[0]: PointLight.on", one, table, "set", node="LAMP", field="on",
             value=[[[]]])

@@ -3,7 +3,7 @@ import pytest
 
 np = pytest.importorskip("numpy")
 xvrml = pytest.importorskip("xvrml")
-from xvrml import interop  # noqa: E402
+from xvrml import _placing, interop  # noqa: E402
 
 SMALL = dict(size=(32, 24), spp=1)
 
@@ -53,7 +53,7 @@ def test_any_affine_matrix_is_a_transform(seed):
     matrix[:3] = random.normal(size=(3, 4))
     matrix[0] *= np.sign(np.linalg.det(matrix[:3, :3]))  # a Transform cannot mirror
     world = xvrml.World()
-    world.add(interop._placed(xvrml.Shape(geometry=xvrml.Box()), matrix))
+    world.add(_placing.placed(xvrml.Shape(geometry=xvrml.Box()), matrix))
     assert np.allclose(world.meshes()[0].matrix, matrix, atol=1e-5)
 
 

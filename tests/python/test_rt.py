@@ -250,6 +250,26 @@ def test_rays_by_sums_over_all_triangles(cloud):
                                                              >= 0).all()
 
 
+def test_an_instance_has_a_fog_of_its_own():
+    """A glowing square 8 before the camera, in linear fog that hides everything at 10."""
+    with rt.Context(threads=1) as context:
+        glow = context.shader("VRML97", diffuseColor=(0, 0, 0), emissiveColor=(1, 0, 0))
+        placed = context.instance(context.mesh(SQUARE, FACES, shader=glow))
+        context.camera(eye=(0, 0, 8), at=(0, 0, 0), height=.01)
+        air = context.shader("VRML97Environment", fogType=1, fogRange=10, fogColor=(0, 0, 1))
+
+        def seen():
+            return context.render(size=(2, 2), spp=1).array[0, 0, :3]
+
+        assert np.allclose(seen(), (1, 0, 0))
+        placed.fog = air
+        assert np.allclose(seen(), (.2, 0, .8), atol=1e-4)
+        placed.fog = None
+        assert np.allclose(seen(), (1, 0, 0))
+        with pytest.raises(rt.Error, match="environment"):
+            placed.fog = glow
+
+
 def test_triangles_without_area_keep_their_numbers():
     caster = rt.Raycaster(threads=1)
     caster.add_triangles(SQUARE, [[0, 0, 1], [0, 1, 2], [1, 1, 1], [0, 2, 3]])

@@ -157,6 +157,21 @@ def test_a_drag_with_ctrl_selects_what_is_seen_in_a_rectangle(editor, vv):
     assert "Shape" not in now and "LEFT" in now and "RIGHT" in now
 
 
+def test_a_readout_stands_beside_a_pointer_that_rests(editor):
+    w = editor.window
+    w.move(RIGHT, 0)
+    # Towards the left, and above: the box of the readout is dark, its text is bright.
+    beside = lambda rows: [row[220:370] for row in rows[140:185]]
+    bright = lambda rows: sum(min(p) > 180 for row in beside(rows) for p in row)
+    editor.until(lambda rows: bright(rows) > 40, "the readout")
+    assert is_grey(editor.at(RIGHT, 0))  # what the pointer is on stays free
+    w.move(RIGHT + 0.02, 0.02)
+    editor.until(lambda rows: bright(rows) < 10, "it goes when the pointer moves")
+    editor.until(lambda rows: bright(rows) > 40, "and is there again when it rests")
+    w.move(-0.9, 0)  # over a panel
+    editor.until(lambda rows: bright(rows) < 10, "it is of the picture alone")
+
+
 def test_a_rectangle_is_measured(editor):
     w = editor.window
     editor.until(lambda rows: is_grey(pixel(rows, -RIGHT, .05)), "the box")

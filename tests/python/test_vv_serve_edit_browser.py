@@ -406,3 +406,63 @@ def test_problems_and_reports(browser, serve, tmp_path):
     browser.click("#report-files li:first-child a")
     browser.until(lambda: (tmp_path / "world-report.html").exists(), "the file")
     assert errors(browser) == []
+
+
+def move_pointer(browser, x, y):
+    """Moves the pointer to a place of the picture, from -1 to 1."""
+    px, py = browser.point(CANVAS, x, y)
+    browser.actions(
+        browser.pointer_steps([{
+            "type": "pointerMove",
+            "duration": 20,
+            "x": px,
+            "y": py,
+            "origin": "viewport"
+        }]))
+
+
+def test_a_readout_stands_beside_a_pointer_that_rests(browser, serve):
+    open_editor(browser, serve(WORLD, "--edit", "--spp", 16))
+    readout = "document.getElementById('readout')"
+    assert browser.script(f"return {readout}.hidden")
+    move_pointer(browser, -0.1, 0.1)
+    until_script(browser, f"!{readout}.hidden && {readout}.textContent.includes('THING  Shape')")
+    # The next picture has error bars.
+    select_paint(browser)
+    type_into(browser, number_input("shininess"), "0.3")
+    move_pointer(browser, -0.1, 0.1)
+    until_script(browser, f"!{readout}.hidden && {readout}.textContent.includes('radiance')")
+    keep(browser, "readout")
+    text = browser.script(f"return {readout}.innerText")
+    assert "cd/m\u00b2" in text and "trusted" in text and "normal 0 0 1" in text, text
+    assert "4 from the viewer" in text, text
+    browser.script("window.sent = 0; const send = window.page.send.bind(window.page);"
+                   "window.page.send = (m) => { if (m.command === 'point') ++window.sent; send(m) }")
+    move_pointer(browser, -0.15, 0.12)
+    until_script(browser, f"!{readout}.hidden")
+    assert browser.script("return window.sent") == 2  # it rests no more; it rests elsewhere
+    move_pointer(browser, 0.95, 0.95)
+    until_script(browser, f"{readout}.textContent.includes('nothing is here')")
+    browser.keys("e")
+    until_script(browser, f"{readout}.hidden")
+    assert errors(browser) == []
+
+
+def test_textures_have_small_pictures(browser, serve):
+    world = WORLD.replace("appearance Appearance {",
+                          "appearance Appearance { texture DEF GRAIN PixelTexture {"
+                          " image 2 1 3 0x00ff00 0x0000ff }")
+    open_editor(browser, serve(world, "--edit", "--spp", 1))
+    open_row(browser, "THING")
+    browser.click(row(browser, "Appearance") + " .label")
+    pixel = ("[...document.querySelector('{} .thumbnail canvas')?.getContext('2d')"
+             ".getImageData({}, 0, 1, 1).data ?? []].join()")
+    until_script(browser, pixel.format(".field[data-field=texture]", 0) + " === '0,255,0,255'")
+    open_row(browser, "Appearance")
+    browser.click(row(browser, "GRAIN") + " .label")
+    until_script(browser, pixel.format("#texture", 1) + " === '0,0,255,255'")
+    keep(browser, "thumbnail")
+    browser.click(row(browser, "LIGHTS") + " .label")
+    until_title(browser, "LIGHTS  Group")
+    until_script(browser, "document.querySelectorAll('.thumbnail canvas').length === 0")
+    assert errors(browser) == []

@@ -210,6 +210,56 @@ def test_probes_measure_the_light(serve):
     until(page, "probes", lambda t: t["list"] == [])
 
 
+def test_what_is_seen_under_a_pointer_that_rests(serve):
+    server = serve(WORLD, "--edit", "--spp", 256)
+    page = server.join_editor()
+    page.still()
+    page.edit("point", x=0, y=0)
+    seen = until(page, "pointer", lambda t: "seen" in t)
+    assert seen["seen"] == "THING  Shape, Material\nat 0 0 1, 4 from the viewer\nnormal 0 0 1"
+    assert (seen["x"], seen["y"]) == (0, 0)
+    # A picture that was finished without error bars stays as it is; the next one has them.
+    drag(page, paint(page), "diffuseColor", [0.5, 0.25, 1])
+    read = until(page, "pointer", lambda t: t.get("samples") == 256)
+    r, g, b = read["radiance"]
+    assert r > g > 0 and b > r and min(r, b) < read["luminance"] + g
+    assert len(read["radiance_half_width"]) == 3 and read["half_width"] >= 0 and read["trusted"]
+    page.edit("probe", x=0, y=0)
+    probe = until(page, "probes", lambda t: t["list"] and t["list"][0]["state"] == "read")
+    assert probe["list"][0]["luminance"] == read["luminance"]
+    page.edit("point", x=0.9, y=0.9)
+    until(page, "pointer", lambda t: t.get("seen") == "nothing is here")
+    page.edit("point")
+    until(page, "pointer", lambda t: t == {"type": "pointer"})
+    other = server.join_editor()
+    other.send(type="own")
+    other.until_state(lambda s: s["role"] == "own")
+    other.edit("point", x=0, y=0)  # the picture that is read is the leader's
+    other.edit("search", text="THING")
+    until(other, "rows", lambda t: t["total"] == 1)
+    assert all("seen" not in text for text in other.of("pointer"))
+
+
+def test_a_reading_under_the_pointer_gets_sharper_while_it_rests(serve):
+    # Light that comes by way of the wall has noise.
+    world = HEADER + """
+Viewpoint { position 0 1 6 }
+NavigationInfo { headlight FALSE }
+PointLight { location 0 2 1 }
+Shape { appearance DEF LOOK ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" } }
+  geometry Box { size 8 .1 8 } }
+Transform { translation 0 2 -1 children Shape { appearance USE LOOK geometry Box { size 8 4 .1 } } }
+"""
+    page = serve(world, "--edit", "--spp", 1024).join_editor()
+    page.edit("point", x=0.1, y=-0.6)
+    page.still()
+    page.edit("step", name="Grow", edits=[{"edit": "insert", "vrml": "Group { }"}])
+    known = lambda t: t.get("half_width") is not None and t["luminance"] > 0
+    first = until(page, "pointer", known)
+    last = until(page, "pointer", lambda t: known(t) and t["samples"] >= 4 * first["samples"])
+    assert 0 < last["half_width"] < first["half_width"]
+
+
 def test_the_light_that_falls_on_a_surface_is_measured(serve):
     world = WORLD.replace("on FALSE", "on TRUE location 0 0 5")
     server = serve(world, "--edit", "--spp", 16, "--headlight", "off")

@@ -265,14 +265,14 @@ def test_ranges():
     w = world(
         "Shape { appearance Appearance { material DEF M Material { } } geometry DEF S Sphere { } }")
     for value in (-0.1, 1.1):
-        with pytest.raises(ValueError, match="transparency.*0 to 1"):
+        with pytest.raises(ValueError, match=r"transparency.*in \[0,1\]"):
             w["M"].transparency = value
     with pytest.raises(ValueError, match="diffuseColor"):
         w["M"].diffuseColor = (2, 0, 0)
     with pytest.raises(ValueError):
         w["S"].radius = 0
     group = xvrml.Group(bboxSize=(-1, -1, -1))
-    with pytest.raises(ValueError, match=r"from 0 to inf.* or -1, not -2"):
+    with pytest.raises(ValueError, match=r"in \[0,inf\) or -1, not -2"):
         group.bboxSize = (-2, -2, -2)
 
 

@@ -116,6 +116,17 @@ struct CheckingHost : XsHost {
       *out = {"x", 1};
       return XS_OK;
     };
+    writeScene = [](const XsHost*, XsNode, uint32_t count, const XsNode* nodes, XsString s,
+                    XsString* out) {
+      for (uint32_t i = 0; nodes && i < count; ++i) sum += nodes[i];
+      look(s);
+      *out = {"x", 1};
+      return XS_OK;
+    };
+    otherName = [](const XsHost*, XsNode, XsNode, uint32_t, XsString* out) {
+      *out = {"x", 1};
+      return XS_OK;
+    };
     addRoute =
         deleteRoute = [](const XsHost*, XsNode, XsNode, const char* a, XsNode, const char* b) {
           look(a);

@@ -165,10 +165,11 @@ TEST_F(ControlValues, ImagesAreCounted) {
 
 TEST_F(ControlValues, RangesAreThoseOfTheNodes) {
   refused(node("Paint"), "transparency", "1.5",
-          "Material.transparency (SFFloat): numbers from 0 to 1 were expected, not 1.5");
+          "Material.transparency (SFFloat): numbers in [0,1] were expected, not 1.5");
   refused(node("Paint"), "diffuseColor", "[0,2,0]", "not 2 at value[1]");
-  refused(node("Ball"), "radius", "0", "bounds excluded");
-  refused(node("Turn"), "bboxSize", "[-1,-1,-2]", "not -2 at value[2]");
+  refused(node("Ball"), "radius", "0", "numbers in (0,inf) were expected, not 0");
+  refused(node("Turn"), "bboxSize", "[-1,-1,-2]",
+          "numbers in [0,inf) or -1 were expected, not -2 at value[2]");
   EXPECT_EQ(text(read(node("Turn"), "bboxSize", "[-1,-1,-1]")), "[-1,-1,-1]");
   EXPECT_EQ(text(read(node("Turn"), "rotation", "[0,5,0,1]")), "[0,5,0,1]");
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "as_json/perform_step.h"
+#include "base64.h"
 #include "editor_support.h"
 #include "server/edit_nodes.h"
 #include "server/edit_texts.h"
@@ -300,6 +301,48 @@ TEST(EditorPageTexts, ProbesHaveUnitsAndMarks) {
   probes.addSensor(picture::sensorAt(other, normal, seen));
   probes.take(readings);
   EXPECT_EQ(Json::parse(edit::probesText(probes))["list"][1]["state"], "waiting");
+}
+
+TEST(EditorPageTexts, TexturesHaveSmallPictures) {
+  Shown shown("Shape { appearance DEF A Appearance { texture DEF T PixelTexture {\n"
+              "image 2 1 3 0xff0000 0x00ff00 } } }\n");
+  shown.sheetOf("A");
+  const auto list = [&] {
+    return Json::parse(edit::thumbnailsText(shown.model.thumbnails(), shown.numbers))["list"];
+  };
+  ASSERT_EQ(list().size(), 1u);
+  EXPECT_EQ(list()[0]["node"], shown.number("T"));
+  EXPECT_EQ(list()[0]["scale"], 32);
+  std::string png;
+  ASSERT_TRUE(appendBytesOfBase64(list()[0]["image"].get<std::string>(), png));
+  EXPECT_TRUE(png.starts_with("\x89PNG"));
+  shown.sheetOf("T");
+  EXPECT_EQ(list()[0]["node"], shown.number("T")) << "its own sheet shows it, too";
+}
+
+TEST(EditorPageTexts, APointerHasWhatIsSeenAndItsLight) {
+  EXPECT_EQ(edit::pointerText(nullptr, true), R"({"type":"pointer"})");
+  vv::PointerReading pointer{0.5, -0.25, {}, {}};
+  EXPECT_EQ(edit::pointerText(&pointer, true), R"({"type":"pointer"})") << "not looked for yet";
+  pointer.seen = "Shape";
+  const Json waiting = Json::parse(edit::pointerText(&pointer, false));
+  EXPECT_EQ(waiting["seen"], "Shape");
+  EXPECT_EQ(waiting["x"], 0.5);
+  EXPECT_EQ(waiting["y"], -0.25);
+  EXPECT_EQ(waiting["readable"], false);
+  EXPECT_FALSE(waiting.contains("luminance"));
+  picture::PixelReading light;
+  light.luminance = light.radiance[1] = 7;
+  light.luminanceHalfWidth = std::numeric_limits<float>::infinity();
+  light.samples = 3;
+  pointer.light = light;
+  const Json read = Json::parse(edit::pointerText(&pointer, true));
+  EXPECT_EQ(read["luminance"], 7);
+  EXPECT_TRUE(read["half_width"].is_null());
+  EXPECT_EQ(read["radiance"], Json({0, 7, 0}));
+  EXPECT_EQ(read["radiance_half_width"], Json({0, 0, 0}));
+  EXPECT_EQ(read["samples"], 3);
+  EXPECT_EQ(read["trusted"], false);
 }
 
 TEST(EditorPageTexts, AComparisonIsOfTheLeadersPicture) {

@@ -46,6 +46,31 @@ TEST_F(ProbesOfAWall, ThePixelOfThePlaceIsRead) {
   EXPECT_EQ(probes.all()[0].now.samples, 100u);
 }
 
+TEST_F(ProbesOfAWall, APointerSaysWhatIsSeenAndItsLight) {
+  PointerReading pointer{0, 0, {}, {}};
+  EXPECT_EQ(pointerText(pointer, true), "") << "nobody has looked yet";
+  pointer.seen = "WALL  Shape\nnormal 0 0 1";
+  EXPECT_EQ(pointerText(pointer, true), "waits for a still picture\nWALL  Shape\nnormal 0 0 1");
+  EXPECT_EQ(pointerText(pointer, false), "V measures the light here\nWALL  Shape\nnormal 0 0 1");
+  pointer.light = picture::readPlace(grey(200, 3), 0, 0);
+  EXPECT_EQ(pointerText(pointer, true),
+            "200 cd/m2 +- 1.5 %  trusted\n"
+            "radiance  R 200 +- 3  G 200 +- 3  B 200 +- 3\nWALL  Shape\nnormal 0 0 1");
+}
+
+TEST_F(ProbesOfAWall, APlaceIsReadInThePixelThatHoldsIt) {
+  Picture picture = grey(0, 1);
+  const auto mark = [&](int x, int y) {
+    std::fill_n(&picture.planes[RT_RGBA][4 * size_t(y * 8 + x)], 3, float(1 + x + 10 * y));
+  };
+  for (int i = 0; i < 64; ++i) mark(i % 8, i / 8);
+  const auto at = [&](double x, double y) { return picture::readPlace(picture, x, y).luminance; };
+  EXPECT_FLOAT_EQ(at(-1, 1), 1) << "the left upper corner";
+  EXPECT_FLOAT_EQ(at(1, -1), 78) << "the right lower corner is in the last pixel";
+  EXPECT_FLOAT_EQ(at(-0.26, 0.99), 3);
+  EXPECT_FLOAT_EQ(at(-0.24, 0.99), 4);
+}
+
 TEST_F(ProbesOfAWall, WhatIsNotSeenIsNotRead) {
   probes.add({0, 0, 1});
   probes.add({0, 50, 1});

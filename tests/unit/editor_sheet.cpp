@@ -116,6 +116,25 @@ TEST_F(Sheet, AFieldOffersWhatItMayHold) {
   EXPECT_EQ(row("geometry").places, std::vector<size_t>{1});
 }
 
+TEST_F(Sheet, ShowingANodeMakesNoRareFields) {
+  const auto isUnset = [&] {
+    const NodeRef node = world.node("PAINT");
+    return node->isUnset(*node->type().find("alphaMode"));
+  };
+  ASSERT_TRUE(isUnset());
+  select({"PAINT"});
+  EXPECT_EQ(std::get<SFString>(row("alphaMode").value), "AUTO");
+  update();
+  EXPECT_TRUE(row("alphaMode").isDefault);
+  world.editor.editor().set(*world.node("WOOD"), "shininess", .5f);
+  text(); // it is read back, and compared
+  EXPECT_TRUE(isUnset());
+  world.editor.editor().set(*world.node("PAINT"), "alphaMode", std::string("OPAQUE"));
+  update();
+  EXPECT_EQ(std::get<SFString>(row("alphaMode").value), "OPAQUE");
+  undoAll();
+}
+
 TEST_F(Sheet, NodesAreAddedUsedAndRemoved) {
   addNode(world.editor, world.node("D"), "appearance", *findNodeType("Appearance"));
   EXPECT_TRUE(has("DEF D Shape { geometry Cone { } appearance Appearance { } }\n"));

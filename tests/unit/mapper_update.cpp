@@ -383,7 +383,7 @@ TEST_F(MapUpdate, ALightThatIsTurnedOnForTheFirstTime) {
   send("L", "set_on", true);
   cost();
   EXPECT_EQ(last_.scene.lights, 4u);
-  EXPECT_NE(explained("scope of a DirectionalLight"), nullptr);
+  EXPECT_NE(explained("scope of a light or a LocalFog"), nullptr);
 }
 
 TEST_F(MapUpdate, TheSkyAndTheFogAreParameters) {

@@ -397,7 +397,11 @@ TEST_F(MapX3dMaterials, CoordinatesAreGenerated) {
                       "3 ] }"));
   seen();
   silent();
-  for (const char* mode : {"SPHERE", "CAMERASPACENORMAL", "FOO"}) {
+  // The camera looks along -z, so its frame has the axes of the world.
+  loadX3d(dark + square(two, "texCoord TextureCoordinateGenerator { mode \"SPHERE\" }"));
+  expectSeen(0, 0, 1, "SPHERE");
+  silent();
+  for (const char* mode : {"NOISE-EYE", "FOO"}) {
     loadX3d(dark + square(two, "texCoord TextureCoordinateGenerator { mode \"" + std::string(mode) +
                                    "\" }"));
     seen();

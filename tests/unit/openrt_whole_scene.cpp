@@ -46,7 +46,7 @@ bool same(const TextureImage& a, const TextureImage& b) {
 bool same(const Instance& a, const Instance& b) {
   return a.parent == b.parent && a.object == b.object && a.shader == b.shader &&
          a.visible == b.visible && a.userData == b.userData && a.name == b.name &&
-         a.dynamic == b.dynamic && same(a.matrix, b.matrix);
+         a.dynamic == b.dynamic && a.fog == b.fog && same(a.matrix, b.matrix);
 }
 bool same(const ShaderValues& a, const ShaderValues& b) {
   return a.shaderClass == b.shaderClass && same(a.parameters, b.parameters);
@@ -95,10 +95,10 @@ class Comparer {
   bool equal(const Geometry& a, const Geometry& b) const {
     return a.primitive == b.primitive && known(a.shader) == known(b.shader) && a.name == b.name &&
            same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
-           a.width == b.width && same(a.points, b.points) && same(a.indices, b.indices) &&
-           same(a.normals, b.normals) && same(a.texCoords, b.texCoords) &&
-           same(a.colors, b.colors) && same(a.rest, b.rest) && !a.surface == !b.surface &&
-           (!a.surface || *a.surface == *b.surface) &&
+           a.width == b.width && a.texGen == b.texGen && same(a.points, b.points) &&
+           same(a.indices, b.indices) && same(a.normals, b.normals) &&
+           same(a.texCoords, b.texCoords) && same(a.colors, b.colors) && same(a.rest, b.rest) &&
+           !a.surface == !b.surface && (!a.surface || *a.surface == *b.surface) &&
            (known(a.shader) == 0 ||
             std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
                        b.parameters.end(), [](auto& x, auto& y) {
@@ -141,6 +141,7 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     const RTid shader = any(surfaces);
     rtBindShader(shader);
     rtLoadName(random() % 9);
+    rtTexGen(random() % (RT_TEX_GEN_SPHERE_REFLECTION + 1));
     if (random() % 3 == 0) return rtSphere(number(.2f, 1));
     rtBegin(random() % 4 ? RT_TRIANGLES : RT_LINES);
     for (int i = 0; i < 6; i++) {
@@ -218,6 +219,7 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
       if (instance) {
         rtInstanceVisible(instance, random() % 3 != 0);
         rtInstanceUserData(instance, random());
+        rtInstanceFog(instance, random() % 2 ? fog : 0);
       }
       break;
     case 9:
@@ -262,6 +264,10 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     rtFrameBuffer(24, 16, RT_RGBA | RT_DEPTH | RT_NAME);
     rtQuality(RT_SAMPLES_PER_PIXEL, 2);
     lamp = rtNewShader(rtNewShaderClass("VRML97PointLight", nullptr));
+    fog = rtNewShader(rtNewShaderClass("VRML97Environment", nullptr));
+    rtBindShader(fog);
+    rtParameter1i(rtParameterHandle("fogType"), 1);
+    rtParameter1f(rtParameterHandle("fogRange"), 12);
     varying = rtNewShader(rtNewShaderClass("Varying", "varying"));
     surfaces = {varying};
     rtBindShader(varying);
@@ -285,7 +291,7 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     return pixels;
   }
 
-  RTid lamp = 0, varying = 0;
+  RTid lamp = 0, fog = 0, varying = 0;
   int varyingColor = -1;
   double matrix[16];
   std::vector<RTid> surfaces, objects, instances, lights, textures;

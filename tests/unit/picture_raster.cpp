@@ -270,6 +270,20 @@ TEST(Raster, FogReplacesFarColours) {
              {float(std::exp(-4 / 6.0)), 0, float(1 - std::exp(-4 / 6.0)), 1}, 1e-3);
 }
 
+// ISO/IEC 19775-1 24.4.4: the nearest that is enabled counts, and clear air does, too.
+TEST(Raster, LocalFogReplacesTheFogOfItsGroup) {
+  const auto middle = [](const std::string& fogs) {
+    return Drawn(
+        "Fog { color 0 1 0 visibilityRange 10 }\nGroup { children [ LocalFog { color 0 0 1 "
+        "visibilityRange 8 } Group { children [ " +
+        fogs + squareAt("-4.005", "1 0 0") + " ] } ] }")(width / 2, height / 2);
+  };
+  expectNear(middle(""), {0.5f, 0, 0.5f, 1}, 1e-3);
+  expectNear(middle("LocalFog { color 1 1 1 visibilityRange 16 }"), {1, 0.25f, 0.25f, 1}, 1e-3);
+  expectNear(middle("LocalFog { enabled FALSE visibilityRange 1 }"), {0.5f, 0, 0.5f, 1}, 1e-3);
+  expectNear(middle("LocalFog { color 1 1 1 }"), {1, 0, 0, 1}, 1e-6);
+}
+
 // The share of the pixels that a transparent shape is drawn in is its opacity.
 TEST(Raster, TransparentShapesAreDrawnInAPartOfThePixels) {
   for (const double opacity : {0.25, 0.5, 0.75}) {

@@ -253,7 +253,8 @@ TEST(ServerMessage, ReadsToolsAndLight) {
           .add);
   EXPECT_EQ(edited<edit::Compare>(R"("command":"compare","what":"difference")").what,
             edit::Compare::What::difference);
-  EXPECT_EQ(edited<edit::PointAt>(R"("command":"point","x":0.25,"y":0)").place.x, 0.25);
+  EXPECT_EQ(edited<edit::PointAt>(R"("command":"point","x":0.25,"y":0)").place->x, 0.25);
+  EXPECT_FALSE(edited<edit::PointAt>(R"("command":"point")").place) << "it rests no more";
   EXPECT_EQ(edited<edit::KeepInWorld>(R"("command":"keep_in_world","probe":2)").probe, 2);
   edited<edit::ShowSensors>(R"("command":"show_sensors")");
   edited<edit::ProbeTable>(R"("command":"probe_table")");

@@ -224,6 +224,19 @@ TEST_P(Edited, LineEndsAndTheByteOrderMarkStay) {
   EXPECT_EQ(editor->bytes(), editor->text());
 }
 
+TEST_P(Edited, NewLinesEndAsThoseOfTheFile) {
+  load("Shape { geometry PointSet { coord DEF C Coordinate { } } }\r\n"
+       "Shape { geometry PointSet { coord DEF D Coordinate { point [ 0 0 0, 1 1 1 ] } } }\r\n",
+       "#VRML V2.0 utf8\r\n");
+  for (const char* name : {"C", "D"}) editor->set(node(name), "point", MFVec3f(100));
+  const std::string now = editor->text();
+  EXPECT_GT(std::count(now.begin(), now.end(), '\n'), 5);
+  for (size_t i = 0; i < now.size(); ++i) {
+    if (now[i] == '\n') EXPECT_EQ(now[i - 1], '\r') << i;
+  }
+  undoAll();
+}
+
 TEST(Editor, PackedFilesStayPacked) {
   const Folder folder;
   const std::string text = "#VRML V2.0 utf8\nDEF L PointLight { }\n";

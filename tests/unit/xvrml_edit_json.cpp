@@ -65,8 +65,9 @@ TEST_P(EditedJson, ElementsOfListsChangeInTheirPlaces) {
   editor->set(node("X"), "translation", Vec3f{1, 2, 4});
   editor->set(node("P"), "image", Image{2, 1, 1, {255, 7}});
   const std::string now = scene();
-  EXPECT_NE(now.find("0,0,0.0,\n              1, 0.5, 0, 2, 2, 2,\n              1,1,0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      now.find("0,0,0.0,\n              1,0.5,0,\n              2,2,2,\n              1,1,0\n"),
+      std::string::npos)
       << now;
   EXPECT_NE(now.find("\"@translation\": \"1 2.0 4\""), std::string::npos) << now;
   EXPECT_NE(now.find("\"@image\": [2, 1, 1, 255, 7]"), std::string::npos) << now;

@@ -63,10 +63,11 @@ TEST_P(EditedXml, ElementsOfListsChangeInTheirPlaces) {
             "    <Shape><PointSet><Coordinate DEF='B' point='0 0 0, 1 1 1'/></PointSet></Shape>\n");
   editor->set(node("A"), "point", MFVec3f{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
   editor->set(node("B"), "point", MFVec3f{{0, 0, 0}, {3, 3, 3}, {1, 1, 1}});
-  EXPECT_EQ(scene(),
-            "    <Shape><IndexedFaceSet coordIndex='0 1 2 -1'><Coordinate DEF='A' point='0 0 0\n"
-            "      1.0 0 0 2 0 0'/></IndexedFaceSet></Shape>\n    <Shape><PointSet><Coordinate "
-            "DEF='B' point='0 0 0, 3 3 3, 1 1 1'/></PointSet></Shape>\n");
+  EXPECT_EQ(
+      scene(),
+      "    <Shape><IndexedFaceSet coordIndex='0 1 2 -1'><Coordinate DEF='A' point='0 0 0\n"
+      "      1.0 0 0\n      2 0 0'/></IndexedFaceSet></Shape>\n    <Shape><PointSet><Coordinate "
+      "DEF='B' point='0 0 0, 3 3 3, 1 1 1'/></PointSet></Shape>\n");
   undoAll();
 }
 

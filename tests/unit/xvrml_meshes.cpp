@@ -366,40 +366,6 @@ TEST(Meshes, GltfSamplersThatNeedTextureProperties) {
   EXPECT_EQ(messages(*world).find("MIRRORED"), std::string::npos) << messages(*world);
 }
 
-// One bone, turned by a quarter about z, moves the vertex 1 0 0 to 0 1 0; the node's own
-// translation does not count.
-TEST(Meshes, GltfSkinsAreShownAtRest) {
-  const std::string positions = bytesOf<float>({1, 0, 0, 0, 1, 0, 0, 0, 1});
-  const std::string joints(12, '\0');
-  std::string weights = bytesOf<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
-  std::string document = gltf(R"("buffers":[{"byteLength":96}],
-    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12},
-                   {"buffer":0,"byteOffset":48,"byteLength":48}],
-    "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
-                 {"bufferView":1,"componentType":5121,"type":"VEC4","count":3},
-                 {"bufferView":2,"componentType":5126,"type":"VEC4","count":3}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}],
-    "skins":[{"joints":[1]}],
-    "nodes":[{"mesh":0,"skin":0,"translation":[9,9,9]},
-             {"rotation":[0,0,0.70710678118,0.70710678118]}],
-    "scenes":[{"nodes":[0,1]}])");
-  document.resize((document.size() + 3) / 4 * 4, ' ');
-  const std::string binary = positions + joints + weights;
-  const auto size = [](size_t n) { return bytesOf({uint32_t(n)}); };
-  const auto world =
-      load("glTF" + size(2) + size(28 + document.size() + binary.size()) + size(document.size()) +
-               "JSON" + document + size(binary.size()) + std::string("BIN\0", 4) + binary,
-           "a.glb");
-  EXPECT_EQ(messages(*world), "");
-  ASSERT_EQ(world->scope.roots.size(), 3u);
-  auto* faces = findNode<nodes::IndexedFaceSet>(world->scope.roots[2].get());
-  ASSERT_TRUE(faces);
-  const MFVec3f points = pointsOf(faces->coord);
-  EXPECT_NEAR(points[0].x, 0, 1e-6);
-  EXPECT_NEAR(points[0].y, 1, 1e-6);
-  EXPECT_NEAR(points[1].x, -1, 1e-6);
-}
-
 TEST(Meshes, GltfMatricesWithShearAreTheSameTransform) {
   const auto world = load(gltf(R"("nodes":[{"matrix":[1,0,0,0, 0.5,1,0,0, 0,0,2,0, 1,2,3,1]}],
                                    "scenes":[{"nodes":[0]}])"),

@@ -98,6 +98,36 @@ TEST(Vrml1Shapes, PrecomputedLighting) {
   EXPECT_EQ(only<nodes::Color>(*world)->color, (MFColor{{1, 0, 0}, {0, 1, 0}}));
 }
 
+// Files write black where the specification asks for empty lists, and colours for each vertex.
+TEST(Vrml1Shapes, PrecomputedLightingOfVerticesBesideBlack) {
+  const auto world =
+      load(twoTriangles +
+           "Material { diffuseColor 0 0 0 emissiveColor [ 1 0 0, 0 1 0, 0 0 1, 1 1 1 "
+           "] }\nMaterialBinding { value PER_VERTEX_INDEXED }\n" +
+           faces);
+  EXPECT_EQ(messagesOf(*world), Messages());
+  EXPECT_FALSE(materialOf(*only<nodes::Shape>(*world)));
+  EXPECT_TRUE(only<nodes::IndexedFaceSet>(*world)->colorPerVertex);
+  EXPECT_EQ(only<nodes::Color>(*world)->color,
+            (MFColor{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}));
+  // Highlights need light.
+  const auto shiny =
+      load(twoTriangles +
+           "Material { diffuseColor 0 0 0 specularColor 1 1 1 emissiveColor [ 1 0 0, "
+           "0 1 0 ] }\nMaterialBinding { value PER_FACE }\n" +
+           faces);
+  EXPECT_TRUE(materialOf(*every<nodes::Shape>(*shiny).at(0)));
+}
+
+TEST(Vrml1Shapes, TransparentPrecomputedLighting) {
+  const auto world = load(twoTriangles +
+                          "Material { diffuseColor [ ] emissiveColor [ 1 0 0, 0 1 0 ] transparency "
+                          ".25 }\nMaterialBinding { value PER_FACE }\n" +
+                          faces);
+  EXPECT_FLOAT_EQ(only<nodes::UnlitMaterial>(*world)->transparency, .25f);
+  EXPECT_EQ(only<nodes::Color>(*world)->color, (MFColor{{1, 0, 0}, {0, 1, 0}}));
+}
+
 TEST(Vrml1Shapes, AmbientIntensityIsAShare) {
   const auto world = load("Material { ambientColor .1 .1 .1 diffuseColor .4 .4 .4 }\nCube { }");
   const auto* material = only<nodes::Material>(*world);

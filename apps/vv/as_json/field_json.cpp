@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "xvrml/numbers.h"
+#include "xvrml/value_text.h"
 #include "xvrml/value_words.h"
 #include "xvrml/versions.h"
 #include "xvrml/world.h"
@@ -78,11 +79,8 @@ class Reader {
                      path_.empty() ? "" : " at value" + path_));
   }
   [[noreturn]] void wrongNumber(double got) const {
-    const FieldRange& r = rangeIn(owner_, field_);
-    fail(fmt::format("numbers from {} to {}{}{} were expected, not {}{}", r.minimum, r.maximum,
-                     r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "",
-                     std::isnan(r.also) ? "" : fmt::format(" or {}", r.also), got,
-                     path_.empty() ? "" : " at value" + path_));
+    fail(fmt::format("numbers in {} were expected, not {}{}", describe(rangeIn(owner_, field_)),
+                     got, path_.empty() ? "" : " at value" + path_));
   }
 
   // Calls `read` for an element and notes its place meanwhile.

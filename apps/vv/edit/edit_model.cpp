@@ -203,6 +203,7 @@ bool EditModel::update(WorldEditor& editor, const EditView& view, bool moves, do
     readAt_ = seconds;
     read(editor);
   }
+  reads |= thumbnails_.update(editor.browser().world(), sheet_, reads);
   reads |= problems_.update(editor, seconds);
   std::vector<Line> frames = framesOf(editor, view);
   return std::exchange(frames_, frames) != frames || reads;

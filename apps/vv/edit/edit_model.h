@@ -18,6 +18,7 @@
 #include "edit/outline.h"
 #include "edit/problems.h"
 #include "edit/properties.h"
+#include "edit/texture_thumbnails.h"
 #include "edit/world_editor.h"
 
 namespace vv {
@@ -53,6 +54,8 @@ class EditModel {
   // The fields of the node that was selected last. A face may change the values of its rows, which
   // are read again when the world can be used.
   PropertySheet& sheet() { return sheet_; }
+  // Small pictures of the textures that the sheet shows.
+  const TextureThumbnails& thumbnails() const { return thumbnails_; }
   // The looks that the selected Shapes can have. Empty until a Shape has been selected.
   const std::vector<Look>& looks() const { return looks_; }
   // How many nodes are hidden for now.
@@ -143,6 +146,7 @@ class EditModel {
   Outline outline_;
   std::vector<OutlineRow> rows_;
   PropertySheet sheet_;
+  TextureThumbnails thumbnails_;
   ProblemList problems_;
   xvrml::MFNode selection_;
   std::string undoName_, redoName_, readOnly_, unwritable_, message_, search_;

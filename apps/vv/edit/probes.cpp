@@ -39,9 +39,7 @@ void read(Probe& probe, xvrml::Browser& browser, const picture::Picture& picture
   } else if (!isSeen(browser, view, x, y, probe.point)) {
     probe.state = Probe::State::hidden;
   } else {
-    probe.now =
-        picture::readPixel(picture, std::min(int((1 + x) / 2 * picture.width), picture.width - 1),
-                           std::min(int((1 - y) / 2 * picture.height), picture.height - 1));
+    probe.now = picture::readPlace(picture, x, y);
     probe.state = Probe::State::read;
   }
 }
@@ -63,6 +61,14 @@ const char* quantityOf(const Probe& probe) {
 }
 const char* unitOf(const Probe& probe) { return readsIlluminance(probe) ? "lx" : "cd/m2"; }
 
+std::string lightText(const picture::PixelReading& light, const char* unit) {
+  const auto luminance = double(light.luminance), halfWidth = double(light.luminanceHalfWidth);
+  return (luminance > halfWidth
+              ? fmt::format("{:.4g} {} +- {:.2g} %", luminance, unit, 100 * halfWidth / luminance)
+              : fmt::format("{:.4g} +- {:.2g} {}", luminance, halfWidth, unit)) +
+         (light.trusted ? "  trusted" : "  not trusted");
+}
+
 std::string probeText(const Probe& probe, const std::optional<Difference>& change) {
   std::string text = fmt::format("{}  {}", probe.number, probe.isMean() ? "mean " : "");
   switch (probe.state) {
@@ -73,13 +79,7 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
   case Probe::State::otherView: return text + "of another view";
   case Probe::State::read: break;
   }
-  const auto luminance = double(probe.now.luminance),
-             halfWidth = double(probe.now.luminanceHalfWidth);
-  const char* const unit = unitOf(probe);
-  text += luminance > halfWidth
-              ? fmt::format("{:.4g} {} +- {:.2g} %", luminance, unit, 100 * halfWidth / luminance)
-              : fmt::format("{:.4g} +- {:.2g} {}", luminance, halfWidth, unit);
-  text += probe.now.trusted ? "  trusted" : "  not trusted";
+  text += lightText(probe.now, unitOf(probe));
   if (const MeanReading* const several = probe.several())
     text += fmt::format("  {:.4g} to {:.4g}, uniformity {:.3g}", several->least, several->most,
                         several->uniformity());
@@ -89,6 +89,18 @@ std::string probeText(const Probe& probe, const std::optional<Difference>& chang
                         : change->value == 0 && change->halfWidth == 0 ? "unchanged"
                                                                        : "not yet certain");
   return text;
+}
+
+std::string pointerText(const PointerReading& pointer, bool isReadable) {
+  if (!pointer.seen) return "";
+  if (!pointer.light)
+    return (isReadable ? "waits for a still picture\n" : "V measures the light here\n") +
+           *pointer.seen;
+  const picture::PixelReading& light = *pointer.light;
+  std::string text = lightText(light, "cd/m2") + "\nradiance";
+  for (size_t i = 0; i < 3; ++i)
+    text += fmt::format("  {} {:.3g} +- {:.2g}", "RGB"[i], light.radiance[i], light.halfWidth[i]);
+  return text + "\n" + *pointer.seen;
 }
 
 void Probes::add(const std::array<double, 3>& point, std::string seen) {

@@ -47,8 +47,20 @@ struct Probe {
 // Return what a probe reads: "luminance" in "cd/m2", or "illuminance" in "lx".
 const char* quantityOf(const Probe& probe);
 const char* unitOf(const Probe& probe);
+// Returns a luminance with its 95 % interval, or an illuminance: "412 cd/m2 +- 1.5 %  trusted".
+std::string lightText(const picture::PixelReading& light, const char* unit);
 // Returns what a probe says: "1  412 cd/m2 +- 1.5 %  trusted   B - A: -41 +- 8, significant".
 std::string probeText(const Probe& probe, const std::optional<Difference>& change);
+
+// The place of the picture where a pointer rests, from -1 to 1 each way, and what is seen there.
+struct PointerReading {
+  double x = 0, y = 0;
+  std::optional<std::string> seen;            // as of a probe; none: it has not been looked for yet
+  std::optional<picture::PixelReading> light; // none: there is no still picture with it yet
+};
+
+// Returns what a face says there, in lines. isReadable: the picture has error bars.
+std::string pointerText(const PointerReading& pointer, bool isReadable);
 
 class Probes {
  public:

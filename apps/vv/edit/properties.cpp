@@ -33,7 +33,8 @@ template <class T> size_t bytesOf(const T& value) {
 }
 
 // A value is read where it stands, and not copied if it is long: it may have millions of elements.
-void readValue(WorldEditor& editor, Node& node, PropertyRow& row) {
+// A node that is only read gets no block of rare fields.
+void readValue(WorldEditor& editor, const Node& node, PropertyRow& row) {
   visitStorage(row.field->type, node.storage(*row.field), [&row](const auto& value) {
     using T = std::remove_cvref_t<decltype(value)>;
     const T* const byDefault = std::get_if<T>(&row.defaultValue);
@@ -66,6 +67,7 @@ PropertyRow rowOf(WorldEditor& editor, Node& node, const FieldInfo& field) {
   row.range = rangeIn(node, field);
   row.help = helpOf(field, field.text, row.range);
   row.choices = choicesOf(field);
+  row.isLinear = field.declared && node.type().is("shader");
   if (holdsNodes(field)) {
     row.addable = typesFor(field);
     row.usable = nodesFor(editor.browser().world(), field, mostUsable);
@@ -103,6 +105,7 @@ void addParameters(WorldEditor& editor, const nodes::ORTShader& shader, Property
     row.help = helpOf(*field, field->text, field->range);
     row.isDefault = true;
     row.isDeclared = false;
+    row.isLinear = true;
     if (const auto option = options.find(field->name); option != options.end()) {
       const std::optional<Value> set = valueOf(option->second, parameter);
       row.isInOptions = true;

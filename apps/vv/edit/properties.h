@@ -22,6 +22,7 @@ struct PropertyRow {
   bool isDefault = false;
   bool isLong = false;      // it is not shown: it has more than `mostElements` or `mostBytes`
   bool isDeclared = true;   // false: the shader gets the field when it is changed
+  bool isLinear = false;    // its colours are linear, as those of shaders; others are sRGB codes
   bool isInOptions = false; // the options of the shader set it; what is no number is not shown
   uint64_t edits = 0;       // Editor::editsOf() when the value was read
   xvrml::FieldRange range;  // the range of each number

@@ -535,6 +535,18 @@ const OptionInfo table[] = {
      "and "
      "ORTAsphere never have facets.",
      [](Options& o, const std::string&) { o.render.exactShapes = true; }, with(inPresets)},
+    {"--point-size", "SIZE", "Change",
+     "Draw the points of PointSets, point clouds (PLY) and the like as balls of this diameter, in "
+     "the units of their Shape. They are lit in their colours and cast shadows; without it they "
+     "are "
+     "a pixel wide and unlit.",
+     [](Options& o, const std::string& v) { o.render.pointSize = readNumber(v, 0, 1e18); },
+     with(inPresets)},
+    {"--line-width", "WIDTH", "Change",
+     "Draw lines as rods of this diameter, in the units of their Shape, as --point-size does with "
+     "points.",
+     [](Options& o, const std::string& v) { o.render.lineWidth = readNumber(v, 0, 1e18); },
+     with(inPresets)},
     {"--old-world", "", "Change",
      "Show the world as browsers of the nineties did: the same as --compat scripts,textures "
      "--colour vrml97 --shadows off.",

@@ -257,7 +257,11 @@ constexpr Row table[] = {
     {"keep_probes", [](Members&) -> Command { return LightCommand(KeepProbes{}); }},
     {"clear_probes", [](Members&) -> Command { return LightCommand(ClearProbes{}); }},
     {"compare", readCompare},
-    {"point", [](Members& m) -> Command { return LightCommand(PointAt{place(m)}); }},
+    {"point",
+     [](Members& m) -> Command {
+       const bool rests = m.has("x") || m.has("y");
+       return LightCommand(PointAt{rests ? std::optional(place(m)) : std::nullopt});
+     }},
     {"keep_in_world",
      [](Members& m) -> Command {
        return LightCommand(

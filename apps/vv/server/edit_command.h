@@ -165,7 +165,7 @@ struct Compare {
   What what = What::a;
 };
 struct PointAt {
-  Place place; // where the change of light is wanted
+  std::optional<Place> place; // where the pointer rests; none: it does not
 };
 struct KeepInWorld {
   int probe = 0; // its number

@@ -31,7 +31,11 @@ void EditLight::take(uint64_t page, const EditView& view, bool isLeaders,
   std::visit([&](const auto& one) { perform(page, view, isLeaders, one); }, command);
 }
 
-void EditLight::update(double now) { light_.update(world_.session(), now); }
+void EditLight::update(double now) {
+  Session& session = world_.session();
+  if (world_.hasLight()) session.pictures().wantReadings(PictureLoop::Readings::later);
+  light_.update(session, now);
+}
 
 std::vector<std::pair<uint64_t, std::string>> EditLight::takeMessages() {
   std::vector<std::pair<uint64_t, std::string>> messages;
@@ -44,14 +48,18 @@ std::vector<std::pair<uint64_t, std::string>> EditLight::takeMessages() {
 void EditLight::beginAnew() {
   light_.clear();
   report_.reset();
-  pointers_.clear();
 }
 
 std::string EditLight::comparisonText(uint64_t page, bool isLeaders) {
-  const auto pointer = pointers_.find(page);
+  const PointerReading* const pointer = light_.pointerOf(page);
   return edit::comparisonText(light_.comparison(), isLeaders,
-                              pointer == pointers_.end() ? std::nullopt
-                                                         : std::optional(pointer->second));
+                              pointer ? std::optional(edit::Place{pointer->x, pointer->y})
+                                      : std::nullopt);
+}
+
+std::string EditLight::pointerText(uint64_t page, bool isLeaders) const {
+  const PointerReading* const pointer = isLeaders ? light_.pointerOf(page) : nullptr;
+  return edit::pointerText(pointer, world_.session().pictures().isReadable());
 }
 
 uint64_t EditLight::cover() {
@@ -71,8 +79,7 @@ uint64_t EditLight::cover() {
 // --- Probes ---
 
 void EditLight::needRoom() {
-  if (!world_.hasLight())
-    throw EditError("--colour vrml97 makes colours for screens, not light");
+  if (!world_.hasLight()) throw EditError("--colour vrml97 makes colours for screens, not light");
   if (light_.probes().all().size() >= size_t(maxProbes))
     throw EditError(fmt::format("there are {} probes already (maxProbes)", maxProbes));
 }
@@ -139,8 +146,12 @@ void EditLight::perform(uint64_t, const EditView&, bool isLeaders, const edit::C
   light_.comparison().toggle(what);
 }
 
-void EditLight::perform(uint64_t page, const EditView&, bool, const edit::PointAt& point) {
-  pointers_[page] = point.place;
+void EditLight::perform(uint64_t page, const EditView&, bool isLeaders,
+                        const edit::PointAt& point) {
+  if (point.place && isLeaders && world_.hasLight())
+    light_.point(page, point.place->x, point.place->y);
+  else
+    light_.leave(page);
 }
 
 // --- Reports ---

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,13 +29,15 @@ class EditLight {
   void update(double now);
   // Returns what is to be said to a page; 0: to all.
   std::vector<std::pair<uint64_t, std::string>> takeMessages();
-  void leave(uint64_t page) { pointers_.erase(page); }
+  void leave(uint64_t page) { light_.leave(page); }
   // The session ends.
   void beginAnew();
 
   const Probes& probes() { return light_.probes(); }
   // Returns what of A is shown, with the change of light where a page points.
   std::string comparisonText(uint64_t page, bool isLeaders);
+  // Returns what is seen where the pointer of a page rests.
+  std::string pointerText(uint64_t page, bool isLeaders) const;
   // Returns how far the report is that a page has asked for; "": there is none.
   std::string progress(uint64_t page);
   // Returns the number of the picture that covers the present one, and a message with it; 0: there
@@ -61,8 +62,7 @@ class EditLight {
   Host& host_;
   const std::vector<std::string>& arguments_;
   LightReader light_;
-  std::map<uint64_t, edit::Place> pointers_; // by page
-  uint64_t cover_ = 0;                       // the number of the cover that coverText_ has
+  uint64_t cover_ = 0; // the number of the cover that coverText_ has
   std::string coverText_;
   uint64_t reporter_ = 0; // the page that has asked for the last report
   WorldReport report_;    // the last member: its thread uses the others

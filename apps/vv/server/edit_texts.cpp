@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "as_json/field_json.h"
+#include "base64.h"
+#include "libpicture/files/formats.h"
 #include "server/limits.h"
 #include "xvrml/numbers.h"
 
@@ -111,19 +113,15 @@ void appendRange(std::string& out, const FieldRange& range) {
     fmt::format_to(std::back_inserter(out), R"(,"most":{})", range.maximum);
 }
 
-// Colours are codes of sRGB, as they stand in files, except the parameters of shaders.
-bool isLinear(const Node& node, const PropertyRow& row) {
-  return node.type().is("shader") && (row.field->declared || !row.isDeclared);
-}
-
-std::string rowText(const Node& node, const PropertyRow& row, json::NodeNumbers& numbers) {
+std::string rowText(const PropertyRow& row, json::NodeNumbers& numbers) {
   const FieldInfo& field = *row.field;
   std::string out =
       fmt::format(R"({{"field":{},"type":"{}","default":{},"declared":{},"size":{},"help":{})",
                   jsonText(field.name), fieldTypeName(field.type), row.isDefault, row.isDeclared,
                   row.size, jsonText(shortened(row.help, mostHelpBytes)));
   appendRange(out, row.range);
-  if (isLinear(node, row)) out += ",\"linear\":true";
+  if (row.isLinear) out += ",\"linear\":true";
+  if (row.edits > 0) out += ",\"edited\":true";
   if (!row.choices.empty()) out += ",\"choices\":" + jsonLine(row.choices);
   if (row.isLong || roughSize(row.value) > size_t(maxValueBytes)) {
     out += ",\"long\":true";
@@ -176,12 +174,28 @@ std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers) {
   out += ",\"fields\":[";
   size_t shown = 0;
   for (const PropertyRow& row : sheet.rows) {
-    const std::string text = rowText(*sheet.node, row, numbers);
+    const std::string text = rowText(row, numbers);
     if (out.size() + text.size() > size_t(maxSheetBytes)) break;
     if (shown++) out += ',';
     out += text;
   }
   return out + fmt::format(R"(],"hidden":{}}})", sheet.rows.size() - shown);
+}
+
+std::string thumbnailsText(const TextureThumbnails& thumbnails, json::NodeNumbers& numbers) {
+  Json list = Json::array();
+  for (const NodeRef& node : thumbnails.nodes()) {
+    Json one = {{"node", numbers.of(node)}};
+    const Thumbnail& shown = *thumbnails.of(*node);
+    if (shown.error.empty()) {
+      one["image"] = base64Of(picture::pngOf(shown.rgba, shown.width, shown.height, 4));
+      one["scale"] = shown.magnification();
+    } else {
+      one["error"] = shortened(shown.error, mostNoteBytes);
+    }
+    list.push_back(std::move(one));
+  }
+  return jsonLine({{"type", "thumbnails"}, {"list", list}});
 }
 
 std::string looksText(const std::vector<ShownLook>& looks) {

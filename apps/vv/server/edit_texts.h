@@ -23,6 +23,8 @@ std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int fir
 // Tells a page to show a row, which others have selected.
 std::string revealText(int row);
 std::string sheetText(const PropertySheet& sheet, json::NodeNumbers& numbers);
+// Returns the small pictures of the textures of a sheet, as PNG files.
+std::string thumbnailsText(const TextureThumbnails& thumbnails, json::NodeNumbers& numbers);
 // A look that the selected Shapes can have.
 struct ShownLook {
   uint64_t number = 0; // by which the page names it

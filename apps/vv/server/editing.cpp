@@ -144,6 +144,11 @@ void Editing::show(uint64_t page, Face& face) {
   }
   tell(page, face, "rows", edit::rowsText(face.model, face.numbers, face.first, face.count));
   tell(page, face, "sheet", edit::sheetText(face.model.sheet(), face.numbers));
+  // Their pictures are encoded only when there are others.
+  const TextureThumbnails& thumbnails = face.model.thumbnails();
+  if (!face.told.contains("thumbnails") || thumbnails.count() != face.thumbnails)
+    tell(page, face, "thumbnails", edit::thumbnailsText(thumbnails, face.numbers));
+  face.thumbnails = thumbnails.count();
   tell(page, face, "problems", edit::problemsText(face.model.problems(), face.numbers));
   tell(page, face, "frames", edit::framesText(face.model));
   if (const int row = face.model.takeScroll(); row >= 0)
@@ -155,6 +160,7 @@ void Editing::showLight(uint64_t page, Face& face) {
   tell(page, face, "probes", edit::probesText(light_.probes()));
   tell(page, face, "marks", edit::marksText(light_.probes(), viewOf(page)));
   tell(page, face, "comparison", light_.comparisonText(page, isLeaders));
+  tell(page, face, "pointer", light_.pointerText(page, isLeaders));
   tell(page, face, "progress", edit::progressText(light_.progress(page)));
   if (!isLeaders) return;
   const uint64_t cover = light_.cover();

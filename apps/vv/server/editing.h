@@ -54,6 +54,7 @@ class Editing {
     int first = 0, count = 0;                // the rows of the outline that it shows
     std::map<std::string, std::string> told; // the last message of each type
     uint64_t cover = 0;                      // the number of the last cover that it was sent
+    uint64_t thumbnails = 0;                 // TextureThumbnails::count() when it was sent them
     bool isDragging = false;
     // The parameter of a shader that is dragged, which gets a field at the end.
     struct Parameter {

@@ -107,6 +107,25 @@ std::string comparisonText(const Comparison& comparison, bool isLeaders,
   return jsonLine(text);
 }
 
+std::string pointerText(const PointerReading* pointer, bool isReadable) {
+  Json text = {{"type", "pointer"}};
+  if (!pointer || !pointer->seen) return jsonLine(text);
+  text["x"] = pointer->x;
+  text["y"] = pointer->y;
+  text["seen"] = *pointer->seen;
+  if (const auto& light = pointer->light) {
+    text["luminance"] = light->luminance;
+    text["half_width"] = light->luminanceHalfWidth;
+    text["radiance"] = light->radiance;
+    text["radiance_half_width"] = light->halfWidth;
+    text["samples"] = light->samples;
+    text["trusted"] = light->trusted;
+  } else {
+    text["readable"] = isReadable;
+  }
+  return jsonLine(text);
+}
+
 std::string coverText(int width, int height, std::string_view jpeg) {
   std::string text =
       fmt::format(R"({{"type":"cover","width":{},"height":{},"image":")", width, height);

@@ -20,6 +20,8 @@ std::string marksText(const Probes& probes, const EditView& view);
 // isLeaders: the page shows the picture that is compared. pointer: where the change is wanted.
 std::string comparisonText(const Comparison& comparison, bool isLeaders,
                            const std::optional<Place>& pointer);
+// pointer: null: the page's pointer does not rest. isReadable: the picture has error bars.
+std::string pointerText(const PointerReading* pointer, bool isReadable);
 // Returns a picture that covers the present one. jpeg: the bytes of its file.
 std::string coverText(int width, int height, std::string_view jpeg);
 // text: how far a report is.

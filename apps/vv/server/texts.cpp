@@ -49,7 +49,8 @@ std::string editorText() {
   Json kinds = Json::array(), keys = Json::array();
   for (const NewNode& one : newNodes()) kinds.push_back(one.name);
   kinds.push_back(edit::viewpointKind);
-  for (const auto& one : editorTable()) keys.push_back({one.what, one.text});
+  for (const auto& one : editorTable())
+    if (!one.isOfWindow) keys.push_back({one.what, one.text});
   return jsonLine({{"type", "editor"},
                    {"kinds", kinds},
                    {"keys", keys},

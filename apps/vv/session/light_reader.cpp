@@ -1,5 +1,6 @@
 #include "session/light_reader.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,14 +20,19 @@ struct SurfaceSeen {
   CameraRay ray;
   PickHit hit;
 };
-SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, double x, double y) {
+std::optional<SurfaceSeen> findSurface(WorldEditor& editor, const EditView& view, double x,
+                                       double y) {
   SurfaceSeen seen{rayThrough(view.camera, view.aspect, x, y), {}};
   if (!editor.browser().pick(seen.ray.origin, seen.ray.direction, {.bothSides = true}, seen.hit))
-    throw EditError("there is nothing here to be measured");
+    return std::nullopt;
   return seen;
 }
+SurfaceSeen surfaceAt(WorldEditor& editor, const EditView& view, double x, double y) {
+  if (std::optional<SurfaceSeen> seen = findSurface(editor, view, x, y)) return *seen;
+  throw EditError("there is nothing here to be measured");
+}
 
-// Returns what a probe says of the surface that it was put on.
+// Returns what a probe or a pointer says of the surface that it is on.
 std::string textOf(WorldEditor& editor, const SurfaceSeen& seen) {
   const PickHit& hit = seen.hit;
   std::string text;
@@ -73,12 +79,23 @@ void LightReader::keep(WorldEditor& editor, const EditView& view) {
   comparison_.ask(editor.editor().changes(), view);
 }
 
+void LightReader::point(uint64_t face, double x, double y) {
+  PointerReading& pointer = pointers_.try_emplace(face, PointerReading{x, y, {}, {}}).first->second;
+  if (pointer.x != x || pointer.y != y) pointer = {x, y, {}, {}};
+}
+
+const PointerReading* LightReader::pointerOf(uint64_t face) const {
+  const auto found = pointers_.find(face);
+  return found == pointers_.end() ? nullptr : &found->second;
+}
+
 bool LightReader::update(Session& session, double seconds) {
   const EditView view = viewOf(session);
   const PictureLoop& pictures = session.pictures();
   comparison_.follow(view, pictures.width(), pictures.height(),
                      {pictures.transformOf(session.pilot()), pictures.facts().scaleEnd},
                      session.viewers().own().isOutdated());
+  lookAtPointers(session, view);
   readStill(session, view, seconds);
   readSensors(session, seconds);
   return std::exchange(hasChanged_, false);
@@ -92,35 +109,58 @@ std::string LightReader::takeMessage() {
 void LightReader::clear() {
   probes_.clear();
   comparison_.clear();
+  pointers_.clear();
   stillRead_ = nextSensors_ = 0;
   finishedRead_ = 0;
   message_.clear();
 }
 
-// Reads the probes and what is compared from the still picture of the world as it is, a few times a
-// second.
+// Finds the surfaces that are seen where pointers rest, once for each place.
+void LightReader::lookAtPointers(Session& session, const EditView& view) {
+  const bool outdated = session.viewers().own().isOutdated();
+  for (auto& [face, pointer] : pointers_) {
+    if (outdated) {
+      pointer.seen.reset();
+      pointer.light.reset();
+    } else if (!pointer.seen) {
+      const auto surface = findSurface(session.editor(), view, pointer.x, pointer.y);
+      pointer.seen = surface ? textOf(session.editor(), *surface) : "nothing is here";
+      hasChanged_ = true;
+    }
+  }
+}
+
+bool LightReader::isPointerWaiting() const {
+  return std::any_of(pointers_.begin(), pointers_.end(),
+                     [](const auto& pointer) { return !pointer.second.light; });
+}
+
+// Reads the probes, the pointers and what is compared from the still picture of the world as it is,
+// a few times a second.
 void LightReader::readStill(Session& session, const EditView& view, double seconds) {
   // Comparing all pixels takes up to a quarter of a second for a picture of 600,000.
   const bool showsChanges = comparison_.shown() == Comparison::Shown::difference;
   const double interval = showsChanges ? 1 : 0.25;
-  if (!probes_.readPictures() && !comparison_.wantsPicture() && !showsChanges &&
-      !comparison_.isRefined(session.pictures().number()))
-    return;
+  const bool mustRead = probes_.readPictures() || comparison_.wantsPicture() || showsChanges ||
+                        comparison_.isRefined(session.pictures().number());
+  if (!mustRead && (pointers_.empty() || !session.pictures().isReadable())) return;
   if (session.captures().isPending()) return; // other channels would cancel its frame
   const bool outdated = session.viewers().own().isOutdated();
   if (outdated) probes_.expire();
   if (outdated || seconds < stillRead_ + interval) return;
-  session.pictures().wantReadings();
+  if (mustRead) session.pictures().wantReadings(PictureLoop::Readings::now);
   const uint64_t number = session.pictures().number();
   const uint64_t finished = session.pictures().isFinished(session.pilot()) ? number : 0;
   if (finished != 0 && finished == finishedRead_ && !probes_.isWaiting() &&
-      !comparison_.wantsPicture())
+      !comparison_.wantsPicture() && !isPointerWaiting())
     return;
   picture::Picture picture;
   if (!session.pictures().copyStill(picture) || !picture.planes.contains(RT_ERROR)) return;
   stillRead_ = seconds;
   finishedRead_ = finished;
   probes_.read(session.browser(), picture, view);
+  for (auto& [face, pointer] : pointers_)
+    pointer.light = picture::readPlace(picture, pointer.x, pointer.y);
   if (comparison_.take(picture, number, session.editor().editor().changes(), view, finished != 0))
     probes_.keep();
   hasChanged_ = true;

@@ -113,8 +113,9 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
   return hasStill() && renderer_.copy(picture, &number) && number == number_;
 }
 
-void PictureLoop::wantReadings() {
-  if (std::exchange(readings_, picture::readingChannels) != 0) return;
+void PictureLoop::wantReadings(Readings when) {
+  readings_ = picture::readingChannels;
+  if (when == Readings::later || std::exchange(isReadable_, true)) return;
   shared_.cancel(); // the frame in flight, or the last one, does not have them
   cancelled_ = true;
 }
@@ -221,6 +222,7 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   still_ = Progress::none;
   isStillLost_ = false;
   cancelled_ = false;
+  isReadable_ = readings_ != 0;
   cancellations_ = shared_.cancellations();
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
   number_ = shared_.start(frame, moving);

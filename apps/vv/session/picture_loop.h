@@ -70,8 +70,12 @@ class PictureLoop {
   // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
   // still one with samples everywhere, or for a moment while it ends.
   bool copyStill(picture::Picture& picture);
-  // Lets further frames have the channels that copyStill() needs for a reading of pixels, too.
-  void wantReadings();
+  // Lets frames have the channels that copyStill() needs for a reading of pixels, too: `now` makes
+  // the present picture anew if it does not have them, `later` waits for the next one.
+  enum class Readings : uint8_t { now, later };
+  void wantReadings(Readings when);
+  // Tells whether the last frame has them, or is about to.
+  bool isReadable() const { return isReadable_; }
   // Asks for a picture of its own for a program; the frames wait meanwhile. takeStill() returns it
   // once it is finished. One at a time.
   void requestStill(const Still& still) { taker_.request(still); }
@@ -147,6 +151,7 @@ class PictureLoop {
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
   uint32_t readings_ = 0;             // channels beside those of the settings
+  bool isReadable_ = false;           // the frame has these channels
   double exposure_ = 0;               // the exposure of the pilot
   std::optional<double> falseColour_; // the scale of the pilot
   picture::FrameSize frame_;

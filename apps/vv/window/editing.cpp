@@ -9,6 +9,7 @@
 #include "edit/import.h"
 #include "window/comparison_view.h"
 #include "window/gizmo_view.h"
+#include "window/readout_view.h"
 #include "window/window.h"
 
 namespace vv {
@@ -24,8 +25,10 @@ constexpr double wiperReach = 0.02;
 void needPicture(bool isOverPicture) {
   if (!isOverPicture) throw EditError("put the pointer where the light is to be measured");
 }
+constexpr uint64_t face = 0; // the number of this face for the light
 constexpr const char* kindNames[] = {"move", "turn", "scale"};
-constexpr int framesToOpen = 3; // until a menu gets the keys
+constexpr int framesToOpen = 3;     // until a menu gets the keys
+constexpr double restSeconds = 0.4; // until a pointer that does not move rests
 
 } // namespace
 
@@ -80,6 +83,8 @@ void Editing::draw() {
   if (pressed_ && (drag_ == Drag::measure || drag_ == Drag::select))
     drawRectangle(regionBetween(pressed_->x, pressed_->y, pointer_.x, pointer_.y), "");
   panels_->draw();
+  const PointerReading* const reading = light_.pointerOf(face);
+  if (reading && !hasMoved_ && !panels_->hasPointer()) drawReadout(*reading, isReadable_);
   screen_.setFree(panels_->freePart());
   questions_.draw();
 }
@@ -95,6 +100,7 @@ bool Editing::take(InputEvent& event) {
   using Kind = InputEvent::Kind;
   // Where the pointer is counts when the editor is opened.
   if (event.kind == Kind::move) pointer_ = event;
+  hasMoved_ |= event.kind != Kind::up && event.kind != Kind::down && event.kind != Kind::type;
   if (event.kind == Kind::move || event.kind == Kind::leave)
     isOverPicture_ = event.kind == Kind::move;
   if (!isOpen_) return false;
@@ -197,14 +203,15 @@ bool Editing::press(const InputEvent& event) {
   case EditorAction::scale: return beginTool(TransformTool::Kind::scale, -1, pointer_);
   case EditorAction::menu:
     panels_->openAddMenu();
-    for (int frame = 0; frame < framesToOpen; ++frame) {
-      screen_.redraw();
-      screen_.present();
-    }
+    openAtOnce();
     break;
   case EditorAction::duplicate: model_->request(duplicateSelected); break;
   case EditorAction::group: model_->request(wrapSelected); break;
   case EditorAction::remove: model_->request(removeSelected); break;
+  case EditorAction::rename:
+    panels_->askForName();
+    openAtOnce();
+    break;
   case EditorAction::undo: model_->request([](WorldEditor& editor) { editor.undo(); }); break;
   case EditorAction::redo: model_->request([](WorldEditor& editor) { editor.redo(); }); break;
   case EditorAction::save: save(); break;
@@ -218,9 +225,25 @@ bool Editing::press(const InputEvent& event) {
   case EditorAction::showWiper: toggle(Comparison::Shown::wiper); break;
   case EditorAction::showDifference: toggle(Comparison::Shown::difference); break;
   case EditorAction::frame: wantsFrame_ = true; break;
+  case EditorAction::panels:
+    panels_->toggle();
+    screen_.redraw();
+    break;
+  case EditorAction::keyboard:
+    panels_->passKeyboard();
+    openAtOnce();
+    break;
   case EditorAction::escape: escape(); break;
   }
   return true;
+}
+
+// Draws what a key has opened, so that it gets the keys that follow.
+void Editing::openAtOnce() {
+  for (int frame = 0; frame < framesToOpen; ++frame) {
+    screen_.redraw();
+    screen_.present();
+  }
 }
 
 // Places a probe, or lets the next drag be a rectangle.
@@ -349,6 +372,7 @@ void Editing::update(Session& session, double seconds) {
   if (model_->update(session.editor(), view_, session.pictures().isMoving(), seconds))
     screen_.redraw();
   drawBalls(session);
+  followPointer(session, seconds);
   if (std::exchange(wantsFrame_, false))
     session.pilot().putAt(model_->cameraAround(session.editor(), view_, panels_->freePart()));
   if (!model_->readOnly().empty())
@@ -363,6 +387,22 @@ void Editing::update(Session& session, double seconds) {
   if (std::string text = light_.takeMessage(); !text.empty()) say(std::move(text));
   showCover();
   followReport(session);
+}
+
+// Lets the light be read where the pointer rests over the picture. While it moves, or is used for
+// something, nothing is read.
+void Editing::followPointer(Session& session, double seconds) {
+  if (hasLight_) session.pictures().wantReadings(PictureLoop::Readings::later);
+  isReadable_ = session.pictures().isReadable();
+  const bool mayRest = isOpen_ && hasLight_ && isOverPicture_ && !panels_->hasPointer() &&
+                       !hasTool_ && !measures_ && drag_ == Drag::none &&
+                       comparison_.shown() == Comparison::Shown::present;
+  if (std::exchange(hasMoved_, false) || !mayRest) {
+    restsSince_ = seconds;
+    light_.leave(face);
+  } else if (seconds >= restsSince_ + restSeconds) {
+    light_.point(face, pointer_.x, pointer_.y);
+  }
 }
 
 // Begins a report or gives it up, and shows how far it is.

@@ -74,6 +74,7 @@ class Editing {
   // Asks once whether the edits that an earlier session has left are used.
   void offerLeft(WorldEditor& editor);
   bool press(const InputEvent& event);
+  void openAtOnce();
   void measure(EditorAction action);
   void toggle(Comparison::Shown shown);
   void escape();
@@ -90,6 +91,7 @@ class Editing {
   void endTool(bool accept);
   void drawBalls(Session& session);
   bool takeForTool(const InputEvent& event);
+  void followPointer(Session& session, double seconds);
   void showCover();
   void followReport(Session& session);
 
@@ -114,6 +116,9 @@ class Editing {
   bool measures_ = false;      // the next drag measures
   InputEvent pointer_;         // where the pointer was last
   bool isOverPicture_ = false; // the pointer is there
+  bool hasMoved_ = false;      // it has moved, or has done something, since the last update
+  double restsSince_ = 0;      // seconds, as those of update()
+  bool isReadable_ = false;    // the picture has error bars
   bool hasTool_ = false;       // the tool gets the events; it may still have to begin
   bool isToolClick_ = false;   // a button has been pressed for the tool
   bool hasToolFailed_ = false; // it could not begin

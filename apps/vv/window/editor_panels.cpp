@@ -19,8 +19,10 @@ using namespace xvrml;
 
 namespace {
 
-constexpr ImGuiWindowFlags panelFlags =
-    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoTitleBar;
+// The keys are the picture's until a panel is clicked or gets them.
+constexpr ImGuiWindowFlags panelFlags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                                        ImGuiWindowFlags_NoTitleBar |
+                                        ImGuiWindowFlags_NoFocusOnAppearing;
 constexpr ImU32 frameColour = IM_COL32(255, 170, 40, 220);
 
 // A button that can be pressed only if `active`.
@@ -78,14 +80,43 @@ const std::vector<NewNode>& otherNodes() {
 } // namespace
 
 void EditorPanels::draw() {
+  thumbnails_.bound();
   drawFrames();
-  drawOutline();
-  drawSheet();
   const auto width = double(ImGui::GetIO().DisplaySize.x);
-  free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
+  if (isHidden_) {
+    free_ = {};
+    isChoosingLook_ = false;
+  } else {
+    drawOutline();
+    drawSheet();
+    free_ = {2 * double(outlineWidth_) / width - 1, 1 - 2 * double(sheetWidth_) / width};
+  }
   drawProbes();
   drawProblems(model_, free_);
+  hasPointer_ = ImGui::GetIO().WantCaptureMouse;
   model_.setActive(ImGui::IsAnyItemActive());
+}
+
+void EditorPanels::passKeyboard() {
+  ImGuiIO& io = ImGui::GetIO();
+  // The mouse or Escape may have given the keys back to the picture.
+  if (!(io.ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard)) keyboard_ = Keyboard::picture;
+  keyboard_ = keyboard_ == Keyboard::picture   ? Keyboard::outline
+              : keyboard_ == Keyboard::outline ? Keyboard::sheet
+                                               : Keyboard::picture;
+  passesKeyboard_ = keyboard_ != Keyboard::picture;
+  if (passesKeyboard_) {
+    isHidden_ = false;
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  } else {
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    ImGui::SetWindowFocus(nullptr);
+  }
+}
+
+// Tells, once, whether a panel gets the keyboard.
+bool EditorPanels::takesKeyboard(Keyboard panel) {
+  return keyboard_ == panel && std::exchange(passesKeyboard_, false);
 }
 
 void EditorPanels::drawFrames() const {
@@ -185,9 +216,13 @@ void EditorPanels::drawOutline() {
     if (model_.hiddenCount() > 0)
       ImGui::TextWrapped("%zu nodes are hidden: View, Show all", model_.hiddenCount());
     ImGui::SetNextItemWidth(-1);
+    if (takesKeyboard(Keyboard::outline)) {
+      ImGui::SetWindowFocus();
+      ImGui::SetKeyboardFocusHere();
+    }
     if (ImGui::InputTextWithHint("##search", "Search names, types and fields", &search_))
       model_.search(search_);
-    if (ImGui::BeginChild("##rows")) {
+    if (ImGui::BeginChild("##rows", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened)) {
       const std::vector<OutlineRow>& rows = model_.rows();
       if (const int row = model_.takeScroll(); row >= 0)
         ImGui::SetScrollY(std::max(0.f, float(row - 3) * ImGui::GetTextLineHeightWithSpacing()));
@@ -269,23 +304,55 @@ void EditorPanels::drawSheet() {
   isChoosingLook_ = false;
   if (ImGui::Begin("##sheet", nullptr, panelFlags)) {
     watchWidth(sheetWidth_, widths_.sheet);
+    if (takesKeyboard(Keyboard::sheet)) ImGui::SetWindowFocus();
     PropertySheet& sheet = model_.sheet();
     if (!sheet.node) {
+      asksForName_ = false;
       ImGui::TextWrapped("Click on something in the picture or in the outline to select it. "
                          "V or U measures the light where the pointer is. F1 lists all keys.");
     } else {
       ImGui::PushID(sheet.node.get());
-      ImGui::TextUnformatted(sheet.title.c_str());
+      drawTitle();
       if (!sheet.note.empty()) ImGui::TextWrapped("%s", printable(sheet.note).c_str());
+      drawThumbnail(model_, *sheet.node, thumbnails_);
       ImGui::Separator();
       ImGui::BeginDisabled(!model_.readOnly().empty());
       if (sheet.hasLook) isChoosingLook_ = drawLook(model_, library_, thumbnails_);
-      for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row);
+      for (PropertyRow& row : sheet.rows) drawProperty(model_, sheet.node, row, thumbnails_);
       ImGui::EndDisabled();
       ImGui::PopID();
     }
   }
   ImGui::End();
+}
+
+// Draws the title of the sheet, and the question for another name of its node.
+void EditorPanels::drawTitle() {
+  const PropertySheet& sheet = model_.sheet();
+  const bool isWritable = model_.readOnly().empty();
+  ImGui::TextUnformatted(sheet.title.c_str());
+  if (isWritable) hint("A click, or F2, gives it another name");
+  if (const bool asks = std::exchange(asksForName_, false) || ImGui::IsItemClicked();
+      asks && isWritable) {
+    name_ = sheet.node->defName;
+    ImGui::OpenPopup("##name");
+  }
+  if (!ImGui::BeginPopup("##name")) return;
+  closeOnEscape();
+  ImGui::TextUnformatted("Name (DEF)");
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  bool isGiven =
+      ImGui::InputText("##defname", &name_,
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::SameLine();
+  isGiven |= ImGui::Button("Rename");
+  if (isGiven && !name_.empty()) {
+    model_.edit([node = sheet.node, name = name_](WorldEditor& editor) {
+      editor.editor().rename(*node, name);
+    });
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
 }
 
 void EditorPanels::drawProbes() {

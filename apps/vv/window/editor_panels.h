@@ -28,14 +28,31 @@ class EditorPanels {
   void setView(const EditView& view) { view_ = view; }
   // The part of the picture between the panels, as they were drawn last.
   const FreePart& freePart() const { return free_; }
+  // Tells whether the pointer is over a panel, a menu or a question.
+  bool hasPointer() const { return hasPointer_; }
   // Tells, once, whether the user has asked for a report.
   bool takeReportWish() { return std::exchange(wantsReport_, false); }
+  // Hides the outline and the fields, or shows them again.
+  void toggle() { isHidden_ = !isHidden_; }
+  // Lets keys work the outline, then the fields, then the picture again.
+  void passKeyboard();
+  // Asks for another name of the node that was selected last.
+  void askForName() {
+    asksForName_ = true;
+    isHidden_ = false;
+  }
   // Opens the menu of what can be added.
-  void openAddMenu() { opensAdd_ = true; }
+  void openAddMenu() {
+    opensAdd_ = true;
+    isHidden_ = false;
+  }
   // Tells whether the user is choosing a look.
   bool isChoosingLook() const { return isChoosingLook_; }
 
  private:
+  enum class Keyboard : uint8_t { picture, outline, sheet };
+
+  bool takesKeyboard(Keyboard panel);
   void drawOutline();
   void drawTools();
   void drawReports();
@@ -46,6 +63,7 @@ class EditorPanels {
   void drawRowMenu();
   void watchWidth(float& drawn, float& chosen);
   void drawSheet();
+  void drawTitle();
   void drawFrames() const;
   void drawProbes();
   void drawProbeMenu(const Probe& probe);
@@ -55,17 +73,19 @@ class EditorPanels {
   bool isResized_ = false;                                 // the user drags the edge of a panel
   FreePart free_;
   OutlineRow menuRow_; // the row that the menu is about
-  bool opensMenu_ = false;
+  bool opensMenu_ = false, hasPointer_ = false, isHidden_ = false;
+  Keyboard keyboard_ = Keyboard::picture; // what keys work
+  bool passesKeyboard_ = false;           // it does not have the keyboard yet
 
   EditModel& model_;
   Probes& probes_;
   LookLibrary& library_;
   Thumbnails thumbnails_;
   EditView view_;
-  std::string search_, path_; // what the user has typed: the path of a file to be imported
+  std::string search_, path_, name_; // what the user types: path_: of a file to be imported
   const std::function<void()> save_;
   bool wantsReport_ = false, isChoosingLook_ = false;
-  bool opensAdd_ = false, opensFile_ = false; // menus are to be opened
+  bool opensAdd_ = false, opensFile_ = false, asksForName_ = false; // are to be opened
 };
 
 // Draws the list of the messages about the world, if it is open.

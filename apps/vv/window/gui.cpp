@@ -158,9 +158,14 @@ struct Gui::Impl {
         ImVec2(float(pixels) / float(std::max(1, width)), float(rows) / float(std::max(1, height)));
     const uint64_t now = SDL_GetTicks64();
     io.DeltaTime = std::max(1e-4f, float(now - std::exchange(drawn, now)) / 1000);
+    // Menus and questions have keys of their own.
+    const ImGuiConfigFlags flags = io.ConfigFlags;
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
+      io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
     ImGui::NewFrame();
     panels();
     ImGui::EndFrame();
+    io.ConfigFlags = flags;
   }
 
   // Tells which button or key an event is about, as a number, and whether it goes down or up.
@@ -186,6 +191,34 @@ struct Gui::Impl {
     frame();
     frame();
     return true;
+  }
+
+  // Keys work a panel (EditorPanels::passKeyboard) until the mouse is pressed, or Escape ends
+  // nothing else there.
+  static bool isWorkedByKeys() {
+    return (ImGui::GetIO().ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0;
+  }
+  static bool endsWorkByKeys(const SDL_Event& event) {
+    const bool isEscape = event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE &&
+                          !ImGui::IsAnyItemActive() &&
+                          !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+    if (!isWorkedByKeys() || (!isEscape && event.type != SDL_MOUSEBUTTONDOWN)) return false;
+    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+    if (isEscape) ImGui::SetWindowFocus(nullptr);
+    return isEscape;
+  }
+
+  // Tells whether a key is the window's whatever the panels do: the one that passes the keyboard
+  // on, and where nothing is typed, commands with Ctrl and function keys.
+  static bool isCommand(const SDL_Event& event) {
+    if (event.type != SDL_KEYDOWN) return false;
+    const SDL_Keycode key = event.key.keysym.sym;
+    const bool hasControl = (event.key.keysym.mod & KMOD_CTRL) != 0;
+    if (key == SDLK_TAB) return hasControl;
+    const bool isModifier = key == SDLK_LCTRL || key == SDLK_RCTRL || key == SDLK_LSHIFT ||
+                            key == SDLK_RSHIFT || key == SDLK_LALT || key == SDLK_RALT;
+    return isWorkedByKeys() && !ImGui::GetIO().WantTextInput &&
+           ((hasControl && !isModifier) || (key >= SDLK_F1 && key <= SDLK_F12));
   }
 
   static bool wants(const SDL_Event& event) {
@@ -273,6 +306,14 @@ bool Gui::take(const SDL_Event& event) {
   ImGui::SetCurrentContext(impl_->context);
   const bool isKeyLeft = std::exchange(impl_->isKeyLeft, false);
   if (event.type == SDL_TEXTINPUT && isKeyLeft) return false; // what that key types
+  if (Impl::endsWorkByKeys(event)) {
+    impl_->unsettled = framesToSettle;
+    return true;
+  }
+  if (Impl::isCommand(event)) {
+    impl_->isKeyLeft = true;
+    return false;
+  }
   // A move belongs to what is below its end, also if it comes from a panel at one jump.
   const bool before = event.type != SDL_MOUSEMOTION && Impl::wants(event);
   if (!Impl::feed(event)) return false;

@@ -3,6 +3,7 @@
 #include "window/editing.h"
 #include "window/gizmo_view.h"
 #include "window/gui.h"
+#include "window/readout_view.h"
 #include "window/window.h"
 
 namespace vv {
@@ -21,6 +22,7 @@ void Questions::draw() {}
 void drawGizmo(const Gizmo&, int) {}
 void drawComparison(const Comparison&, double, double, const FreePart&) {}
 void drawRectangle(const Region&, const char*) {}
+void drawReadout(const PointerReading&, bool) {}
 
 std::string editorLibrary() { return ""; }
 

@@ -75,11 +75,24 @@ void drawNode(EditModel& model, const PlacedNode& place, size_t places, size_t c
 
 } // namespace
 
-void drawNodes(EditModel& model, const NodeRef& node, const PropertyRow& row) {
+void drawThumbnail(const EditModel& model, const Node& node, Thumbnails& thumbnails) {
+  const Thumbnail* const picture = model.thumbnails().of(node);
+  if (!picture) return;
+  if (!picture->error.empty())
+    return ImGui::TextWrapped("%s", printable("no picture: " + picture->error).c_str());
+  auto* const renderer = static_cast<SDL_Renderer*>(ImGui::GetIO().BackendRendererUserData);
+  const auto scale = float(picture->magnification());
+  if (SDL_Texture* const texture = thumbnails.textureOf(renderer, picture))
+    ImGui::Image(texture, ImVec2(scale * float(picture->width), scale * float(picture->height)));
+}
+
+void drawNodes(EditModel& model, const NodeRef& node, const PropertyRow& row,
+               Thumbnails& thumbnails) {
   const auto draw = [&](const NodeRef& child, size_t index, size_t count) {
     if (!child) return ImGui::TextDisabled("NULL");
     drawNode(model, {child, node, row.field->name, index},
              index < row.places.size() ? row.places[index] : 1, count);
+    drawThumbnail(model, *child, thumbnails);
   };
   if (const auto* const single = std::get_if<SFNode>(&row.value)) {
     if (*single) draw(*single, 0, 1);

@@ -10,6 +10,7 @@
 #include <imgui_stdlib.h>
 
 #include "printable.h"
+#include "srgb.h"
 #include "window/menu.h"
 #include "window/property_widgets.h"
 #include "xvrml/numbers.h"
@@ -108,6 +109,30 @@ bool edit(ColorRGBA& value, const FieldRange& range) {
   return counts(ImGui::ColorEdit4("##value", &value.r, colourFlags(range)));
 }
 
+// Linear colours: the numbers are those of the file. The swatch shows them as they look, and opens
+// a picker, which rounds to four digits.
+bool editLinear(float* value, int count, const FieldRange& range) {
+  const ImGuiColorEditFlags numbers =
+      colourFlags(range) | ImGuiColorEditFlags_NoPicker | ImGuiColorEditFlags_NoSmallPreview;
+  ImGui::SetNextItemWidth(-ImGui::GetFrameHeight() - 2);
+  bool changes = counts(count == 4 ? ImGui::ColorEdit4("##value", value, numbers)
+                                   : ImGui::ColorEdit3("##value", value, numbers));
+  float codes[4] = {0, 0, 0, 1};
+  for (int i = 0; i < 3; ++i) codes[i] = encodeSrgb(std::max(0.f, value[i]));
+  ImGui::SameLine(0, 2);
+  if (ImGui::ColorButton("##swatch", ImVec4(codes[0], codes[1], codes[2], 1)))
+    ImGui::OpenPopup("##picker");
+  if (!ImGui::BeginPopup("##picker")) return changes;
+  closeOnEscape();
+  if (counts(ImGui::ColorPicker3("##picked", codes, ImGuiColorEditFlags_Float))) {
+    for (int i = 0; i < 3; ++i)
+      value[i] = float(std::round(double(decodeSrgb(codes[i])) * 1e4) / 1e4);
+    changes = true;
+  }
+  ImGui::EndPopup();
+  return changes;
+}
+
 // An axis, and the angle in degrees.
 bool edit(Rotation& value, const FieldRange&) {
   const bool changes = dragNumbers(&value.x, 3);
@@ -191,6 +216,8 @@ bool drawValue(PropertyRow& row) {
         } else if constexpr (std::is_same_v<T, std::string>) {
           return editText(value, row);
         } else if constexpr (Editable<T>) {
+          if constexpr (std::is_same_v<T, Color> || std::is_same_v<T, ColorRGBA>)
+            if (row.isLinear) return editLinear(&value.r, numberCount<T>, row.range);
           return edit(value, row.range);
         }
         ImGui::TextDisabled("%s", std::string(fieldTypeName(row.field->type)).c_str());
@@ -226,7 +253,7 @@ void drawLong(const PropertyRow& row) {
 
 } // namespace
 
-void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
+void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row, Thumbnails& thumbnails) {
   const FieldInfo& field = *row.field;
   const bool holdsNodes = field.type == FieldType::SFNode || field.type == FieldType::MFNode;
   ImGui::PushID(field.name.data(), field.name.data() + field.name.size());
@@ -238,7 +265,7 @@ void drawProperty(EditModel& model, const NodeRef& node, PropertyRow& row) {
   }
   if (row.isLong) drawLong(row);
   if (holdsNodes) {
-    drawNodes(model, node, row);
+    drawNodes(model, node, row, thumbnails);
   } else if (!row.isLong && drawValue(row)) {
     model.drag(node, field, row.value);
   }

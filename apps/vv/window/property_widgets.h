@@ -9,9 +9,13 @@
 namespace vv {
 
 // Draws the name of a field, and the widgets for its value.
-void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row);
+void drawProperty(EditModel& model, const xvrml::NodeRef& node, PropertyRow& row,
+                  Thumbnails& thumbnails);
 // Draws the nodes of an SFNode or MFNode, and what may be added.
-void drawNodes(EditModel& model, const xvrml::NodeRef& node, const PropertyRow& row);
+void drawNodes(EditModel& model, const xvrml::NodeRef& node, const PropertyRow& row,
+               Thumbnails& thumbnails);
+// Draws the small picture of a texture node, or why there is none; nothing for other nodes.
+void drawThumbnail(const EditModel& model, const xvrml::Node& node, Thumbnails& thumbnails);
 // Draws how the selected Shape looks, and what can be chosen instead. Returns whether the user is
 // choosing.
 bool drawLook(EditModel& model, LookLibrary& library, Thumbnails& thumbnails);

@@ -2,10 +2,13 @@
 // [main thread]
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <vector>
 
 #include "edit/look_library.h"
+#include "edit/texture_thumbnails.h"
 
 struct SDL_Renderer;
 struct SDL_Texture;
@@ -21,9 +24,16 @@ class Thumbnails {
 
   // Returns the texture of a ball; null for null, or if there is none.
   SDL_Texture* textureOf(SDL_Renderer* renderer, const LookBall* ball);
+  // The same for the thumbnail of a texture node.
+  SDL_Texture* textureOf(SDL_Renderer* renderer, const Thumbnail* thumbnail);
+  // Forgets those of texture nodes once there are many. [before the widgets of a frame]
+  void bound();
 
  private:
-  std::map<uint64_t, SDL_Texture*> textures_; // by the numbers of the balls
+  using Textures = std::map<uint64_t, SDL_Texture*>; // by the numbers of the pictures
+  static void clear(Textures& textures);
+
+  Textures balls_, thumbnails_;
 };
 
 } // namespace vv

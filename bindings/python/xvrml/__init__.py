@@ -14,6 +14,8 @@ A world has its own clock. The clock moves only when the program sets it:
 >>> world.time = 0.5
 >>> for frame in world.animate(0, 10, fps=25): ...
 
+picture() and show() draw data: meshes of other packages, point clouds, height fields.
+
 xvrml.rt is the renderer without VRML. xvrml.interop converts meshes and pictures to and from other
 packages. xvrml.control controls a world that vv runs in another process.
 """
@@ -58,7 +60,8 @@ __all__ = [
     "__version__", *nodes.__all__
 ]
 
-_SUBMODULES = ("control", "dask", "interop", "notebook", "ray", "rt")
+_SUBMODULES = ("control", "dask", "figures", "interop", "notebook", "ray", "rt")
+_FIGURES = ("picture", "show", "to_world")  # functions of xvrml.figures, which needs numpy
 
 
 def __getattr__(name):
@@ -71,10 +74,12 @@ def __getattr__(name):
         except ModuleNotFoundError as error:
             raise AttributeError(
                 f"xvrml.{name} needs the package {error.name}, which is not installed") from error
+    if name in _FIGURES:
+        return getattr(_importlib.import_module(".figures", __name__), name)
     try:
         return getattr(nodes, name)
     except AttributeError:
-        known = [*__all__, *_SUBMODULES, "nodes"]
+        known = [*__all__, *_SUBMODULES, *_FIGURES, "nodes"]
         near = _difflib.get_close_matches(name, known,
                                           1) or [k for k in known if k.lower() == name.lower()]
         hint = f"; did you mean {near[0]}?" if near else ""

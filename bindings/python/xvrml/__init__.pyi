@@ -26,6 +26,7 @@ import numpy.typing as npt
 
 from . import nodes as nodes
 from .nodes import *
+from .figures import picture as picture, show as show, to_world as to_world
 from .notebook import View as _View
 from .rt import Raycaster
 
@@ -847,6 +848,8 @@ class World:
         from_: Optional[str] = ...,
         ortho: Optional[float] = ...,
         raster: bool = ...,
+        point_size: float = ...,
+        line_width: float = ...,
     ) -> Picture:
         ...
 
@@ -863,6 +866,8 @@ class World:
         cluster: Optional[Cluster] = ...,
         progress: Union[None, bool, Callable[[float], Any]] = ...,
         exact_shapes: bool = ...,
+        point_size: float = ...,
+        line_width: float = ...,
     ) -> List[Measurement]:
         ...
 
@@ -1039,6 +1044,8 @@ class LiveView:
         isa: str = ...,
         exact_shapes: bool = ...,
         studio: Union[None, bool, str, Sequence[float]] = ...,
+        point_size: float = ...,
+        line_width: float = ...,
     ) -> None:
         ...
 

@@ -1,4 +1,4 @@
-"""Converts worlds and pictures to and from other packages: trimesh, PyVista, Pillow, matplotlib.
+"""Converts worlds and pictures to and from other packages: trimesh, Open3D, PyVista, Pillow, matplotlib.
 Each package is imported on first use.
 
 Pictures often need no conversion: numpy.asarray(image) works, and Jupyter shows an image that ends
@@ -6,7 +6,12 @@ a cell.
 """
 import numpy as np
 
-__all__ = ["from_trimesh", "to_trimesh", "to_pyvista", "to_pil", "from_pil", "imshow"]
+from . import _placing
+
+__all__ = [
+    "from_trimesh", "to_trimesh", "from_open3d", "from_pyvista", "to_pyvista", "to_pil", "from_pil",
+    "imshow"
+]
 
 
 def from_trimesh(mesh, color=None):
@@ -27,18 +32,15 @@ def from_trimesh(mesh, color=None):
                 continue
             matrix = np.asarray(matrix, float)
             if np.linalg.det(matrix[:3, :3]) > 0:
-                children.append(_placed(shapes[geometry], matrix))
+                children.append(_placing.placed(shapes[geometry], matrix))
             else:  # a Transform cannot mirror
                 children.append(
                     from_trimesh(mesh.geometry[geometry].copy().apply_transform(matrix), color))
         group.children = children
         return group
-    faces = np.asarray(mesh.faces)
-    index = np.full((len(faces), 4), -1, np.int32)
-    index[:, :3] = faces
     geometry = xvrml.IndexedFaceSet(
         coord=xvrml.Coordinate(point=np.asarray(mesh.vertices, np.float32)),
-        coordIndex=index.ravel(),
+        coordIndex=_index(mesh.faces),
         solid=bool(mesh.is_watertight))
     visual = getattr(mesh, "visual", None)
     if color is None and getattr(visual, "kind", None) == "vertex":
@@ -50,33 +52,59 @@ def from_trimesh(mesh, color=None):
     return xvrml.Shape(geometry=geometry, appearance=xvrml.Appearance(material=material))
 
 
-def _placed(shape, matrix):
-    """Returns a Transform that is equivalent to the matrix. Translation, rotation and scale come
-    from its singular value decomposition."""
+def from_open3d(geometry, color=None):
+    """Converts a TriangleMesh, a PointCloud or a LineSet of Open3D to a Shape, with its colours.
+    color: of what has none."""
     import xvrml
-    if np.allclose(matrix, np.eye(4)):
-        return shape
-    u, s, vt = np.linalg.svd(matrix[:3, :3])
-    if np.linalg.det(vt) < 0:
-        vt, u = -vt, -u
-    rotation = u @ vt
-    return xvrml.Transform(translation=matrix[:3, 3],
-                           rotation=_axis_angle(rotation),
-                           scale=s,
-                           scaleOrientation=_axis_angle(vt.T),
-                           children=[shape])
 
+    def array(name):
+        values = np.asarray(getattr(geometry, name, ()))
+        return values if len(values) else None
 
-def _axis_angle(r):
-    angle = np.arccos(np.clip((np.trace(r) - 1) / 2, -1, 1))
-    if angle < 1e-12:
-        return (0, 0, 1, 0)
-    if np.pi - angle < 1e-6:
-        column = np.argmax(np.diag(r))
-        axis = (r + np.eye(3))[:, column]
+    own = array("vertex_colors") if hasattr(geometry, "triangles") else array("colors")
+    vertices = array("vertices" if hasattr(geometry, "triangles") else "points")
+    if vertices is None:
+        raise ValueError(f"geometry: points expected; the {type(geometry).__name__} has none")
+    if hasattr(geometry, "lines"):
+        made = xvrml.IndexedLineSet(coordIndex=_index(geometry.lines), colorPerVertex=False)
+    elif hasattr(geometry, "triangles"):
+        made = xvrml.IndexedFaceSet(coordIndex=_index(geometry.triangles), solid=False)
+        normals = array("vertex_normals")
+        if normals is not None:
+            made.normal = xvrml.Normal(vector=normals)
     else:
-        axis = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
-    return (*(axis / np.linalg.norm(axis)), angle)
+        made = xvrml.PointSet()
+    made.coord = xvrml.Coordinate(point=vertices)
+    if color is None and own is not None:
+        made.color = xvrml.Color(color=np.clip(own, 0, 1))
+    shown = (0.8, 0.8, 0.8) if color is None else tuple(color)[:3]
+    material = xvrml.Material(
+        diffuseColor=shown) if hasattr(geometry, "triangles") else xvrml.Material(
+            emissiveColor=shown)  # lines and points show emissiveColor (clauses 6.24, 6.36)
+    return xvrml.Shape(geometry=made, appearance=xvrml.Appearance(material=material))
+
+
+def from_pyvista(thing, scalars=None, *, cmap="viridis", clim=None, color=None):
+    """Converts a data set of PyVista or VTK to a Shape or a Group of them, a MultiBlock to a Group,
+    and a Plotter to a Group of its actors, its camera (a Viewpoint) and the lights that it has in its
+    scene; lights that follow the camera are left to the renderer.
+
+    scalars  name of the array that gives the colours; None: the active one
+    cmap     name of a colour map of matplotlib, a Colormap, or a function
+    clim     the values at its ends; None: the least and the largest
+    color    instead of scalars
+
+    A Plotter has its own colours: the last four are ignored for it. Volumes and texts are left out."""
+    from . import _pyvista
+    return _pyvista.convert(thing, scalars, cmap, clim, color)
+
+
+def _index(cells):
+    """Returns rows of indices with -1 behind each."""
+    cells = np.asarray(cells)
+    index = np.full((len(cells), cells.shape[1] + 1), -1, np.int32)
+    index[:, :-1] = cells
+    return index.ravel()
 
 
 def _meshes(world, spheres):

@@ -13,6 +13,19 @@ def to_trimesh(world: World, spheres: int = ...) -> Any:
     ...
 
 
+def from_open3d(geometry: Any, color: Optional[Sequence[float]] = ...) -> Node:
+    ...
+
+
+def from_pyvista(thing: Any,
+                 scalars: Optional[str] = ...,
+                 *,
+                 cmap: Any = ...,
+                 clim: Optional[Sequence[float]] = ...,
+                 color: Optional[Sequence[float]] = ...) -> Node:
+    ...
+
+
 def to_pyvista(world: World, spheres: int = ...) -> Any:
     ...
 

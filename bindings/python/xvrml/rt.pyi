@@ -28,6 +28,7 @@ class Instance(_Thing):
     matrix: npt.ArrayLike
     visible: bool
     shader: Optional[Shader]
+    fog: Optional[Shader]
     user_data: int
 
     def delete(self) -> None:

@@ -143,6 +143,14 @@ void rtColor4fv(const float* v) {
   });
 }
 
+void rtTexGen(RTenum mode) {
+  guarded("rtTexGen", [&](Context& c) {
+    require(mode <= RT_TEX_GEN_SPHERE_REFLECTION, RT_INVALID_ENUM,
+            "the mode must be one of RT_TEX_GEN_*");
+    c.texGen = edit::TexGen(mode);
+  });
+}
+
 void rtLineWidth(float pixels) {
   guarded("rtLineWidth", [&](Context& c) { setPixels(c.lineWidth, pixels); });
 }

@@ -31,9 +31,11 @@ struct GeometryState {
   Matrix4d matrix;
   bool cull = false, clockwise = false;
   float width = 1;
+  edit::TexGen texGen = edit::TexGen::Off;
   bool operator==(const GeometryState& other) const {
     return shader == other.shader && name == other.name && cull == other.cull &&
-           clockwise == other.clockwise && width == other.width && matrix.m == other.matrix.m;
+           clockwise == other.clockwise && width == other.width && texGen == other.texGen &&
+           matrix.m == other.matrix.m;
   }
 };
 

@@ -129,6 +129,13 @@ void rtInstanceShader(RTid instance, RTid shader) {
   });
 }
 
+void rtInstanceFog(RTid instance, RTid shader) {
+  guarded("rtInstanceFog", [&](Context& c) {
+    c.scene.requireKind(shader, RTS_ENVIRONMENT);
+    changeInstance(c, instance, [&](InstanceState& s) { s.fog = shader; });
+  });
+}
+
 void rtInstanceHint(RTid instance, RTenum hint) {
   guarded("rtInstanceHint", [&](Context& c) {
     const bool dynamic = isDynamic(hint);

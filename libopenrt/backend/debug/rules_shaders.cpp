@@ -16,7 +16,7 @@ void collectUsedShaders(const Scene& scene, std::set<uint32_t>& used) {
   used.insert(
       {scene.camera.shader, scene.environment.shader, scene.defaultShader, scene.transport});
   for (const auto& [id, light] : scene.lights) used.insert(light.shader);
-  for (const auto& [id, instance] : scene.instances) used.insert(instance.shader);
+  for (const auto& [id, instance] : scene.instances) used.insert({instance.shader, instance.fog});
   for (const auto& [id, object] : scene.objects)
     for (const Geometry& g : object.geometries) used.insert(g.shader);
 }
@@ -36,7 +36,7 @@ void unusedShaders(const RuleContext& f, const Report& report) {
     if (table->kind == RTS_LIGHT)
       report(id, nameOfShader(f, id) + " gives no light: turn it on with rtUseLight");
     if (table->kind == RTS_ENVIRONMENT)
-      report(id, nameOfShader(f, id) + " is not used: call rtUseEnvironment");
+      report(id, nameOfShader(f, id) + " is not used: call rtUseEnvironment or rtInstanceFog");
   }
 }
 
@@ -64,7 +64,8 @@ void removedParameters(const RuleContext& f, const Report& report) {
 void unmappedTextures(const RuleContext& f, const Report& report) {
   for (const auto& [id, object] : f.scene.objects)
     for (const Geometry& g : object.geometries) {
-      if (g.primitive == edit::Primitive::Sphere || g.surface || g.texCoords || g.shader == 0)
+      if (g.primitive == edit::Primitive::Sphere || g.surface || g.texCoords || g.shader == 0 ||
+          g.texGen != edit::TexGen::Off)
         continue;
       const auto values = f.scene.shaders.find(g.shader);
       if (values == f.scene.shaders.end()) continue;

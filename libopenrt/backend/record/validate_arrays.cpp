@@ -55,6 +55,7 @@ size_t cornersOf(edit::Primitive primitive) {
 } // namespace
 
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
+  demand(g.texGen <= edit::TexGen::MAX, "unknown texture coordinates");
   const std::string problem = AnalyticSurface::problemOf(g.primitive, g.surface);
   if (!problem.empty()) throw std::runtime_error(problem);
   if (!hasVertices(g.primitive)) {

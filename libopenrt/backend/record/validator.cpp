@@ -143,6 +143,7 @@ void CommitValidator::check(const edit::InstanceT& instance) {
   requireId(instance.object, Kind::Object);
   if (instance.parent != 0) requireId(instance.parent, Kind::Object);
   if (instance.shader != 0) requireShader(instance.shader, RTS_SURFACE);
+  if (instance.fog != 0) requireShader(instance.fog, RTS_ENVIRONMENT);
   checkMatrix(instance.matrix.get());
   Placement& placement = instances_[instance.id];
   if (!fresh) {

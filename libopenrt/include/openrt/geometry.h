@@ -52,6 +52,20 @@ RT_API void rtColor4fv(const float* v);
 RT_API void rtLineWidth(float pixels);
 RT_API void rtPointSize(float pixels);
 
+/* Texture coordinates in the camera's frame, in place of those of vertices: x is right, y up, the
+ * viewer at the origin. The camera is that of the frame, also in mirrors and through glass. */
+enum {
+  RT_TEX_GEN_OFF = 0,       /* the coordinates of the vertices (default) */
+  RT_TEX_GEN_POSITION,      /* x and y of the place */
+  RT_TEX_GEN_NORMAL,        /* x and y of the unit normal on the viewer's side */
+  RT_TEX_GEN_REFLECTION,    /* x and y of the line of sight to the place, reflected there; unit */
+  RT_TEX_GEN_SPHERE_NORMAL, /* (x / 2 + 1/2, y / 2 + 1/2) of the normal */
+  RT_TEX_GEN_SPHERE_REFLECTION /* the same of the reflected line of sight */
+};
+/* Sets how texture coordinates are made. rtBegin and the other calls that draw latch it; lines and
+ * points have none. [context-thread] */
+RT_API void rtTexGen(RTenum mode);
+
 /* RT_CULL_FACE: back faces do not exist, for rays of any kind but shadow rays (default off).
  * RT_CW_FRONT: vertices that are clockwise for the viewer make a front face (default off:
  * counter-clockwise ones do). */
@@ -165,6 +179,11 @@ RT_API void rtInstanceVisible(RTid instance, int visible);
 /* Overrides the shaders of everything below this instance; 0 removes the override.
  * [context-thread] */
 RT_API void rtInstanceShader(RTid instance, RTid shader);
+/* Sets the fog in front of everything below this instance: a shader of an environment class, of
+ * which only the fog counts (`attenuate`), in the axes of the world. It replaces the fog of
+ * rtUseEnvironment; the fog of the innermost instance counts. A class without fog is clear air.
+ * 0: the fog around the instance. [context-thread] */
+RT_API void rtInstanceFog(RTid instance, RTid shader);
 
 /* Hints tell how often an instance's matrix and visibility, or an object's definition, will change.
  * Pictures differ between the two hints in the last bits alone.

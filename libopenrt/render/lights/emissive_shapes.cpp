@@ -106,7 +106,8 @@ void triangleEmission(const RenderScene& scene, uint32_t record,
   static constexpr float at[4][2] = {
       {1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
   const bool mirrored = mirrors(r);
-  const bool varies = !emitsUniformly(scene, r) && (r.texCoords || r.colors || r.parameterCount);
+  const bool varies = !emitsUniformly(scene, r) && (r.texCoords || r.colors || r.parameterCount ||
+                                                    r.texGen != edit::TexGen::Off);
   const uint32_t places = varies ? 4 : 1;
   ArenaScope scope(arena);
   ProbeRays probes(arena, uint32_t(shapes.size()) * places);

@@ -75,28 +75,30 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
   }
 }
 
-Fog fogAt(const StageContext& context, const Points& points, const PathStates& states) {
-  const RoleSlot& environment = context.scene.environment;
-  const ShaderSlot& shader = environment.shader;
+Fog fogAt(const RtsBatch& batch) {
+  const RenderScene& scene = batch.scene;
+  const bool own = batch.fog != 0; // the fog of an instance has the axes of the world
+  const ShaderSlot shader =
+      own ? scene.shaders->role(batch.fog, RTS_ENVIRONMENT) : scene.environment.shader;
   Fog fog;
   if (!shader.shaderClass || !shader.shaderClass->attenuate) return fog;
-  const RtsHits& h = points.hits;
+  const RtsHits& h = batch.points->hits;
   const uint32_t n = h.count, size = padded(n);
   float* fromEye[3];
-  for (auto& a : fromEye) a = context.arena.take<float>(size);
+  for (auto& a : fromEye) a = batch.arena.take<float>(size);
   for (uint32_t i = 0; i < size; i++) {
-    const bool deflected = states.flagsOf(points.order[std::min(i, n - 1)]).deflected();
+    const bool deflected = batch.states->flagsOf(batch.order[std::min(i, n - 1)]).deflected();
     const Vec3f toHit =
-        deflected ? load(h.direction, i) * h.distance[i] : load(h.position, i) - context.scene.eye;
-    store(environment.toLocal.direction(toHit), fromEye, i);
+        deflected ? load(h.direction, i) * h.distance[i] : load(h.position, i) - scene.eye;
+    store(own ? toHit : scene.environment.toLocal.direction(toHit), fromEye, i);
   }
-  for (auto& a : fog.airlight) a = context.arena.takeZero<float>(size);
-  fog.transmittance = context.arena.takeZero<float>(size);
-  RtsBatch batch(context);
-  batch.lanes.count = n;
+  for (auto& a : fog.airlight) a = batch.arena.takeZero<float>(size);
+  fog.transmittance = batch.arena.takeZero<float>(size);
+  RtsBatch lanes(static_cast<const StageContext&>(batch));
+  lanes.lanes.count = n;
   const RunningShader running(*shader.shaderClass);
-  shader.shaderClass->attenuate(&context.scene.host, &batch, shader.params, n, fromEye,
-                                fog.airlight, fog.transmittance);
+  shader.shaderClass->attenuate(&scene.host, &lanes, shader.params, n, fromEye, fog.airlight,
+                                fog.transmittance);
   return fog;
 }
 

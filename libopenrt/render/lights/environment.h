@@ -31,8 +31,8 @@ struct Fog {                                         // by hit
     return transmittance[i] * light + (1 - transmittance[i]) * airlight[colour][i] * (1 - seen);
   }
 };
-// Evaluates the fog at hits. On mirrored and refracted paths the fog has the whole path length, in
-// the direction of the current ray.
-Fog fogAt(const StageContext& context, const Points& points, const PathStates& states);
+// Evaluates the fog in front of the hits of a batch. On mirrored and refracted paths the fog has
+// the whole path length, in the direction of the current ray.
+Fog fogAt(const RtsBatch& batch);
 
 } // namespace openrt

@@ -191,6 +191,7 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
   if (!bucket.shaderClass->surface) return;
   RtsBatch batch(context_, points, states);
   batch.lights.set = bucket.lightSet;
+  batch.fog = bucket.fog;
   const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass);
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
@@ -252,7 +253,7 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
   auto* hit = context_.arena.take<uint32_t>(padded(count));
   const uint32_t n = listEmitting(surface.emission, count, hit);
   if (n == 0) return;
-  const Fog fog = fogAt(context_, *batch.points, *batch.states);
+  const Fog fog = fogAt(batch);
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t i = hit[j];
     const RayState state = (*batch.states)[batch.order[i]];

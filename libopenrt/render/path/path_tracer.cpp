@@ -80,13 +80,14 @@ void PathTracer::shadeByShade(const Points& points, const Bucket& bucket, const 
   }
   RtsBatch batch(context_, points, states);
   batch.lights.set = bucket.lightSet;
+  batch.fog = bucket.fog;
   {
     ArenaScope inner(arena);
     const RunningShader running(*bucket.shaderClass);
     bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
     sanitizeOutput(*bucket.shaderClass, batch, shaded);
   }
-  addShading(pathsOf(batch), shaded, fogAt(context_, points, states), found);
+  addShading(pathsOf(batch), shaded, fogAt(batch), found);
 }
 
 // Returns where the light that surfaces send back is collected: their emission is the first part.
@@ -106,6 +107,7 @@ void PathTracer::scatter(const Points& points, const Bucket& bucket, const PathS
                          PixelSamples& found) {
   RtsBatch batch(context_, points, states);
   batch.lights.set = bucket.lightSet;
+  batch.fog = bucket.fog;
   const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass, has(RT_ALBEDO));
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
@@ -114,7 +116,7 @@ void PathTracer::scatter(const Points& points, const Bucket& bucket, const PathS
   const SentLight sent = sentLight(batch, surface);
   addLamps(batch, sent);
   continueFromLobes(batch, boundaries, sent);
-  addSurface(batch, surface, sent, boundaries, fogAt(context_, points, states), found);
+  addSurface(batch, surface, sent, boundaries, fogAt(batch), found);
 }
 
 // Returns whether the depth limit leaves room for one more surface on the path of hit i.

@@ -99,6 +99,7 @@ struct RtsBatch : openrt::StageContext {
   bool describes = false;
   openrt::BatchLanes lanes;
   openrt::BatchLights lights;
+  uint32_t fog = 0; // Bucket::fog
   openrt::BatchLobes lobes;
 
   // Return the number of hits, and the index into `points` of hit i. For batches with hits.

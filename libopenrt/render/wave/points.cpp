@@ -219,6 +219,31 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
   return block;
 }
 
+// Returns what the texture coordinates of a point are made of, in the camera's frame.
+Vec3f generatedAt(const RenderScene& scene, edit::TexGen mode, const Vec3f& place,
+                  const Vec3f& normal) {
+  const Affine& toCamera = scene.camera.toLocal;
+  if (mode == edit::TexGen::Position) return toCamera.point(place);
+  Vec3f n = toCamera.direction(normal), sight = toCamera.direction(place - scene.eye);
+  if (!makeUnit(n)) return {};
+  if (mode == edit::TexGen::Normal || mode == edit::TexGen::SphereNormal) return n;
+  return makeUnit(sight) ? sight - 2 * dot(sight, n) * n : Vec3f();
+}
+
+// Replaces the texture coordinates of points whose geometry makes them in the camera's frame.
+void generateTexCoords(const RenderScene& scene, const PointArrays& out, uint32_t size) {
+  for (uint32_t i = 0; i < size; i++) {
+    const edit::TexGen mode = scene.records[out.record[i]].texGen;
+    if (mode == edit::TexGen::Off || (out.flags[i] & RTS_HIT_LINE)) continue;
+    const Vec3f v = generatedAt(scene, mode, load(out.position, i), load(out.normal, i));
+    const bool sphere =
+        mode == edit::TexGen::SphereNormal || mode == edit::TexGen::SphereReflection;
+    out.uv[0][i] = sphere ? v.x / 2 + 0.5f : v.x;
+    out.uv[1][i] = sphere ? v.y / 2 + 0.5f : v.y;
+    out.flags[i] |= RTS_HIT_TEXCOORD;
+  }
+}
+
 } // namespace
 
 std::span<const BucketRange> sortByBucket(const RenderScene& scene, const RayHits& hits,
@@ -261,6 +286,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   out.flags = arena.take<uint32_t>(size);
   out.record = arena.take<uint32_t>(size);
   out.params = arena.take<const void*>(size);
+  bool generates = false;
   for (uint32_t first = 0; first < size; first += lanes) {
     uint32_t hitLanes[lanes];
     for (uint32_t to = 0; to < lanes; to++) { // the padding repeats the last hit
@@ -269,11 +295,13 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
       out.distance[i] = travelled[lane] + hits.t[lane];
       out.segment[i] = hits.t[lane];
       out.record[i] = hits.record[lane];
+      generates |= r.texGen != edit::TexGen::Off;
       out.params[i] = r.parameterCount ? ownParameters(scene, r, hits, lane, arena)
                                        : (*scene.shaders)[r.shader].params;
     }
     computeBlock(scene, rays, hits, hitLanes, out, first);
   }
+  if (generates) generateTexCoords(scene, out, size);
   Points points;
   RtsHits& to = points.hits;
   to.count = n;

@@ -1,5 +1,5 @@
-// points.h: turns ray hits into shading points, sorted into buckets of one shader class and one
-// light set. [render]
+// points.h: turns ray hits into shading points, sorted into buckets of one shader class, one
+// light set and one fog. [render]
 #pragma once
 
 #include <bit>

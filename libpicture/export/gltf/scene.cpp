@@ -34,6 +34,19 @@ double scaleOf(const double m[16]) {
   return volume > 0 && std::isfinite(volume) ? std::cbrt(volume) : 1;
 }
 
+// Returns whether a matrix makes things longer alike in all directions.
+bool isEven(const double m[16]) {
+  constexpr double same = 1e-5; // matrices of many floats are no better
+  const double square = scaleOf(m) * scaleOf(m);
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k <= i; ++k) {
+      const double product =
+          m[4 * i] * m[4 * k] + m[4 * i + 1] * m[4 * k + 1] + m[4 * i + 2] * m[4 * k + 2];
+      if (!(std::abs(product - (i == k ? square : 0)) <= same * square)) return false;
+    }
+  return true;
+}
+
 float positive(float v, float most) { return v > 0 ? std::min(v, most) : 0; } // NaN: 0
 
 // Returns a number in its range; one that is none becomes the lower end.
@@ -307,7 +320,10 @@ template <class T> Place Scene::placeLight(const T& node, const State& state, De
   light.place = transformed(state.matrix, place.translation);
   light.attenuation = {positive(node.attenuation.x, largest), positive(node.attenuation.y, largest),
                        positive(node.attenuation.z, largest)};
-  constexpr double endless = 1e9;
+  if (!isEven(state.matrix))
+    remarks_.change(
+        "a light falls off alike in all directions, though an uneven scale is above it");
+  constexpr double endless = 0.999e9; // readers of glTF say 1e9, as a float
   const double range = double(positive(node.radius, largest)) * light.scale;
   if (range > 0 && range < endless) light.object["range"] = float(range);
   return place;

@@ -68,6 +68,11 @@ struct FaceSet {
   uint32_t name(uint32_t face) const { return faceName.empty() ? face : faceName[face]; }
   std::vector<uint32_t> facesOfCorners() const;
 
+  // Sets the points. own: what `given` refers to, or empty if a node owns it.
+  void takePoints(std::span<const Vec3f> given, std::vector<Vec3f>&& own) {
+    ownPoints = std::move(own); // keeps its storage
+    points = given;
+  }
   // Sets the values of the colours. own: what `rgb` refers to, or empty if a node owns it.
   void takeColors(std::span<const Color> rgb, std::vector<Color>&& own,
                   std::vector<float>&& opacities) {

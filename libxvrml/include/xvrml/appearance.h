@@ -153,5 +153,8 @@ enum class Decode : uint8_t { yes, no };
 // running world shows now. world: its limits hold, and its file is the base of the URLs of nodes in
 // no file. Decode::no reads a file without decoding it; `image` is then empty.
 TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes);
+// Decodes the file of a picture that was read with Decode::no. Reads at most limits.imagePixels
+// pixels; otherwise `error` says what is wrong. Needs no world. [any thread]
+void decodeTexture(TexturePicture& picture, const Limits& limits);
 
 } // namespace xvrml

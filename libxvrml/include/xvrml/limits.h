@@ -11,7 +11,7 @@ namespace xvrml {
 struct Limits {
   uint64_t nesting = 1000;             // nodes within nodes, and statements within statements
   uint64_t protoDepth = 64;            // prototypes instantiating prototypes
-  uint64_t inlineDepth = 32;           // files within files
+  uint64_t inlineDepth = 32;           // files within files, Scripts made by Scripts
   uint64_t expandedNodes = 10'000'000; // nodes after all prototypes and USEs are expanded
   // Memory of everything made from a world's files (estimated); 0: an eighth of the machine's
   // memory.

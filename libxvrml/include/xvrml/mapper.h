@@ -141,6 +141,10 @@ class OpenRTMapper {
   // If true, Cylinder and Cone are drawn without facets (rtCylinder, rtCone). Call it before the
   // first map().
   void setExactShapes(bool exact);
+  // Sets the diameters at which points are drawn as balls and lines as rods, in the units of their
+  // Shape. They are then lit, in the colours that they have as points and lines, and cast shadows.
+  // 0: they are thin and unlit (clauses 6.24, 6.36). Call it before the first map().
+  void setThickness(double points, double lines);
   // If true, three soft lights around the camera replace the automatic headlight in a world that
   // leaves its lighting open: one without Viewpoint, NavigationInfo, lights and ORT nodes. Takes
   // effect with the next map(); false by default.

@@ -24,6 +24,9 @@ std::string_view ownName(const Node& node, std::string_view name);
 // Returns the name that the standard of the node's file gives to a field or event. It ends with a
 // zero byte, and lives as long as the node's type.
 std::string_view fieldName(const Node& node, const FieldInfo& field);
+// Returns the name that the other standard, VRML97 or X3D, gives to it; empty: both names are
+// equal.
+std::string_view otherFieldName(const Node& node, const FieldInfo& field);
 
 // Where a version of X3D differs from what FieldInfo says: a row of `since` in the .node files.
 struct FieldRevision {

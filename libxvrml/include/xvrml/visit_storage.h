@@ -2,6 +2,8 @@
 // time. [any thread that owns the value]
 #pragma once
 
+#include <utility>
+
 #include "xvrml/numbers.h"
 
 namespace xvrml {
@@ -16,6 +18,13 @@ decltype(auto) visitStorage(FieldType type, void* storage, Visitor&& visit) {
 #undef XVRML_CASE
   }
   return visit(*static_cast<MFVec3f*>(storage)); // for a number that is no type
+}
+// Does the same for storage that is only read.
+template <class Visitor>
+decltype(auto) visitStorage(FieldType type, const void* storage, Visitor&& visit) {
+  return visitStorage(type, const_cast<void*>(storage), [&visit](auto& value) -> decltype(auto) {
+    return visit(std::as_const(value));
+  });
 }
 
 } // namespace xvrml

@@ -128,6 +128,8 @@ class ScriptNode : public DynamicNode {
   using DynamicNode::DynamicNode;
   // Line of the file at which each string of url begins. May be shorter than url.
   std::vector<uint32_t> urlLines;
+  // Number of Scripts that made one another by createProto before this one; 0: a file holds it.
+  uint32_t makers = 0;
 };
 
 // Returns the node that is rendered in place of `node`. For a prototype instance it is the first

@@ -355,10 +355,22 @@ struct XsHost {
   XsResult (*nodeWithin)(const XsHost* host, XsNode self, XsNode node, XsString name, XsValue* out);
   /* out: an MFString of the abstract types of ISO/IEC 19775-1 that the node has, X3DNode first. */
   XsResult (*nodeTypes)(const XsHost* host, XsNode self, XsNode node, XsValue* out);
-  /* out: a node with its descendants, or for node 0 the whole world, as text. encoding: "VRML"
-   * (VRML97 in a world of VRML97, else ClassicVRML) or "XML". Prototypes are not part of a node's
-   * text. */
+  /* out: a node with its descendants, or for node 0 the whole scene, as text. encoding: "VRML"
+   * (VRML97 for what a file of VRML97 holds, else ClassicVRML) or "XML". Prototypes are not part of
+   * a node's text. */
   XsResult (*writeNode)(const XsHost* host, XsNode self, XsNode node, XsString encoding,
+                        XsString* out);
+
+  /* --- 1.4 */
+  /* out: nodes as the text of a file that holds them, with a head, with the prototypes that they
+   * are instances of, and with the routes among them. encoding: as for writeNode. A node 0 is
+   * passed over. */
+  XsResult (*writeScene)(const XsHost* host, XsNode self, uint32_t count, const XsNode* nodes,
+                         XsString encoding, XsString* out);
+  /* out: the name that the other standard, VRML97 or X3D, has for the field with this index.
+   * findField finds VRML97's names in files of both, and X3D's in files of X3D. XS_NO_FIELD: both
+   * standards have the same name. */
+  XsResult (*otherName)(const XsHost* host, XsNode self, XsNode node, uint32_t index,
                         XsString* out);
 };
 

@@ -51,7 +51,7 @@ Matrix Graph::below(const Matrix& outside, const Item& item) {
   return matrix == Matrix() ? outside : compose(outside, matrix);
 }
 
-void Graph::readLight(ItemId id) {
+void Graph::readSwitch(ItemId id) {
   Item& item = items[id];
   Plan plan;
   planOf(item.node->type())(context_, *item.node, plan);

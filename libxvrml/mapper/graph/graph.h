@@ -31,6 +31,7 @@ enum class Kind : uint8_t {
   directionalLight,
   localLight,
   environmentLight,
+  localFog,
   viewpoint,
   background,
   fog,
@@ -42,6 +43,8 @@ constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint && k <= Kind::na
 constexpr bool isLight(Kind k) {
   return k >= Kind::directionalLight && k <= Kind::environmentLight;
 }
+// Lights and LocalFogs may be turned on and off, and hold for what is around them.
+constexpr bool isSwitched(Kind k) { return isLight(k) || k == Kind::localFog; }
 
 // The author's hint on a group: merge (ORTStatic) or instantiate (ORTInstance).
 enum class Hint : uint8_t { none, merge, instantiate };
@@ -94,8 +97,8 @@ struct Item {
   bool planned = false;
   bool isInline = false;     // an Inline's content begins here
   bool awaited = false;      // an Inline whose content is still to come
-  bool on = true;            // for a light: it is on
-  bool scoped = false;       // for a light: it shines only on what is below its parent group
+  bool on = true;            // for a light or a LocalFog: it is on
+  bool scoped = false;       // for these: it holds only for what is below its parent group
   bool limitsLights = false; // lights below it shine at most on what is below it
   uint32_t name = 0;         // index into Graph::names; 0: none
   int32_t mesh = none;       // for a shape: index into Meshes
@@ -116,7 +119,7 @@ struct Item {
   bool merged = false;
   bool clips = false;       // has ClipPlanes among its children
   bool clipped = false;     // below an item that clips, on some path: nothing of it is shared
-  bool scopesLight = false; // a light below it shines only on what is below it
+  bool scopes = false;      // a light or a LocalFog below it holds only for what is below it
   bool holdsLights = false; // contains lights that shine beyond their parent group
   bool moves = false;       // events reach its matrix
   bool changes = false;     // events reach its children, or the content of a shape's own object
@@ -139,8 +142,8 @@ struct Plan {
   bool isInline = false;
   bool awaited = false;        // an Inline whose content is still to come
   bool keepEmpty = false;      // children keep their index even if nothing is drawn for them (LOD)
-  bool on = true;              // for a light: it is on
-  bool scoped = false;         // for a light: it shines only on what is below its parent group
+  bool on = true;              // for a light or a LocalFog: it is on
+  bool scoped = false;         // for these: it holds only for what is below its parent group
   bool limitsLights = false;   // lights below it shine at most on what is below it
   std::vector<Node*> children; // as in the file: may contain prototype instances and nulls
 
@@ -169,7 +172,7 @@ class Graph {
   void plan(ItemId item);
   // Calls plan(root) if the roots of the world have changed. Returns whether they have.
   bool planRoots();
-  void readLight(ItemId item);
+  void readSwitch(ItemId item); // reads whether a light or a LocalFog is on
   // Plans marked and new items, drops unreachable ones and computes the order.
   void settle();
   // Items dropped by the last settle(); their slots stay empty until the next one.

@@ -35,10 +35,10 @@ void Places::expand(const Graph& graph) {
     place.level = level;
     place.inlined = item.isInline || (parent != none && all[size_t(parent)].inlined);
     place.split = parent == none || level != none || item.kind == Kind::billboard ||
-                  item.kind == Kind::lod || item.scopesLight || isSplit(item.objectReason);
-    place.limit = item.limitsLights && item.scopesLight ? int32_t(all.size())
-                  : parent != none                      ? all[size_t(parent)].limit
-                                                        : none;
+                  item.kind == Kind::lod || item.scopes || isSplit(item.objectReason);
+    place.limit = item.limitsLights && item.scopes ? int32_t(all.size())
+                  : parent != none                 ? all[size_t(parent)].limit
+                                                   : none;
     place.firstChild = uint32_t(children.size());
     place.childCount = uint32_t(item.children.size());
     children.resize(children.size() + item.children.size(), none);
@@ -85,6 +85,9 @@ void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& chi
     to.light = from.light;
     to.lightScope = from.lightScope;
     to.lightMatrix = from.lightMatrix;
+    to.fog = from.fog;
+    to.fogScope = from.fogScope;
+    to.fogMatrix = from.fogMatrix;
     return true;
   };
   if (!before.empty()) take(0, 0);

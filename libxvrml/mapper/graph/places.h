@@ -1,6 +1,6 @@
 // places.h: the place-dependent part of the render graph, expanded: one Place for every path to a
-// light, a bindable node, a ClipPlane, a Billboard, an LOD or a group that events change.
-// Everything else hangs below it unexpanded. It is rebuilt when a place-dependent item is
+// light, a LocalFog, a bindable node, a ClipPlane, a Billboard, an LOD or a group that events
+// change. Everything else hangs below it unexpanded. It is rebuilt when a place-dependent item is
 // regrouped; places that still exist keep their objects and lights. World matrices, billboards and
 // levels are updated for the camera.
 #pragma once
@@ -25,7 +25,7 @@ struct Place {
   // The place at or above this one that limits lights (Item::limitsLights).
   int32_t limit = none;
   // Has an object of its own: the root, billboards, LODs, LOD levels, groups that events reach,
-  // groups that scope a light, groups with ClipPlanes.
+  // groups that scope a light or a LocalFog, groups with ClipPlanes.
   bool split = false;
   bool active = true;    // not in an unselected level of an LOD
   int32_t chosen = none; // for an LOD: the level in use
@@ -37,12 +37,14 @@ struct Place {
   HalfSpaces kept;
   bool recut = false; // `kept` has changed since the object was written
 
-  // Objects and lights created for the place. A rebuild keeps them.
+  // Objects, lights and fogs created for the place. A rebuild keeps them.
   int32_t drawn = none; // for an LOD: the level that its object now holds
   int32_t part = none;  // index into the parts of Objects
   RTid instance = 0;
   RTid light = 0, lightScope = 0;
   Matrix lightMatrix;
+  RTid fog = 0, fogScope = 0; // the shader of a LocalFog, and the instance that has it
+  Matrix fogMatrix;
 };
 
 class Places {

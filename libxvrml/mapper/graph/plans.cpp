@@ -4,6 +4,7 @@
 #include <span>
 
 #include "geometry/descend.h"
+#include "geometry/figure.h"
 #include "geometry/half_space.h"
 #include "mapper/graph/graph.h"
 #include "nodes/bindable.h"
@@ -104,6 +105,13 @@ void planEnvironmentLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::EnvironmentLight>(node, Kind::environmentLight, plan);
 }
 
+// The fog of a group and all below it (ISO/IEC 19775-1 24.4.4).
+void planLocalFog(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::localFog;
+  plan.on = static_cast<nodes::LocalFog&>(node).enabled;
+  plan.scoped = true;
+}
+
 void planOrtLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::ORTLight>(node, Kind::localLight, plan);
 }
@@ -125,8 +133,9 @@ void planCadLayer(PlanContext&, Node& node, Plan& plan) {
 }
 
 // Groups that are placed without all that they can do (NodeType's `lacks`).
-void planPlacing(PlanContext&, Node& node, Plan& plan) {
+void planPlacing(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
+  if (!node.live && deforms(node.type())) deform(node, &context.world.diagnostics);
   appendPlaced(node, plan.children);
 }
 
@@ -174,6 +183,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
     set(nodes::EnvironmentLight::typeIndex, planEnvironmentLight);
+    set(nodes::LocalFog::typeIndex, planLocalFog);
     set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::ORTSensor::typeIndex, planSensor);
     set(nodes::ClipPlane::typeIndex, planClipPlane);

@@ -75,8 +75,8 @@ class Summary {
  private:
   // Packs everything that an object's content or placement depends on.
   uint64_t decisionsOf(const Item& item) const {
-    const bool flags[] = {item.placeDependent, item.scopesLight, item.moves,  item.changes,
-                          item.recolored,      item.viaMesh,     item.clipped};
+    const bool flags[] = {item.placeDependent, item.scopes,  item.moves,  item.changes,
+                          item.recolored,      item.viaMesh, item.clipped};
     uint64_t bits = uint64_t(item.objectReason);
     for (const bool flag : flags) bits = bits << 1 | uint64_t(flag);
     const int32_t mesh = item.viaMesh ? graph_.meshes.equal(item.mesh) : none;
@@ -135,8 +135,8 @@ class Summary {
     Node& geometry = graph_.meshes.geometry(item.mesh);
     const bool reached = graph_.meshes.dynamic(item.mesh) && !item.merged;
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
-    const bool lines = geometry.type().is("lines") || extent.kind == Mesh::Kind::lines ||
-                       extent.kind == Mesh::Kind::points;
+    const bool lines = geometry.type().is("lines") || extent.thick ||
+                       extent.kind == Mesh::Kind::lines || extent.kind == Mesh::Kind::points;
     item.shapes = 1;
     item.triangles = extent.kind == Mesh::Kind::triangles ? extent.primitives : 0;
     item.lines = lines;
@@ -164,14 +164,14 @@ class Summary {
     if (item.clips) item.objectReason = ObjectReason::clipped;
   }
 
-  static bool shines(const Item& item) {
-    return isLight(item.kind) && (item.on || reachedBy(item, Change::light));
+  static bool isOn(const Item& item) {
+    return isSwitched(item.kind) && (item.on || reachedBy(item, Change::light));
   }
 
   static bool isPlaceDependent(const Item& item) {
     if (item.kind == Kind::billboard || item.kind == Kind::lod) return item.draws;
     return isBindable(item.kind) || item.kind == Kind::sensor || item.kind == Kind::clipPlane ||
-           shines(item);
+           isOn(item);
   }
 
   // Counts bottom-up in one pass: children come before parents. strip: items with several paths
@@ -190,8 +190,8 @@ class Summary {
 
   void countItem(ItemId id, bool strip) {
     Item& item = graph_.items[id];
-    item.placeDependent = item.draws = item.scopesLight = item.holdsLights = item.lines =
-        item.viaMesh = item.recolored = item.changes = false;
+    item.placeDependent = item.draws = item.scopes = item.holdsLights = item.lines = item.viaMesh =
+        item.recolored = item.changes = false;
     item.objectReason = ObjectReason::none;
     item.primitives = item.triangles = item.shapes = item.places = 0;
     if (item.kind == Kind::shape) summariseShape(item);
@@ -203,7 +203,7 @@ class Summary {
       item.placeDependent |= child.placeDependent;
       item.draws |= child.draws;
       item.lines |= child.lines;
-      item.scopesLight |= child.placeDependent && isLight(child.kind) && child.scoped;
+      item.scopes |= child.placeDependent && isSwitched(child.kind) && child.scoped;
       item.holdsLights |=
           child.placeDependent && (isLight(child.kind) ? !child.scoped : child.holdsLights);
       if (!counts) continue;
@@ -212,7 +212,7 @@ class Summary {
       item.triangles = addSaturating(item.triangles, child.triangles);
       item.shapes = addSaturating(item.shapes, child.shapes);
     }
-    item.scopesLight |= item.limitsLights && item.holdsLights;
+    item.scopes |= item.limitsLights && item.holdsLights;
     applyHints(item);
     item.placeDependent |= isPlaceDependent(item);
     // Events may later add place-dependent children. This is decided now, so that the groups above
@@ -222,7 +222,7 @@ class Summary {
       item.places =
           addSaturating(item.places, item.kind == Kind::lod ? 1 + item.children.size() : 1);
     if (strip && paths_[id] > 1 && item.placeDependent) {
-      item.placeDependent = item.scopesLight = item.holdsLights = false;
+      item.placeDependent = item.scopes = item.holdsLights = false;
       item.places = 0;
     }
   }

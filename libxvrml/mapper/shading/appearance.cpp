@@ -155,14 +155,15 @@ Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
   return entry.surface;
 }
 
-// Makes the surface of lines and points (clauses 6.24 and 6.36): unlit, in the colours of the
-// geometry, else in emissiveColor.
+// Makes the surface of lines and points (clauses 6.24 and 6.36) in the colours of the geometry,
+// else in emissiveColor: unlit, unless they are thick.
 Surface Surfaces::makeLines(const Entry& entry) {
   Node* appearance = entry.appearance.get();
   Surface surface;
   ShaderSetup shader(classes_.get("VRML97", ""));
   surface.shader = shader.id();
-  shader.integer("lit", 0);
+  surface.lines = true;
+  shader.integer("lit", entry.use.thick);
   if (entry.use.vertexAlpha) shader.integer("vertexAlpha", 1);
   const AppearanceParts parts = resolveAppearance(appearance);
   if (parts.material)

@@ -24,6 +24,7 @@ bool isTextured(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
+  bool lines = false;                 // it is for lines or points
   Color lineColor{1, 1, 1};           // for lines and points without colours of their own
   float lineWidth = 1, pointSize = 1; // in pixels
 };
@@ -32,6 +33,7 @@ struct Surface {
 struct SurfaceUse {
   // Lines or points, which are neither lit nor textured (clauses 6.24, 6.36).
   bool lines = false;
+  bool thick = false; // lines or points that are rods or balls, and therefore lit
   // The geometry's colours are those of a ColorRGBA, whose opacities stand in place of the
   // material's transparency (ISO/IEC 19775-1 11.4.3).
   bool vertexAlpha = false;
@@ -101,7 +103,8 @@ class Surfaces {
   using Entries = std::unordered_map<const Node*, Entry>;
   // Returns the place in entries_ of surfaces for a use.
   static size_t placeOf(SurfaceUse use) {
-    return size_t(use.lines) * 4 + size_t(use.byNormal) * 2 + size_t(use.vertexAlpha);
+    return size_t(use.thick) * 8 + size_t(use.lines) * 4 + size_t(use.byNormal) * 2 +
+           size_t(use.vertexAlpha);
   }
   Surface makeLines(const Entry& entry);
   void makeSurface(Entry& entry);
@@ -126,7 +129,7 @@ class Surfaces {
   CubeMaps& cubes_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries entries_[8]; // by placeOf()
+  Entries entries_[16]; // by placeOf()
   std::vector<Shared> shared_;
   std::vector<uint32_t> freeShared_;
   IndexTable sharedByKey_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "mapper/shading/fogs.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -106,30 +107,12 @@ int32_t Environment::findLight(const Graph& graph, const Places& places) {
   return first;
 }
 
-// Sets the fog. Distances are measured in the fog's own coordinate system (clause 6.19).
-void Environment::setFog(ShaderSetup& shader) {
-  const auto& fog = static_cast<const nodes::Fog&>(*fog_);
-  Matrix toFog;
-  if (!(fog.visibilityRange > 0) || !invert(fogMatrix_, toFog)) {
-    if (!shader.fresh()) shader.integer("fogType", 0);
-    return;
-  }
-  const bool exponential = fog.fogType == "EXPONENTIAL";
-  if (!exponential && fog.fogType != "LINEAR")
-    world_.diagnostics.warn(fog.source, "Fog: fogType \"" + fog.fogType +
-                                            "\" is neither LINEAR nor EXPONENTIAL; LINEAR is used");
-  shader.integer("fogType", exponential ? 2 : 1);
-  shader.color("fogColor", convert(fog.color, linear_));
-  shader.number("fogRange", fog.visibilityRange);
-  shader.matrix("fogMatrix", compose(toFog, matrix_));
-}
-
 void Environment::setAll(ShaderSetup& shader, const Faces& images, const CubeMap& light) {
   if (const auto* sky = nodeCast<nodes::Background>(background_))
     setBackground(shader, *sky, images);
   if (const auto* sky = nodeCast<nodes::TextureBackground>(background_))
     setBackground(shader, *sky, images);
-  if (fog_) setFog(shader);
+  if (fog_) setFog(shader, *fog_, fogMatrix_, matrix_, linear_, world_.diagnostics);
   setLight(shader, light);
 }
 

@@ -1,5 +1,5 @@
 // line_properties.h: LineProperties, PointProperties and FillProperties (ISO/IEC 19775-1 12.4.2,
-// 12.4.3, :2023 12.4.8) as sizes in pixels. [the mapper's thread]
+// 12.4.3, :2023 12.4.7) as sizes in pixels. [the mapper's thread]
 #pragma once
 
 #include "xvrml/nodes.h"

@@ -19,11 +19,16 @@ template <class T> T at(const std::vector<T>& list, size_t index, T ifEmpty) {
 
 float sum(const SFColor& c) { return c.r + c.g + c.b; }
 
+bool isBlack(const MFColor& colors) {
+  return std::all_of(colors.begin(), colors.end(), [](const SFColor& c) { return sum(c) == 0; });
+}
+
 // Returns whether the colours are those of precomputed lighting: a Material that has emissive
-// colours only ("Material" of the specification).
+// colours only ("Material" of the specification). Files write black for no colours, too.
 bool isPrecomputed(const TreeNode& material) {
-  return material.get<MFColor>("diffuseColor").empty() &&
-         !material.get<MFColor>("emissiveColor").empty();
+  const MFColor& diffuse = material.get<MFColor>("diffuseColor");
+  if (material.get<MFColor>("emissiveColor").empty()) return false;
+  return diffuse.empty() || (isBlack(diffuse) && isBlack(material.get<MFColor>("specularColor")));
 }
 
 SFColor diffuse(const TreeNode& material, size_t index) {
@@ -110,7 +115,7 @@ NodeRef Looks::colours(const TreeNode& from, State& state, Use use) {
 NodeRef Looks::material(const TreeNode& from, const TreeNode& material, size_t index, Use use) {
   // VRML97 draws a surface without a Material unlit, in the colours of its Color node.
   if (use == Use::colours) {
-    if (isPrecomputed(material)) return {};
+    if (isPrecomputed(material)) return unlit(from, material, index);
     use = Use::surface; // the Color node takes the place of diffuseColor
   }
   NodeRef& made = materials_[{&material, index, use}];
@@ -125,6 +130,17 @@ NodeRef Looks::material(const TreeNode& from, const TreeNode& material, size_t i
   made = graph_.finish(node);
   graph_.name(made, material);
   return made;
+}
+
+// Returns nothing for an opaque surface, else the node of X3D that only VRML97 lacks.
+NodeRef Looks::unlit(const TreeNode& from, const TreeNode& material, size_t index) {
+  const float transparency = at(material.get<MFFloat>("transparency"), index, 0.0f);
+  if (transparency == 0) return {};
+  NodeRef& made = materials_[{&material, index, Use::colours}];
+  if (made) return made;
+  auto* node = graph_.make<nodes::UnlitMaterial>(material.at ? material : from);
+  node->transparency = transparency;
+  return made = graph_.finish(node);
 }
 
 NodeRef Looks::texture(const TreeNode& texture) {

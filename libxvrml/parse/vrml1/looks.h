@@ -63,6 +63,8 @@ class Looks {
 
  private:
   NodeRef material(const TreeNode& from, const TreeNode& material, size_t index, Use use);
+  // Returns what makes the colours of a Color node shine by themselves.
+  NodeRef unlit(const TreeNode& from, const TreeNode& material, size_t index);
   NodeRef texture(const TreeNode& texture);
   NodeRef textureTransform(const TreeNode& from, const TextureChain& chain);
 

@@ -26,7 +26,7 @@ using HostFunctions =
                  &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute,
                  &XsHost::log, &XsHost::namedNode, &XsHost::rootNodes, &XsHost::sceneFacts,
                  &XsHost::createInstance, &XsHost::nodeWithin, &XsHost::nodeTypes,
-                 &XsHost::writeNode>;
+                 &XsHost::writeNode, &XsHost::writeScene, &XsHost::otherName>;
 
 // Output arguments.
 template <class T> constexpr bool isOut =

@@ -20,9 +20,7 @@ duk_ret_t giveText(duk_context* ctx, GetText function, const char* name) {
   XsString text{"", 0};
   const XsResult result = (self.host->*function)(self.host, self.self, &text);
   if (result != XS_OK) throwHost(ctx, self, result, name);
-  XsValue value{XS_SFSTRING, 1, {nullptr}};
-  value.of.strings = &text;
-  pushValue(ctx, self, value);
+  pushString(ctx, text);
   return 1;
 }
 

@@ -4,7 +4,6 @@
 #include "slots.h"
 
 namespace ecma {
-namespace {
 
 void pushString(duk_context* ctx, const XsString& text) {
   // Converts the host's UTF-8. ECMAScript's strings are UTF-16, so characters beyond U+FFFF become
@@ -38,6 +37,8 @@ void pushString(duk_context* ctx, const XsString& text) {
   duk_push_lstring(ctx, reinterpret_cast<const char*>(out), length);
   duk_remove(ctx, -2);
 }
+
+namespace {
 
 void pushTuple(duk_context* ctx, Interpreter& self, const XsValue& value) {
   double v[XS_MOST_COMPONENTS];

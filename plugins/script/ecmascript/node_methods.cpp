@@ -1,5 +1,6 @@
 // node_methods.cpp: Implements what nodes of X3D say of themselves (ISO/IEC 19777-1, SFNode): type,
 // name, fields, and text. The numbers of types are those of X3DConstants.
+#include <cstddef>
 #include <cstring>
 #include <iterator>
 
@@ -94,7 +95,8 @@ duk_ret_t toXmlString(duk_context* ctx) {
 } // namespace
 
 bool hasX3dNodes(const Interpreter& self) {
-  return self.host->size >= sizeof(XsHost) && self.host->writeNode;
+  return self.host->size >= offsetof(XsHost, writeNode) + sizeof(self.host->writeNode) &&
+         self.host->writeNode;
 }
 
 void pushWritten(duk_context* ctx, Interpreter& self, XsNode node, const char* encoding) {
@@ -103,9 +105,7 @@ void pushWritten(duk_context* ctx, Interpreter& self, XsNode node, const char* e
   const XsResult result =
       self.host->writeNode(self.host, self.self, node, {encoding, std::strlen(encoding)}, &text);
   if (result != XS_OK) throwHost(ctx, self, result, encoding);
-  XsValue value{XS_SFSTRING, 1, {nullptr}};
-  value.of.strings = &text;
-  pushValue(ctx, self, value);
+  pushString(ctx, text);
 }
 
 void putNodeMethods(duk_context* ctx) {

@@ -1,5 +1,6 @@
 // nodes.cpp: Implements SFNode (C.6.6). Each node that the program holds has one wrapper, so that
 // == compares identity. Fields and events are accessors of one prototype per node type (C.5.2).
+#include <cstddef>
 #include <cstring>
 #include <new>
 
@@ -111,8 +112,29 @@ void putField(duk_context* ctx, Interpreter& self, const char* name) {
   if (number >= 0) putAccessor(ctx, name, getField, setField, number);
 }
 
+// Adds the names of a field to the prototype on top.
+void putFieldNames(duk_context* ctx, Interpreter& self, const char* field, bool exposed) {
+  const duk_idx_t type = duk_get_top_index(ctx);
+  duk_push_string(ctx, field); // host calls invalidate the lent name
+  if (exposed) {
+    duk_push_sprintf(ctx, "set_%s", duk_get_string(ctx, type + 1));
+    duk_push_sprintf(ctx, "%s_changed", duk_get_string(ctx, type + 1));
+  }
+  for (duk_idx_t form = type + 1, end = duk_get_top(ctx); form < end; ++form) {
+    duk_dup(ctx, type);
+    putField(ctx, self, duk_get_string(ctx, form));
+    duk_pop(ctx);
+  }
+  duk_set_top(ctx, type + 1);
+}
+
+bool tellsOtherNames(const XsHost& host) {
+  return host.size >= offsetof(XsHost, otherName) + sizeof(host.otherName) && host.otherName;
+}
+
 // Pushes the prototype of a node's type; it is created on first use. Types with the same interface
-// share a prototype, because the field is looked up in each node.
+// share a prototype, because the field is looked up in each node. So a prototype has the names of
+// VRML97 and of X3D, and the version of a node's file says which of them the node has.
 void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
   XsNodeInfo info{sizeof(XsNodeInfo), 0, nullptr, nullptr};
   XsResult result = self.host->describe(self.host, self.self, node, &info);
@@ -141,19 +163,12 @@ void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
     result = self.host->field(self.host, self.self, node, i, &field);
     if (result == XS_FAILED || result == XS_STOPPED) throwHost(ctx, self, result, "SFNode");
     if (result != XS_OK) continue;
-    duk_push_string(ctx, field.name);
-    const char* name = duk_get_string(ctx, -1);
     const bool exposed = field.access == XS_EXPOSED_FIELD;
-    duk_push_sprintf(ctx, "set_%s", name);
-    duk_push_sprintf(ctx, "%s_changed", name);
-    const duk_idx_t type = duk_get_top(ctx) - 4;
-    for (int form = 0; form < (exposed ? 3 : 1); ++form) {
-      const char* text = duk_get_string(ctx, type + 1 + form);
-      duk_dup(ctx, type);
-      putField(ctx, self, text);
-      duk_pop(ctx);
-    }
-    duk_pop_3(ctx);
+    putFieldNames(ctx, self, field.name, exposed);
+    XsString other{"", 0};
+    if (tellsOtherNames(*self.host) &&
+        self.host->otherName(self.host, self.self, node, i, &other) == XS_OK)
+      putFieldNames(ctx, self, other.data, exposed);
   }
   duk_insert(ctx, -3); // stack: type, types, key
   duk_dup(ctx, -3);

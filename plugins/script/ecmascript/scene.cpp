@@ -96,9 +96,7 @@ duk_ret_t getFact(duk_context* ctx) {
   const XsResult result = self.host->sceneFacts(self.host, self.self, &facts);
   if (result != XS_OK) throwHost(ctx, self, result, "the scene");
   if (fact >= facts.count) return 0;
-  XsValue value{XS_SFSTRING, 1, {nullptr}};
-  value.of.strings = &facts.of.strings[fact];
-  pushValue(ctx, self, value);
+  pushString(ctx, facts.of.strings[fact]);
   return 1;
 }
 
@@ -140,25 +138,22 @@ duk_ret_t createProto(duk_context* ctx) {
   return 1;
 }
 
-// Writes the world, or the nodes of a made scene one after the other.
+// Writes the scene that the Script stands in, or a made one.
 duk_ret_t written(duk_context* ctx, const char* encoding) {
   Interpreter& self = begin(ctx);
   if (!pushMade(ctx)) {
     pushWritten(ctx, self, 0, encoding);
     return 1;
   }
-  const duk_idx_t roots = duk_get_top_index(ctx);
-  const uint32_t count = mfData(ctx, roots)->count;
-  duk_push_string(ctx, "");
-  for (uint32_t i = 0; i < count; ++i) {
-    pushElement(ctx, self, roots, i);
-    const XsNode node = nodeOf(ctx, self, -1, encoding);
-    duk_pop(ctx);
-    if (node == 0) continue;
-    pushWritten(ctx, self, node, encoding);
-    duk_push_string(ctx, "\n");
-    duk_concat(ctx, 3);
-  }
+  if (self.host->size < offsetof(XsHost, writeScene) + sizeof(self.host->writeScene))
+    throwType(ctx, "this browser does not write scenes");
+  nodesForHost(ctx, self, -1, encoding);
+  const uint32_t count = mfData(ctx, -1)->count;
+  XsString text{"", 0};
+  const XsResult result = self.host->writeScene(self.host, self.self, count, self.handles.data(),
+                                                {encoding, std::strlen(encoding)}, &text);
+  if (result != XS_OK) throwHost(ctx, self, result, encoding);
+  pushString(ctx, text);
   return 1;
 }
 duk_ret_t toVrmlString(duk_context* ctx) { return written(ctx, "VRML"); }

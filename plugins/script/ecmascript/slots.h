@@ -46,7 +46,9 @@ void pushWritten(duk_context* ctx, Interpreter& self, XsNode node, const char* e
 // Returns whether the host has the functions of version 1.3.
 bool hasX3dNodes(const Interpreter& self);
 
-// from_host.cpp: Pushes the program's form of a value.
+// from_host.cpp: Pushes a text of the host.
+void pushString(duk_context* ctx, const XsString& text);
+// Pushes the program's form of a value.
 void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place place = {});
 // to_host.cpp: Converts the object on top, or a slot's plain numbers, for the host; valid until the
 // next call.

@@ -286,6 +286,11 @@ static XsResult scene(Call* c) { /* arguments: WHAT ARGUMENT...; prints what the
     result = host->writeNode(host, self, nodeOf(c, first), text(second), &written);
     if (result == XS_OK) snprintf(line, sizeof line, "text %s", written.data);
   }
+  if (strcmp(what, "file") == 0) {
+    const XsNode node = nodeOf(c, first);
+    result = host->writeScene(host, self, 1, &node, text(second), &written);
+    if (result == XS_OK) snprintf(line, sizeof line, "file %s", written.data);
+  }
   if (result == XS_OK) {
     addValue(c, &value, line, sizeof line);
     say(c->self, 0, 0, line);

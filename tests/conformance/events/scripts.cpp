@@ -289,7 +289,7 @@ TEST_P(Scripts, WhatTickMakesBeginsAfterIt) {
   EXPECT_EQ(r.printed(), (Log{"made", "child"}));
 }
 
-// The functions of the ABI about scenes (xscript.h, 1.2 and 1.3), here and in a process.
+// The functions of the ABI about scenes (xscript.h, 1.2 to 1.4), here and in a process.
 TEST_P(Scripts, ScenesAndNodesSayWhatTheyAre) {
   Scripted r("PROTO Ball [ ] { Group { } }\nDEF T Transform { children DEF G Group { } }\n"
              "DEF S Script { field SFNode t USE T url \"test:initialize: scene roots\n"
@@ -298,9 +298,9 @@ TEST_P(Scripts, ScenesAndNodesSayWhatTheyAre) {
              "initialize: scene within t G\ninitialize: scene within t T\n"
              "initialize: scene within t S\ninitialize: scene types self\n"
              "initialize: scene types none\ninitialize: scene text self XML\n"
-             "initialize: scene text t JPEG\" }");
+             "initialize: scene text t JPEG\ninitialize: scene file t VRML\" }");
   const Log printed = r.printed();
-  ASSERT_EQ(printed.size(), 13u) << fmt::format("{}", fmt::join(printed, "\n"));
+  ASSERT_EQ(printed.size(), 14u) << fmt::format("{}", fmt::join(printed, "\n"));
   EXPECT_EQ(printed[0], "roots Transform:T Script:S");
   EXPECT_EQ(printed[1], "named Group:G");
   EXPECT_EQ(printed[2], "scene: 1 the scene has no node 'X'");
@@ -314,6 +314,7 @@ TEST_P(Scripts, ScenesAndNodesSayWhatTheyAre) {
   EXPECT_EQ(printed[10], "scene: 1 NULL");
   EXPECT_EQ(printed[11].find("text <Script DEF='S'"), 0u) << printed[11];
   EXPECT_EQ(printed[12], "scene: 6 'JPEG' is no encoding: expected XML or VRML");
+  EXPECT_EQ(printed[13].find("file #VRML V2.0 utf8\n\nDEF T Transform {"), 0u) << printed[13];
 }
 
 TEST_P(Scripts, RunawayPostsEndWithAMessage) {

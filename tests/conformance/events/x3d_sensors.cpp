@@ -186,6 +186,47 @@ TEST(LoadSensor, WaitsForInlinesUntilTheTimeIsOver) {
                          "3 loadTime 3", "3 isActive FALSE"}));
 }
 
+// A new url or load resets the sensor, and its time (9.4.3).
+TEST(LoadSensor, BeginsAgainWithNewFiles) {
+  const Folder folder;
+  Log events;
+  std::unique_ptr<Browser> made;
+  Browser& browser = *loading(made, folder,
+                              "DEF L LoadSensor { watchList [ DEF I Inline { url \"part.x3dv\" } "
+                              "DEF P ImageTexture { url \"picture.png\" } ] }\n",
+                              events);
+  const auto after = [&](double time, const char* name, const char* field, Value value) {
+    events.clear();
+    browser.set(*browser.node(name), field, std::move(value));
+    browser.tick(time);
+    browser.tick(time + 1);
+    browser.tick(time + 2);
+    return events;
+  };
+  browser.tick(1);
+  browser.tick(2);
+  EXPECT_EQ(after(3, "P", "url", MFString{"no.png"}),
+            (Log{"3 isActive TRUE", "3 progress 0", "4 progress 0.5", "4 isLoaded FALSE",
+                 "4 isActive FALSE"}));
+  EXPECT_EQ(after(6, "P", "url", MFString{"picture.png"}),
+            (Log{"6 isActive TRUE", "6 progress 0", "7 progress 1", "7 isLoaded TRUE",
+                 "7 loadTime 7", "7 isActive FALSE"}));
+  EXPECT_EQ(after(9, "I", "url", MFString{"no.x3dv"}),
+            (Log{"9 isActive TRUE", "9 progress 0", "10 progress 0.5", "10 isLoaded FALSE",
+                 "10 isActive FALSE"}));
+  EXPECT_EQ(after(12, "I", "load", false), // it waits for its content
+            (Log{"12 isActive TRUE", "12 progress 0", "13 progress 0.5"}));
+  browser.set(*browser.node("L"), "timeOut", 10.0);
+  browser.set(*browser.node("P"), "url", MFString{"picture.png"}); // at 14: until 24
+  events.clear();
+  browser.tick(23);
+  EXPECT_EQ(events, Log{"23 progress 0.5"});
+  browser.tick(24);
+  EXPECT_EQ(events, (Log{"23 progress 0.5", "24 isLoaded FALSE", "24 isActive FALSE"}));
+  EXPECT_EQ(after(30, "L", "watchList", MFNode{}), Log());
+  EXPECT_EQ(after(40, "P", "url", MFString{"no.png"}), Log()); // it is not watched any more
+}
+
 // Watched nodes stand where else they are used: the pointer meets nothing at the sensor, and a walk
 // over what is drawn finds it once.
 TEST(LoadSensor, PlacesNothing) {

@@ -13,6 +13,7 @@ import { Light } from "./light.js";
 import { Nodes } from "./nodes.js";
 import { Outline } from "./outline.js";
 import { Problems, reportPanel } from "./reports.js";
+import { Thumbnails } from "./thumbnails.js";
 import { Tools, clickDistance } from "./tools.js";
 
 const $ = (id) => document.getElementById(id);
@@ -39,7 +40,9 @@ class Editor {
     const edit = (command, members) => this.edit(command, members);
     this.layOut();
     this.chooser = new Chooser();
-    this.nodes = new Nodes(this.chooser, edit, (text) => page.on_command({ text }));
+    this.thumbnails = new Thumbnails();
+    const showText = (text) => page.on_command({ text });
+    this.nodes = new Nodes(this.chooser, this.thumbnails, edit, showText);
     this.outline = new Outline($("rows"), edit, (row, item) => this.openRow(row, item));
     this.fields = new Fields($("fields"), {
       drag: (drag, ends) => this.dragTo(drag, ends),
@@ -50,7 +53,7 @@ class Editor {
     const isOpen = () => this.isOpen() && this.mayEdit;
     this.tools = new Tools($("stage"), page.picture, { edit, say, isOpen });
     this.importer = new Importer(edit, say, isOpen);
-    this.light = new Light($("stage"), $("probes"), page.picture, edit);
+    this.light = new Light($("stage"), $("probes"), page.picture, { edit, isOpen });
     this.problems = new Problems($("problems"), $("show-problems"), edit);
     this.keys = new EditorKeys(this);
     this.listen();
@@ -61,10 +64,12 @@ class Editor {
     page.on_handles = (message) => this.onHandles(message);
     page.on_marks = (message) => this.tools.onMarks(message);
     page.on_tool = (message) => this.onTool(message);
+    page.on_thumbnails = (message) => this.thumbnails.onThumbnails(message);
     page.on_looks = (message) => this.nodes.onLooks(message);
     page.on_choices = (message) => this.nodes.onChoices(message);
     page.on_probes = (message) => this.light.onProbes(message);
     page.on_comparison = (message) => this.light.onComparison(message);
+    page.on_pointer = (message) => this.light.onPointer(message);
     page.on_cover = (message) => this.light.onCover(message);
     page.on_problems = (message) => this.problems.onProblems(message);
     page.on_import = (message) => this.importer.onImport(message);
@@ -166,6 +171,7 @@ class Editor {
       { id: "sheet", label: "Fields" },
       make("h2", { id: "title" }),
       make("p", { id: "note" }),
+      make("div", { id: "texture" }),
       rename,
       make("div", { id: "look", label: "Look" }),
       make("div", { id: "fields" }),
@@ -351,6 +357,10 @@ class Editor {
     $("title").textContent = message.title;
     $("note").textContent = message.node === null ? none : message.note;
     $("rename").hidden = message.node === null || !("name" in message);
+    if (message.node !== this.fields.message?.node) {
+      const own = message.node === null ? [] : [this.thumbnails.placeOf(message.node)];
+      $("texture").replaceChildren(...own);
+    }
     this.nodes.showLook($("look"), message.look, this.readOnly === "");
     this.fields.show(message);
     this.showName();

@@ -22,6 +22,7 @@ export class EditorKeys {
     const place = () => this.editor.pointer ?? { x: 0.5, y: 0 };
     const tool = (kind) => () => this.editor.tools.begin(kind, place());
     return [
+      ["F2", () => $("rename").select()],
       ["Ctrl+Z", edit("undo")],
       ["Ctrl+Y Ctrl+Shift+Z", edit("redo")],
       ["Ctrl+S", edit("save")],

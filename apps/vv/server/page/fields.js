@@ -346,6 +346,7 @@ export class Fields {
   update(row, facts) {
     row.facts = facts;
     row.element.classList.toggle("default", facts.default);
+    row.element.classList.toggle("edited", Boolean(facts.edited));
     row.reset.hidden = facts.default || !facts.declared || Boolean(facts.links);
     if (row.widget && !row.widget.isActive()) row.widget.set(facts.value);
     row.nodes?.set(facts);

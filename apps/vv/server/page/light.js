@@ -5,6 +5,8 @@
 import { make } from "./fields.js";
 import { areaOf } from "./tools.js";
 
+const restSeconds = 0.4; // until a pointer that does not move rests
+
 const states = {
   waiting: "waits for a still picture",
   hidden: "not seen from here",
@@ -52,14 +54,17 @@ export function readingOf(probe) {
 }
 
 export class Light {
-  // picture: has canvas and placeOf(event). edit: sends a command of the editor.
-  constructor(stage, section, picture, edit) {
-    Object.assign(this, { stage, picture, edit });
+  // picture: has canvas and placeOf(event). edit: sends a command of the editor. isOpen: tells
+  // whether the editor is open.
+  constructor(stage, section, picture, { edit, isOpen }) {
+    Object.assign(this, { stage, picture, edit, isOpen });
     this.state = { shown: "present", kept: false };
     this.part = 0.5; // of the picture that the wiper shows as A
     this.layOut(section);
     new ResizeObserver(() => this.place()).observe(stage);
     picture.canvas.addEventListener("pointermove", (event) => this.point(event));
+    for (const kind of ["pointermove", "pointerdown", "pointerleave", "wheel"])
+      picture.canvas.addEventListener(kind, (event) => this.rest(event), { passive: true });
   }
 
   layOut(section) {
@@ -108,6 +113,8 @@ export class Light {
       this.wipe(this.part + steps[event.key]);
     });
     this.legend = document.getElementById("legend");
+    this.readout = make("div", { id: "readout", hidden: true });
+    this.stage.append(this.readout);
     this.picture.canvas.after(this.cover); // below the handles
     this.stage.append(this.wiper);
   }
@@ -229,7 +236,57 @@ export class Light {
     this.waiting = this.picture.placeOf(event);
   }
 
+  // The pointer has moved: nothing is read until it rests.
+  rest(event) {
+    clearTimeout(this.timer);
+    if (this.resting) this.edit("point");
+    this.resting = null;
+    this.readout.hidden = true;
+    if (event.type !== "pointermove" || event.buttons || !this.isOpen()) return;
+    const { x, y } = this.picture.placeOf(event);
+    if (this.state.shown !== "present" || Math.max(Math.abs(x), Math.abs(y)) > 1) return;
+    this.timer = setTimeout(() => {
+      this.resting = { x, y };
+      this.edit("point", this.resting);
+    }, restSeconds * 1000);
+  }
+
+  // Shows what is seen where the pointer rests, beside it and towards the middle.
+  onPointer(message) {
+    const { x, y } = this.resting ?? {};
+    this.readout.hidden = !("seen" in message) || message.x !== x || message.y !== y;
+    if (this.readout.hidden) return;
+    const line = (...parts) => make("div", {}, ...parts);
+    const wait = message.readable ? states.waiting : "V measures the light here";
+    const isRead = "luminance" in message;
+    const parts = isRead ? readingOf({ ...message, state: "read" }) : [wait];
+    const lines = [line(...parts)];
+    if (isRead)
+      lines.push(
+        line(
+          "radiance",
+          ...["R", "G", "B"].flatMap((name, i) => [
+            ` ${name} `,
+            quantity(message.radiance[i], message.radiance_half_width[i], ""),
+          ]),
+        ),
+      );
+    this.readout.replaceChildren(...lines, ...message.seen.split("\n").map((text) => line(text)));
+    const area = areaOf(this.picture.canvas, this.stage);
+    const left = area.left + ((1 + x) / 2) * area.width;
+    const top = area.top + ((1 - y) / 2) * area.height;
+    const gap = 14; // pixels
+    const { style } = this.readout;
+    style.left = x < 0 ? `${left + gap}px` : "auto";
+    style.right = x < 0 ? "auto" : `${this.stage.clientWidth - left + gap}px`;
+    style.top = y > 0 ? `${top + gap}px` : "auto";
+    style.bottom = y > 0 ? "auto" : `${this.stage.clientHeight - top + gap}px`;
+  }
+
   clear() {
+    clearTimeout(this.timer);
+    this.resting = null;
+    this.readout.hidden = true;
     this.onComparison({ shown: "present", kept: false });
   }
 }

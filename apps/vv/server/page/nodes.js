@@ -12,8 +12,8 @@ function small(text, label, action) {
 
 export class Nodes {
   // edit: sends a command of the editor. show: shows a text that can be copied.
-  constructor(chooser, edit, show) {
-    Object.assign(this, { chooser, edit, show });
+  constructor(chooser, thumbnails, edit, show) {
+    Object.assign(this, { chooser, thumbnails, edit, show });
     this.looks = [];
     this.isOnlyHere = true; // what the user chose last
   }
@@ -28,7 +28,7 @@ export class Nodes {
       shown = text;
       const buttons = [...element.querySelectorAll("button")];
       const focused = buttons.indexOf(document.activeElement);
-      const rows = fresh.links.map((one, i) => this.link(owner, fresh, one, i));
+      const rows = fresh.links.flatMap((one, i) => this.link(owner, fresh, one, i));
       element.replaceChildren(...rows, this.addButton(owner, fresh));
       if (focused >= 0) [...element.querySelectorAll("button")].at(focused)?.focus();
     };
@@ -36,9 +36,10 @@ export class Nodes {
     return { element, set };
   }
 
-  // A node: a click selects it, and buttons move it, make it separate and remove it.
+  // Returns elements for a node: a click selects it, and buttons move it, make it separate and remove
+  // it.
   link(owner, facts, one, index) {
-    if (!one) return make("span", { className: "long", textContent: "NULL" });
+    if (!one) return [make("span", { className: "long", textContent: "NULL" })];
     const at = { node: one.node, parent: owner, field: facts.field, index };
     const places = one.places > 1 ? `It stands in ${one.places} places. ` : "";
     const label = (one.places > 1 ? `(${one.places}) ` : "") + one.label;
@@ -64,7 +65,7 @@ export class Nodes {
         this.edit("separate_at", at),
       ));
     row.append(small("\u00d7", `Remove ${what}`, () => this.edit("remove_at", at)));
-    return row;
+    return [row, this.thumbnails.placeOf(one.node)];
   }
 
   addButton(owner, facts) {

@@ -21,6 +21,7 @@ enum class EditorAction : uint8_t {
   duplicate,
   group,
   remove,
+  rename,
   undo,
   redo,
   save,
@@ -32,6 +33,8 @@ enum class EditorAction : uint8_t {
   showWiper,
   showDifference,
   frame,
+  panels,
+  keyboard,
   escape
 };
 
@@ -41,6 +44,7 @@ struct EditorKeyInfo {
   // The actions of the keys, in their order. Rows without actions are explained only: the mouse,
   // keys of a tool that is in use, of menus and of the window.
   std::array<EditorAction, 3> actions{};
+  bool isOfWindow = false; // pages leave it to their browser
 };
 std::span<const EditorKeyInfo> editorTable();
 

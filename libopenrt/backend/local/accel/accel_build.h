@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "backend/local/accel/accel.h"
 #include "backend/local/accel/survey.h"
@@ -95,13 +96,13 @@ class AccelBuilder {
                  const std::vector<std::shared_ptr<const Blas>>& baked, RecordFrames*& free);
   bool carriesParameters(const Geometry& g, uint32_t slot) const;
   Record recordOf(const Inherited& path, const Geometry& geometry, const Matrix4d& toRender);
-  uint32_t bucketOf(uint32_t shaderSlot, uint32_t lightSet);
+  uint32_t bucketOf(uint32_t shaderSlot, const Inherited& path);
 
   std::shared_ptr<EmbreeDevice> device_;
   UnitSpheres spheres_;
   std::map<Key, Cached> blases_;
   Cached static_;
-  std::map<std::pair<const RtsClass*, uint32_t>, uint32_t> buckets_;
+  std::map<std::tuple<const RtsClass*, uint32_t, uint32_t>, uint32_t> buckets_;
   // State of the current build or update.
   const BuildInput* input_ = nullptr;
   Accel* accel_ = nullptr;

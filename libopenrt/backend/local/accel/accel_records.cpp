@@ -34,10 +34,11 @@ bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
 
 } // namespace
 
-uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
-  const auto key = std::make_pair(input_->shaders[slot].shaderClass, lightSet);
-  const auto [found, fresh] = buckets_.try_emplace(key, uint32_t(accel_->buckets.size()));
-  if (fresh) accel_->buckets.push_back({key.first, lightSet});
+uint32_t AccelBuilder::bucketOf(uint32_t slot, const Inherited& path) {
+  const RtsClass* shaderClass = input_->shaders[slot].shaderClass;
+  const auto [found, fresh] = buckets_.try_emplace({shaderClass, path.lightSet, path.fog},
+                                                   uint32_t(accel_->buckets.size()));
+  if (fresh) accel_->buckets.push_back({shaderClass, path.lightSet, path.fog});
   return found->second;
 }
 
@@ -66,7 +67,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.shader = input_->shaders.slotOf(path.shader ? path.shader : g.shader);
   // The back faces of a body with a medium are needed, even if the geometry asks for culling.
   r.cull = g.cull && !input_->shaders[r.shader].shaderClass->medium;
-  r.bucket = bucketOf(r.shader, path.lightSet);
+  r.bucket = bucketOf(r.shader, path);
   r.name = g.name ? g.name : path.name;
   r.instance = path.instance;
   r.userData = path.userData;
@@ -74,6 +75,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.normals = g.normals ? g.normals->as<float>() : nullptr;
   r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
   r.colors = g.colors ? g.colors->as<float>() : nullptr;
+  r.texGen = g.texGen;
   if (carriesParameters(g, r.shader)) {
     r.parameters = g.parameters.data();
     r.parameterCount = uint32_t(g.parameters.size());

@@ -84,9 +84,6 @@ class Animations {
   void write() {
     for (size_t i = 0; i < animations_.size(); ++i)
       if (animations_[i]) writeAnimation(animations_[i], i == 0);
-    if (skinned_)
-      file_.locator.warn(nullptr, "animations of joints move no skin: skinned meshes are shown as "
-                                  "they are at rest");
   }
 
  private:
@@ -126,7 +123,6 @@ class Animations {
     if (kind == std::end(kinds))
       item.warn(fmt::format("an animation of {} is left out", describe(Name{path})));
     if (kind == std::end(kinds) || !node || !sampler || scene_.defOf(*node).empty()) return false;
-    skinned_ = skinned_ || scene_.isJoint(*node);
     channel.kind = kind;
     channel.node = *node;
     size_t width = kind->width;
@@ -251,7 +247,6 @@ class Animations {
   Scratch scratch_;
   const std::vector<Item> animations_;
   std::string_view interpolator_;
-  bool skinned_ = false;
 };
 
 } // namespace

@@ -1,5 +1,5 @@
 // primitives.cpp: writes the Shapes of meshes: faces, lines or points with their attributes.
-// deform.cpp moves the vertices of morph targets and skins.
+// deform.cpp moves the vertices of morph targets, skins.cpp gathers those of skins.
 #include "parse/mesh/gltf/primitives.h"
 
 #include <algorithm>
@@ -61,30 +61,54 @@ Primitives::Primitives(const MeshFile& file, NodeStream& nodes, const Item& root
     : file_(file), nodes_(nodes), accessors_(accessors), materials_(materials),
       scratch_(file.budget), meshes_(root.list("meshes")), written_(meshes_.size()) {}
 
+void Primitives::addTo(const Deformation& deformation, size_t mesh) {
+  const std::vector<Item> primitives = meshes_[mesh].list("primitives");
+  for (size_t i = 0; i < primitives.size(); ++i) {
+    if (!primitives[i]) continue;
+    scratch_ = Scratch(file_.budget);
+    if (primitives[i].count("mode", triangles) == points) {
+      primitives[i].warn("points have no skin; they stay where the mesh has them");
+      continue;
+    }
+    Vertices vertices;
+    if (!readVertices(primitives[i], vertices)) continue;
+    morph(primitives[i], deformation.weights, vertices);
+    deformation.skins->add({deformation.node, i}, deformation.skin,
+                           primitives[i].object("attributes"), std::move(vertices));
+  }
+}
+
 void Primitives::write(size_t number, const Deformation& deformation) {
   const Item& mesh = meshes_[number];
-  const bool shared = deformation.weights.empty() && deformation.joints.empty() && !keepMorphs_;
+  const bool shared = deformation.weights.empty() && !deformation.skins && !keepMorphs_;
   if (shared && !written_[number].empty()) return nodes_.use(written_[number]);
   const std::vector<Item> primitives = mesh.list("primitives");
   const std::string_view def = nodes_.define(mesh.text("name"), "Mesh");
   if (shared) written_[number] = def;
   nodes_.open("Group", def);
   nodes_.openField("children");
-  for (const Item& primitive : primitives)
-    if (primitive) writePrimitive(primitive, deformation);
+  for (size_t i = 0; i < primitives.size(); ++i)
+    if (primitives[i])
+      writePrimitive(primitives[i], deformation,
+                     deformation.skins ? deformation.skins->find({deformation.node, i}) : nullptr);
   nodes_.closeField();
   nodes_.close();
 }
 
-void Primitives::writePrimitive(const Item& primitive, const Deformation& deformation) {
+void Primitives::writePrimitive(const Item& primitive, const Deformation& deformation,
+                                Skins::Part* part) {
   scratch_ = Scratch(file_.budget);
   Vertices vertices;
-  if (!readVertices(primitive, vertices)) return;
-  const bool deformed = !deformation.weights.empty() || !deformation.joints.empty() || keepMorphs_;
-  morph(primitive, deformation.weights, vertices);
-  if (!deformation.joints.empty())
-    skin(primitive.object("attributes"), deformation.joints, vertices);
-  writeGeometry(primitive, std::move(vertices), deformed);
+  if (part) {
+    vertices.colors = std::move(part->colors);
+    vertices.alphas = std::move(part->alphas);
+  } else if (deformation.skins && primitive.count("mode", triangles) != points) {
+    return; // it could not be read
+  } else {
+    if (!readVertices(primitive, vertices)) return;
+    morph(primitive, deformation.weights, vertices);
+  }
+  writeGeometry(primitive, std::move(vertices), deformation, part);
 }
 
 // Reads an attribute of three numbers for each vertex; empty if there is none. count: the number
@@ -166,10 +190,10 @@ MFInt32 Primitives::faceIndex(const std::vector<uint32_t>& index, uint64_t mode,
   return out;
 }
 
-void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices, bool deformed) {
-  const uint64_t mode = primitive.count("mode", triangles);
-  const size_t count = vertices.points.size();
-  if (mode > triangleFan) return primitive.error(fmt::format("{} is no mode of a primitive", mode));
+// Reads the indices of a primitive as those of a face or line set. Returns whether it has anything
+// to draw.
+bool Primitives::readIndices(const Item& primitive, uint64_t mode, size_t count,
+                             MFInt32& coordIndex) {
   std::vector<uint32_t> index;
   if (const auto accessor = primitive.index("indices", accessors_.size())) {
     index = accessors_.readIndices(*accessor, scratch_);
@@ -178,20 +202,33 @@ void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices, bool 
     index.resize(count);
     for (size_t i = 0; i < count; ++i) index[i] = uint32_t(i);
   }
-  if (index.size() > INT32_MAX / 8) return primitive.error("too many indices");
+  if (index.size() > INT32_MAX / 8) {
+    primitive.error("too many indices");
+    return false;
+  }
   scratch_.take(4 * index.size() * sizeof(int32_t));
   uint64_t bad = 0;
-  const bool faces = mode >= triangles;
-  MFInt32 coordIndex = faces           ? faceIndex(index, mode, bad, count)
-                       : mode > points ? lineIndex(index, mode, count, bad)
-                                       : MFInt32();
+  if (mode >= triangles)
+    coordIndex = faceIndex(index, mode, bad, count);
+  else if (mode > points)
+    coordIndex = lineIndex(index, mode, count, bad);
   if (bad > 0)
     primitive.error(fmt::format("{} triangles or lines name a vertex that is not there (there are "
                                 "{}); they are left out",
                                 bad, count));
-  if (mode != points && coordIndex.empty()) return;
+  return mode == points || !coordIndex.empty();
+}
+
+void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices,
+                               const Deformation& deformation, const Skins::Part* part) {
+  const uint64_t mode = primitive.count("mode", triangles);
+  const size_t count = part ? part->count : vertices.points.size();
+  if (mode > triangleFan) return primitive.error(fmt::format("{} is no mode of a primitive", mode));
+  const bool faces = mode >= triangles;
+  MFInt32 coordIndex;
+  if (!readIndices(primitive, mode, count, coordIndex)) return;
   const auto material = primitive.index("material", materials_.size());
-  const bool smooth = !vertices.normals.empty();
+  const bool smooth = part ? part->smooth : !vertices.normals.empty();
   nodes_.open("Shape");
   faces ? materials_.writeSurface(material) : materials_.writeUnlit(material);
   nodes_.openIn("geometry", faces            ? "IndexedFaceSet"
@@ -207,11 +244,27 @@ void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices, bool 
     vertices.alphas.clear();
   const Item attributes = primitive.object("attributes");
   if (!faces) vertices.normals.clear();
-  writeVertices(attributes, std::move(vertices), deformed || base != Color{1, 1, 1});
+  const bool own =
+      !deformation.weights.empty() || deformation.skins || keepMorphs_ || base != Color{1, 1, 1};
+  if (part) {
+    nodes_.useIn("coord", deformation.skins->coordinate());
+    if (faces && smooth) nodes_.useIn("normal", deformation.skins->normal());
+  } else {
+    writeVertices(attributes, vertices, own);
+  }
+  const bool colored = !vertices.colors.empty();
+  writeColors(attributes, std::move(vertices), own);
+  bool textured = false;
   if (faces) {
-    writeTexCoords(attributes, material, count);
+    textured = writeTexCoords(attributes, material, count);
     if (materials_.isDoubleSided(material)) nodes_.set("solid", false);
     if (!smooth) nodes_.set("creaseAngle", 0.0f); // flat, as 3.7.2.1 asks
+  }
+  if (part && part->count < deformation.skins->vertices()) {
+    if (colored) nodes_.set("colorIndex", MFInt32(coordIndex));
+    if (textured) nodes_.set("texCoordIndex", MFInt32(coordIndex));
+    for (int32_t& index : coordIndex)
+      if (index >= 0) index += int32_t(part->first);
   }
   if (mode != points) nodes_.set("coordIndex", std::move(coordIndex));
   nodes_.closeIn();
@@ -232,20 +285,30 @@ template <class T> void Primitives::writeShared(std::string_view field, std::str
   nodes_.closeIn();
 }
 
-void Primitives::writeVertices(const Item& attributes, Vertices&& vertices, bool own) {
-  // Primitives that share an accessor share the node, if nothing has changed the values.
-  const auto keyOf = [&](std::string_view name) {
-    const auto accessor = attributes.index(name, accessors_.size());
-    return own || !accessor ? std::string() : fmt::format("{}_{}", name, *accessor);
-  };
+// Returns the key of the node for an attribute. Primitives that share an accessor share the node,
+// if nothing has changed the values.
+std::string Primitives::keyOf(const Item& attributes, std::string_view name, bool own) const {
+  const auto accessor = attributes.index(name, accessors_.size());
+  return own || !accessor ? std::string() : fmt::format("{}_{}", name, *accessor);
+}
+
+// Writes points and normals.
+void Primitives::writeVertices(const Item& attributes, Vertices& vertices, bool own) {
   if (keepMorphs_ && !morphs_.empty() && morphs_.back().coordinate.empty()) {
     morphs_.back().coordinate = nodes_.define("Morph", "Morph");
     nodes_.openIn("coord", "Coordinate", morphs_.back().coordinate);
     nodes_.set("point", std::move(vertices.points));
     nodes_.closeIn();
   } else {
-    writeShared("coord", "Coordinate", "point", keyOf("POSITION"), std::move(vertices.points));
+    writeShared("coord", "Coordinate", "point", keyOf(attributes, "POSITION", own),
+                std::move(vertices.points));
   }
+  if (!vertices.normals.empty())
+    writeShared("normal", "Normal", "vector", keyOf(attributes, "NORMAL", own),
+                std::move(vertices.normals));
+}
+
+void Primitives::writeColors(const Item& attributes, Vertices&& vertices, bool own) {
   if (!vertices.alphas.empty()) {
     MFColorRGBA colors;
     colors.reserve(vertices.colors.size());
@@ -254,13 +317,14 @@ void Primitives::writeVertices(const Item& attributes, Vertices&& vertices, bool
       colors.push_back({c.r, c.g, c.b, vertices.alphas[i]});
     }
     writeShared("color", "ColorRGBA", "color", "", std::move(colors));
-  } else if (!vertices.colors.empty())
-    writeShared("color", "Color", "color", keyOf("COLOR_0"), std::move(vertices.colors));
-  if (!vertices.normals.empty())
-    writeShared("normal", "Normal", "vector", keyOf("NORMAL"), std::move(vertices.normals));
+  } else if (!vertices.colors.empty()) {
+    writeShared("color", "Color", "color", keyOf(attributes, "COLOR_0", own),
+                std::move(vertices.colors));
+  }
 }
 
-void Primitives::writeTexCoords(const Item& attributes, std::optional<size_t> material,
+// Returns whether there are any.
+bool Primitives::writeTexCoords(const Item& attributes, std::optional<size_t> material,
                                 size_t count) {
   struct Set {
     std::string key, mapping;
@@ -287,12 +351,13 @@ void Primitives::writeTexCoords(const Item& attributes, std::optional<size_t> ma
     for (Vec2f& uv : set.values) toTexCoord(uses[i], uv);
     sets.push_back(std::move(set));
   }
-  if (sets.empty()) return;
+  if (sets.empty()) return false;
   const bool several = uses.size() > 1 && nodes_.knows("MultiTextureCoordinate") &&
                        nodes_.knows("TextureCoordinate", "mapping");
-  if (!several)
-    return writeShared("texCoord", "TextureCoordinate", "point", sets[0].key,
-                       std::move(sets[0].values));
+  if (!several) {
+    writeShared("texCoord", "TextureCoordinate", "point", sets[0].key, std::move(sets[0].values));
+    return true;
+  }
   nodes_.openIn("texCoord", "MultiTextureCoordinate");
   nodes_.openField("texCoord");
   for (Set& set : sets) {
@@ -303,6 +368,7 @@ void Primitives::writeTexCoords(const Item& attributes, std::optional<size_t> ma
   }
   nodes_.closeField();
   nodes_.closeIn();
+  return true;
 }
 
 } // namespace xvrml::gltf

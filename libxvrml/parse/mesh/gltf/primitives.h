@@ -2,21 +2,19 @@
 #pragma once
 
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
-#include <Imath/ImathMatrix.h>
-
 #include "parse/mesh/gltf/materials.h"
+#include "parse/mesh/gltf/skins.h"
 
 namespace xvrml::gltf {
 
-// How a node changes the mesh that it shows: its weights of morph targets, and for a skin the
-// matrix of each joint (joint times inverse bind matrix).
+// How a node changes the mesh that it shows: its weights of morph targets, and its skin.
 struct Deformation {
   std::vector<double> weights;
-  std::span<const Imath::M44d> joints; // empty: no skin
+  Skins* skins = nullptr; // null: it has no skin
+  size_t node = 0, skin = 0;
 };
 
 class Primitives {
@@ -26,8 +24,10 @@ class Primitives {
 
   size_t size() const { return meshes_.size(); }
   const Item& mesh(size_t number) const { return meshes_[number]; }
+  // Adds the vertices of a mesh with a skin to its figure.
+  void addTo(const Deformation& deformation, size_t mesh);
   // Writes the Shapes of a mesh into the open list of nodes; a mesh that stands there already is
-  // USEd. A deformed mesh is written as it is at rest.
+  // USEd. A mesh with a skin uses the vertices of its figure.
   void write(size_t mesh, const Deformation& deformation);
   // The DEF names of the Coordinate nodes of a mesh that was written with morph targets, with what
   // moves them.
@@ -41,23 +41,20 @@ class Primitives {
   void keepMorphs(bool keep) { keepMorphs_ = keep; }
 
  private:
-  struct Vertices {
-    MFVec3f points, normals;
-    MFColor colors;
-    MFFloat alphas; // empty: opaque
-  };
-
-  void writePrimitive(const Item& primitive, const Deformation& deformation);
+  void writePrimitive(const Item& primitive, const Deformation& deformation, Skins::Part* part);
   MFVec3f readVectors(const Item& attributes, std::string_view name, size_t count);
   bool readVertices(const Item& primitive, Vertices& vertices);
   void readColors(const Item& attributes, Vertices& vertices);
   void morph(const Item& primitive, const std::vector<double>& weights, Vertices& vertices);
-  void skin(const Item& attributes, std::span<const Imath::M44d> joints, Vertices& vertices);
   MFInt32 faceIndex(const std::vector<uint32_t>& index, uint64_t mode, uint64_t& bad,
                     size_t points) const;
-  void writeGeometry(const Item& primitive, Vertices&& vertices, bool deformed);
-  void writeVertices(const Item& attributes, Vertices&& vertices, bool deformed);
-  void writeTexCoords(const Item& attributes, std::optional<size_t> material, size_t count);
+  void writeGeometry(const Item& primitive, Vertices&& vertices, const Deformation& deformation,
+                     const Skins::Part* part);
+  bool readIndices(const Item& primitive, uint64_t mode, size_t count, MFInt32& coordIndex);
+  std::string keyOf(const Item& attributes, std::string_view name, bool own) const;
+  void writeVertices(const Item& attributes, Vertices& vertices, bool own);
+  void writeColors(const Item& attributes, Vertices&& vertices, bool own);
+  bool writeTexCoords(const Item& attributes, std::optional<size_t> material, size_t count);
   template <class T> void writeShared(std::string_view field, std::string_view type,
                                       std::string_view values, const std::string& key, T&& data);
 

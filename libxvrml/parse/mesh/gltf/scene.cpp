@@ -37,10 +37,6 @@ Rotation rotationOf(const M33d& m) {
   return gltf::rotationOf(q.v.x, q.v.y, q.v.z, q.r);
 }
 
-// A size of 0 along one axis makes a figure flat. A Transform has no such scale (6.52), so one that
-// is this part of the largest size stands for it.
-constexpr double flatness = 1e-6;
-
 // Returns the axis along which a scale is 0, or -1 if there is none or more than one.
 int flatAxis(const double (&scale)[3]) {
   int axis = -1, zeros = 0;
@@ -56,7 +52,9 @@ double flatSize(const double (&scale)[3]) {
   return flatness * std::max({std::abs(scale[0]), std::abs(scale[1]), std::abs(scale[2])});
 }
 
-// Writes the fields of a Transform for any matrix. A matrix without shear has its columns' lengths
+} // namespace
+
+// A matrix without shear has its columns' lengths
 // as scale. Any other is a rotation times a symmetric matrix (polar decomposition), whose
 // eigenvectors are scaleOrientation.
 void writeMatrix(NodeStream& out, const M44d& m) {
@@ -103,8 +101,6 @@ void writeMatrix(NodeStream& out, const M44d& m) {
   out.set("scale", vec3f(s));
 }
 
-} // namespace
-
 Rotation rotationOf(double x, double y, double z, double w) {
   const double axis = std::sqrt(x * x + y * y + z * z);
   if (!(axis > 0) || !std::isfinite(axis) || !std::isfinite(w)) return {};
@@ -112,14 +108,14 @@ Rotation rotationOf(double x, double y, double z, double w) {
 }
 
 Scene::Scene(const MeshFile& file, NodeStream& nodes, const Item& root, Accessors& accessors)
-    : file_(file), out_(nodes), accessors_(accessors), scratch_(file.budget),
-      materials_(file, nodes, root, accessors),
+    : file_(file), out_(nodes), scratch_(file.budget), materials_(file, nodes, root, accessors),
       primitives_(file, nodes, root, accessors, materials_), nodes_(root.list("nodes")),
       scenes_(root.list("scenes")), cameras_(root.list("cameras")),
-      lights_(root.extension("KHR_lights_punctual").list("lights")), skins_(root.list("skins")),
-      scene_(root.index("scene", scenes_.size())), children_(nodes_.size()),
-      parents_(nodes_.size(), nodes_.size()), defs_(nodes_.size()), isJoint_(nodes_.size()),
-      hasMorphAnimation_(nodes_.size()), inThisScene_(nodes_.size()) {
+      lights_(root.extension("KHR_lights_punctual").list("lights")),
+      skins_(file, root, accessors, nodes_.size()), scene_(root.index("scene", scenes_.size())),
+      children_(nodes_.size()), parents_(nodes_.size(), nodes_.size()), defs_(nodes_.size()),
+      hasMorphAnimation_(nodes_.size()), hasScaleAnimation_(nodes_.size()),
+      inThisScene_(nodes_.size()) {
   findParents();
   findAnimated(root);
 }
@@ -147,13 +143,15 @@ void Scene::findParents() {
 }
 
 void Scene::findAnimated(const Item& root) {
-  for (const Item& skin : skins_)
-    for (const size_t joint : skin.indices("joints", nodes_.size())) isJoint_[joint] = true;
   for (const Item& animation : root.list("animations")) {
     for (const Item& channel : animation.list("channels")) {
       const Item target = channel.object("target");
-      if (target.text("path") != "weights") continue;
-      if (const auto node = target.index("node", nodes_.size())) hasMorphAnimation_[*node] = true;
+      const std::string path = target.text("path");
+      std::vector<bool>* const has = path == "weights" ? &hasMorphAnimation_
+                                     : path == "scale" ? &hasScaleAnimation_
+                                                       : nullptr;
+      const auto node = has ? target.index("node", nodes_.size()) : std::nullopt;
+      if (node) (*has)[*node] = true;
     }
   }
 }
@@ -190,8 +188,52 @@ void Scene::write() {
 void Scene::writeRoots(const std::vector<size_t>& roots) {
   std::fill(inThisScene_.begin(), inThisScene_.end(), false);
   skinned_.clear();
+  findSkinned(roots);
+  skins_.beginFigure();
+  for (const auto& [node, skinned] : skinned_)
+    if (skinned.mesh) primitives_.addTo(deformationOf(node), *skinned.mesh);
+  if (!skins_.empty()) return writeFigure(roots);
   for (const size_t root : roots) writeNode(root, 1);
+  writeSkinned(); // points alone
+}
+
+// Finds the nodes of the next scene that have a mesh with a skin and are not written yet.
+void Scene::findSkinned(const std::vector<size_t>& roots) {
+  std::vector<bool> seen(nodes_.size());
+  std::vector<size_t> open(roots.rbegin(), roots.rend());
+  while (!open.empty()) {
+    const size_t number = open.back();
+    open.pop_back();
+    if (!nodes_[number] || seen[number] || !defs_[number].empty()) continue;
+    seen[number] = true;
+    if (const auto skin = nodes_[number].index("skin", skins_.size()))
+      skinned_[number] = {nodes_[number].index("mesh", primitives_.size()), *skin};
+    open.insert(open.end(), children_[number].rbegin(), children_[number].rend());
+  }
+}
+
+// Writes the scene as the skeleton of a figure. Meshes with skins are the skin, because their
+// joints alone place them (3.7.3.1).
+void Scene::writeFigure(const std::vector<size_t>& roots) {
+  out_.open("HAnimHumanoid", out_.define("Figure", {}));
+  skins_.writeVertices(out_);
+  out_.openField("skeleton");
+  for (const size_t root : roots) writeNode(root, 1);
+  out_.closeField();
+  out_.openField("skin");
   writeSkinned();
+  out_.closeField();
+  skins_.writeList(out_);
+  out_.close();
+}
+
+void Scene::writeSkinned() {
+  for (const auto& [node, skinned] : skinned_)
+    if (skinned.mesh) primitives_.write(*skinned.mesh, deformationOf(node));
+}
+
+Deformation Scene::deformationOf(size_t number) {
+  return {weightsOf(nodes_[number]), &skins_, number, skinned_.at(number).skin};
 }
 
 void Scene::writeNode(size_t number, uint64_t depth) {
@@ -207,10 +249,10 @@ void Scene::writeNode(size_t number, uint64_t depth) {
   writePlace(node);
   out_.openField("children");
   writeMesh(number);
+  skins_.writeJoints(out_, number);
   if (const auto camera = node.index("camera", cameras_.size()))
     gltf::writeCamera(out_, cameras_[*camera]);
-  if (const auto light = node.extension("KHR_lights_punctual").index("light", lights_.size()))
-    gltf::writeLight(out_, lights_[*light]);
+  writeLight(number);
   for (const size_t child : children_[number]) writeNode(child, depth + 1);
   out_.closeField();
   out_.close();
@@ -230,61 +272,16 @@ void Scene::writePlace(const Item& node) {
   out_.set("scale", vec3f({scale[0], scale[1], scale[2]}));
 }
 
-std::vector<double> Scene::weightsOf(const Item& node) const {
-  std::vector<double> weights = node.numbers("weights");
-  const auto mesh = node.index("mesh", primitives_.size());
-  if (weights.empty() && mesh) weights = primitives_.mesh(*mesh).numbers("weights");
-  if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0; })) weights.clear();
-  return weights;
-}
-
-void Scene::writeMesh(size_t number) {
+void Scene::writeLight(size_t number) {
   const Item& node = nodes_[number];
-  const auto mesh = node.index("mesh", primitives_.size());
-  if (!mesh) return;
-  if (node.index("skin", skins_.size())) return skinned_.push_back(number);
-  primitives_.keepMorphs(hasMorphAnimation_[number]);
-  primitives_.write(*mesh, {weightsOf(node), {}});
-  if (hasMorphAnimation_[number]) morphs_[number] = primitives_.takeMorphs();
-  primitives_.keepMorphs(false);
-}
-
-const std::vector<Primitives::Morph>* Scene::morphsOf(size_t node) const {
-  const auto found = morphs_.find(node);
-  return found == morphs_.end() ? nullptr : &found->second;
-}
-
-// Skinned meshes stand at the root of the scene, because their joints alone place them (3.7.3.1).
-void Scene::writeSkinned() {
-  for (const size_t number : skinned_) {
-    const Item& node = nodes_[number];
-    const auto skin = node.index("skin", skins_.size());
-    const auto mesh = node.index("mesh", primitives_.size());
-    primitives_.write(*mesh, {weightsOf(node), jointsOf(*skin)});
+  const auto light = node.extension("KHR_lights_punctual").index("light", lights_.size());
+  if (!light) return;
+  for (size_t above = number; above != nodes_.size(); above = parents_[above]) {
+    if (!hasScaleAnimation_[above]) continue;
+    node.warn("an animation scales a light, and its distances with it");
+    break;
   }
-}
-
-// Returns the matrices of a skin, which are computed once.
-const std::vector<M44d>& Scene::jointsOf(size_t number) {
-  const auto [known, fresh] = joints_.try_emplace(number);
-  std::vector<M44d>& matrices = known->second;
-  if (!fresh) return matrices;
-  const Item& skin = skins_[number];
-  const std::vector<size_t> joints = skin.indices("joints", nodes_.size());
-  Values inverse(file_.budget);
-  if (const auto accessor = skin.index("inverseBindMatrices", accessors_.size()))
-    inverse = accessors_.read(*accessor);
-  scratch_.take(joints.size() * sizeof(M44d));
-  for (size_t i = 0; i < joints.size(); ++i) {
-    M44d bind;
-    if (inverse.components == 16 && i < inverse.size()) {
-      double numbers[16];
-      std::copy_n(&inverse.numbers[16 * i], 16, numbers);
-      bind = matrix44(numbers);
-    }
-    matrices.push_back(bind * worldMatrix(joints[i]));
-  }
-  return matrices;
+  gltf::writeLight(out_, lights_[*light], worldMatrix(number));
 }
 
 M44d Scene::matrixOf(const Item& node) const {
@@ -299,7 +296,7 @@ M44d Scene::matrixOf(const Item& node) const {
   return scale * turn * move;
 }
 
-// Keeps the matrices of all nodes above, because joints share most of them.
+// Returns the matrix from a node to the scene.
 const M44d& Scene::worldMatrix(size_t node) {
   std::vector<size_t> path;
   for (size_t above = node; above != nodes_.size() && !worlds_.contains(above);
@@ -313,6 +310,30 @@ const M44d& Scene::worldMatrix(size_t node) {
     worlds_.emplace(next, parent == worlds_.end() ? own : own * parent->second);
   }
   return worlds_.at(node);
+}
+
+std::vector<double> Scene::weightsOf(const Item& node) const {
+  std::vector<double> weights = node.numbers("weights");
+  const auto mesh = node.index("mesh", primitives_.size());
+  if (weights.empty() && mesh) weights = primitives_.mesh(*mesh).numbers("weights");
+  if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0; })) weights.clear();
+  return weights;
+}
+
+void Scene::writeMesh(size_t number) {
+  const Item& node = nodes_[number];
+  if (skinned_.contains(number)) return; // part of the figure
+  const auto mesh = node.index("mesh", primitives_.size());
+  if (!mesh) return;
+  primitives_.keepMorphs(hasMorphAnimation_[number]);
+  primitives_.write(*mesh, {weightsOf(node)});
+  if (hasMorphAnimation_[number]) morphs_[number] = primitives_.takeMorphs();
+  primitives_.keepMorphs(false);
+}
+
+const std::vector<Primitives::Morph>* Scene::morphsOf(size_t node) const {
+  const auto found = morphs_.find(node);
+  return found == morphs_.end() ? nullptr : &found->second;
 }
 
 } // namespace xvrml::gltf

@@ -1,10 +1,7 @@
-// views.cpp: cameras (glTF 2.0, 3.10) as Viewpoint and OrthoViewpoint, and the lights of
-// KHR_lights_punctual.
+// views.cpp: cameras (glTF 2.0, 3.10) as Viewpoint and OrthoViewpoint.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "parse/mesh/gltf/materials.h"
 #include "parse/mesh/gltf/scene.h"
 
 namespace xvrml::gltf {
@@ -36,52 +33,6 @@ void writeCamera(NodeStream& out, const Item& camera) {
   } else if (!ortho) {
     out.set("fieldOfView", fieldOfView(camera.object("perspective")));
   }
-  out.close();
-}
-
-static Color lightColor(const Item& light) {
-  const auto rgb = light.numbers("color", 3);
-  if (rgb.empty()) return {1, 1, 1};
-  const auto part = [&](size_t i) { return float(std::clamp(rgb[i], 0.0, 1.0)); };
-  return encoded({part(0), part(1), part(2)});
-}
-
-namespace {
-
-// Light decreases with the square of the distance. `range` ends it; without one it never ends.
-void setPlaced(NodeStream& out, const Item& light) {
-  out.set("attenuation", Vec3f{0, 0, 1});
-  out.set("radius", float(light.has("range") ? std::max(0.0, light.number("range", 1)) : 1e9));
-}
-
-void setCone(NodeStream& out, const Item& cone) {
-  const double half = std::numbers::pi / 2;
-  const double outer = std::clamp(cone.number("outerConeAngle", half / 2), 1e-3, half);
-  const double inner = std::clamp(cone.number("innerConeAngle", 0), 1e-3, outer);
-  out.set("cutOffAngle", float(outer));
-  out.set("beamWidth", float(inner));
-}
-
-} // namespace
-
-void writeLight(NodeStream& out, const Item& light) {
-  if (!light) return;
-  const std::string type = light.text("type");
-  const bool spot = type == "spot", placed = spot || type == "point";
-  if (!placed && type != "directional")
-    return light.error("the light has no type that is known (directional, point, spot)");
-  // Candela and lux as they are: PhysicalMaterial takes an intensity as an irradiance, and lights
-  // of X3D 4 have no upper limit.
-  constexpr double brightest = 1e30; // a float
-  out.open(spot     ? "SpotLight"
-           : placed ? "PointLight"
-                    : "DirectionalLight",
-           out.define(light.text("name"), "Light"));
-  out.set("color", lightColor(light));
-  out.set("intensity", float(std::clamp(light.number("intensity", 1), 0.0, brightest)));
-  if (placed) setPlaced(out, light);
-  out.set("global", true);
-  if (spot) setCone(out, light.object("spot"));
   out.close();
 }
 

@@ -1,0 +1,21 @@
+// figure.h: figures of H-Anim (ISO/IEC 19774-1, ISO/IEC 19775-1 26), whose joints bend a skin and
+// whose displacers move single vertices. Skins of glTF are figures, too. The event engine calls
+// this in a running world, whoever draws in one that does not run. [the thread that owns the nodes]
+#pragma once
+
+#include <vector>
+
+#include "xvrml/diagnostics.h"
+#include "xvrml/node.h"
+
+namespace xvrml {
+
+// Returns whether nodes of this type move vertices: HAnimHumanoid and HAnimSegment.
+bool deforms(const NodeType& type);
+
+// Moves the vertices of such a node to where its joints and displacers have them now. Returns the
+// Coordinate and the Normal that are drawn in another way than before. diagnostics: receives one
+// warning of what is wrong with the node; null: none is made.
+std::vector<Node*> deform(const Node& node, Diagnostics* diagnostics);
+
+} // namespace xvrml
