@@ -24,15 +24,18 @@ constexpr uint32_t trialSeed = 0x676c6f74u;
 // The weights of light paths make a camera path cost about so much more.
 constexpr double costOfWeights = 1.1;
 
-// Worlds with culled backs and clear things have no such paths: clear sheets of one side pass other
-// light in one direction than in the other.
 bool canTrace(const RenderScene& scene) {
   const edit::FrameSettingsT& frame = scene.frame;
   const RtsClass* camera = scene.camera.shader.shaderClass;
   return tracesLamps(frame.transport) && !showsNoLight(frame) && frame.samples >= fewestSamples &&
          frame.measure == RT_MEASURE_NOTHING && lightStrideOf(frame) == 1 && camera &&
-         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass &&
-         !(scene.kernel->cullsBacks() && scene.transparentShadows);
+         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass;
+}
+
+// Worlds with culled backs and clear things share nothing: clear sheets of one side pass other
+// light in one direction than in the other.
+bool canShare(const RenderScene& scene) {
+  return !(scene.kernel->cullsBacks() && scene.transparentShadows);
 }
 
 double raysOf(const RayCounters& counters) {
@@ -160,7 +163,7 @@ struct Expectation {
 void chooseMirrorPaths(RenderScene& scene, Trial& trial, Expectation& expected) {
   const edit::FrameSettingsT& frame = scene.frame;
   const EmissiveShapes* shapes = scene.emitters->shapes();
-  const bool sharable = shapes && !shapes->empty();
+  const bool sharable = shapes && !shapes->empty() && canShare(scene);
   scene.sharesMirrors = sharable; // the light paths are traced in any case
   const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays);
   if (sharable)
@@ -191,13 +194,14 @@ bool tryLightPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   if (!canTrace(scene)) return true;
   const auto sources =
       std::make_shared<const LightSources>(scene, nullptr, LightSources::Kind::glossy);
-  if (!scene.lightSources && sources->empty()) return true;
+  const bool glossy = canShare(scene) && !sources->empty();
+  if (!scene.lightSources && !glossy) return true;
   Trial trial(scene, stop);
   const CameraTrial camera = trial.tryCameraPaths();
   if (stop) return false;
   Expectation expected{camera.variance, camera.rays};
   if (scene.lightSources) chooseMirrorPaths(scene, trial, expected);
-  if (!sources->empty()) {
+  if (glossy) {
     double rays = 0;
     scene.glossySources = sources;
     scene.showsGlossy = true;
