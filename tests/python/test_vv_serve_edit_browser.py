@@ -366,7 +366,7 @@ def test_nodes_are_put_into_fields_by_the_keyboard(browser, serve, vv):
     browser.until(lambda: browser.script("return " + chips) == ["LAMP  PointLight", "SpotLight"],
                   "a SpotLight")
     assert browser.script("return document.querySelector('.chooser').open") is False
-    browser.click(".field[data-field=children] .chip:nth-child(2) button:nth-of-type(2)")
+    browser.click(".field[data-field=children] .chip:nth-of-type(2) button:nth-of-type(2)")
     browser.until(lambda: browser.script("return " + chips) == ["SpotLight", "LAMP  PointLight"],
                   "moved up")
     browser.keys("w", "d")  # no A has been kept: the page says so and goes on
