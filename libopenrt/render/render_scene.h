@@ -79,6 +79,8 @@ struct RenderScene {
   // Camera paths share the light of emissive shapes that lightSources send by way of mirrors and
   // glass; else light paths make all of it.
   bool sharesMirrors = false;
+  // How many light paths of lightSources go with one camera path (path/light_path_trial.h).
+  uint32_t lightPathsOfCameraPath = 1;
   // Returns whether camera paths count how often light paths make them.
   bool countsLightPaths() const { return glossySources || sharesMirrors; }
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the

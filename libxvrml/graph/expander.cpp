@@ -179,6 +179,14 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
     exclude(route.from);
     exclude(route.to);
   }
+  for (const Node* node : plan.nodes) { // each instance has a pose of its own
+    if (const auto* figure = nodeCast<nodes::HAnimHumanoid>(node)) {
+      exclude(figure->skinCoord);
+      exclude(figure->skinNormal);
+    } else if (const auto* segment = nodeCast<nodes::HAnimSegment>(node)) {
+      exclude(segment->coord);
+    }
+  }
   // A node that holds an unshared node is not shared either.
   std::vector<std::vector<uint32_t>> holders(plan.nodes.size());
   std::vector<uint32_t> changed;

@@ -1,6 +1,6 @@
 // glossy_light.cpp: light that light paths and camera paths make together
 // (render/lights/light_path_weights.h), against path tracing: caustics of glossy surfaces, and what
-// mirrors and smooth glass send of emissive shapes.
+// mirrors and smooth glass send of emissive shapes. Also how many light paths there are.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -127,6 +127,28 @@ class GlossyLight : public Scene {
     rtPerspective(12);
     rtPopMatrix();
     rtQuality(RT_MAX_DEPTH, 6);
+  }
+  // A matt room is lit by a small lamp in a ball of glass: all its light comes by way of the glass.
+  static void aRoomWithAGlobeLamp() {
+    constexpr double half = 1, reflectance = .4;
+    const RTid wall = square(matt(reflectance), half);
+    constexpr double turns[6][3] = {{0, 1, 0},   {90, 1, 0}, {180, 1, 0},
+                                    {-90, 1, 0}, {90, 0, 1}, {-90, 0, 1}};
+    for (const auto& [degrees, x, y] : turns) {
+      rtPushMatrix();
+      rtRotated(degrees, x, y, 0);
+      rtTranslated(0, 0, -half);
+      place(wall);
+      rtPopMatrix();
+    }
+    placeAt({.2, .3, .5}, ball(Shader("Glass"), .15));
+    placeAt({.2, .3, .5}, ball(matt(0, 200), .1));
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(-.8, -.8, -.6, .9, -.2, -.5, 0, 0, 1);
+    rtPerspective(60);
+    rtPopMatrix();
+    rtQuality(RT_MAX_DEPTH, 16); // what deeper paths bring is below the noise
   }
   static double noise(const Quarters& of) {
     return of.error[0] + of.error[1] + of.error[2] + of.error[3];
@@ -272,6 +294,25 @@ TEST_F(GlossyLight, ConnectionsDoNotDependOnThreads) {
     });
     made.push_back(picture(RT_TRANSPORT_LIGHT, 32, 1));
     EXPECT_TRUE(says(", connected"));
+    rtDeleteContext(context);
+  }
+  rtMakeCurrent(own);
+  EXPECT_EQ(made[0], made[1]);
+}
+
+// Light paths bring nearly all of the noise, so there are several for each camera path.
+TEST_F(GlossyLight, ARoomWithAGlobeLamp) {
+  expectSameMeans(aRoomWithAGlobeLamp, 128, 32, " light");
+}
+
+TEST_F(GlossyLight, SeveralLightPathsDoNotDependOnThreads) {
+  std::vector<std::vector<float>> made;
+  const RTcontext own = rtGetCurrent();
+  for (const char* config : {"threads=1", "threads=2"}) {
+    const RTcontext context = rtNewContext(config);
+    aRoomWithAGlobeLamp();
+    made.push_back(picture(RT_TRANSPORT_LIGHT, 32, 1));
+    EXPECT_TRUE(says(" light")) << stats().transport.reason;
     rtDeleteContext(context);
   }
   rtMakeCurrent(own);

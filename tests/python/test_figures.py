@@ -26,8 +26,8 @@ def test_a_point_with_a_size_is_lit_as_a_ball_and_casts_its_shadow():
     point = world_of(CAMERA, LAMP, POINT, FLOOR).render(point_size=1, **SMALL)
     ball = world_of(CAMERA, LAMP, BALL, FLOOR).render(**SMALL)
     thin = world_of(CAMERA, LAMP, POINT, FLOOR).render(**SMALL)
-    assert np.abs(point.array - ball.array)[..., :3].mean() < 0.002
-    assert np.abs(thin.array - ball.array)[..., :3].mean() > 0.01
+    assert np.abs(point.array - ball.array)[..., :3].mean() < 2e-4
+    assert np.abs(thin.array - ball.array)[..., :3].mean() > 1e-3
 
 
 def test_a_line_with_a_width_is_as_thick_as_a_cylinder():
@@ -60,10 +60,12 @@ def test_sizes_are_options_of_vv(vv):
 
 def test_points_follow_events():
     world = world_of(CAMERA, LAMP, POINT.replace("Coordinate", "DEF C Coordinate"))
+    upper, lower = np.s_[:24, :, :3], np.s_[24:, :, :3]
     before = world.render(point_size=1, **SMALL).array
+    assert before[upper].max() > 0.1 and before[lower].max() == 0
     world["C"].point = [(0, -1, 0)]
     after = world.render(point_size=1, **SMALL).array
-    assert np.abs(before[::-1] - after)[..., :3].mean() < 0.01 < np.abs(before - after)[..., :3].mean()
+    assert after[upper].max() == 0 and after[lower].max() > 0.1
 
 
 def test_clouds_and_heights():
@@ -140,7 +142,7 @@ def test_a_plotter_of_pyvista():
     world = xvrml.to_world(plotter)
     first, second = world.meshes()
     assert first.colors is not None and first.colors[:, 0].std() > 0.1
-    assert second.node.appearance.material.diffuseColor.tolist() == [1, 0, 0]
+    assert np.allclose(second.node.appearance.material.diffuseColor, (1, 0, 0))
     matrix = np.array(world.viewpoints[0].matrix)
     assert np.allclose(matrix[:3, 3], (3, 4, 5))
     assert np.allclose(matrix[:3, 2] * np.sqrt(50), (3, 4, 5), atol=1e-4), "it looks at the origin"

@@ -29,11 +29,9 @@ struct Cost {
 Cost costOf(int count) {
   const std::string path = testing::TempDir() + "editor_cost.wrl";
   xvrml::Browser browser(EditedWorld::load(path, nodes(count)));
-  std::filesystem::remove(path); // nothing reads it before the first edit
   const size_t before = heapBytes();
   vv::WorldEditor editor(browser);
   const size_t opened = heapBytes();
-  EditedWorld::load(path, nodes(count));
   editor.editor().set(*browser.node("FIRST"), "visible", false);
   const size_t editing = heapBytes();
   std::filesystem::remove(path);
@@ -42,7 +40,7 @@ Cost costOf(int count) {
 
 TEST(EditorCost, AWorldThatNobodyEditsHasNoPlacesOfItsText) {
   if (heapBytes() == 0) GTEST_SKIP() << "the sanitizer has its own heap";
-  costOf(10); // what is made once
+  costOf(10); // makes what is made once
   const Cost few = costOf(10), many = costOf(20'000);
   EXPECT_EQ(many.opened, few.opened) << "it does not depend on the world";
   EXPECT_LT(few.opened, 20'000u);

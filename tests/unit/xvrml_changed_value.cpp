@@ -80,12 +80,12 @@ TEST(ChangedValue, ChangesInSeveralPlacesLeaveTheRest) {
 TEST(ChangedValue, ElementsWithoutALineOfTheirOwnGoIntoTheirs) {
   EXPECT_EQ(
       changed(FieldType::MFInt32, "[ 0 1 2 -1, # a\n  2 3 0 -1 ]", "[ 0 1 2 4 -1 2 3 0 -1 7 ]"),
-      "[ 0 1 2 4 -1, # a\n  2 3 0 -1, 7 ]");
+      "[ 0 1 2 4 -1, # a\n  2 3 0 -1 7 ]");
   EXPECT_EQ(changed(FieldType::MFInt32, "[ 0 1 2 -1 # a\n  2 3 0 -1 # b\n  4 4 ]",
                     "[ 0 2 -1 2 3 0 9 -1 4 ]"),
             "[ 0 2 -1 # a\n  2 3 0 9 -1 # b\n  4 ]");
   EXPECT_EQ(changed(FieldType::MFString, "[\"a\",\"b\", \"c\"]", "[ \"x\" \"a\" \"c\" \"d\" ]"),
-            "[\"x\",\"a\",\"c\", \"d\"]");
+            "[\"x\",\"a\", \"c\", \"d\"]");
   EXPECT_EQ(changed(FieldType::MFInt32, "[1-2 3]", "[ 1 3 ]"), "[1 3]");
   EXPECT_EQ(changed(FieldType::MFInt32, "[1-2-3]", "[ 1 2 -3 ]"), "[1 2 -3]");
 }

@@ -231,9 +231,8 @@ TEST_P(Edited, NewLinesEndAsThoseOfTheFile) {
   for (const char* name : {"C", "D"}) editor->set(node(name), "point", MFVec3f(100));
   const std::string now = editor->text();
   EXPECT_GT(std::count(now.begin(), now.end(), '\n'), 5);
-  for (size_t i = 0; i < now.size(); ++i) {
-    if (now[i] == '\n') EXPECT_EQ(now[i - 1], '\r') << i;
-  }
+  for (size_t i = now.find('\n'); i != now.npos; i = now.find('\n', i + 1))
+    EXPECT_EQ(now[i - 1], '\r') << i;
   undoAll();
 }
 

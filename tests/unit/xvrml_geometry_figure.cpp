@@ -138,6 +138,20 @@ TEST(Figure, NumbersStayFinite) {
   expectNear(drawnPoints(named<nodes::Coordinate>(*world, "C"))[0], {2, 0, 0});
 }
 
+// Nodes of a prototype's body that nothing changes are shared by its instances, but no skins.
+TEST(Figure, InstancesOfAPrototypeHaveSkinsOfTheirOwn) {
+  auto world =
+      load("PROTO P [ inputOutput SFVec3f t 0 0 0 ] { HAnimHumanoid { skinCoord Coordinate "
+           "{ point 0 0 0 } skeleton HAnimJoint { translation IS t skinCoordIndex 0 } } }\n"
+           "DEF A P { t 1 0 0 } DEF B P { t 2 0 0 }");
+  Browser browser(std::move(world));
+  for (const auto& [name, place] : {std::pair("A", 1.0f), std::pair("B", 2.0f)}) {
+    auto* figure = nodeCast<nodes::HAnimHumanoid>(renderedNode(browser.node(name).get()));
+    ASSERT_TRUE(figure);
+    expectNear(drawnPoints(*nodeCast<nodes::Coordinate>(figure->skinCoord))[0], {place, 0, 0});
+  }
+}
+
 // In a running world the skin follows every event, also between ticks, and is reported as changed.
 TEST(Figure, ASkinFollowsItsJointsInARunningWorld) {
   auto loaded = load(bar);

@@ -1,5 +1,6 @@
 // xvrml_nurbs.cpp: Tests the nodes of NURBS (ISO/IEC 19775-1 clause 27) against circles, cylinders,
 // spheres and tori, which rational B-splines are exactly, and with fields that do not fit.
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -363,6 +364,43 @@ TEST(Nurbs, APeriodicSurfaceIsSmoothAtItsSeam) {
   EXPECT_FALSE(faults.any());
 }
 
+// The knots of a square's corners fall between equal steps.
+TEST(Nurbs, BendsAreDrawnWhereTheyAre) {
+  const KnotVector knots(2, {0, 0, 0.25, 0.5, 0.75, 1, 1});
+  for (const uint64_t count : {1, 2, 3, 4, 10}) {
+    const std::vector<ParameterStep> steps = knots.steps(count);
+    EXPECT_EQ(std::count_if(steps.begin(), steps.end(),
+                            [](const ParameterStep& step) {
+                              return step.side == ParameterStep::Side::before;
+                            }),
+              3);
+    EXPECT_EQ(steps.front().t, 0);
+    EXPECT_EQ(steps.back().t, 1);
+    for (size_t i = 1; i < steps.size(); i++) EXPECT_GE(steps[i].t, steps[i - 1].t);
+  }
+  EXPECT_EQ(knots.steps(4).size(), 8u); // each inner end is a bend
+  EXPECT_EQ(KnotVector(3, {0, 0, 0, 1, 2, 2, 3, 3, 3}).steps(6).size(), 8u);
+
+  Made<nodes::NurbsTrimmedSurface> surface("NurbsTrimmedSurface");
+  makeSquare(*surface);
+  Made<nodes::NurbsCurve2D> outline("NurbsCurve2D");
+  outline->controlPoint = {{-3, -3}, {3, -3}, {3, 3}, {-3, 3}, {-3, -3}};
+  outline->order = 2;
+  surface->trimmingContour = {contour(outline)};
+  EXPECT_NEAR(area(build(surface).mesh), 36, 1e-4);
+
+  Made<nodes::NurbsPatchSurface> roof("NurbsPatchSurface"); // two planes at right angles
+  roof->controlPoint =
+      coordinate({{-1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, -1}, {0, 1, -1}, {1, 0, -1}});
+  roof->uDimension = 3;
+  roof->vDimension = roof->uOrder = roof->vOrder = 2;
+  roof->uTessellation = 3;
+  const Built built = build(roof);
+  expectSound(built.mesh);
+  EXPECT_NEAR(area(built.mesh), 2 * std::numbers::sqrt2, 1e-5);
+  for (const Vec3f& n : built.mesh.normals) EXPECT_NEAR(std::abs(n.x), half, 1e-6);
+}
+
 TEST(Nurbs, TextureCoordinatesFollowTheirPoints) {
   Made<nodes::NurbsPatchSurface> patch("NurbsPatchSurface");
   patch->controlPoint = coordinate({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}});
@@ -373,7 +411,7 @@ TEST(Nurbs, TextureCoordinatesFollowTheirPoints) {
   EXPECT_NEAR(four.mesh.texCoords[4].x, 1, 1e-6);
   EXPECT_NEAR(four.mesh.texCoords[4].y, 1.5, 1e-6);
   Made<nodes::NurbsTextureCoordinate> texture("NurbsTextureCoordinate");
-  texture->controlPoint = {{0, 0}, {0.5f, 0}, {1, 0}, {0, 1}, {0.5f, 1}, {1, 1}};
+  texture->controlPoint = {{0, 0}, {0.5f, 0}, {1, 0}, {0, 1}, {0.5f, 0.5f}, {1, 1}};
   texture->weight = numbers({1, 0.5, 1, 1, 0.5, 1});
   texture->uDimension = 3;
   texture->vDimension = texture->vOrder = 2;

@@ -84,7 +84,8 @@ void Editing::draw() {
     drawRectangle(regionBetween(pressed_->x, pressed_->y, pointer_.x, pointer_.y), "");
   panels_->draw();
   const PointerReading* const reading = light_.pointerOf(face);
-  if (reading && !hasMoved_ && !panels_->hasPointer()) drawReadout(*reading, isReadable_);
+  if (reading && !hasMoved_ && !panels_->hasPointer())
+    drawReadout(*reading, isReadable_, panels_->freePart());
   screen_.setFree(panels_->freePart());
   questions_.draw();
 }

@@ -22,9 +22,13 @@ bool Editing::mayAsk(WorldEditor& editor, const InputEvent& event) const {
   case Kind::quit:
   case Kind::open: return true;
   case Kind::release: return event.alt || !isOpen_; // it may work an Anchor
-  case Kind::down:
-    return action == Action::quit || action == Action::reload ||
-           (event.control && event.text == "S") || (event.shift && event.text == "A");
+  case Kind::down: {
+    // The keys behind it may be typed into what this one opens.
+    const EditorAction opens = editorActionOf(event);
+    return action == Action::quit || action == Action::reload || opens == EditorAction::save ||
+           opens == EditorAction::menu || opens == EditorAction::rename ||
+           opens == EditorAction::keyboard;
+  }
   default: return false;
   }
 }

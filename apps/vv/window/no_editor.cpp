@@ -22,7 +22,7 @@ void Questions::draw() {}
 void drawGizmo(const Gizmo&, int) {}
 void drawComparison(const Comparison&, double, double, const FreePart&) {}
 void drawRectangle(const Region&, const char*) {}
-void drawReadout(const PointerReading&, bool) {}
+void drawReadout(const PointerReading&, bool, const FreePart&) {}
 
 std::string editorLibrary() { return ""; }
 

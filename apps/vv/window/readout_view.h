@@ -6,7 +6,7 @@
 
 namespace vv {
 
-// isReadable: as in pointerText().
-void drawReadout(const PointerReading& pointer, bool isReadable);
+// isReadable: as in pointerText(). free: the part of the picture that no panel covers.
+void drawReadout(const PointerReading& pointer, bool isReadable, const FreePart& free);
 
 } // namespace vv

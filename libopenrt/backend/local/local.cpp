@@ -344,6 +344,8 @@ void LocalBackend::prepareFrame() {
   snapshot_->aroundEye = mediaAroundEye(*snapshot_);
   guided_ = guideByPhotons(*snapshot_, stop_) && tryLightPaths(*snapshot_, stop_);
   if (snapshot_->photonGuide) transportReason_ += ", guided";
+  if (const uint32_t paths = snapshot_->lightPathsOfCameraPath; paths > 1)
+    transportReason_ += ", x" + std::to_string(paths) + " light";
   if (snapshot_->sharesMirrors) transportReason_ += ", shared";
   if (snapshot_->showsGlossy) transportReason_ += ", glossy";
   if (snapshot_->connectsGlossy) transportReason_ += ", connected";

@@ -55,12 +55,12 @@ RT_API void rtPointSize(float pixels);
 /* Texture coordinates in the camera's frame, in place of those of vertices: x is right, y up, the
  * viewer at the origin. The camera is that of the frame, also in mirrors and through glass. */
 enum {
-  RT_TEX_GEN_OFF = 0,       /* the coordinates of the vertices (default) */
-  RT_TEX_GEN_POSITION,      /* x and y of the place */
-  RT_TEX_GEN_NORMAL,        /* x and y of the unit normal on the viewer's side */
-  RT_TEX_GEN_REFLECTION,    /* x and y of the line of sight to the place, reflected there; unit */
-  RT_TEX_GEN_SPHERE_NORMAL, /* (x / 2 + 1/2, y / 2 + 1/2) of the normal */
-  RT_TEX_GEN_SPHERE_REFLECTION /* the same of the reflected line of sight */
+  RT_TEX_GEN_OFF = 0,          /* the coordinates of the vertices (default) */
+  RT_TEX_GEN_POSITION,         /* x and y of the place */
+  RT_TEX_GEN_NORMAL,           /* x and y of the unit normal on the viewer's side */
+  RT_TEX_GEN_REFLECTION,       /* x and y of the direction from the viewer, reflected; unit */
+  RT_TEX_GEN_SPHERE_NORMAL,    /* (x / 2 + 1/2, y / 2 + 1/2) of the normal */
+  RT_TEX_GEN_SPHERE_REFLECTION /* the same of the reflected direction */
 };
 /* Sets how texture coordinates are made. rtBegin and the other calls that draw latch it; lines and
  * points have none. [context-thread] */

@@ -32,9 +32,9 @@ double openLightPaths(float targetError) {
   return paths * finer * finer;
 }
 
-// Returns how many light paths go with one sample of the picture: as many as camera paths that get
-// light, and for sensors at least as many as for 16x16 of them, because the light of few sensors is
-// no easier to find.
+// Returns how many light paths go with one sample of the picture, where one goes with a camera path
+// (RenderScene::lightPathsOfCameraPath): as many as camera paths that get light, and for sensors at
+// least as many as for 16x16 of them, because the light of few sensors is no easier to find.
 double lightPathsOfSample(const edit::FrameSettingsT& frame) {
   constexpr double fewestSensors = 256;
   const uint32_t stride = lightStrideOf(frame);

@@ -29,6 +29,8 @@ struct FrameFacts {
   static constexpr uint64_t glossyPaths = uint64_t(1) << 62, connectedPaths = uint64_t(1) << 61;
   // The bit of it that says that camera paths share the light of mirrors and glass.
   static constexpr uint64_t sharedMirrors = uint64_t(1) << 60;
+  // Its factor for the number of light paths that go with a camera path, beyond the first.
+  static constexpr uint64_t moreLightPaths = uint64_t(1) << 56;
   static constexpr uint64_t unknownGuide = ~uint64_t(0);
 };
 

@@ -23,7 +23,8 @@ FrameFacts factsOf(const RenderScene& scene) {
           .guide = (scene.photonGuide || scene.lightPathFlux > 0 ? photonsOf(scene.frame) : 0) |
                    (scene.showsGlossy ? FrameFacts::glossyPaths : 0) |
                    (scene.connectsGlossy ? FrameFacts::connectedPaths : 0) |
-                   (scene.sharesMirrors ? FrameFacts::sharedMirrors : 0)};
+                   (scene.sharesMirrors ? FrameFacts::sharedMirrors : 0) |
+                   (scene.lightPathsOfCameraPath - 1) * FrameFacts::moreLightPaths};
 }
 
 struct JobRunner::Impl {

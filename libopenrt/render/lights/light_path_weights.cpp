@@ -40,7 +40,8 @@ float lightPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& plac
 float mirrorPathRatio(const RenderScene& scene, uint32_t shape, const Vec3f& place,
                       float surfaces) {
   if (!(surfaces > 0)) return 0;
-  return float(scene.lightSources->startPdf(scene, shape, place) * double(surfaces));
+  return float(scene.lightSources->startPdf(scene, shape, place) * double(surfaces) *
+               scene.lightPathsOfCameraPath);
 }
 
 namespace {

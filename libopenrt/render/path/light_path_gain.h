@@ -9,9 +9,9 @@ namespace openrt {
 
 // The second moments of the radiance that shared light brings to one camera path of each pixel,
 // summed over the colours: by camera paths alone, by light paths alone, and by both with their
-// weights. They are sums over what light paths have found.
+// weights, of which light paths have `ofLight`. They are sums over what light paths have found.
 struct LightPathGain {
-  double camera = 0, light = 0, both = 0;
+  double camera = 0, light = 0, both = 0, ofLight = 0;
 
   // Adds what a light path has found. square: its squared radiance. share: its weight. Found with
   // the density p and the ratio of pdfs q, it tells that camera paths of the density p / q have the
@@ -24,6 +24,7 @@ struct LightPathGain {
     if (!std::isfinite(square * ratio)) return;
     camera += square * ratio;
     light += square;
+    ofLight += square * share * share;
     both += square * (ratio * (1 - share) * (1 - share) + share * share);
   }
 };

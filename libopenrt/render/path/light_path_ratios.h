@@ -9,9 +9,9 @@
 
 namespace openrt {
 
-// Returns the ratio that a path has before it has reached the first surface: light paths of the
-// picture, apart from those by way of glossy surfaces, over the camera paths of a pixel; 0 if
-// camera paths share no light with those that are connected to the camera.
+// Returns the ratio that a path has before it has reached the first surface, for one light path of
+// the picture to a camera path: pixels of the picture. 0 if camera paths share no light with those
+// that are connected to the camera. lightPathRatio() and mirrorPathRatio() count the light paths.
 float firstRatio(const RenderScene& scene);
 
 // Computes the ratios of the rays that camera paths spawn, sample by sample, after chooseSamples().

@@ -1,5 +1,6 @@
 #include "render/path/light_path_trial.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "render/lights/emitters.h"
@@ -23,15 +24,18 @@ constexpr uint32_t trialSeed = 0x676c6f74u;
 // The weights of light paths make a camera path cost about so much more.
 constexpr double costOfWeights = 1.1;
 
-// Worlds with culled backs and clear things have no such paths: clear sheets of one side pass other
-// light in one direction than in the other.
 bool canTrace(const RenderScene& scene) {
   const edit::FrameSettingsT& frame = scene.frame;
   const RtsClass* camera = scene.camera.shader.shaderClass;
   return tracesLamps(frame.transport) && !showsNoLight(frame) && frame.samples >= fewestSamples &&
          frame.measure == RT_MEASURE_NOTHING && lightStrideOf(frame) == 1 && camera &&
-         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass &&
-         !(scene.kernel->cullsBacks() && scene.transparentShadows);
+         camera->project && scene.mediumLights.empty() && !scene.transport.shaderClass;
+}
+
+// Worlds with culled backs and clear things share nothing: clear sheets of one side pass other
+// light in one direction than in the other.
+bool canShare(const RenderScene& scene) {
+  return !(scene.kernel->cullsBacks() && scene.transparentShadows);
 }
 
 double raysOf(const RayCounters& counters) {
@@ -52,10 +56,12 @@ class Trial {
   // Traces camera paths in blocks of pixels. The first call also finds the weights of pixels.
   CameraTrial tryCameraPaths();
   // Traces light paths from sources. rays: gets their number for each camera path, where there are
-  // `cameras` camera paths for a light path.
-  LightPathGain tryLightPaths(const LightSources& sources, uint32_t cameras, double& rays) {
+  // `cameras` camera paths for a light path. Each number tells of other paths.
+  LightPathGain tryLightPaths(const LightSources& sources, uint32_t cameras, double& rays,
+                              uint32_t number = 0) {
     LightTracer tracer(scene_);
-    const LightPathGain gain = tracer.tryPaths(sources, lightPaths, trialSeed, weights_, stop_);
+    const LightPathGain gain =
+        tracer.tryPaths(sources, lightPaths, trialSeed + number, weights_, stop_);
     rays = raysOf(tracer.counters()) / (lightPaths * cameras);
     return gain;
   }
@@ -118,45 +124,85 @@ CameraTrial Trial::tryCameraPaths() {
   return out;
 }
 
-// The variance and the rays of one sample of a pixel, with the sharing that has been taken so far.
+// The variance and the rays of one sample of a pixel, with what has been taken so far.
 struct Expectation {
   double variance, rays;
+  double lightRays = 0;  // rays of the light paths that begin at mirrors and glass
   bool weighted = false; // camera paths have weights
 
   // Takes a sharing if that lowers the product. without, with: the second moments of the light that
   // may be shared. more: the rays that it adds.
   bool take(double without, double with, double more) {
     const double then = rays * (weighted ? 1 : costOfWeights) + more;
-    const bool pays = (variance + with) * then < (variance + without) * rays;
+    const bool pays =
+        (variance + with) * (then + lightRays) < (variance + without) * (rays + lightRays);
     variance += pays ? with : without;
     if (pays) rays = then;
     weighted |= pays;
     return pays;
   }
+  // Takes a number of light paths for each camera path, and returns it. light: the part of the
+  // variance that falls with it. Twice as many have to lower the product by a tenth.
+  uint32_t takeLightPaths(double light) {
+    constexpr uint32_t most = 8;
+    const double others = variance - light;
+    const auto product = [&](uint32_t number) {
+      return (others + light / number) * (rays + lightRays * number);
+    };
+    uint32_t number = 1;
+    while (number < most && product(2 * number) < .9 * product(number)) number *= 2;
+    variance = others + light / number;
+    lightRays *= number;
+    return number;
+  }
 };
+
+// Decides about the light paths that begin at mirrors and glass. Where a target error or a time
+// limit leaves the number of camera paths open, light paths are traced first, and one of them goes
+// with a camera path.
+void chooseMirrorPaths(RenderScene& scene, Trial& trial, Expectation& expected) {
+  const edit::FrameSettingsT& frame = scene.frame;
+  const EmissiveShapes* shapes = scene.emitters->shapes();
+  const bool sharable = shapes && !shapes->empty() && canShare(scene);
+  scene.sharesMirrors = sharable; // the light paths are traced in any case
+  const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays);
+  if (sharable)
+    scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
+  else
+    expected.variance += gain.light;
+  if (frame.targetError > 0 || frame.timeLimit > 0) return;
+  // The smaller of two results counts: a single bright path must not decide.
+  const bool shared = scene.sharesMirrors;
+  scene.sharesMirrors = sharable;
+  const LightPathGain again = trial.tryLightPaths(*scene.lightSources, 1, expected.lightRays, 1);
+  scene.sharesMirrors = shared;
+  scene.lightPathsOfCameraPath = expected.takeLightPaths(
+      shared ? std::min(gain.ofLight, again.ofLight) : std::min(gain.light, again.light));
+}
+
+// Forgets what was decided.
+void shareNothing(RenderScene& scene) {
+  scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  scene.lightPathsOfCameraPath = 1;
+}
 
 } // namespace
 
 bool tryLightPaths(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.glossySources = nullptr;
-  scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  shareNothing(scene);
   if (!canTrace(scene)) return true;
-  const EmissiveShapes* shapes = scene.emitters->shapes();
   const auto sources =
       std::make_shared<const LightSources>(scene, nullptr, LightSources::Kind::glossy);
-  const bool mirrors = scene.lightSources && shapes && !shapes->empty();
-  if (!mirrors && sources->empty()) return true;
+  const bool glossy = canShare(scene) && !sources->empty();
+  if (!scene.lightSources && !glossy) return true;
   Trial trial(scene, stop);
   const CameraTrial camera = trial.tryCameraPaths();
   if (stop) return false;
   Expectation expected{camera.variance, camera.rays};
-  double rays = 0;
-  if (mirrors) {
-    scene.sharesMirrors = true; // the light paths are traced in any case
-    const LightPathGain gain = trial.tryLightPaths(*scene.lightSources, 1, rays);
-    scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
-  }
-  if (!sources->empty()) {
+  if (scene.lightSources) chooseMirrorPaths(scene, trial, expected);
+  if (glossy) {
+    double rays = 0;
     scene.glossySources = sources;
     scene.showsGlossy = true;
     const LightPathGain gain = trial.tryLightPaths(*sources, camerasPerGlossyPath, rays);
@@ -168,7 +214,7 @@ bool tryLightPaths(RenderScene& scene, const std::atomic<bool>& stop) {
     scene.connectsGlossy = expected.take(more.camera, more.both, connected.rays - camera.rays);
     scene.showsGlossy = shows;
   }
-  if (stop) scene.sharesMirrors = scene.showsGlossy = scene.connectsGlossy = false;
+  if (stop) shareNothing(scene);
   if (!scene.showsGlossy && !scene.connectsGlossy) scene.glossySources = nullptr;
   return !stop;
 }

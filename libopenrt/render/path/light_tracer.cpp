@@ -45,7 +45,8 @@ LightTracer::LightTracer(const RenderScene& scene)
 
 bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
   picture_.assign(size_t(scene_.frame.width) * scene_.frame.height * 3, 0.0f);
-  return (!scene_.lightSources || traceFrom(*scene_.lightSources, paths, seed, stop)) &&
+  return (!scene_.lightSources ||
+          traceFrom(*scene_.lightSources, paths * scene_.lightPathsOfCameraPath, seed, stop)) &&
          (!scene_.showsGlossy ||
           traceFrom(*scene_.glossySources,
                     (paths + camerasPerGlossyPath - 1) / camerasPerGlossyPath,
@@ -415,9 +416,7 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
     const float x = to.xy[0][i], y = to.xy[1][i];
     if (!isInPicture(to, i)) continue;
     const RayState state = (*batch.states)[batch.order[hits[i]]];
-    const Vec3f attenuation =
-        departures_.attenuation(state.path) *
-        departures_.irradianceFactor(state.path, takesIrradiance(batch, hits[i]));
+    const Vec3f attenuation = attenuationAt(batch, hits[i]);
     float* pixel = &picture_[3 * (size_t(y) * width + size_t(x))];
     for (int k = 0; k < 3; k++) {
       const double light =
@@ -425,6 +424,13 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
       if (std::isfinite(light)) pixel[k] += float(light);
     }
   }
+}
+
+// Returns the flux at hit i over that in the throughput of its path, by colour.
+Vec3f LightTracer::attenuationAt(const RtsBatch& batch, uint32_t i) const {
+  const uint32_t path = batch.states->path[batch.order[i]];
+  return departures_.attenuation(path) *
+         departures_.irradianceFactor(path, takesIrradiance(batch, i));
 }
 
 bool LightTracer::isInPicture(const CameraConnections& to, uint32_t i) const {
@@ -444,14 +450,16 @@ void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
   traceToCamera(batch, to, seen);
   const bool glossy = sources_->kind() == LightSources::Kind::glossy;
   const double pixels = double(scene_.frame.width) * scene_.frame.height,
-               paths = pixels / (glossy ? camerasPerGlossyPath : 1),
+               paths =
+                   glossy ? pixels / camerasPerGlossyPath : pixels * scene_.lightPathsOfCameraPath,
                scale = scale_ * cameraArea_ * cameraArea_ / (paths * pixels);
   for (uint32_t i = 0; i < to.count; i++) {
     const Vec3f all = load(whole, i), shared = load(weighted, i);
     const double found = double(all.x + all.y + all.z);
     if (!(found > 0) || !isInPicture(to, i)) continue;
+    const uint32_t h = to.hit[i], lane = batch.order[h];
     const Vec3d radiance =
-        Vec3d(load(batch.states->throughput, batch.order[to.hit[i]]) * load(seen, i));
+        Vec3d(load(batch.states->throughput, lane) * attenuationAt(batch, h) * load(seen, i));
     const double weight = scale * weights_->at(double(to.xy[0][i]), double(to.xy[1][i]));
     gain_->add(dot(radiance, radiance) * weight, double(shared.x + shared.y + shared.z) / found);
   }

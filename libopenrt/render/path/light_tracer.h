@@ -43,9 +43,9 @@ class LightTracer {
   // Returns the largest flux that a light path had after the first surface, summed over the
   // colours.
   double largestFlux() const { return largestFlux_; }
-  // Traces `paths` light paths of each kind that the scene has into picture() (rgb by pixel). Each
-  // part of a frame needs its own seed. Returns false if `stop` was set; it is checked every few
-  // thousand paths.
+  // Traces the light paths of each kind that go with `paths` camera paths into picture() (rgb by
+  // pixel). Each part of a frame needs its own seed. Returns false if `stop` was set; it is checked
+  // every few thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
   // Traces a path by way of glossy surfaces for each surface of a camera path, and adds its light
   // there. samples: of the light paths.
@@ -71,6 +71,7 @@ class LightTracer {
   void dropLobes(const RtsBatch& batch) const;
   void leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
                     uint32_t n);
+  Vec3f attenuationAt(const RtsBatch& batch, uint32_t i) const;
   bool isInPicture(const CameraConnections& to, uint32_t i) const;
   void addGain(const RtsBatch& batch, const CameraConnections& to);
   const float* ratiosToCamera(const RtsBatch& batch, const CameraConnections& to);

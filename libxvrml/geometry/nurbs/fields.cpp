@@ -265,15 +265,19 @@ PlaneCurve planeCurveOf(const NodeRef& node, uint64_t most, Faults& faults) {
   if (auto* line = nodeCast<nodes::ContourPolyline2D>(rendered)) {
     const std::vector<V4d> points = controlPointsOf(line->controlPoint);
     if (tooMany(points.size()) || !areFinite(points, faults)) return result;
-    for (const V4d& p : points) result.points.emplace_back(p.x, p.y);
+    for (const V4d& p : points) {
+      result.fractions.push_back(double(result.points.size()) / double(points.size() - 1));
+      result.points.emplace_back(p.x, p.y);
+    }
   } else if (auto* curve = nodeCast<nodes::NurbsCurve2D>(rendered)) {
     const std::optional<RationalCurve> spline = curveOf(*curve, faults);
     const uint64_t steps = stepsOf(curve->tessellation, curve->controlPoint.size());
     if (!spline || tooMany(steps)) return result;
-    for (uint64_t i = 0; i <= steps; i++) {
-      const auto point = spline->at(spline->knots.at(double(i) / double(steps)));
+    for (const ParameterStep& step : spline->knots.steps(steps)) {
+      const RationalCurve::Point point = spline->at(spline->knots.basis(step));
       result.points.emplace_back(point.place.x, point.place.y);
       result.tangents.emplace_back(point.first.x, point.first.y);
+      result.fractions.push_back(step.fraction);
     }
   }
   for (const V2d& p : result.points)

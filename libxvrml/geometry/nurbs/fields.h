@@ -33,10 +33,11 @@ std::optional<RationalSurface> texturePatchOf(const nodes::NurbsTrimmedSurface& 
 // A curve of the plane as the points that are drawn of it, in the order of its parameter.
 struct PlaneCurve {
   std::vector<V2d> points;
-  std::vector<V2d> tangents; // derivatives by the parameter; empty: corners at all points
+  std::vector<V2d> tangents;     // derivatives by the parameter; empty: corners at all points
+  std::vector<double> fractions; // the parts of the range of the parameter before the points
 };
-// Returns the points of a NurbsCurve2D or a ContourPolyline2D. most: the greatest number of steps.
-// Returns no points for another node, and where there is a fault.
+// Returns the points of a NurbsCurve2D, two where it may bend, or a ContourPolyline2D. most: the
+// greatest number of steps. Returns no points for another node, and where there is a fault.
 PlaneCurve planeCurveOf(const NodeRef& node, uint64_t most, Faults& faults);
 
 // Returns the number of steps by a field `tessellation` and the number of control points.

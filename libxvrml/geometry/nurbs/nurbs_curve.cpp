@@ -1,5 +1,5 @@
 // nurbs_curve.cpp: NurbsCurve (ISO/IEC 19775-1 27.4.4) as a line through points at equal steps of
-// its parameter.
+// its parameter, and at its bends.
 #include "geometry/builders.h"
 #include "geometry/nurbs/fields.h"
 
@@ -16,8 +16,8 @@ Mesh buildNurbsCurve(const nodes::NurbsCurve& node, const MeshOptions& options, 
     return {};
   }
   Mesh mesh;
-  for (uint64_t i = 0; i <= steps; i++) {
-    const Vec3f place = toVec3f(curve->at(curve->knots.at(double(i) / double(steps))).place);
+  for (const ParameterStep& step : curve->knots.steps(steps)) {
+    const Vec3f place = toVec3f(curve->at(step.t).place);
     if (!isFinite(place)) {
       faults.note("the curve is not finite; nothing is drawn");
       return {};

@@ -1,5 +1,5 @@
 // nurbs_surface.cpp: NurbsPatchSurface and NurbsTrimmedSurface (ISO/IEC 19775-1 27.4.7, 27.4.14):
-// equal steps of both parameters, with exact normals at their ends.
+// equal steps of both parameters, with exact normals at their ends, and lines where it may bend.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -21,25 +21,23 @@ class Patch {
   Patch(RationalSurface&& surface, std::optional<RationalSurface>&& texture)
       : surface_(std::move(surface)), texture_(std::move(texture)) {}
 
-  // Returns the places of both parameters at a fraction of their ranges.
-  double uAt(double fraction) const { return surface_.u.at(fraction); }
-  double vAt(double fraction) const { return surface_.v.at(fraction); }
-
   // Sets the length of a cross product of derivatives that counts as regular.
   void setScale(double scale) { scale_ = scale; }
-  double crossLength(double u, double v) const {
-    const RationalSurface::Point point = surface_.at(uAt(u), vAt(v));
+  double crossLength(const ParameterStep& u, const ParameterStep& v) const {
+    const RationalSurface::Point point = surface_.at(u.t, v.t);
     return point.alongU.cross(point.alongV).length();
   }
 
   // Returns the vertex at fractions of both ranges.
   SurfaceVertex at(double u, double v) const {
-    const double atU = uAt(u), atV = vAt(v);
-    const RationalSurface::Point point = surface_.at(atU, atV);
-    SurfaceVertex vertex{point.place, surface_.normal(point, atU, atV, scale_), {}};
-    vertex.texCoord = {float(u), float(v)};
+    return at(ParameterStep{surface_.u.at(u), u}, ParameterStep{surface_.v.at(v), v});
+  }
+  SurfaceVertex at(const ParameterStep& u, const ParameterStep& v) const {
+    const RationalSurface::Point point = surface_.at(surface_.u.basis(u), surface_.v.basis(v));
+    SurfaceVertex vertex{point.place, surface_.normal(point, u.t, v.t, scale_), {}};
+    vertex.texCoord = {float(u.fraction), float(v.fraction)};
     if (texture_) {
-      const V3d place = texture_->at(texture_->u.at(u), texture_->v.at(v)).place;
+      const V3d place = texture_->at(texture_->u.at(u.fraction), texture_->v.at(v.fraction)).place;
       vertex.texCoord = {float(place.x), float(place.y)};
     }
     return vertex;
@@ -51,14 +49,10 @@ class Patch {
   double scale_ = 0;
 };
 
-std::vector<double> fractions(uint64_t steps) {
-  std::vector<double> result(steps + 1);
-  for (uint64_t i = 0; i <= steps; i++) result[i] = double(i) / double(steps);
-  return result;
-}
+using Steps = std::vector<ParameterStep>;
 
 // Sets the scale of a patch by its points at some of the steps.
-void measure(Patch& patch, std::span<const double> u, std::span<const double> v) {
+void measure(Patch& patch, const Steps& u, const Steps& v) {
   constexpr size_t most = 16;
   double scale = 0;
   const auto step = [](size_t count) { return std::max<size_t>(1, count / most); };
@@ -107,7 +101,7 @@ std::vector<Contour> contoursOf(const nodes::NurbsTrimmedSurface& node,
     if (std::abs(area) > std::abs(largest)) largest = area;
     contours.push_back(std::move(points));
   }
-  if (largest < 0) contours.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  if (largest < -1e-9) contours.push_back({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   return contours;
 }
 
@@ -118,13 +112,20 @@ template <class Node> Patch patchOf(const Node& node, RationalSurface&& surface,
   return Patch(std::move(surface), std::move(texture));
 }
 
-Mesh meshOfAll(const Patch& patch, std::span<const double> u, std::span<const double> v,
-               Faults& faults) {
+Mesh meshOfAll(const Patch& patch, const Steps& u, const Steps& v, Faults& faults) {
   SurfaceGrid grid{u.size(), v.size(), {}};
   grid.vertices.reserve(u.size() * v.size());
-  for (const double atV : v)
-    for (const double atU : u) grid.vertices.push_back(patch.at(atU, atV));
+  for (const ParameterStep& atV : v)
+    for (const ParameterStep& atU : u) grid.vertices.push_back(patch.at(atU, atV));
   return meshOfGrid(std::move(grid), false, faults);
+}
+
+// Returns the lines of a grid, of which two at a bend are one.
+std::vector<double> linesOf(const Steps& steps) {
+  std::vector<double> lines;
+  for (const ParameterStep& step : steps)
+    if (step.side != ParameterStep::Side::before) lines.push_back(step.fraction);
+  return lines;
 }
 
 Mesh meshOfPart(const Patch& patch, const TrimmedCells& cells, Faults& faults) {
@@ -146,7 +147,8 @@ Mesh buildSurface(const Node& node, const MeshOptions& options, Faults& faults) 
   const uint64_t uSteps = stepsOf(node.uTessellation, size_t(node.uDimension)),
                  vSteps = stepsOf(node.vTessellation, size_t(node.vDimension));
   if (!isGridAllowed(uSteps, vSteps, options, faults)) return {};
-  const std::vector<double> u = fractions(uSteps), v = fractions(vSteps);
+  const Steps u = surface->u.steps(uSteps), v = surface->v.steps(vSteps);
+  if (!isGridAllowed(u.size() - 1, v.size() - 1, options, faults)) return {};
   std::vector<Contour> contours;
   if constexpr (std::is_same_v<Node, nodes::NurbsTrimmedSurface>)
     contours = contoursOf(node, *surface, faults);
@@ -156,7 +158,8 @@ Mesh buildSurface(const Node& node, const MeshOptions& options, Faults& faults) 
   if (contours.empty())
     mesh = meshOfAll(patch, u, v, faults);
   else
-    mesh = meshOfPart(patch, trimCells(u, v, contours, triangleLimit(options), faults), faults);
+    mesh = meshOfPart(
+        patch, trimCells(linesOf(u), linesOf(v), contours, triangleLimit(options), faults), faults);
   mesh.solid = node.solid;
   return mesh;
 }

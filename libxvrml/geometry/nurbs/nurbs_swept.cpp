@@ -25,7 +25,7 @@ SweptCurve sweptCurveOf(const NodeRef& node, const MeshOptions& options, Faults&
   const auto add = [&](size_t i, const V2d& tangent) {
     curve.points.push_back(given.points[i]);
     curve.tangents.push_back(tangent);
-    curve.fractions.push_back(double(i) / double(count - 1));
+    curve.fractions.push_back(given.fractions[i]);
   };
   if (given.tangents.empty()) {
     for (size_t i = 0; i + 1 < count; i++)
@@ -38,13 +38,14 @@ SweptCurve sweptCurveOf(const NodeRef& node, const MeshOptions& options, Faults&
 
 // One place of a curve in space, with the derivatives by its parameter.
 struct Station {
-  double parameter = 0;
+  ParameterStep step;
   V3d place, first, second;
   SpineFrame frame;
   V3d turn{0, 0, 0}; // angular velocity of the frame
 };
 
-// Lays the planes of an Extrusion at the points of a curve, at right angles to its tangents.
+// Lays the planes of an Extrusion at the points of a curve, at right angles to its tangents. At a
+// bend they stay in the middle between both.
 void layFrames(std::vector<Station>& stations) {
   std::vector<Vec3f> spine;
   for (const Station& station : stations) spine.push_back(toVec3f(station.place));
@@ -54,6 +55,7 @@ void layFrames(std::vector<Station>& stations) {
     const V3d y = unit(station.first);
     station.frame = frames[i];
     const V3d z = unit(frames[i].z - y * frames[i].z.dot(y));
+    if (station.step.side != ParameterStep::Side::inside) continue;
     if (y != V3d(0, 0, 0) && z != V3d(0, 0, 0)) station.frame = {y.cross(z), y, z};
   }
 }
@@ -64,7 +66,7 @@ void setTurns(std::vector<Station>& stations) {
     Station& station = stations[i];
     const Station &before = stations[i > 0 ? i - 1 : 0],
                   &after = stations[std::min(i + 1, stations.size() - 1)];
-    const double speed = station.first.length(), way = after.parameter - before.parameter;
+    const double speed = station.first.length(), way = after.step.t - before.step.t;
     if (!(speed > 0) || !(way > 0)) continue;
     const double sine = before.frame.z.cross(after.frame.z).dot(station.frame.y);
     station.turn = station.first.cross(station.second) / (speed * speed) +
@@ -73,14 +75,10 @@ void setTurns(std::vector<Station>& stations) {
 }
 
 std::vector<Station> stationsOf(const RationalCurve& curve, uint64_t steps) {
-  std::vector<Station> stations(steps + 1);
-  for (uint64_t i = 0; i <= steps; i++) {
-    Station& station = stations[i];
-    station.parameter = curve.knots.at(double(i) / double(steps));
-    const RationalCurve::Point point = curve.at(station.parameter);
-    station.place = point.place;
-    station.first = point.first;
-    station.second = point.second;
+  std::vector<Station> stations;
+  for (const ParameterStep& step : curve.knots.steps(steps)) {
+    const RationalCurve::Point point = curve.at(curve.knots.basis(step));
+    stations.push_back({step, point.place, point.first, point.second, {}, {0, 0, 0}});
   }
   layFrames(stations);
   setTurns(stations);
@@ -148,10 +146,11 @@ Mesh buildNurbsSweptSurface(const nodes::NurbsSweptSurface& node, const MeshOpti
       trajectory ? curveOf(*trajectory, faults) : std::nullopt;
   if (!areCurves(section.points.size(), spine ? 2 : 0, faults)) return {};
   const uint64_t steps = stepsOf(trajectory->tessellation, spine->points.size());
-  if (!isGridAllowed(section.points.size() - 1, steps, options, faults)) return {};
+  if (!isGridAllowed(section.points.size() - 1, steps + 2 * spine->points.size(), options, faults))
+    return {};
   const std::vector<Station> stations = stationsOf(*spine, steps);
   std::vector<double> fractions;
-  for (uint64_t j = 0; j <= steps; j++) fractions.push_back(double(j) / double(steps));
+  for (const Station& station : stations) fractions.push_back(station.step.fraction);
   SurfaceGrid grid = gridOf(section.fractions, fractions, [&](size_t i, size_t j) {
     const Station& at = stations[j];
     const V2d &p = section.points[i], &d = section.tangents[i];

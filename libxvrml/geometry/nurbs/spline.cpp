@@ -49,9 +49,9 @@ V3d spaceOf(const V4d& p) { return {p.x, p.y, p.z}; }
 
 } // namespace
 
-BasisValues KnotVector::basis(double t) const {
+BasisValues KnotVector::basis(double t, bool before) const {
   const auto low = knots_.begin() + order_ - 1, high = knots_.begin() + ptrdiff_t(pointCount());
-  auto after = std::upper_bound(low, high, t);
+  auto after = before ? std::lower_bound(low, high, t) : std::upper_bound(low, high, t);
   if (after == low) ++after;
   while (after != low + 1 && *(after - 1) == *after) --after; // t is end()
   const Span span{knots_, size_t(after - knots_.begin()) - 1, t};
@@ -66,8 +66,33 @@ BasisValues KnotVector::basis(double t) const {
   return result;
 }
 
-RationalCurve::Point RationalCurve::at(double t) const {
-  const BasisValues basis = knots.basis(t);
+std::vector<ParameterStep> KnotVector::steps(uint64_t count) const {
+  using Side = ParameterStep::Side;
+  const double first = begin(), last = end(), same = 1e-9 * (last - first);
+  const size_t degree = size_t(order_) - 1;
+  std::vector<ParameterStep> result;
+  size_t next = degree + 1; // a knot where a curve may bend is there `degree` times
+  const auto addBends = [&](double until) {
+    bool here = false;
+    for (; next + degree <= pointCount() && knots_[next] <= until; next++) {
+      const double knot = knots_[next];
+      if (knot != knots_[next + degree - 1] || knot - first <= same || last - knot <= same)
+        continue;
+      if (!result.empty() && result.back().t == knot) continue; // there once more
+      for (const Side side : {Side::before, Side::after})
+        result.push_back({knot, (knot - first) / (last - first), side});
+      here = until - knot <= 2 * same;
+    }
+    return here;
+  };
+  for (uint64_t i = 0; i <= count; i++) {
+    const double fraction = double(i) / double(count), t = at(fraction);
+    if (!addBends(t + same) || i == count) result.push_back({t, fraction});
+  }
+  return result;
+}
+
+RationalCurve::Point RationalCurve::at(const BasisValues& basis) const {
   V4d value(0.0), first(0.0), second(0.0);
   for (size_t k = 0; k < size_t(basis.count); k++) {
     const V4d& point = points[basis.point + k];

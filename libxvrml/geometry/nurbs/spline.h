@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "geometry/vector_math.h"
@@ -23,6 +24,14 @@ struct BasisValues {
   std::array<double, mostNurbsOrder> value, first, second;
 };
 
+// A place of the range of a parameter. Where a curve may bend at a knot there are two, one for the
+// derivatives of each side.
+struct ParameterStep {
+  enum class Side : uint8_t { inside, before, after };
+  double t, fraction;
+  Side side = Side::inside;
+};
+
 // The knots of one parameter. There are more than 2 * order - 1 of them, they do not decrease, and
 // begin() is less than end().
 class KnotVector {
@@ -37,8 +46,13 @@ class KnotVector {
   double at(double fraction) const {
     return fraction < 1 ? begin() + (end() - begin()) * fraction : end();
   }
-  // t: begin() to end(). At a knot the derivatives are those of the span after it.
-  BasisValues basis(double t) const;
+  // t: begin() to end(). At a knot the derivatives are those of the span after it, or before it.
+  BasisValues basis(double t, bool before = false) const;
+  BasisValues basis(const ParameterStep& step) const {
+    return basis(step.t, step.side == ParameterStep::Side::before);
+  }
+  // Returns the ends of equal steps from begin() to end(), with the knots where a curve may bend.
+  std::vector<ParameterStep> steps(uint64_t count) const;
 
  private:
   int order_;
@@ -53,7 +67,8 @@ struct RationalCurve {
   struct Point {
     V3d place, first, second; // with the derivatives by the parameter
   };
-  Point at(double t) const;
+  Point at(const BasisValues& basis) const;
+  Point at(double t) const { return at(knots.basis(t)); }
 };
 
 struct RationalSurface {

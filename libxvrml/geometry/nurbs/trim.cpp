@@ -1,7 +1,7 @@
-// trim.cpp: clips the contours to strips between two values of u, these to cells between two values
-// of v (I. E. Sutherland, G. W. Hodgman, "Reentrant Polygon Clipping", 1974), and triangulates what
-// is left in each cell. Clipped contours run along the sides of their cell and back; the odd
-// winding rule cancels what is there twice.
+// trim.cpp: clips the contours to strips between values of u, these to cells between values of v
+// (I. E. Sutherland, G. W. Hodgman, "Reentrant Polygon Clipping", 1974), and triangulates what is
+// left in each cell. Clipped contours run along the sides of their cell and back; the odd winding
+// rule cancels what is there twice.
 #include "geometry/nurbs/trim.h"
 
 #include <algorithm>
@@ -131,15 +131,7 @@ class Cutter {
 
   // Returns false if there is too much to do.
   bool run(const Contours& contours) {
-    for (size_t i = 0; i + 1 < u_.size(); i++) {
-      const Contours strip = between(contours, 0, u_[i], u_[i + 1], work_);
-      if (strip.empty()) continue;
-      for (size_t j = 0; j + 1 < v_.size(); j++) {
-        if (!addCell(between(strip, 1, v_[j], v_[j + 1], work_))) return false;
-        if (work_ > mostWork || result_.triangles.size() / 3 > most_) return false;
-      }
-    }
-    return true;
+    return cut(0, 0, u_.size() - 1, between(contours, 0, u_.front(), u_.back(), work_));
   }
   TrimmedCells take() {
     LineSplitter(u_, v_, result_).run();
@@ -148,6 +140,21 @@ class Cutter {
 
  private:
   static constexpr uint64_t mostWork = 400'000'000; // corners that are clipped
+
+  // Cuts what lies between two lines of an axis in halves, down to one cell. Both sides of a line
+  // are cut from the same contours, so that their corners on it are the same.
+  bool cut(int axis, size_t low, size_t high, const Contours& part) {
+    if (part.empty()) return true;
+    if (work_ > mostWork || result_.triangles.size() / 3 > most_) return false;
+    const auto lines = axis == 0 ? u_ : v_;
+    if (high - low > 1) {
+      const size_t middle = low + (high - low) / 2;
+      return cut(axis, low, middle, between(part, axis, lines[low], lines[middle], work_)) &&
+             cut(axis, middle, high, between(part, axis, lines[middle], lines[high], work_));
+    }
+    if (axis == 1) return addCell(part);
+    return cut(1, 0, v_.size() - 1, between(part, 1, v_.front(), v_.back(), work_));
+  }
 
   bool addCell(const Contours& cell) {
     std::vector<V2d> places;

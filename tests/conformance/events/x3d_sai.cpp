@@ -165,10 +165,11 @@ TEST_F(EcmaSai, NewerProgramsSaySo) {
 // Every role of the .node files is an abstract type of X3D, or one that X3D does not have.
 TEST(AbstractTypes, RolesAreKnown) {
   const std::vector<std::string_view> own = {
-      "surfaced",  "repeating",       "declaring",       "lines",    "sided",
-      "faces",     "exact",           "parent",          "flat",     "placedLight",
-      "selecting", "indexedGeometry", "shader",          "slotted",  "splineInterpolator",
-      "listing",   "placing",         "placedViewpoint", "geoOrigin"};
+      "surfaced",    "repeating",       "declaring",       "lines",     "sided",
+      "faces",       "exact",           "parent",          "flat",      "placedLight",
+      "selecting",   "indexedGeometry", "shader",          "slotted",   "splineInterpolator",
+      "listing",     "placing",         "placedViewpoint", "geoOrigin", "contour",
+      "texturePatch"};
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) {
       const bool known = !abstractTypeOfRole(role).empty() ||
