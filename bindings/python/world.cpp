@@ -81,11 +81,15 @@ py::str toVrml(const WorldPtr& self) {
 }
 
 py::str toX3d(const WorldPtr& self, const std::string& encoding) {
-  if (encoding != "xml" && encoding != "classic")
-    throw py::value_error(fmt::format("encoding: 'xml' or 'classic' expected, not '{}'", encoding));
-  const auto lock = self->lockGraph();
-  return toText(
-      writeWorld(self->graph(), "", encoding == "xml" ? Encoding::x3dXml : Encoding::x3dClassic));
+  const std::pair<const char*, Encoding> encodings[] = {
+      {"xml", Encoding::x3dXml}, {"classic", Encoding::x3dClassic}, {"json", Encoding::x3dJson}};
+  for (const auto& [name, as] : encodings) {
+    if (encoding != name) continue;
+    const auto lock = self->lockGraph();
+    return toText(writeWorld(self->graph(), "", as));
+  }
+  throw py::value_error(
+      fmt::format("encoding: 'xml', 'classic' or 'json' expected, not '{}'", encoding));
 }
 
 void save(const WorldPtr& self, const py::object& file) {
@@ -407,10 +411,12 @@ void defineWorld(py::module_& module) {
           "without a shader. Returns the number of shapes; 0 is also a warning of the world.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
       .def("to_x3d", toX3d, py::arg("encoding") = "xml",
-           "Returns the world as X3D text, in the encoding 'xml' or 'classic' (ClassicVRML).")
+           "Returns the world as X3D text, in the encoding 'xml', 'classic' (ClassicVRML) or "
+           "'json'.")
       .def("save", save, py::arg("path"),
            "Writes the world as a file: as X3D in XML if its suffix is .x3d, as X3D ClassicVRML if "
-           "it is .x3dv, as glTF if it is .glb or .gltf, as a mesh if it is .stl, .ply or .obj, "
+           "it is .x3dv, as X3D in JSON if it is .x3dj or .json, as glTF if it is .glb or .gltf, "
+           "as a mesh if it is .stl, .ply or .obj, "
            "else "
            "as VRML97. Relative urls of nodes that were read from a file lead to the same files as "
            "before. What glTF or a mesh has nothing for becomes a warning of the world.")

@@ -475,6 +475,13 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
   return {new std::string(name), NameDeleter{std::move(comments), depth, {}, 1, stamp_}};
 }
 
+void setOpeningComments(const std::shared_ptr<const std::string>& file, std::string comments) {
+  NameDeleter* const known = std::get_deleter<NameDeleter>(file);
+  if (!known) return;
+  comments.resize(std::min(comments.size(), mostComments));
+  known->comments = std::move(comments);
+}
+
 std::string_view openingComments(const World& world) {
   for (const NodeRef& root : world.scope.roots)
     if (const NameDeleter* known =

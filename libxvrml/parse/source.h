@@ -48,6 +48,9 @@ uint64_t fileDepth(const std::shared_ptr<const std::string>& file);
 // names and for null.
 FileVersion fileVersion(const std::shared_ptr<const std::string>& file);
 void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVersion& version);
+// Sets the comments at the top of the file of this name (openingComments()), each with an end of
+// line. Source finds those of other encodings than JSON. Only the first 4096 bytes are kept.
+void setOpeningComments(const std::shared_ptr<const std::string>& file, std::string comments);
 // Return and set the metres in the unit of lengths of the file of this name; 1 for other names.
 double lengthUnit(const std::shared_ptr<const std::string>& file);
 void setLengthUnit(const std::shared_ptr<const std::string>& file, double metres);

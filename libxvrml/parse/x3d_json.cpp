@@ -11,6 +11,7 @@
 
 #include "parse/builder.h"
 #include "parse/json_recorder.h"
+#include "parse/source.h"
 #include "parse/suffix.h"
 #include "parse/x3d_elements.h"
 
@@ -39,6 +40,9 @@ class Walk {
   // recorder: is told of each element; null: nothing is.
   Walk(Locator& locator, const JsonIndex& index, X3dElements& elements, JsonRecorder* recorder)
       : locator_(locator), index_(index), elements_(elements), recorder_(recorder) {}
+
+  // Comments before the first node, each with an end of line.
+  const std::string& comments() const { return comments_; }
 
   void walk() {
     if (index_.values().empty()) return;
@@ -110,7 +114,8 @@ class Walk {
       if (!nodes) return tasks_.push_back({member.key, {object, holder, JsonRecorder::none}, {}});
       index_.eachWithin(object, [&](size_t i) {
         const Value& node = at(i);
-        if (node.key.starts_with('#')) return;
+        if (node.key.starts_with('#')) return addComment(node);
+        anyNode_ = true;
         if (node.kind == Value::Kind::object)
           tasks_.push_back({node.key, {i, object, index}, member.key.substr(1)});
         else
@@ -122,6 +127,11 @@ class Walk {
       index_.eachWithin(index, add);
     else
       add(index);
+  }
+
+  void addComment(const Value& comment) {
+    if (!anyNode_ && comment.kind == Value::Kind::string && comment.complete)
+      comments_ += index_.decoded(comment) + '\n';
   }
 
   void addAttribute(const Value& member, std::vector<Attribute>& attributes) {
@@ -166,6 +176,8 @@ class Walk {
   JsonRecorder* const recorder_;
   std::vector<Task> tasks_;
   std::deque<std::string> decoded_; // values of the element that is opened
+  std::string comments_;
+  bool anyNode_ = false; // one has been planned
 };
 
 } // namespace
@@ -189,7 +201,9 @@ void readX3dJson(const WorldFile& file) {
   ParseSink& sink = recorder ? static_cast<ParseSink&>(*recorder) : builder;
   X3dElements elements(locator, file.state.options.limits, sink, file.budget.get(),
                        file.state.anyRoots);
-  Walk(locator, index, elements, recorder ? &*recorder : nullptr).walk();
+  Walk walk(locator, index, elements, recorder ? &*recorder : nullptr);
+  walk.walk();
+  setOpeningComments(file.name, walk.comments());
   elements.finish();
   builder.finish();
   if (recorder) recorder->finish(file.state.anyRoots);

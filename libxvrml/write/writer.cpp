@@ -308,6 +308,7 @@ Encoding writtenEncoding(std::string_view path) {
   for (char& c : suffix)
     if (c >= 'A' && c <= 'Z') c = char(c + 32);
   if (suffix == ".x3dv") return Encoding::x3dClassic;
+  if (suffix == ".x3dj" || suffix == ".json") return Encoding::x3dJson;
   return suffix == ".x3d" ? Encoding::x3dXml : Encoding::vrml97;
 }
 
@@ -335,6 +336,7 @@ template <class Write> std::string writeAs(const World& world, const std::string
     if (encoding == Encoding::vrml97 || encoding == Encoding::x3dClassic)
       return write(*makeVrmlWriter(world, path, version));
     if (encoding == Encoding::x3dXml) return write(*makeXmlWriter(world, path, version));
+    if (encoding == Encoding::x3dJson) return write(*makeJsonWriter(world, path, version));
     throw std::invalid_argument(
         fmt::format("worlds cannot be written as {}", encodingName(encoding)));
   });

@@ -104,6 +104,8 @@ std::unique_ptr<Writer> makeVrmlWriter(const World& world, const std::string& ta
                                        const FileVersion& version); // VRML97, X3D ClassicVRML
 std::unique_ptr<Writer> makeXmlWriter(const World& world, const std::string& target,
                                       const FileVersion& version);
+std::unique_ptr<Writer> makeJsonWriter(const World& world, const std::string& target,
+                                       const FileVersion& version);
 
 // Returns the version that a file of the world in an encoding follows.
 FileVersion writtenVersion(const World& world, Encoding encoding);

@@ -64,7 +64,8 @@ void expectRoundTrip(const World& world, const std::string& name, Encoding encod
 TEST_P(Good, LoadsSilentlyAndRoundTrips) {
   const auto world = loadWorld(GetParam());
   EXPECT_EQ(messages(*world), "");
-  for (const Encoding encoding : {Encoding::vrml97, Encoding::x3dClassic, Encoding::x3dXml})
+  for (const Encoding encoding :
+       {Encoding::vrml97, Encoding::x3dClassic, Encoding::x3dXml, Encoding::x3dJson})
     expectRoundTrip(*world, GetParam(), encoding);
 }
 

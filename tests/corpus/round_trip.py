@@ -4,7 +4,7 @@ that of the file.
 
 round_trip.py --vv build/release/bin/vv --corpus FOLDER --out build/round-trip   (`make round-trip`)
 
-The folder is that of corpus_x3d.py. A file that vv can draw is written as .x3dv, .x3d and .wrl. Each
+The folder is that of corpus_x3d.py. A file that vv can draw is written as .x3dv, .x3d, .json and .wrl. Each
 one has the same picture, or `vv --write` says what changes. Prints a table of counts, and writes files.tsv
 with a row for each picture that differs. Exit code 0: none differs without a message; 77: there is no such
 folder."""
@@ -18,7 +18,7 @@ import sys
 from corpus import vv
 from corpus_x3d import ROOT, encoding_of, folder_of
 
-SUFFIXES = (".x3dv", ".x3d", ".wrl")
+SUFFIXES = (".x3dv", ".x3d", ".json", ".wrl")
 SIZE = ("--size", "80x60", "--spp", "1", "--epoch", "0")
 # Mean difference of all pixels, of 255. Numbers are written so that they read back equal, so that most
 # pictures are equal byte for byte; edges of parts that touch may choose the other part.

@@ -321,7 +321,7 @@ def test_one_world_in_five_encodings_is_the_same_picture(vv):
     assert len(set(pictures["b.wrl"])) > 20
 
 
-@pytest.mark.parametrize("name", ["out.wrl", "out.x3dv", "out.x3d"])
+@pytest.mark.parametrize("name", ["out.wrl", "out.x3dv", "out.x3d", "out.json"])
 @pytest.mark.parametrize("source", WORLDS)
 def test_what_is_written_is_the_same_picture(vv, source, name):
     vv.write(source, WORLDS[source].replace("Material { }", "Material { diffuseColor 1 1 1 }").replace(

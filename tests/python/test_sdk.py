@@ -275,11 +275,12 @@ def test_worlds_are_written_as_x3d(tmp_path):
     assert classic.startswith("#X3D V3.3 utf8\n") and "children" in classic
     assert xvrml.loads(classic).to_x3d("classic") == classic
     assert "<Switch DEF='S'>" in world.to_x3d()
-    for name, start in [("w.x3d", "<?xml"), ("w.x3dv", "#X3D"), ("w.wrl", "#VRML")]:
+    assert xvrml.loads(world.to_x3d("json")).to_x3d("classic") == classic
+    for name, start in [("w.x3d", "<?xml"), ("w.x3dv", "#X3D"), ("w.json", "{"), ("w.wrl", "#VRML")]:
         world.save(tmp_path / name)
         assert (tmp_path / name).read_text().startswith(start)
-    with pytest.raises(ValueError, match="'xml' or 'classic' expected, not 'json'"):
-        world.to_x3d("json")
+    with pytest.raises(ValueError, match="'xml', 'classic' or 'json' expected, not 'yaml'"):
+        world.to_x3d("yaml")
 
 
 def test_routes_are_written(world):

@@ -362,6 +362,7 @@ def test_write_x3d(vv):
     assert (vv.folder / "again").read_bytes() == text
     assert vv.picture() == vv.picture(world="copy.x3dv")
     assert b"<X3D profile='Immersive' version='3.3'>" in vv("box.wrl", "--write", "x3d:-").stdout
+    assert json.loads(vv("box.wrl", "--write", "x3dj:-").stdout)["X3D"]["@version"] == "3.3"
     assert vv("box.wrl", "--write", "x3d:").returncode == 2
 
 

@@ -24,6 +24,8 @@ TEST(WriteX3d, TheSuffixSaysTheEncoding) {
   EXPECT_EQ(writtenEncoding("folder.x3d/world"), Encoding::vrml97);
   EXPECT_EQ(writtenEncoding("a.X3DV"), Encoding::x3dClassic);
   EXPECT_EQ(writtenEncoding("a.x3d"), Encoding::x3dXml);
+  EXPECT_EQ(writtenEncoding("a.x3dj"), Encoding::x3dJson);
+  EXPECT_EQ(writtenEncoding("a.JSON"), Encoding::x3dJson);
   EXPECT_EQ(writtenEncoding(""), Encoding::vrml97);
 }
 
@@ -69,6 +71,115 @@ TEST(WriteX3d, TheHeadIsKept) {
             "    <component name='Text' level='1'/>\n"
             "    <meta name='title' content='a \"b\" &amp; &lt;c&gt;'/>\n  </head>\n"
             "  <Scene>\n    <Group/>\n  </Scene>\n</X3D>\n");
+}
+
+// Returns what stands in the list of the scene.
+std::string jsonScene(const std::string& vrml) {
+  const std::string text = written("#VRML V2.0 utf8\n" + vrml, Encoding::x3dJson);
+  const std::string begin = "\"-children\": [", end = "\n      ]\n    }\n  }\n}\n";
+  const size_t first = text.find(begin) + begin.size();
+  EXPECT_TRUE(text.ends_with(end) || text.ends_with("[]\n    }\n  }\n}\n")) << text;
+  return text.substr(first, text.size() - first - end.size());
+}
+
+TEST(WriteX3d, JsonHasAnObjectForEachNode) {
+  EXPECT_EQ(jsonScene("DEF T Transform { translation 1 2 3 children [ Group { } Shape { geometry "
+                      "DEF B Box { size 1 1 2 } } ] }\nTransform { children [ Shape { geometry USE "
+                      "B } ] }"),
+            R"(
+        { "Transform": {
+          "@DEF": "T",
+          "-children": [
+            { "Group": {} },
+            { "Shape": {
+              "-geometry": { "Box": {
+                "@DEF": "B",
+                "@size": [1, 1, 2]
+              } }
+            } }
+          ],
+          "@translation": [1, 2, 3]
+        } },
+        { "Transform": {
+          "-children": [
+            { "Shape": {
+              "-geometry": { "Box": {
+                "@USE": "B"
+              } }
+            } }
+          ]
+        } })");
+}
+
+TEST(WriteX3d, JsonHasListsOfDeclaredFields) {
+  EXPECT_EQ(jsonScene("Script { field SFBool b TRUE eventIn MFNode n field MFNode k Group { } }"),
+            R"(
+        { "Script": {
+          "field": [
+            {
+              "@accessType": "initializeOnly",
+              "@type": "SFBool",
+              "@name": "b",
+              "@value": true
+            },
+            {
+              "@accessType": "inputOnly",
+              "@type": "MFNode",
+              "@name": "n"
+            },
+            {
+              "@accessType": "initializeOnly",
+              "@type": "MFNode",
+              "@name": "k",
+              "-children": [
+                { "Group": {} }
+              ]
+            }
+          ]
+        } })");
+}
+
+// Every value reads back equal: texts with marks, control characters and zero bytes, empty lists,
+// pictures, and names that are words of JSON.
+TEST(WriteX3d, JsonReadsBackEqual) {
+  const std::string text =
+      "#X3D V3.3 utf8\nPROFILE Full\nCOMPONENT Text:1\nUNIT length mm 0.001\nMETA \"a\" "
+      "\"\\\"b\\\\\"\n"
+      "PROTO P [ inputOutput SFString s \"null\" inputOutput MFNode n [ Group { } ] "
+      "initializeOnly MFString l [ ] ] { Transform { children IS n } }\n"
+      "EXTERNPROTO E [ inputOutput SFFloat f ] [ \"e.x3dv#E\" ]\n"
+      "DEF null P { s \"{\\\"a\\\": [\" n [ DEF G Group { } ] l [ \"\" \"null\" ] }\n"
+      "DEF S Script { inputOutput MFBool b [ TRUE FALSE ] inputOutput MFString t [ \"one, [\" ] "
+      "inputOutput SFImage i 1 2 3 0xff0000 0x0000ff inputOutput MFImage m [ 1 1 1 7, 0 0 0 ] "
+      "inputOutput SFDouble d 1e-300 inputOutput MFVec3d v [ 1 2 3, 4 5 6e200 ] inputOutput SFNode "
+      "g USE G outputOnly SFTime when url \"javascript: function f() {\n\treturn "
+      "'\\\\x01';\n}\" }\n"
+      "Shape { geometry IndexedLineSet { coord Coordinate { point [ ] } coordIndex [ 0 -1 ] } }\n"
+      "ROUTE null.s_changed TO null.set_s\n";
+  const auto world = loadWorldFromMemory(text, "w.x3dv");
+  const std::string json = writeWorld(*world, "", Encoding::x3dJson);
+  const auto again = loadWorldFromMemory(json, "w.x3dv");
+  const auto said = [](const World& of) {
+    std::string all;
+    for (const Diagnostic& one : of.diagnostics.list()) all += one.message + '\n';
+    return all;
+  };
+  EXPECT_EQ(said(*again), said(*world)) << json;
+  EXPECT_EQ(again->head.version.encoding, Encoding::x3dJson);
+  std::string difference;
+  EXPECT_TRUE(equalScopes(world->scope, again->scope, &difference)) << difference << json;
+  EXPECT_EQ(writeWorld(*again, "", Encoding::x3dJson), json);
+  EXPECT_EQ(writeWorld(*again, "", Encoding::x3dClassic),
+            writeWorld(*world, "", Encoding::x3dClassic));
+}
+
+// Comments at the top name the program that wrote a file, also in JSON.
+TEST(WriteX3d, JsonKeepsTheCommentsAtTheTop) {
+  const auto world =
+      loadWorldFromMemory("#VRML V2.0 utf8\n# by \"hand\"\n#two\nGroup { }", "w.wrl");
+  const auto again = loadWorldFromMemory(writeWorld(*world, "", Encoding::x3dJson), "w.json");
+  EXPECT_NE(writeWorld(*again).find("# by \"hand\"\n#two\n"), std::string::npos)
+      << writeWorld(*again);
 }
 
 TEST(WriteX3d, CommentsOfXmlHoldNoPairOfHyphens) {

@@ -52,7 +52,8 @@ void setWrite(Options& o, const std::string& value) {
   const size_t colon = value.find(':');
   const std::string format = value.substr(0, colon == value.npos ? 0 : colon);
   const bool isExport = picture::exportFormatNamed(format) != nullptr;
-  const bool named = isExport || format == "wrl" || format == "x3dv" || format == "x3d";
+  const bool named =
+      isExport || format == "wrl" || format == "x3dv" || format == "x3d" || format == "x3dj";
   if (named) o.write = value.substr(colon + 1);
   // The name of a format says the same as the suffix of a file name.
   const std::string name = named ? "." + format : value;
@@ -721,9 +722,9 @@ const OptionInfo table[] = {
      "the pixel, or of its samples if a channel or --samples has their number.",
      nullptr, with(needs("vv compare"))},
     {"--write", "FILE", "Write",
-     "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, .glb and "
-     ".gltf "
-     "glTF, .stl, .ply and .obj meshes (docs/export.md), every other name VRML97. FORMAT:FILE "
+     "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, .x3dj and "
+     ".json X3D in JSON, .glb and .gltf glTF, .stl, .ply and .obj meshes (docs/export.md), every "
+     "other name VRML97. FORMAT:FILE "
      "(wrl, "
      "x3dv, glb, ...) selects it for any name; - is standard output.",
      setWrite},

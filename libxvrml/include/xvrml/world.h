@@ -199,14 +199,14 @@ std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::st
 const Scope* inlineScope(const Node& inlineNode);
 
 // Returns the world as text that parses to an equal graph: as VRML97, as X3D in the ClassicVRML
-// encoding, or as X3D in XML. Each number is the shortest that reads back equal. X3D keeps the
-// version, the profile and the statements COMPONENT and META of a world that was read from X3D; for
-// another world it is version 3.3 and the profile Immersive. In XML, bytes of strings that are not
-// UTF-8 are taken for ISO 8859-1, and control characters become U+FFFD.
-// path: the file that will hold the text: relative URLs lead from there to the same files as
-// before. URLs of nodes that are in no file stay as they are; all do if it is empty. Without an
-// encoding, the suffix of the path says it. Throws std::length_error if nodes are nested deeper
-// than any file may nest them (2500), and std::invalid_argument for an encoding that is only read.
+// encoding, or as X3D in XML or JSON. Each number is the shortest that reads back equal. X3D keeps
+// the version, the profile and the statements COMPONENT and META of a world that was read from X3D;
+// for another world it is version 3.3 and the profile Immersive. In XML and JSON, bytes of strings
+// that are not UTF-8 are taken for ISO 8859-1, and in XML control characters become U+FFFD. path:
+// the file that will hold the text: relative URLs lead from there to the same files as before. URLs
+// of nodes that are in no file stay as they are; all do if it is empty. Without an encoding, the
+// suffix of the path says it. Throws std::length_error if nodes are nested deeper than any file may
+// nest them (2500), and std::invalid_argument for an encoding that is only read.
 std::string writeWorld(const World& world, const std::string& path, Encoding encoding);
 std::string writeWorld(const World& world, const std::string& path);
 std::string writeWorld(const World& world);
@@ -216,8 +216,8 @@ std::vector<std::string> changesByWriting(const World& world, Encoding encoding)
 // Returns a node of the world with its descendants as text in one of these encodings, without the
 // head of a file and without prototypes and routes. URLs stay as they are. Throws as writeWorld().
 std::string writeNode(const World& world, Node& node, Encoding encoding);
-// Returns the encoding in which a file of this name is written: X3D for .x3dv and .x3d, VRML97 for
-// all others.
+// Returns the encoding in which a file of this name is written: X3D for .x3dv, .x3d, .x3dj and
+// .json, VRML97 for all others.
 Encoding writtenEncoding(std::string_view path);
 
 // Returns true if both scopes hold equal graphs: the same nodes, fields, DEF/USE structure,
