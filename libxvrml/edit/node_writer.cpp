@@ -140,9 +140,19 @@ std::unordered_map<std::string_view, const FieldText*> NodeWriter::lastOf(const 
   return last;
 }
 
+// Returns whether two values are equal. Numbers of a file that are NaN are equal to themselves.
+static bool areSameValues(FieldType type, const Value& a, const Value& b) {
+  if (a == b) return true;
+  const ValueWords first(type, a), second(type, b);
+  if (first.size() == 0 || first.size() != second.size()) return false; // nodes have no words
+  for (size_t i = 0; i < first.size(); ++i)
+    if (first.bytes(i) != second.bytes(i)) return false;
+  return true;
+}
+
 const Value* NodeWriter::editedFrom(const Node& node, const FieldInfo& field) const {
   const Value* const original = document_.originalOf(node, field);
-  return original && *original != node.get(field) ? original : nullptr;
+  return original && !areSameValues(field.type, *original, node.get(field)) ? original : nullptr;
 }
 
 std::string_view NodeWriter::spelled(const Node& node, std::string_view field) const {
