@@ -1,6 +1,6 @@
 // xvrml_nurbs.cpp: Tests the nodes of NURBS (ISO/IEC 19775-1 clause 27) against circles, cylinders,
-// spheres and tori, which rational B-splines are exactly, and with fields that do not fit. Longer
-// than 500 lines because all tests make their nodes of the same circle.
+// spheres and tori, which rational B-splines are exactly, and with fields that do not fit.
+// Longer than 500 lines because all tests make their nodes of the same circle.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
