@@ -66,23 +66,6 @@ TEST(VrmlVertexAlpha, PhysicalMaterialsUseThem) {
               .25, 0, .75);
 }
 
-// Lines and points have the transparency of their material (ISO/IEC 19775-1 12.4.4), unless a
-// ColorRGBA gives them opacities of their own.
-TEST(VrmlVertexAlpha, LinesAreAsTransparentAsTheirMaterial) {
-  const auto line = [](const std::string& color) {
-    return "Shape { appearance Appearance { material DEF M Material { emissiveColor 1 0 0 "
-           "transparency 0.75 } lineProperties LineProperties { linewidthScaleFactor 9 } } "
-           "geometry LineSet { vertexCount 2 " +
-           color + " coord Coordinate { point [ -1 0 0, 1 0 0 ] } } }\n";
-  };
-  const std::string green = "color Color { color [ 0 1 0, 0 1 0 ] }";
-  const std::string opaque = "color ColorRGBA { color [ 0 1 0 1, 0 1 0 1 ] }";
-  Scene scene(sky + line(""), x3d);
-  expectColor(scene.render(Scene::at(0, 0, 10, 1e-5))[0], .25, 0, .75);
-  expectColor(Scene(sky + line(green), x3d).render(Scene::at(0, 0, 10, 1e-5))[0], 0, .25, .75);
-  expectColor(Scene(sky + line(opaque), x3d).render(Scene::at(0, 0, 10, 1e-5))[0], 0, 1, 0);
-}
-
 // A ray to the lamp passes a square of this opacity.
 TEST(VrmlVertexAlpha, ShadowsAreAsDense) {
   const std::string scene = dark + "PointLight { location 0 0 5 attenuation 1 0 0 }\n" +
