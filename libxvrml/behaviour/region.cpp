@@ -143,6 +143,13 @@ bool meets(const Region& region, const PickBox& box, const Matrix& place) {
   return std::isfinite(middle.length());
 }
 
+// Returns the bounding box of a group's children, or of another node, in its coordinate system.
+PickBox ownBounds(Picker& picker, Node& node) {
+  const FieldInfo* children = node.type().find("children");
+  if (!children || children->type != FieldType::MFNode) return picker.bounds({NodeRef(&node)});
+  return picker.bounds(*static_cast<const MFNode*>(node.storage(*children)));
+}
+
 // Finds the first place of the sensor and of its target where the target's bounding box meets the
 // region, and the matrix from the target's coordinate system to the sensor's. A target in a choice
 // that a Switch does not show is nowhere.
@@ -150,7 +157,7 @@ bool targetInside(Events& events, const Node& node, const Region& region, Node& 
                   Matrix& targetToSensor) {
   constexpr size_t places = 64; // a hostile world has more, and ends
   Interaction& interaction = interactionOf(events);
-  const PickBox box = interaction.picker.bounds({NodeRef(&target)}); // in the group around it
+  const PickBox box = ownBounds(interaction.picker, target);
   if (box.empty()) return false;
   const Matrix view = interaction.viewer.view();
   const std::vector<Path> targets = pathsTo(target, places);
@@ -158,11 +165,8 @@ bool targetInside(Events& events, const Node& node, const Region& region, Node& 
     Matrix toSensor;
     if (!invert(Picker::toWorld(path, view), toSensor)) continue;
     for (const Path& to : targets) {
-      const Path around(to.begin(), to.end() - 1);
-      if (!isChosen(to) || !meets(region, box, compose(toSensor, Picker::toWorld(around, view))))
-        continue;
       targetToSensor = compose(toSensor, Picker::toWorld(to, view));
-      return true;
+      if (isChosen(to) && meets(region, box, targetToSensor)) return true;
     }
   }
   return false;
