@@ -176,11 +176,12 @@ void lookTransform(Events& events, Node& node) {
   const auto& state = static_cast<const RegionState&>(*events.state(node));
   const auto& sensor = static_cast<nodes::TransformSensor&>(node);
   const Region region = regionOf(sensor);
+  Node* const target = renderedNode(sensor.targetObject.get());
   // A box without volume senses nothing.
-  const bool senses = sensor.enabled && sensor.targetObject && region.half.x > 0 &&
-                      region.half.y > 0 && region.half.z > 0;
+  const bool senses =
+      sensor.enabled && target && region.half.x > 0 && region.half.y > 0 && region.half.z > 0;
   Matrix place;
-  const bool inside = senses && targetInside(events, node, region, *sensor.targetObject, place);
+  const bool inside = senses && targetInside(events, node, region, *target, place);
   const bool entered = inside && !state.active;
   if (inside != state.active) setActive(events, node, inside);
   if (inside) sendPlace(events, node, place, entered);

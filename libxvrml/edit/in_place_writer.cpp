@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "edit/lines.h"
 #include "edit/node_writer.h"
 
 namespace xvrml {
@@ -29,10 +30,11 @@ std::string writeNode(const Document& document, const Node& node) {
 }
 
 std::string emptyNode(const Document& document, std::string_view type) {
+  const std::string_view feed = lineFeedOf(document.file().text);
   switch (document.encoding()) {
   case Encoding::x3dXml: return fmt::format("<{}/>", type);
-  case Encoding::x3dJson: return fmt::format("{{\"{}\": {{\n  }}\n}}", type);
-  default: return fmt::format("{} {{\n  children [\n  ]\n}}", type);
+  case Encoding::x3dJson: return fmt::format("{{\"{0}\": {{{1}  }}{1}}}", type, feed);
+  default: return fmt::format("{0} {{{1}  children [{1}  ]{1}}}", type, feed);
   }
 }
 

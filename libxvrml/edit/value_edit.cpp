@@ -1,5 +1,6 @@
 #include "edit/value_edit.h"
 
+#include <algorithm>
 #include <functional>
 
 #include <fmt/format.h>
@@ -115,6 +116,9 @@ void ValueEdit::replaceWords(const TextSpan& part, size_t old, size_t now) {
     if (word == 0 && differs) {
       before = olds_.words(old, syntax_);
       after = news_.words(now, syntax_);
+      // The old axis may have another length in the text, so a changed one is written as a whole.
+      if (olds_.hasAxes() && !std::equal(after.begin(), after.begin() + 3, before.begin()))
+        std::fill_n(before.begin(), 3, std::string());
     }
     if (differs && before[word] != after[word]) {
       copy(size_t(token.data() - text_.data()));
@@ -207,12 +211,16 @@ void ValueEdit::insertBehind(size_t old, size_t first, size_t last) {
 // there may be comments in the list.
 bool ValueEdit::fill() {
   const size_t close = text_.empty() ? 0 : text_.size() - 1;
-  if (close == 0 || text_[close] != ']' || !xvrml::startsLine(text_, close)) return false;
-  copy(lineBegin(text_, close));
+  if (close == 0 || text_[close] != ']') return false;
+  size_t begin = close; // after it a comma at most
+  while (begin > 0 && (isBlank(text_[begin - 1]) || text_[begin - 1] == ',')) --begin;
+  if (begin == 0 || !isLineEnd(text_[begin - 1])) return false;
+  copy(begin);
+  at_ = close; // without commas
   out_.append(indentationAt(text_, close)).append("  ");
   const bool commas = news_.wordsOfElement() > 1 || syntax_.isJson;
   appendInLine({0, news_.size()}, commas ? ", " : " ", syntax_.isJson ? ", " : " ", true);
-  out_ += lines_.feed;
+  out_.append(lines_.feed).append(indentationAt(text_, close));
   return true;
 }
 

@@ -64,7 +64,8 @@ std::string hexadecimalLike(std::string_view token, const std::string& word) {
 
 } // namespace
 
-ValueWords::ValueWords(FieldType type, const Value& value) {
+ValueWords::ValueWords(FieldType type, const Value& value)
+    : hasAxes_(type == FieldType::SFRotation || type == FieldType::MFRotation) {
   const auto setNumbers = [this](const auto* first, size_t count) {
     using E = std::remove_cvref_t<decltype(*first)>;
     size_ = count;

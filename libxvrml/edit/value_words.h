@@ -36,6 +36,8 @@ class ValueWords {
   bool hasStrings() const {
     return std::holds_alternative<std::span<const std::string>>(elements_);
   }
+  // Returns whether the elements are rotations: a file may give their axes another length.
+  bool hasAxes() const { return hasAxes_; }
   // Returns bytes that are equal for elements that have the same words.
   std::string_view bytes(size_t element) const;
   // Returns the words of an element.
@@ -52,6 +54,7 @@ class ValueWords {
   ImagePlace imageAt(size_t element) const;
 
   size_t size_ = 0, wordsOfElement_ = 1;
+  bool hasAxes_ = false;
   std::vector<uint8_t> booleans_; // a copy: lists of them have no bytes
   std::variant<std::span<const float>, std::span<const double>, std::span<const int32_t>,
                std::span<const uint8_t>, std::span<const std::string>, std::span<const Image>>

@@ -68,6 +68,13 @@ def test_points_follow_events():
     assert after[upper].max() == 0 and after[lower].max() > 0.1
 
 
+def test_scans_in_coordinates_of_the_earth_keep_their_precision():
+    cloud = np.random.default_rng(2).random((200, 3))
+    near = xvrml.picture(cloud, size=(64, 48), spp=4).array[..., 3].mean()
+    far = xvrml.picture(cloud + [500000, 4000000, 100], size=(64, 48), spp=4).array[..., 3].mean()
+    assert near > 0.01 and far == pytest.approx(near, rel=0.02)
+
+
 def test_clouds_and_heights():
     cloud = np.random.default_rng(1).normal(size=(50, 3))
     world = xvrml.to_world(cloud, values=np.arange(50), cmap=lambda t: np.stack([t, t, 1 - t], 1))
@@ -156,6 +163,34 @@ def test_data_sets_of_pyvista():
     assert mesh.kind == "triangles" and mesh.colors is not None
     kinds = {m.kind for m in xvrml.to_world(pyvista.MultiBlock([pyvista.Line(), grid])).meshes()}
     assert kinds == {"lines", "triangles"}
+
+
+def test_what_pyvista_holds_besides_meshes():
+    pyvista = pytest.importorskip("pyvista")
+    plotter = pyvista.Plotter(off_screen=True)
+    plotter.add_mesh(pyvista.Line(), pbr=True)
+    plotter.add_mesh(pyvista.MultiBlock([pyvista.Sphere()]))
+    plotter.add_volume(np.zeros((3, 3, 3)))
+    plotter.add_mesh(pyvista.Sphere().strip())
+    assert sorted(m.kind for m in xvrml.to_world(plotter).meshes()) == [
+        "lines", "triangles", "triangles"
+    ]
+    low, high = pyvista.Plane(), pyvista.Plane(center=(0, 0, 1))
+    low["v"], high["v"] = np.zeros(low.n_points), np.ones(high.n_points)
+    blocks = pyvista.MultiBlock([low, high, pyvista.Cube()])
+    grey = lambda t: np.stack([t, t, t], 1)  # noqa: E731
+    first, second, third = xvrml.to_world(blocks, scalars="v", cmap=grey).meshes()
+    assert first.colors[:, 0].max() == 0 and second.colors[:, 0].min() == 1 and third.colors is None
+
+
+def test_a_window_gets_a_file_by_its_name(monkeypatch, tmp_path):
+    program = tmp_path / "vv"
+    program.write_text('#!/bin/sh\necho "$@" > "$0.args"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("OPENRT_VV", str(program))
+    (tmp_path / "w.wrl").write_text("#VRML V2.0 utf8\n" + BALL)
+    assert xvrml.show(tmp_path / "w.wrl").wait() == 0
+    assert (tmp_path / "vv.args").read_text().split() == [str(tmp_path / "w.wrl")]
 
 
 def test_a_window_gets_the_world_and_the_sizes(monkeypatch, tmp_path):

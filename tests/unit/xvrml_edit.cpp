@@ -22,6 +22,16 @@ TEST_P(Edited, AValueChangesInItsPlace) {
   undoAll();
 }
 
+// Axes are normalised when they are read, so no component of an old one may stay beside a new one.
+TEST_P(Edited, AnAxisOfAnotherLengthIsReplacedAsAWhole) {
+  load("DEF T Transform { rotation 1 1 0 .5 }\n"
+       "DEF O OrientationInterpolator { key [ 0, 1 ] keyValue [ 1 1 0 .5, 1 1 0 1 ] }\n");
+  editor->set(node("T"), "rotation", Rotation{1, 0, 1, .5f});
+  editor->set(node("O"), "keyValue", MFRotation{{0, 0, 1, .5f}, {.70710678f, .70710678f, 0, 2}});
+  EXPECT_NE(text().find("keyValue [ 0 0 1 .5, 1 1 0 2 ]"), std::string::npos) << text();
+  undoAll();
+}
+
 TEST_P(Edited, AbsentFieldsAreAdded) {
   load("Transform {\n    children [\n        DEF L PointLight { intensity 0 }\n"
        "        DEF M PointLight {}\n        DEF N PointLight {\n            intensity 0\n"
@@ -229,6 +239,7 @@ TEST_P(Edited, NewLinesEndAsThoseOfTheFile) {
        "Shape { geometry PointSet { coord DEF D Coordinate { point [ 0 0 0, 1 1 1 ] } } }\r\n",
        "#VRML V2.0 utf8\r\n");
   for (const char* name : {"C", "D"}) editor->set(node(name), "point", MFVec3f(100));
+  editor->wrap({nullptr, "", 0});
   const std::string now = editor->text();
   EXPECT_GT(std::count(now.begin(), now.end(), '\n'), 5);
   for (size_t i = now.find('\n'); i != now.npos; i = now.find('\n', i + 1))

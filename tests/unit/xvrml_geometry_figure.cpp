@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/figure.h"
+#include "geometry/mesh.h"
 #include "xvrml/browser.h"
 #include "xvrml/deformed.h"
 #include "xvrml/nodes.h"
@@ -85,6 +86,18 @@ TEST(Figure, AtRestTheFieldItselfIsDrawn) {
   named<nodes::HAnimJoint>(*world, "B").rotation.angle = 0;
   EXPECT_EQ(deform(figure, nullptr).size(), 2u);
   EXPECT_EQ(drawnPoints(coord).data(), coord.point.data());
+}
+
+TEST(Figure, SkinsMayBeNurbs) {
+  const auto world = load(
+      "DEF F HAnimHumanoid { skinCoord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 0, 1 1 0 ] "
+      "} skeleton HAnimJoint { skinCoordIndex [ 0 1 2 3 ] translation 0 0 7 } skin DEF S Shape "
+      "{ geometry NurbsPatchSurface { uOrder 2 vOrder 2 uDimension 2 vDimension 2 "
+      "controlPoint USE C } } }");
+  deform(*world->scope.names.at("F"), nullptr);
+  const Mesh mesh = buildMesh(*named<nodes::Shape>(*world, "S").geometry, {});
+  ASSERT_FALSE(mesh.points.empty());
+  for (const Vec3f& point : mesh.points) EXPECT_EQ(point.z, 7);
 }
 
 // A displacer moves vertices before the joints turn them; it belongs to a joint or to a segment.

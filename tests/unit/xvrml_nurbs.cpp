@@ -269,6 +269,18 @@ TEST(Nurbs, CornersOfALineStaySharp) {
     EXPECT_NEAR(std::max(std::abs(n.x), std::abs(n.z)), 1, 1e-6);
 }
 
+TEST(Nurbs, PiecesOfACurveKeepTheirEnds) {
+  Made<nodes::NurbsCurve> curve("NurbsCurve");
+  curve->order = 2;
+  curve->tessellation = 4;
+  for (const double t : {0, 0, 1, 1, 2, 2}) curve->knot.push_back({t});
+  curve->controlPoint = coordinate({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {4, 0, 0}});
+  const Built built = build(curve);
+  std::vector<float> x;
+  for (const Vec3f& point : built.mesh.points) x.push_back(point.x);
+  EXPECT_EQ(x, (std::vector<float>{0, .5f, 1, 3, 3.5f, 4}));
+}
+
 // A flat square from -4 to 4 by parameters with the same numbers.
 void makeSquare(nodes::NurbsTrimmedSurface& surface) {
   surface.controlPoint = coordinate({{-4, -4, 0}, {4, -4, 0}, {-4, 4, 0}, {4, 4, 0}});

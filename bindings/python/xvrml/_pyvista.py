@@ -13,13 +13,21 @@ from .figures import map_colors
 def convert(thing, scalars, cmap, clim, color):
     if hasattr(thing, "renderer") and hasattr(thing, "camera"):
         return _plotter(thing)
+    if not hasattr(thing, "active_scalars") and not hasattr(thing, "n_blocks"):  # VTK itself
+        import pyvista
+        thing = pyvista.wrap(thing)
     if hasattr(thing, "n_blocks"):
+        if clim is None and scalars is not None and color is None:  # one range for all blocks
+            low, high = thing.get_data_range(scalars, allow_missing=True)
+            clim = (low, high) if np.isfinite([low, high]).all() else None
         group = xvrml.Group()
         group.children = [
             convert(block, scalars, cmap, clim, color) for block in thing if block is not None
         ]
         return group
-    values = thing.active_scalars if scalars is None else thing[scalars]
+    values = thing.active_scalars if scalars is None else None
+    if scalars is not None and scalars in thing.array_names:
+        values = thing[scalars]
     colors = None
     if color is None and values is not None:
         colors = np.asarray(values)
@@ -46,6 +54,8 @@ def _shapes(data, colors, material, crease=0):
     if colors is not None:
         (copy.point_data if per_point else copy.cell_data)["xvrml"] = colors
     surface = copy if hasattr(copy, "lines") else _surface(copy)
+    if surface.n_strips:
+        surface = surface.triangulate()
     shapes = []
     first = 0  # the cells of a PolyData are its vertices, lines and faces, in this order
     for kind, cells in (("points", surface.verts), ("lines", surface.lines), ("faces",
@@ -92,7 +102,8 @@ def _shape(kind, points, cells, of_points, of_cells, material, crease):
         geometry.color = xvrml.Color(color=of_points if of_points is not None else of_cells)
         geometry.colorPerVertex = of_points is not None
     if kind != "faces":  # lines and points show emissiveColor (clauses 6.24, 6.36)
-        material = xvrml.Material(emissiveColor=material.diffuseColor)
+        shown = "baseColor" if hasattr(material, "baseColor") else "diffuseColor"
+        material = xvrml.Material(emissiveColor=getattr(material, shown))
     return xvrml.Shape(geometry=geometry, appearance=xvrml.Appearance(material=material))
 
 
@@ -122,12 +133,20 @@ def _plotter(plotter):
     for actor in plotter.renderer.actors.values():
         mapper = getattr(actor, "mapper", None)
         data = getattr(mapper, "dataset", None)
-        if data is None or not actor.GetVisibility():
+        is_surface = hasattr(getattr(actor, "prop", None), "GetInterpolation")
+        if data is None or not actor.GetVisibility() or not is_surface:
             continue
-        matrix = _matrix(actor)
-        is_flat = actor.prop.GetInterpolation() == 0  # VTK_FLAT
-        shape = _shapes(data, _shown_colors(mapper), _material(actor.prop), 0 if is_flat else np.pi)
-        children.append(_placing.placed(shape, matrix))
+        material = _material(actor.prop)
+        crease = 0 if actor.prop.GetInterpolation() == 0 else np.pi  # VTK_FLAT
+        if hasattr(data, "n_blocks"):
+            shape = xvrml.Group()
+            shape.children = [
+                _shapes(block, None, material, crease)
+                for block in data.recursive_iterator(skip_none=True)
+            ]
+        else:
+            shape = _shapes(data, _shown_colors(mapper), material, crease)
+        children.append(_placing.placed(shape, _matrix(actor)))
     group.children = children
     return group
 

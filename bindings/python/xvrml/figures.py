@@ -118,10 +118,18 @@ def height_field(z, *, spacing=(1.0, 1.0), values=None, colors=None, color=None,
     return _shape(geometry, color)
 
 
+def _cloud(xyz, options):
+    """Returns a Transform to the middle of points, with the points around it: coordinates have
+    single precision, which is too coarse for a scan in coordinates of the earth."""
+    finite = np.isfinite(xyz).all(axis=1)
+    middle = xyz[finite].mean(axis=0).astype(np.float32) if finite.any() else np.zeros(3, np.float32)
+    return xvrml.Transform(translation=middle, children=[points(xyz - middle.astype(float), **options)])
+
+
 def _array(array, options):
     """Returns the node of an array: a point cloud if it has three columns, else a height field."""
     if array.ndim == 2 and array.shape[1] == 3:
-        return points(array, **options)
+        return _cloud(array, options)
     if array.ndim == 2:
         return height_field(array, **options)
     raise TypeError("an array of shape (n, 3), for points, or (rows, columns), for heights, expected, "
@@ -136,10 +144,10 @@ def _node(thing, options):
         return xvrml.interop.from_open3d(thing, **options)
     if hasattr(thing, "faces") or hasattr(thing, "graph"):
         return xvrml.interop.from_trimesh(thing, **options)
-    if package == "trimesh" and hasattr(thing, "vertices"):  # a PointCloud
+    if type(thing).__name__ == "PointCloud" and package == "trimesh":
         colors = getattr(thing, "colors", None)
         given = {} if colors is None or not len(colors) else {"colors": np.asarray(colors)}
-        return points(thing.vertices, **{**given, **options})
+        return _cloud(np.asarray(thing.vertices, float), {**given, **options})
     try:
         array = np.asarray(thing, float)
     except (TypeError, ValueError):
@@ -206,11 +214,14 @@ def show(thing, **options):
     if "ipykernel" in sys.modules:
         return world.view(**rendering)
     named = {"size": "--size", "point_size": "--point-size", "line_width": "--line-width"}
-    command = [_program(), "-"]
+    path = os.fspath(thing) if isinstance(thing, (str, os.PathLike)) else None
+    command = [_program(), path or "-"]
     for name, value in rendering.items():
         if name not in named:
             raise TypeError(f"show(): {name}: a window takes size, point_size and line_width")
         command += [named[name], "x".join(map(str, value)) if name == "size" else str(float(value))]
+    if path:  # relative URLs of the file go on working
+        return subprocess.Popen(command)
     process = subprocess.Popen(command, stdin=subprocess.PIPE)
     with process.stdin as pipe:
         pipe.write(world.to_vrml().encode())

@@ -8,6 +8,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "xvrml/deformed.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -114,7 +115,7 @@ template <class Points> std::vector<V4d> inSpace(const Points& points) {
 // Returns the points of a Coordinate or CoordinateDouble.
 std::vector<V4d> controlPointsOf(const NodeRef& node) {
   Node* rendered = renderedNode(node.get());
-  if (auto* single = nodeCast<nodes::Coordinate>(rendered)) return inSpace(single->point);
+  if (auto* single = nodeCast<nodes::Coordinate>(rendered)) return inSpace(drawnPoints(*single));
   if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) return inSpace(exact->point);
   return {};
 }

@@ -17,7 +17,7 @@ Mesh buildNurbsCurve(const nodes::NurbsCurve& node, const MeshOptions& options, 
   }
   Mesh mesh;
   for (const ParameterStep& step : curve->knots.steps(steps)) {
-    const Vec3f place = toVec3f(curve->at(step.t).place);
+    const Vec3f place = toVec3f(curve->at(curve->knots.basis(step)).place);
     if (!isFinite(place)) {
       faults.note("the curve is not finite; nothing is drawn");
       return {};

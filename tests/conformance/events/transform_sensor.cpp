@@ -67,6 +67,17 @@ TEST(TransformSensor, BoxesAreComparedAsTheyAreTurned) {
   EXPECT_EQ(r.at(touching + 0.01f, touching + 0.01f), "FALSE");
 }
 
+TEST(TransformSensor, AnInstanceIsItsFirstNode) {
+  Sensing r("PROTO P [ inputOutput SFVec3f translation 9 0 0 ] { Transform { translation IS "
+            "translation children Shape { geometry Box { } } } }\nDEF T P { }\n"
+            "DEF S TransformSensor { size 8 8 8 targetObject USE T }");
+  r.log("S", "position_changed");
+  for (const float x : {1.0f, 2.0f}) {
+    EXPECT_EQ(r.at(x), "TRUE");
+    EXPECT_EQ(std::get<Vec3f>(r.browser.get(r.node("S"), "position_changed")), (Vec3f{x, 0, 0}));
+  }
+}
+
 TEST(TransformSensor, SensesNothingWithoutATargetOrAVolume) {
   for (const char* fields :
        {"size 4 4 4", "targetObject USE T", "size 4 0 4 targetObject USE T",
