@@ -36,7 +36,8 @@ constexpr const char* classNames[] = {"VRML97",
                                       "VRML97Environment"};
 constexpr uint32_t surfaces = 6, lights = 2, cameras = 2;
 constexpr uint32_t firstClass = 1, firstShader = 21, firstObject = 41, firstInstance = 51,
-                   firstLight = 61, sky = firstShader + surfaces + lights + cameras;
+                   firstLight = 61;
+constexpr uint32_t sky = firstShader + surfaces + lights + cameras;
 
 const ShaderRegistry& shaders() {
   static const auto* const known = new ShaderRegistry(shaderFolders(""));

@@ -6,7 +6,7 @@ import numpy as np
 
 import xvrml
 
-from . import _placing
+from . import _placing, _shaping
 from .figures import map_colors
 
 
@@ -20,11 +20,9 @@ def convert(thing, scalars, cmap, clim, color):
         if clim is None and scalars is not None and color is None:  # one range for all blocks
             low, high = thing.get_data_range(scalars, allow_missing=True)
             clim = (low, high) if np.isfinite([low, high]).all() else None
-        group = xvrml.Group()
-        group.children = [
+        return xvrml.Group(children=[
             convert(block, scalars, cmap, clim, color) for block in thing if block is not None
-        ]
-        return group
+        ])
     values = thing.active_scalars if scalars is None else None
     if scalars is not None and scalars in thing.array_names:
         values = thing[scalars]
@@ -72,9 +70,7 @@ def _shapes(data, colors, material, crease=0):
         first += count
     if len(shapes) == 1:
         return shapes[0]
-    group = xvrml.Group()
-    group.children = shapes
-    return group
+    return xvrml.Group(children=shapes)
 
 
 def _surface(data):
@@ -103,7 +99,7 @@ def _shape(kind, points, cells, of_points, of_cells, material, crease):
         geometry.colorPerVertex = of_points is not None
     if kind != "faces":  # lines and points show emissiveColor (clauses 6.24, 6.36)
         shown = "baseColor" if hasattr(material, "baseColor") else "diffuseColor"
-        material = xvrml.Material(emissiveColor=getattr(material, shown))
+        return _shaping.thin(geometry, getattr(material, shown))
     return xvrml.Shape(geometry=geometry, appearance=xvrml.Appearance(material=material))
 
 
@@ -124,7 +120,6 @@ def _index(cells):
 def _plotter(plotter):
     """Returns a Group of what a Plotter shows: its camera as a Viewpoint or an OrthoViewpoint, its
     background, the lights that stand in its scene, and its visible actors that have a data set."""
-    group = xvrml.Group()
     sky = tuple(plotter.renderer.GetBackground())
     children = [_viewpoint(plotter.camera), xvrml.Background(skyColor=[sky])]
     for light in plotter.renderer.lights:
@@ -139,16 +134,14 @@ def _plotter(plotter):
         material = _material(actor.prop)
         crease = 0 if actor.prop.GetInterpolation() == 0 else np.pi  # VTK_FLAT
         if hasattr(data, "n_blocks"):
-            shape = xvrml.Group()
-            shape.children = [
+            shape = xvrml.Group(children=[
                 _shapes(block, None, material, crease)
                 for block in data.recursive_iterator(skip_none=True)
-            ]
+            ])
         else:
             shape = _shapes(data, _shown_colors(mapper), material, crease)
         children.append(_placing.placed(shape, _matrix(actor)))
-    group.children = children
-    return group
+    return xvrml.Group(children=children)
 
 
 def _matrix(actor):

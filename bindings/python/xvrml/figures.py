@@ -16,6 +16,8 @@ import numpy as np
 
 import xvrml
 
+from . import _shaping
+
 __all__ = ["picture", "show", "to_world", "points", "height_field"]
 
 _UNKNOWN = (0.5, 0.5, 0.5)  # the colour of values that are not numbers
@@ -59,12 +61,6 @@ def _colors(count, what, values, colors, cmap, clim):
     return np.ascontiguousarray(colors[:, :3], np.float32)
 
 
-def _shape(geometry, color):
-    """Returns a Shape. color: of faces without colours of their own; None: that of a Material."""
-    material = xvrml.Material() if color is None else xvrml.Material(diffuseColor=tuple(color)[:3])
-    return xvrml.Shape(geometry=geometry, appearance=xvrml.Appearance(material=material))
-
-
 def points(xyz, values=None, *, colors=None, color=(0.8, 0.8, 0.8), cmap="viridis", clim=None):
     """Returns a Shape of points. World.render(point_size=...) draws them as balls; without it they
     are one pixel wide.
@@ -82,8 +78,7 @@ def points(xyz, values=None, *, colors=None, color=(0.8, 0.8, 0.8), cmap="viridi
     geometry = xvrml.PointSet(coord=xvrml.Coordinate(point=xyz))
     if each is not None:
         geometry.color = xvrml.Color(color=each)
-    material = xvrml.Material(emissiveColor=tuple(color)[:3])  # the colour of points (clause 6.36)
-    return xvrml.Shape(geometry=geometry, appearance=xvrml.Appearance(material=material))
+    return _shaping.thin(geometry, color)
 
 
 def height_field(z, *, spacing=(1.0, 1.0), values=None, colors=None, color=None, cmap="viridis",
@@ -115,7 +110,7 @@ def height_field(z, *, spacing=(1.0, 1.0), values=None, colors=None, color=None,
                                    creaseAngle=np.pi)
     if each is not None:
         geometry.color = xvrml.Color(color=each)
-    return _shape(geometry, color)
+    return _shaping.faces(geometry, color)
 
 
 def _cloud(xyz, options):
@@ -186,14 +181,15 @@ def _prepare(thing, options):
     looks = {name: options[name] for name in _LOOKS if name in options}
     rendering = {name: value for name, value in options.items() if name not in looks}
     world = to_world(thing, **looks)
-    bounds = world.bounds
-    if isinstance(thing, (str, os.PathLike, xvrml.Node, xvrml.World)) or bounds is None:
+    if isinstance(thing, (str, os.PathLike, xvrml.Node, xvrml.World)):
         return world, rendering
-    extent = float(np.linalg.norm(bounds[1] - bounds[0]))
-    for kind, name, size in (("points", "point_size", extent / 100), ("lines", "line_width",
-                                                                      extent / 400)):
-        if extent > 0 and any(mesh.kind == kind for mesh in world.meshes(spheres=0)):
-            rendering.setdefault(name, size)
+    kinds = {mesh.kind for mesh in world.meshes(spheres=0)}
+    if not kinds & {"points", "lines"}:
+        return world, rendering
+    extent = float(np.linalg.norm(np.diff(world.bounds, axis=0)))
+    for kind, name, part in (("points", "point_size", 100), ("lines", "line_width", 400)):
+        if extent > 0 and kind in kinds:
+            rendering.setdefault(name, extent / part)
     return world, rendering
 
 

@@ -6,7 +6,7 @@ a cell.
 """
 import numpy as np
 
-from . import _placing
+from . import _placing, _shaping
 
 __all__ = [
     "from_trimesh", "to_trimesh", "from_open3d", "from_pyvista", "to_pyvista", "to_pil", "from_pil",
@@ -40,7 +40,7 @@ def from_trimesh(mesh, color=None):
         return group
     geometry = xvrml.IndexedFaceSet(
         coord=xvrml.Coordinate(point=np.asarray(mesh.vertices, np.float32)),
-        coordIndex=_index(mesh.faces),
+        coordIndex=_shaping.index(mesh.faces),
         solid=bool(mesh.is_watertight))
     visual = getattr(mesh, "visual", None)
     if color is None and getattr(visual, "kind", None) == "vertex":
@@ -48,8 +48,7 @@ def from_trimesh(mesh, color=None):
     elif color is None and getattr(visual, "kind", None) == "face":
         geometry.color = xvrml.Color(color=np.asarray(visual.face_colors)[:, :3] / 255)
         geometry.colorPerVertex = False
-    material = xvrml.Material(diffuseColor=color) if color is not None else xvrml.Material()
-    return xvrml.Shape(geometry=geometry, appearance=xvrml.Appearance(material=material))
+    return _shaping.faces(geometry, color)
 
 
 def from_open3d(geometry, color=None):
@@ -66,9 +65,9 @@ def from_open3d(geometry, color=None):
     if vertices is None:
         raise ValueError(f"geometry: points expected; the {type(geometry).__name__} has none")
     if hasattr(geometry, "lines"):
-        made = xvrml.IndexedLineSet(coordIndex=_index(geometry.lines), colorPerVertex=False)
+        made = xvrml.IndexedLineSet(coordIndex=_shaping.index(geometry.lines), colorPerVertex=False)
     elif hasattr(geometry, "triangles"):
-        made = xvrml.IndexedFaceSet(coordIndex=_index(geometry.triangles), solid=False)
+        made = xvrml.IndexedFaceSet(coordIndex=_shaping.index(geometry.triangles), solid=False)
         normals = array("vertex_normals")
         if normals is not None:
             made.normal = xvrml.Normal(vector=normals)
@@ -77,11 +76,8 @@ def from_open3d(geometry, color=None):
     made.coord = xvrml.Coordinate(point=vertices)
     if color is None and own is not None:
         made.color = xvrml.Color(color=np.clip(own, 0, 1))
-    shown = (0.8, 0.8, 0.8) if color is None else tuple(color)[:3]
-    material = xvrml.Material(
-        diffuseColor=shown) if hasattr(geometry, "triangles") else xvrml.Material(
-            emissiveColor=shown)  # lines and points show emissiveColor (clauses 6.24, 6.36)
-    return xvrml.Shape(geometry=made, appearance=xvrml.Appearance(material=material))
+    shown = (0.8, 0.8, 0.8) if color is None else color
+    return (_shaping.faces if hasattr(geometry, "triangles") else _shaping.thin)(made, shown)
 
 
 def from_pyvista(thing, scalars=None, *, cmap="viridis", clim=None, color=None):
@@ -97,14 +93,6 @@ def from_pyvista(thing, scalars=None, *, cmap="viridis", clim=None, color=None):
     A Plotter has its own colours: the last four are ignored for it. Volumes and texts are left out."""
     from . import _pyvista
     return _pyvista.convert(thing, scalars, cmap, clim, color)
-
-
-def _index(cells):
-    """Returns rows of indices with -1 behind each."""
-    cells = np.asarray(cells)
-    index = np.full((len(cells), cells.shape[1] + 1), -1, np.int32)
-    index[:, :-1] = cells
-    return index.ravel()
 
 
 def _meshes(world, spheres):

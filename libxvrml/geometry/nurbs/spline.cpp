@@ -92,6 +92,12 @@ std::vector<ParameterStep> KnotVector::steps(uint64_t count) const {
   return result;
 }
 
+// Returns the derivative of a place by the quotient rule. derivative: that of the place times its
+// weight, and of the weight.
+static V3d quotient(const V4d& derivative, const V3d& place, double weight) {
+  return (spaceOf(derivative) - place * derivative.w) / weight;
+}
+
 RationalCurve::Point RationalCurve::at(const BasisValues& basis) const {
   V4d value(0.0), first(0.0), second(0.0);
   for (size_t k = 0; k < size_t(basis.count); k++) {
@@ -102,7 +108,7 @@ RationalCurve::Point RationalCurve::at(const BasisValues& basis) const {
   }
   Point result;
   result.place = spaceOf(value) / value.w;
-  result.first = (spaceOf(first) - result.place * first.w) / value.w;
+  result.first = quotient(first, result.place, value.w);
   result.second =
       (spaceOf(second) - result.first * (2 * first.w) - result.place * second.w) / value.w;
   return result;
@@ -124,8 +130,8 @@ RationalSurface::Point RationalSurface::at(const BasisValues& alongU,
   }
   Point result;
   result.place = spaceOf(value) / value.w;
-  result.alongU = (spaceOf(byU) - result.place * byU.w) / value.w;
-  result.alongV = (spaceOf(byV) - result.place * byV.w) / value.w;
+  result.alongU = quotient(byU, result.place, value.w);
+  result.alongV = quotient(byV, result.place, value.w);
   return result;
 }
 
