@@ -147,6 +147,7 @@ class CommitBuilder {
     e->normals = addArray(built.normals);
     e->texCoords = addArray(built.texCoords);
     e->colors = addArray(built.colors);
+    e->fogCoords = addArray(built.fogCoords);
     e->surface = built.surface;
     for (size_t i = 0; e->shader != 0 && i < built.parameters.size(); i++) {
       auto parameter = std::make_unique<edit::GeometryParameterT>();

@@ -75,7 +75,7 @@ class Context {
   edit::TexGen texGen = edit::TexGen::Off;
   bool cull = false, clockwise = false;
   VertexState attributes; // current attributes outside definitions, which do not inherit them
-  AttributeSource vertexArray, normalArray, texCoordArray, colorArray;
+  AttributeSource vertexArray, normalArray, texCoordArray, colorArray, fogCoordArray;
   std::vector<ParameterArray> parameterArrays;
 
   Definition& openDefinition();

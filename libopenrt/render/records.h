@@ -111,6 +111,7 @@ struct Record {
   const float* normals = nullptr;    // stride 3, in the geometry's local frame
   const float* texCoords = nullptr;  // stride 2
   const float* colors = nullptr;     // stride 4
+  const float* fogCoords = nullptr;  // share of the fog, stride 1
   // The geometry's own values of shader parameters, already validated.
   const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;

@@ -41,6 +41,7 @@ struct Geometry {
   // `points`. Null: `points`.
   ArrayPtr rest;
   edit::TexGen texGen = edit::TexGen::Off;
+  ArrayPtr fogCoords;
 
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };

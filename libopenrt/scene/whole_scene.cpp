@@ -90,6 +90,7 @@ class Writer {
     e->colors = number(g.colors);
     e->rest = number(g.rest);
     e->texGen = g.texGen;
+    e->fogCoords = number(g.fogCoords);
     if (g.surface) e->surface = g.surface->numbers();
     for (const GeometryParameter& own : g.parameters) {
       if (e->shader == 0) break; // parameters belong to the shader's class

@@ -86,6 +86,8 @@ Mesh buildGrid(const Grid& node, const MeshOptions& options, Faults& faults, con
        Fault::normalMissing, faults);
   bind(set.texCoords, textureCoordinates(node.texCoord), true, set.points.size(), faces,
        Fault::texCoordMissing, faults);
+  if constexpr (requires { node.fogCoord; })
+    set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
   if (options.needTexCoords &&
       set.texCoords.values.empty()) { // the whole texture, S along x and T along z
     set.texCoords.own.reserve(set.points.size());

@@ -172,6 +172,7 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
   set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   set.normals.values = normalVectors(node.normal);
   set.texCoords.values = textureCoordinates(node.texCoord);
+  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
   Mesh mesh;
   if (set.ownPoints.empty() && buildInPlace(node, set, options, mesh)) return mesh;
 

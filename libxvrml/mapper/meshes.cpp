@@ -24,7 +24,7 @@ uint64_t contentHash(const Mesh& m) {
       uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9 | uint64_t(m.texGen) << 16;
   const uint64_t colorless =
       hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags))));
-  return hashed(m.alphas, hashed(m.colors, colorless));
+  return hashed(m.fogCoords, hashed(m.alphas, hashed(m.colors, colorless)));
 }
 
 double reachOf(const Mesh& m) {
@@ -38,7 +38,8 @@ double reachOf(const Mesh& m) {
 uint64_t ownBytes(const Mesh& m) {
   return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
          m.ownColors.capacity() * sizeof(Color) + m.ownAlphas.capacity() * sizeof(float) +
-         m.ownTexCoords.capacity() * sizeof(Vec2f) + m.ownIndices.capacity() * sizeof(uint32_t);
+         m.ownFogCoords.capacity() * sizeof(float) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
+         m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
 // Takes the triangles out of a large mesh that is about to be released, if they are the faces of
@@ -207,7 +208,8 @@ bool Meshes::sameContent(int32_t a, int32_t b) {
   return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && m.texGen == n.texGen &&
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
-         equalBytes(m.colors, n.colors) && equalBytes(m.alphas, n.alphas);
+         equalBytes(m.colors, n.colors) && equalBytes(m.alphas, n.alphas) &&
+         equalBytes(m.fogCoords, n.fogCoords);
 }
 
 int32_t Meshes::newGroup(uint64_t hash) {
@@ -410,6 +412,7 @@ void compact(const Mesh& mesh, Mesh& out) {
     if (!mesh.texCoords.empty()) out.ownTexCoords.push_back(mesh.texCoords[i]);
     if (!mesh.colors.empty()) out.ownColors.push_back(mesh.colors[i]);
     if (!mesh.alphas.empty()) out.ownAlphas.push_back(mesh.alphas[i]);
+    if (!mesh.fogCoords.empty()) out.ownFogCoords.push_back(mesh.fogCoords[i]);
   }
   out.ownIndices.reserve(mesh.indices.size());
   for (const uint32_t i : mesh.indices)

@@ -31,6 +31,7 @@ const Mesh& withLinearColors(const Mesh& mesh, Mesh& storage) {
   storage.normals = mesh.normals;
   storage.texCoords = mesh.texCoords;
   storage.alphas = mesh.alphas;
+  storage.fogCoords = mesh.fogCoords;
   storage.solid = mesh.solid;
   storage.ccw = mesh.ccw;
   storage.texGen = mesh.texGen;
@@ -272,6 +273,7 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   } else {
     rtColorPointer(3, RT_FLOAT, 0, nullptr);
   }
+  rtFogCoordPointer(RT_FLOAT, 0, m.fogCoords.empty() ? nullptr : m.fogCoords.data());
   rtDrawElements(modeOf(m.kind), m.indices.size(), m.indices.data(), m.points.size());
 }
 

@@ -37,6 +37,13 @@ void setColor(Context& c, float r, float g, float b, float a) {
   v.present |= HasColor;
 }
 
+void setFogCoord(Context& c, float share) {
+  require(finite(share), RT_INVALID_VALUE, "the coordinate is not finite");
+  VertexState& v = c.currentAttributes();
+  v.fogCoord = share;
+  v.present |= HasFogCoord;
+}
+
 void requirePointer(const void* pointer) {
   require(pointer != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
 }
@@ -141,6 +148,10 @@ void rtColor4fv(const float* v) {
     requirePointer(v);
     setColor(c, v[0], v[1], v[2], v[3]);
   });
+}
+
+void rtFogCoordf(float share) {
+  guarded("rtFogCoordf", [&](Context& c) { setFogCoord(c, share); });
 }
 
 void rtTexGen(RTenum mode) {

@@ -65,7 +65,7 @@ struct DrawCall {
   RTenum mode = RT_TRIANGLES;
   size_t count = 0, vertexCount = 0;
   const uint32_t* indices = nullptr; // vertex indices; null stands for 0, 1, 2 ...
-  AttributeSource points, normals, texCoords, colors;
+  AttributeSource points, normals, texCoords, colors, fogCoords;
   std::vector<ParameterSource> parameters;
   ArrayPtr formerIndices; // an array that is used if its bytes are those of the indices; or null
 };
@@ -80,7 +80,7 @@ struct BuiltParameter {
 struct BuiltGeometry {
   GeometryState state;
   edit::Primitive primitive = edit::Primitive::Triangles;
-  ArrayPtr points, indices, normals, texCoords, colors;
+  ArrayPtr points, indices, normals, texCoords, colors, fogCoords;
   std::vector<BuiltParameter> parameters;
   std::vector<double> surface; // numbers of a quadric or an asphere
 };

@@ -53,6 +53,9 @@ inline bool isCulledHit(const RenderScene& scene, const Rays& rays, const RayHit
 // Tracing Gems II, ch. 4. Returns false and writes nothing if the surface is flat.
 bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out);
 
+// Returns the fog coordinate of hit i, or a negative number if its geometry has none.
+float fogCoordAt(const RenderScene& scene, const Points& points, uint32_t i);
+
 // Moves p along the unit vector n out of the error bound, then by one more float on every axis: M.
 // Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., 3.9.5.
 inline Vec3f offsetPoint(const Vec3f& p, const Vec3f& n, float error) {

@@ -52,7 +52,8 @@ struct FaceSet {
   Attribute<Vec3f> normals;
   Attribute<Vec2f> texCoords;
   Attribute<Color> colors;
-  std::vector<float> alphas; // as long as colors.values, or empty: opaque
+  std::vector<float> alphas;    // as long as colors.values, or empty: opaque
+  std::vector<float> fogCoords; // as long as points, or empty
   bool solid = true, ccw = true;
   bool convex = true; // promised by the author; checked
   // This many leading faces are split without checks (strips of quadrilaterals).

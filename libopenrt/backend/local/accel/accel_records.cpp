@@ -75,6 +75,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.normals = g.normals ? g.normals->as<float>() : nullptr;
   r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
   r.colors = g.colors ? g.colors->as<float>() : nullptr;
+  r.fogCoords = g.fogCoords ? g.fogCoords->as<float>() : nullptr;
   r.texGen = g.texGen;
   if (carriesParameters(g, r.shader)) {
     r.parameters = g.parameters.data();
