@@ -52,6 +52,11 @@ struct Object {
   std::vector<Geometry> geometries;
 };
 
+// Returns whether primitives of this kind have a width in pixels.
+inline bool isThin(edit::Primitive primitive) {
+  return primitive == edit::Primitive::Lines || primitive == edit::Primitive::Points;
+}
+
 // A dynamic object that is one mesh with so many triangles or more has a tree of its own, which is
 // refitted when the mesh deforms. isRefitted() tells whether an object is one.
 inline constexpr size_t refittedTriangles = 50'000;

@@ -97,8 +97,9 @@ class Comparer {
            same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
            a.width == b.width && a.texGen == b.texGen && same(a.points, b.points) &&
            same(a.indices, b.indices) && same(a.normals, b.normals) &&
-           same(a.texCoords, b.texCoords) && same(a.colors, b.colors) && same(a.rest, b.rest) &&
-           !a.surface == !b.surface && (!a.surface || *a.surface == *b.surface) &&
+           same(a.texCoords, b.texCoords) && same(a.colors, b.colors) &&
+           same(a.fogCoords, b.fogCoords) && same(a.rest, b.rest) && !a.surface == !b.surface &&
+           (!a.surface || *a.surface == *b.surface) &&
            (known(a.shader) == 0 ||
             std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
                        b.parameters.end(), [](auto& x, auto& y) {
@@ -147,6 +148,7 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     for (int i = 0; i < 6; i++) {
       rtColor3f(number(0, 1), number(0, 1), number(0, 1));
       rtTexCoord2f(number(0, 1), number(0, 1));
+      rtFogCoordf(number(0, 1));
       if (shader == varying) rtParameter3f(varyingColor, number(0, 1), number(0, 1), number(0, 1));
       rtVertex3f(number(-1, 1), number(-1, 1), number(-1, 1));
     }

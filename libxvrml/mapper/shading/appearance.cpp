@@ -32,13 +32,13 @@ namespace {
 // Sets the material (clause 4.14). Without a Material the surface is unlit.
 void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
   shader.integer("lit", m ? 1 : 0);
+  shader.number("transparency", m ? m->transparency : 0, 0, 1);
   if (!m) return;
   shader.color("diffuseColor", convert(m->diffuseColor, linear));
   shader.color("emissiveColor", convert(m->emissiveColor, linear));
   shader.color("specularColor", convert(m->specularColor, linear));
   shader.number("ambientIntensity", m->ambientIntensity, 0, 1);
   shader.number("shininess", m->shininess, 0, 1);
-  shader.number("transparency", m->transparency, 0, 1);
 }
 } // namespace
 
@@ -156,7 +156,7 @@ Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
 }
 
 // Makes the surface of lines and points (clauses 6.24 and 6.36) in the colours of the geometry,
-// else in emissiveColor: unlit, unless they are thick.
+// else in emissiveColor: unlit, unless they are thick, and as transparent as the material.
 Surface Surfaces::makeLines(const Entry& entry) {
   Node* appearance = entry.appearance.get();
   Surface surface;
@@ -166,8 +166,11 @@ Surface Surfaces::makeLines(const Entry& entry) {
   shader.integer("lit", entry.use.thick);
   if (entry.use.vertexAlpha) shader.integer("vertexAlpha", 1);
   const AppearanceParts parts = resolveAppearance(appearance);
-  if (parts.material)
-    surface.lineColor = convert(materialValues(parts.material).lineColor, linear_);
+  if (parts.material) {
+    const MaterialValues values = materialValues(parts.material);
+    surface.lineColor = convert(values.lineColor, linear_);
+    shader.number("transparency", values.transparency, 0, 1);
+  }
   const LineSizes sizes = lineSizes(parts.plain);
   surface.lineWidth = sizes.line;
   surface.pointSize = sizes.point;
@@ -332,9 +335,11 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
       it->second.textured = textured;
     } else {
       const AppearanceParts parts = resolveAppearance(&appearance);
-      const Color color = parts.material
-                              ? convert(materialValues(parts.material).lineColor, linear_)
-                              : Surface().lineColor;
+      const MaterialValues values = materialValues(parts.material);
+      const Color color = parts.material ? convert(values.lineColor, linear_) : Surface().lineColor;
+      if (it->second.own != 0)
+        ShaderSetup(classes_.get("VRML97", ""), it->second.own, sets_)
+            .number("transparency", values.transparency, 0, 1);
       const LineSizes sizes = lineSizes(parts.plain);
       Surface& surface = it->second.surface;
       effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||

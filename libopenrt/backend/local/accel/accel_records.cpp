@@ -65,8 +65,11 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.primitive = g.primitive;
   r.primitives = uint32_t(g.primitives());
   r.shader = input_->shaders.slotOf(path.shader ? path.shader : g.shader);
-  // The back faces of a body with a medium are needed, even if the geometry asks for culling.
-  r.cull = g.cull && !input_->shaders[r.shader].shaderClass->medium;
+  const ShaderSlot& shader = input_->shaders[r.shader];
+  // The back faces of a body with a medium are needed, even if the geometry asks for culling. A
+  // transparent line or point is met once, where a ray enters it.
+  r.cull = isThin(g.primitive) ? (shader.traits & RTS_TRANSPARENT) != 0
+                               : g.cull && !shader.shaderClass->medium;
   r.bucket = bucketOf(r.shader, path);
   r.name = g.name ? g.name : path.name;
   r.instance = path.instance;
