@@ -142,6 +142,8 @@ class CommitBuilder {
     e->clockwise = built.state.clockwise;
     e->width = built.state.width;
     e->texGen = built.state.texGen;
+    e->stippleFactor = built.state.stipple.factor;
+    e->stipplePattern = built.state.stipple.pattern;
     e->points = addArray(built.points);
     e->indices = addArray(built.indices);
     e->normals = addArray(built.normals);

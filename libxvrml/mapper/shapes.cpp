@@ -230,8 +230,9 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
-  rtLineWidth(surface.lineWidth);
-  rtPointSize(surface.pointSize);
+  rtLineWidth(surface.style.line);
+  rtPointSize(surface.style.point);
+  rtLineStipple(surface.style.factor, surface.style.pattern);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   rtTexGen(textured ? RTenum(m.texGen) : RTenum(RT_TEX_GEN_OFF));

@@ -81,16 +81,18 @@ TEST_F(Surface, AnInstanceHasAFogOfItsOwn) {
 
 // The fog coordinate of vertices is the share of the fog, whatever the distance (rtFogCoordf).
 TEST_F(Surface, FogCoordinatesReplaceTheDistance) {
+  const Shader paint("VRML97");
   const RTid plane = rtBeginObject(0);
-  rtBindShader(Shader("VRML97"));
+  rtBindShader(paint);
   rtBegin(RT_QUADS);
   for (const int x : {-1, 1})
-    for (const int z : {x, -x}) {
+    for (const int y : {-x, x}) {
       rtFogCoordf(x < 0 ? 0 : 2); // held in 0..1 after interpolation
-      rtVertex3f(float(x), 0, float(z));
+      rtVertex2f(float(x), float(y));
     }
   rtEnd();
   rtEndObject();
+  rtBindShader(0);
   const RTid placed = place(plane);
   use(tilted(0));
   const auto air = [](int type) {

@@ -95,8 +95,8 @@ class Comparer {
   bool equal(const Geometry& a, const Geometry& b) const {
     return a.primitive == b.primitive && known(a.shader) == known(b.shader) && a.name == b.name &&
            same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
-           a.width == b.width && a.texGen == b.texGen && same(a.points, b.points) &&
-           same(a.indices, b.indices) && same(a.normals, b.normals) &&
+           a.width == b.width && a.texGen == b.texGen && a.stipple == b.stipple &&
+           same(a.points, b.points) && same(a.indices, b.indices) && same(a.normals, b.normals) &&
            same(a.texCoords, b.texCoords) && same(a.colors, b.colors) &&
            same(a.fogCoords, b.fogCoords) && same(a.rest, b.rest) && !a.surface == !b.surface &&
            (!a.surface || *a.surface == *b.surface) &&
@@ -143,6 +143,7 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     rtBindShader(shader);
     rtLoadName(random() % 9);
     rtTexGen(random() % (RT_TEX_GEN_SPHERE_REFLECTION + 1));
+    rtLineStipple(int(random() % 3 + 1), uint16_t(random()));
     if (random() % 3 == 0) return rtSphere(number(.2f, 1));
     rtBegin(random() % 4 ? RT_TRIANGLES : RT_LINES);
     for (int i = 0; i < 6; i++) {

@@ -170,6 +170,14 @@ void rtPointSize(float pixels) {
   guarded("rtPointSize", [&](Context& c) { setPixels(c.pointSize, pixels); });
 }
 
+void rtLineStipple(int factor, uint16_t pattern) {
+  guarded("rtLineStipple", [&](Context& c) {
+    require(factor >= 1 && factor <= Stipple::largestFactor, RT_INVALID_VALUE,
+            "the factor must be 1 to 256");
+    c.stipple = {uint16_t(factor), pattern};
+  });
+}
+
 void rtEnable(RTenum capability) {
   guarded("rtEnable", [&](Context& c) { setCapability(c, capability, true); });
 }

@@ -22,6 +22,7 @@
 #include "openrt/openrts.h"
 #include "scene/array_blocks.h"
 #include "scene/matrix.h"
+#include "scene/stipple.h"
 
 namespace openrt {
 
@@ -32,10 +33,11 @@ struct GeometryState {
   bool cull = false, clockwise = false;
   float width = 1;
   edit::TexGen texGen = edit::TexGen::Off;
+  Stipple stipple; // dashes, where it is lines
   bool operator==(const GeometryState& other) const {
     return shader == other.shader && name == other.name && cull == other.cull &&
            clockwise == other.clockwise && width == other.width && texGen == other.texGen &&
-           matrix.m == other.matrix.m;
+           stipple == other.stipple && matrix.m == other.matrix.m;
   }
 };
 

@@ -7,6 +7,7 @@
 
 #include "picture_size.h"
 #include "scene/analytic.h"
+#include "scene/stipple.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -56,6 +57,8 @@ size_t cornersOf(edit::Primitive primitive) {
 
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   demand(g.texGen <= edit::TexGen::MAX, "unknown texture coordinates");
+  demand(g.stippleFactor >= 1 && g.stippleFactor <= Stipple::largestFactor,
+         "the factor of a stipple is not 1 to 256");
   const std::string problem = AnalyticSurface::problemOf(g.primitive, g.surface);
   if (!problem.empty()) throw std::runtime_error(problem);
   if (!hasVertices(g.primitive)) {

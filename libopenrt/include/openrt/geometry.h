@@ -57,6 +57,12 @@ RT_API void rtFogCoordf(float share);
  * range > 0). rtBegin latches them. [context-thread] */
 RT_API void rtLineWidth(float pixels);
 RT_API void rtPointSize(float pixels);
+/* Sets the dashes of lines: 16 cells of `factor` pixels each (1 to 256) along the line as the
+ * camera sees it, of which those are drawn whose bit is 1, beginning with bit 0. The pattern goes
+ * on from a line to the next one in the list if they share a vertex, and begins anew elsewhere.
+ * Default 1, 0xffff: solid. Beyond 32,768 pixels from the middle of the picture lines are solid.
+ * rtBegin latches it. [context-thread] */
+RT_API void rtLineStipple(int factor, uint16_t pattern);
 
 /* Texture coordinates in the camera's frame, in place of those of vertices: x is right, y up, the
  * viewer at the origin. The camera is that of the frame, also in mirrors and through glass. */

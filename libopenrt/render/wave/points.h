@@ -42,10 +42,12 @@ inline bool isBackFaceHit(const RenderScene& scene, const Rays& rays, const RayH
   const float d = dot(n, load(rays.dir, lane));
   return r.flip ? d < 0 : d > 0;
 }
-// Returns whether the hit is a back face that is culled.
+// Returns whether the hit is a back face that is culled, or in a gap of a dashed line.
 inline bool isCulledHit(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                         uint32_t lane) {
-  return scene.records[hits.record[lane]].cull && isBackFaceHit(scene, rays, hits, lane);
+  const Record& r = scene.records[hits.record[lane]];
+  return r.cull && (isBackFaceHit(scene, rays, hits, lane) ||
+                    (r.stippled && r.isGap(hits.primitive[lane], hits.u[lane])));
 }
 
 // Lifts the point of hit i from its flat triangle to the smooth surface that the vertex normals

@@ -10,7 +10,6 @@
 #include <xxhash.h>
 
 #include "mapper/shading/layers.h"
-#include "mapper/shading/line_properties.h"
 #include "mapper/shading/material_parameters.h"
 #include "mapper/shading/physical.h"
 #include "mapper/shading/x3d_material.h"
@@ -171,9 +170,7 @@ Surface Surfaces::makeLines(const Entry& entry) {
     surface.lineColor = convert(values.lineColor, linear_);
     shader.number("transparency", values.transparency, 0, 1);
   }
-  const LineSizes sizes = lineSizes(parts.plain);
-  surface.lineWidth = sizes.line;
-  surface.pointSize = sizes.point;
+  surface.style = lineStyle(parts.plain);
   warnOfLines(parts.plain, world_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
@@ -340,13 +337,11 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
       if (it->second.own != 0)
         ShaderSetup(classes_.get("VRML97", ""), it->second.own, sets_)
             .number("transparency", values.transparency, 0, 1);
-      const LineSizes sizes = lineSizes(parts.plain);
+      const LineStyle style = lineStyle(parts.plain);
       Surface& surface = it->second.surface;
-      effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
-                        sizes.point != surface.pointSize;
+      effect.colored |= !(color == surface.lineColor) || !(style == surface.style);
       surface.lineColor = color;
-      surface.lineWidth = sizes.line;
-      surface.pointSize = sizes.point;
+      surface.style = style;
     }
   }
   return effect;

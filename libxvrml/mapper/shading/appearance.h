@@ -13,6 +13,7 @@
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
+#include "mapper/shading/line_properties.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/world.h"
 
@@ -24,9 +25,9 @@ bool isTextured(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
-  bool lines = false;                 // it is for lines or points
-  Color lineColor{1, 1, 1};           // for lines and points without colours of their own
-  float lineWidth = 1, pointSize = 1; // in pixels
+  bool lines = false;       // it is for lines or points
+  Color lineColor{1, 1, 1}; // for lines and points without colours of their own
+  LineStyle style;
 };
 
 // Says what a surface is used for.
@@ -55,7 +56,7 @@ class Surfaces {
   // use it.
   struct Effect {
     bool other = false;    // they need another shader
-    bool colored = false;  // lines need another colour or width
+    bool colored = false;  // lines need another colour or style
     bool textured = false; // they now have a texture and had none before
   };
   // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.

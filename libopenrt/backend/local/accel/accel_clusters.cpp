@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "backend/local/accel/accel_build.h"
+#include "backend/local/line_stippler.h"
 
 namespace openrt {
 namespace {
@@ -194,10 +195,13 @@ void AccelBuilder::placeThin(uint32_t c) {
       const Geometry& g = geometries[k];
       const uint32_t record = placed.firstRecord + info.firstEntry[i] + k;
       const uint32_t traits = input_->shaders[accel_->records[record].shader].traits;
-      addThin(
-          g.primitive == edit::Primitive::Lines ? *lines : *points,
-          {g, toKernel * part.items[i].matrix * g.matrix, record, (traits & RTS_TRANSPARENT) != 0},
-          input_->footprint, accel_->scale_);
+      const ThinGeometry thin{g, toKernel * part.items[i].matrix * g.matrix, record,
+                              (traits & RTS_TRANSPARENT) != 0};
+      addThin(g.primitive == edit::Primitive::Lines ? *lines : *points, thin, input_->footprint,
+              accel_->scale_);
+      if (!isStippled(g)) continue;
+      lines->stippled.push_back(stippledLines(thin, input_->footprint, accel_->scale_));
+      accel_->records[record].stippled = lines->stippled.back().data();
     }
   }
   const auto put = [&](std::unique_ptr<Part> made, uint32_t slot, RTCGeometryType type) {

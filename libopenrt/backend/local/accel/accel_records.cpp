@@ -67,9 +67,10 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.shader = input_->shaders.slotOf(path.shader ? path.shader : g.shader);
   const ShaderSlot& shader = input_->shaders[r.shader];
   // The back faces of a body with a medium are needed, even if the geometry asks for culling. A
-  // transparent line or point is met once, where a ray enters it.
-  r.cull = isThin(g.primitive) ? (shader.traits & RTS_TRANSPARENT) != 0
+  // line or point that rays pass is met once, where a ray enters it.
+  r.cull = isThin(g.primitive) ? (shader.traits & RTS_TRANSPARENT) || isStippled(g)
                                : g.cull && !shader.shaderClass->medium;
+  r.pattern = g.stipple.pattern;
   r.bucket = bucketOf(r.shader, path);
   r.name = g.name ? g.name : path.name;
   r.instance = path.instance;
