@@ -247,6 +247,26 @@ TEST_P(Edited, NewLinesEndAsThoseOfTheFile) {
   undoAll();
 }
 
+TEST_P(Edited, TextsThatAreInsertedGetTheEndsOfLinesOfTheFile) {
+  load("DEF G Group {\r\n}\r\n", "#VRML V2.0 utf8\r\n");
+  editor->insert(
+      {&node("G"), "children", 0},
+      "Shape { # a \"quote\n  geometry DEF T Text {\n    string \"a\nb\\\"\nc\"\n  }\r}");
+  EXPECT_EQ(editor->text(), "#VRML V2.0 utf8\r\nDEF G Group {\r\n  children [\r\n"
+                            "    Shape { # a \"quote\r\n      geometry DEF T Text {\r\n"
+                            "        string \"a\nb\\\"\nc\"\r\n      }\r\n    }\r\n"
+                            "  ]\r\n}\r\n")
+      << "the string keeps its own";
+  EXPECT_EQ((field<MFString>(node("T"), "string")), MFString{"a\nb\"\nc"});
+  undoAll();
+}
+
+TEST_P(Edited, TextsFromFilesWithCarriageReturnsGetLineFeedsInOtherFiles) {
+  load("DEF G Group {\n}\n");
+  editor->insert({&node("G"), "children", 0}, "Group {\r\n  children [ ]\r\n}");
+  EXPECT_EQ(editor->text().find('\r'), std::string::npos);
+}
+
 TEST(Editor, PackedFilesStayPacked) {
   const Folder folder;
   const std::string text = "#VRML V2.0 utf8\nDEF L PointLight { }\n";
