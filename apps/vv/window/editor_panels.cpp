@@ -257,7 +257,7 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
     if (!model_.isSelected(*row.node)) model_.select(row.node, false);
   }
   ImGui::SameLine(0, 0);
-  ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
+  ImGui::TextUnformatted(((row.isUse ? "USE " : "") + row.label()).c_str());
   if (row.isUse) ImGui::PopStyleColor();
   ImGui::PopID();
 }
