@@ -111,12 +111,6 @@ TEST_F(Library, AMaterialIsCopiedAsAWhole) {
   EXPECT_TRUE(fs::equivalent(picture.path, folder + "materials/oak.png"));
   editor->undo();
   EXPECT_EQ(text(), hall);
-  probes.rename(1, "Desk");
-  keepInWorld(*editor, probes.all()[0], front());
-  EXPECT_TRUE(has("description \"Desk\"")) << text();
-  Probes shown;
-  showSensors(*editor, shown);
-  EXPECT_EQ(titleOf(shown.all().at(0)), "1 Desk");
 }
 
 TEST_F(Library, AMaterialOnlyHere) {
@@ -304,6 +298,12 @@ TEST_F(Library, AProbeIsKeptAsASensor) {
   EXPECT_THROW(keepInWorld(*editor, probes.all()[0], front()), EditError) << "it is there";
   editor->undo();
   EXPECT_EQ(text(), hall);
+  probes.rename(1, "Desk");
+  keepInWorld(*editor, probes.all()[0], front());
+  EXPECT_TRUE(has("description \"Desk\"")) << text();
+  Probes shown;
+  showSensors(*editor, shown);
+  EXPECT_EQ(titleOf(shown.all().at(0)), "1 Desk");
 }
 
 TEST_F(Library, SensorsAreShownAsProbes) {

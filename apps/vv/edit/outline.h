@@ -17,7 +17,7 @@ namespace vv {
 
 struct OutlineRow {
   xvrml::NodeRef node;
-  int depth = 0; // of a node that has been found by its text: 0
+  int depth = 0; // 0 for roots and for what a search has found
   bool canOpen = false, isOpen = false;
   bool isUse = false; // the node stands further up, too
   PlacedNode place{}; // this one of its places
