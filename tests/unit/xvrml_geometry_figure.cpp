@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/builders.h"
 #include "geometry/figure.h"
-#include "geometry/mesh.h"
 #include "xvrml/browser.h"
 #include "xvrml/deformed.h"
 #include "xvrml/nodes.h"
