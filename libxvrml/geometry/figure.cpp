@@ -196,7 +196,7 @@ void warnOf(const Node& node, const Vertices& vertices, Diagnostics* diagnostics
 
 std::vector<Node*> deformSegment(const nodes::HAnimSegment& segment, Diagnostics* diagnostics) {
   const Coordinates coord(segment.coord);
-  if (!coord.node()) return {};
+  if (!coord.node() || segment.displacers.empty()) return {};
   Vertices vertices = coord.atRest();
   displace(segment.displacers, vertices);
   warnOf(segment, vertices, diagnostics);
@@ -264,7 +264,7 @@ std::vector<Node*> skinOf(const Node& node) {
     add(Coordinates(figure->skinCoord).node());
     add(normalOf(*figure));
   } else if (const auto* segment = nodeCast<nodes::HAnimSegment>(&node)) {
-    add(Coordinates(segment->coord).node());
+    if (!segment->displacers.empty()) add(Coordinates(segment->coord).node());
   }
   return parts;
 }

@@ -17,7 +17,8 @@ bool deforms(const NodeType& type);
 // parts of its skin that are drawn in another way than before. diagnostics: receives one warning of
 // what is wrong with the node; null: none is made.
 std::vector<Node*> deform(const Node& node, Diagnostics* diagnostics);
-// Returns the parts of the skin of such a node: a Coordinate or CoordinateDouble, and a Normal.
+// Returns the parts of its skin that such a node moves, or may move: a Coordinate or
+// CoordinateDouble, and a Normal.
 std::vector<Node*> skinOf(const Node& node);
 // Lets a part of a skin be drawn as it is at rest. Returns whether that is a change.
 bool straighten(Node& part);

@@ -229,6 +229,16 @@ TEST(Figure, WhatIsTakenOutGoesBackToRest) {
   expectNear(drawnPoints(coord)[2], {2, 0, 0});
 }
 
+TEST(Figure, ASegmentWithoutDisplacersIsAtRest) {
+  auto loaded = load("DEF S HAnimSegment { coord DEF C Coordinate { point 1 0 0 } displacers "
+                     "HAnimDisplacer { coordIndex 0 displacements 0 4 0 weight 0.5 } }");
+  auto& coord = named<nodes::Coordinate>(*loaded, "C");
+  Browser browser(std::move(loaded));
+  expectNear(drawnPoints(coord)[0], {1, 2, 0});
+  ASSERT_TRUE(browser.set(*browser.node("S"), "displacers", MFNode()));
+  expectNear(drawnPoints(coord)[0], {1, 0, 0});
+}
+
 TEST(Figure, AFigureThatGoesLeavesItsSkinAtRest) {
   auto loaded =
       load(bar + "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 0 1 2 ] } }");
