@@ -27,8 +27,9 @@ Coordinates coordinates(const NodeRef& node) {
   if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
     result.points = drawnPoints(*coordinate);
   } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
-    result.own.reserve(exact->point.size());
-    for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
+    const std::span<const Vec3d> drawn = drawnPoints(*exact);
+    result.own.reserve(drawn.size());
+    for (const Vec3d& p : drawn) result.own.push_back({float(p.x), float(p.y), float(p.z)});
     result.points = result.own;
   }
   return result;

@@ -10,8 +10,9 @@ namespace xvrml {
 NodeRef makeStaticNode(const NodeType& type) {
   switch (type.index) {
   case nodes::Inline::typeIndex: return NodeRef(new InlineNode());
-  case nodes::Coordinate::typeIndex: return NodeRef(new Deformable<nodes::Coordinate>());
-  case nodes::Normal::typeIndex: return NodeRef(new Deformable<nodes::Normal>());
+  case nodes::Coordinate::typeIndex: return NodeRef(new DeformableCoordinate());
+  case nodes::CoordinateDouble::typeIndex: return NodeRef(new DeformableCoordinateDouble());
+  case nodes::Normal::typeIndex: return NodeRef(new DeformableNormal());
   default: return NodeRef(type.create(type));
   }
 }

@@ -34,8 +34,13 @@ Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room);
 
 inline constexpr uint64_t maximumImageSide = 65536; // largest side of a texture
 
-// Throws std::runtime_error if the picture has no pixels, a side above maximumImageSide, or more
-// pixels than limits.imagePixels. Decoders call it before they allocate memory for the picture.
+// The picture has more pixels than limits.imagePixels.
+struct TooManyPixels : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Throws std::runtime_error if the picture has no pixels, a side above maximumImageSide, or and
+// TooManyPixels. Decoders call it before they allocate memory for the picture.
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format);
 // Does the same. Also throws if `components` bytes per pixel, plus `working` bytes during decoding,
 // exceed what `room` allows.
@@ -48,8 +53,7 @@ void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format);
 // header with little data costs little.
 void flipRows(Image& image);
 
-// The same for radiance pictures. checkRadianceSize refuses more pixels than a quarter of
-// limits.imagePixels.
+// The same for radiance pictures, which may have a quarter of limits.imagePixels.
 RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits);
 void checkRadianceSize(int64_t width, int64_t height, const Limits& limits);
 void flipRows(RadianceImage& image);

@@ -20,7 +20,7 @@ void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const
         "{} picture of {} x {} pixels: a side has at most {}, see the limit 'imagePixels' ({})",
         format, width, height, maximumImageSide, limits.imagePixels));
   if (width * height > limits.imagePixels)
-    throw std::runtime_error(
+    throw TooManyPixels(
         fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format,
                     width, height, limits.imagePixels));
 }

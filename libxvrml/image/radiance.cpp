@@ -130,7 +130,7 @@ void checkRadianceSize(int64_t width, int64_t height, const Limits& limits) {
   if (width < 1 || height < 1) refuse(fmt::format("a picture of {} x {} pixels", width, height));
   if (width > 65536 || height > 65536 ||
       uint64_t(width) * uint64_t(height) > limits.imagePixels / 4)
-    refuse(fmt::format(
+    throw TooManyPixels(fmt::format(
         "{} x {} pixels of radiance are beyond a quarter of the limit 'imagePixels' ({})", width,
         height, limits.imagePixels));
 }

@@ -147,12 +147,16 @@ struct TexturePicture {
   // "image/x-portable-floatmap"; empty: the picture comes from no file.
   std::string type;
   std::string error; // why there is no picture; empty: there is one, or the node names none
+  size_t url = 0;    // the place of the file in the node's list of URLs
+  bool tooManyPixels = false; // why there is no picture: it has more than the limit imagePixels
 };
 enum class Decode : uint8_t { yes, no };
 // Returns the picture of an ImageTexture, a PixelTexture, or the frame that a MovieTexture of a
 // running world shows now. world: its limits hold, and its file is the base of the URLs of nodes in
-// no file. Decode::no reads a file without decoding it; `image` is then empty.
-TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes);
+// no file. Decode::no reads a file without decoding it; `image` is then empty. The file is that of
+// the first URL, from `url` on, that can be used.
+TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes,
+                              size_t url = 0);
 // Decodes the file of a picture that was read with Decode::no. Reads at most limits.imagePixels
 // pixels; otherwise `error` says what is wrong. Needs no world. [any thread]
 void decodeTexture(TexturePicture& picture, const Limits& limits);
