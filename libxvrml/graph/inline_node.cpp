@@ -3,6 +3,7 @@
 #include "graph/inline_node.h"
 
 #include "base/deformable.h"
+#include "base/particle_clock.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
@@ -12,6 +13,7 @@ NodeRef makeStaticNode(const NodeType& type) {
   case nodes::Inline::typeIndex: return NodeRef(new InlineNode());
   case nodes::Coordinate::typeIndex: return NodeRef(new Deformable<nodes::Coordinate>());
   case nodes::Normal::typeIndex: return NodeRef(new Deformable<nodes::Normal>());
+  case nodes::ParticleSystem::typeIndex: return NodeRef(new TimedParticleSystem());
   default: return NodeRef(type.create(type));
   }
 }
