@@ -13,7 +13,7 @@ namespace xvrml {
 namespace {
 
 constexpr uint64_t mostParticles = 1'000'000;
-constexpr uint64_t mostCorners = 4'000'000; // of all particles of a system
+constexpr uint64_t mostCorners = 4'000'000; // all particles of a system together
 // Triangles of surfaces that particles of a system are compared with.
 constexpr uint64_t mostComparisons = 20'000'000;
 constexpr uint64_t bytesOfCorner = 128; // in the geometry that is drawn, and in the next one

@@ -10,7 +10,7 @@ namespace xvrml {
 // The number of particles that a system has room for.
 struct ParticleRoom {
   uint32_t count = 0;
-  uint64_t bytes = 0; // of one of them
+  uint64_t bytes = 0; // what one of them takes
   std::string limit;  // what bounds it if that is not maxParticles; else empty
 };
 ParticleRoom roomOf(const nodes::ParticleSystem& system);

@@ -11,8 +11,8 @@ namespace xvrml {
 
 struct Facet {
   std::array<V3d, 3> corners;
-  std::array<V3d, 3> normals; // of the corners, towards the front; unit vectors
-  V3d normal;                 // of the plane, towards the front; a unit vector
+  std::array<V3d, 3> normals; // unit vectors at the corners, towards the front
+  V3d normal;                 // unit vector of the plane, towards the front
 };
 
 class Facets {

@@ -11,7 +11,7 @@
 namespace xvrml {
 namespace {
 
-constexpr uint32_t sphereRows = 8; // of a Sphere as a particle
+constexpr uint32_t sphereRows = 8; // facets of a Sphere as a particle, from pole to pole
 constexpr Vec2f wholeTexture[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
 float length(float given) { return given > 0 && std::isfinite(given) ? given : 0; }

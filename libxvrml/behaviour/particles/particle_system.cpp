@@ -23,7 +23,7 @@ struct State : NodeState {
   bool sent = false;     // the last isActive
   bool emits = false;    // particles are being born
   uint64_t emission = 0; // number of the last one
-  Share share;           // of the world's budget
+  Share share;           // memory that the particles take of the world's budget
 };
 
 State& stateOf(Events& events, Node& node) { return static_cast<State&>(*events.state(node)); }
