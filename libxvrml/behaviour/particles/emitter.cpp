@@ -84,7 +84,7 @@ StartFunction startOf(const nodes::SurfaceEmitter& node) {
 StartFunction startOf(const nodes::VolumeEmitter& node, uint64_t& facets) {
   const auto surface = std::make_shared<Facets>(facetsOfFaces(node.coord, node.coordIndex));
   if (surface->empty()) return {};
-  if (node.internal) facets = surface->all().size();
+  if (node.internal) facets = 8 * surface->all().size(); // for each point that is tried
   return [surface, within = node.internal, way = node.direction](Draws& draws) {
     const V3d place = within ? surface->drawWithin(draws) : surface->draw(draws).place;
     return Start{place, direction(way, draws)};

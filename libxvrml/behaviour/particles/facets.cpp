@@ -8,7 +8,7 @@ namespace xvrml {
 namespace {
 
 constexpr uint32_t sphereRows = 32;
-constexpr int tries = 16; // to find a point within a surface
+constexpr int tries = 32; // to find a point within a surface
 
 Mesh meshOf(Node& geometry) {
   Limits limits;

@@ -17,7 +17,7 @@ struct Facet {
 
 class Facets {
  public:
-  static constexpr uint64_t most = 1'000'000; // a geometry with more facets has none
+  static constexpr uint64_t most = 1'000'000; // facets of one geometry
 
   Facets() = default;
   // geometry: may be null. Lines and points have no facets.

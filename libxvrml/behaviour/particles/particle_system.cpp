@@ -73,6 +73,7 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
                                  system->geometryType));
   reserve(events, *system, *state);
   events.wantLooks(node, true);
+  events.changed(node, *fieldNamed<"isActive">(node)); // it has been expanded without its clock
   return state;
 }
 

@@ -110,7 +110,7 @@ TEST(ParticleWay, AForceMakesAParabola) {
   expectNear(r.at(0).points[0], {0, 1, 0});
   expectNear(r.at(1).points[0], {2, 1 - 4.9f / 2, 0});
   expectNear(r.at(3).points[0], {6, 1 - 9 * 4.9f / 2, 0});
-  expectNear(r.at(5).points[0], {2, 1 - 4.9f / 2, 0}, 1e-4f) << "its second life";
+  expectNear(r.at(5).points[0], {2, 1 - 4.9f / 2, 0}, 1e-4f); // its second life
 }
 
 TEST(ParticleWay, ForcesDoNotMoveWhatHasNoMass) {
