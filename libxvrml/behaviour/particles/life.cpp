@@ -1,6 +1,7 @@
 // life.cpp: births and ends of particles, as a closed form of the time.
 #include "behaviour/particles/life.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "behaviour/particles/draws.h"
@@ -41,9 +42,10 @@ std::vector<LivingParticle> livingParticles(const LifeOfParticles& life,
       if (births.first > std::min({births.last, clock.now, emission.until})) continue;
       const double number = std::floor((births.last - births.first) / length);
       const double birth = births.first + number * length;
-      const double age = std::max(0.0, clock.now - birth);
+      const double age = std::clamp(clock.now - birth, 0.0, length);
       free = birth + length;
-      if (age < length)
+      // While births go on there is always one, whatever the division has rounded.
+      if (age < length || (births.last == clock.now && !life.explodes))
         all.push_back(
             {mixed(at, mixed(emission.number, std::bit_cast<uint64_t>(number))), age, length});
     }

@@ -20,7 +20,7 @@ struct LifeOfParticles {
 struct LivingParticle {
   uint64_t key; // names the particle, for Draws
   double age;   // in seconds
-  double life;  // its length in seconds, above `age`
+  double life;  // its length in seconds
 };
 
 // Returns the particles at the clock's time, in the order of their places.
