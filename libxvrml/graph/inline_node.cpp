@@ -3,6 +3,7 @@
 #include "graph/inline_node.h"
 
 #include "base/deformable.h"
+#include "base/particle_clock.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
@@ -13,6 +14,7 @@ NodeRef makeStaticNode(const NodeType& type) {
   case nodes::Coordinate::typeIndex: return NodeRef(new DeformableCoordinate());
   case nodes::CoordinateDouble::typeIndex: return NodeRef(new DeformableCoordinateDouble());
   case nodes::Normal::typeIndex: return NodeRef(new DeformableNormal());
+  case nodes::ParticleSystem::typeIndex: return NodeRef(new TimedParticleSystem());
   default: return NodeRef(type.create(type));
   }
 }

@@ -137,6 +137,16 @@ constexpr Interface interfaces[] = {
     {"39.4.12", "ScalarDamper", 2, 2, 3, 2},
     {"39.4.13", "TexCoordChaser2D", 2, 0, 3, 2},
     {"39.4.14", "TexCoordDamper2D", 2, 2, 3, 2},
+    {"40.4.1", "BoundedPhysicsModel", 0, 2, 0, 0},
+    {"40.4.2", "ConeEmitter", 0, 8, 0, 0},
+    {"40.4.3", "ExplosionEmitter", 0, 6, 0, 0},
+    {"40.4.4", "ForcePhysicsModel", 0, 2, 0, 0},
+    {"40.4.5", "ParticleSystem", 0, 11, 9, 1},
+    {"40.4.6", "PointEmitter", 0, 7, 0, 0},
+    {"40.4.7", "PolylineEmitter", 0, 7, 1, 0},
+    {"40.4.8", "SurfaceEmitter", 0, 5, 1, 0},
+    {"40.4.9", "VolumeEmitter", 0, 7, 2, 0},
+    {"40.4.10", "WindPhysicsModel", 0, 5, 0, 0},
 };
 
 // A field that X3D adds to a node of VRML97.
