@@ -149,7 +149,9 @@ void Objects::defineMesh(int32_t mesh) {
   open(part, graph_.meshes.dynamic(mesh));
   rtLoadName(0);
   rtLoadIdentity();
-  if (draw(mesh, Surface(), true)) parts_[size_t(part)].reach = graph_.meshes.extent(mesh).reach;
+  Surface surface;
+  if (!graph_.meshes.get(mesh).texPlaces.empty()) surface.shader = surfaces_.carrier();
+  if (draw(mesh, surface, true)) parts_[size_t(part)].reach = graph_.meshes.extent(mesh).reach;
   close();
   report(world_.diagnostics, graph_.meshes.geometry(mesh).source,
          graph_.meshes.geometry(mesh).type().name);

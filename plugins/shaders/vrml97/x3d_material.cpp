@@ -114,7 +114,7 @@ class Pictures {
   uint32_t* components; // 0 where a lane has no picture
 
  private:
-  static bool isInSpace(const X3dParams& p) { return p.texturePlace[3] != 0; }
+  static bool isInSpace(const X3dParams& p) { return p.inSpace != 0 && p.texturePlace[3] != 0; }
   static const float* matrixOf(const X3dParams& p, uint32_t layer) {
     return layer > 0 && p.layerTransforms.count >= numbersPerMatrix * layer
                ? p.layerTransforms.data + numbersPerMatrix * (layer - 1)

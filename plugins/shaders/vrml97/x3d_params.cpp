@@ -218,14 +218,20 @@ const RtsParam added[] = {
      0,
      1,
      "1: a perfect mirror whose reflectance is the diffuse term (unlit: the colour)"},
+    {"inSpace",
+     RTS_INT,
+     AT(inSpace),
+     {0},
+     0,
+     1,
+     "1: all pictures, which may be volumes, are placed by texturePlace"},
     {"texturePlace",
      RTS_VEC4,
      AT(texturePlace),
      {},
      0,
      0,
-     "texture coordinates s t r q of vertices for all pictures, which may be volumes; with q 0 the "
-     "geometry's own count"},
+     "texture coordinates s t r q of vertices; with q 0 the geometry's own s and t count"},
 };
 
 #undef AT

@@ -40,7 +40,8 @@ struct X3dParams {
   int32_t cubeLookup;
   RtsTexture cube[cubeFaces], cubeMap;
   int32_t mirror;
-  float texturePlace[4]; // (s, t, r, q) of a vertex; q 0: the geometry's coordinates count
+  int32_t inSpace;       // textures are placed by texturePlace where its q is not 0
+  float texturePlace[4]; // (s, t, r, q) of a vertex
 };
 
 struct ParamList {
