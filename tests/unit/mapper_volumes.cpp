@@ -143,9 +143,9 @@ TEST_F(MapVolumes, Transforms) {
   expectSeen({1, 0, 1}, "translation");
   with("TextureTransform3D { scale 3 1 1 }");
   expectSeen({1, 0, 1}, "scale");
-  with("TextureTransform3D { center .5 .5 .5 rotation 0 0 1 1.5707963 }");
+  with("TextureTransform3D { center -.5 -.5 -.5 rotation 0 0 1 1.5707963 }");
   expectSeen({1, 0, 1}, "rotation about r: (-.25, -.25) becomes (.25, -.25)");
-  with("TextureTransform3D { center .5 .5 .5 scale 1 1 -1 }");
+  with("TextureTransform3D { center -.5 -.5 -.5 scale 1 1 -1 }");
   expectSeen({0, 0, 0}, "scale about the center");
   with("TextureTransformMatrix3D { matrix 1 0 0 0 0 1 0 0 0 0 1 0 .5 .5 -.5 1 }");
   expectSeen({1, 1, 0}, "the last row moves");
@@ -231,7 +231,7 @@ TEST_F(MapVolumes, DamagedVolumesAreLeftOut) {
   }
   loadX3d(square("texture ImageTexture3D { url \"nowhere.nrrd\" }", at("0 0 0")));
   expectSaid("ImageTexture3D: no picture: ");
-  loadX3d(square("texture " + cube(), at("1e38 nan 1e38")));
+  loadX3d(square("texture " + cube(), at("1e38 -1e38 1e38")));
   seen();
   loadX3d(square("texture " + cube() +
                      " textureTransform TextureTransform3D { scale 1e38 1e38 1e38 "
