@@ -16,7 +16,7 @@ constexpr uint32_t sphereRows = 64;
 struct Vertex {
   Vector point = Vector(0), normal = Vector(0), color = Vector(1);
   double s = 0, t = 0, alpha = 1;
-  Imath::V4d place = Imath::V4d(0); // of a mesh with texPlaces
+  Imath::V4d place = Imath::V4d(0); // from texPlaces
   int64_t original = -1;            // index into the mesh; -1: it lies on a plane
 };
 
