@@ -75,7 +75,7 @@ RTid Volumes::make(const Node& node) {
 
 Volume Volumes::read(const Node& node) {
   if (const auto* file = nodeCast<nodes::ImageTexture3D>(&node)) return readFile(*file);
-  if (const auto* stack = nodeCast<nodes::ComposedTexture3D>(&node)) return this->stack(*stack);
+  if (const auto* stack = nodeCast<nodes::ComposedTexture3D>(&node)) return stackOf(*stack);
   const auto* pixels = nodeCast<nodes::PixelTexture3D>(&node);
   if (!pixels) throw std::runtime_error("it is no volume that can be drawn");
   return volumeOf(pixels->image, textures_.roomForPicture());
@@ -96,7 +96,7 @@ Volume Volumes::readFile(const nodes::ImageTexture3D& node) {
   return volume;
 }
 
-Volume Volumes::stack(const nodes::ComposedTexture3D& node) {
+Volume Volumes::stackOf(const nodes::ComposedTexture3D& node) {
   const ImageRoom room = textures_.roomForPicture();
   std::vector<Image> slices;
   uint64_t bytes = 0;

@@ -33,7 +33,7 @@ class Volumes {
   };
   Volume read(const Node& node);
   Volume readFile(const nodes::ImageTexture3D& node);
-  Volume stack(const nodes::ComposedTexture3D& node);
+  Volume stackOf(const nodes::ComposedTexture3D& node);
   RTid make(const Node& node);
 
   World& world_;
