@@ -257,8 +257,9 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   rtNormalPointer(RT_FLOAT, sizeof(Vec3f), m.normals.empty() ? nullptr : m.normals.data());
   rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
                     textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
-  // Shader classes that place textures in space have these coordinates as a parameter of vertices.
-  const int place = textured && !m.texPlaces.empty() ? rtParameterHandle("texturePlace") : -1;
+  // Texture coordinates in space are a parameter of vertices.
+  const bool placed = surface.takesPlaces && textured && !m.texPlaces.empty();
+  const int place = placed ? rtParameterHandle("texturePlace") : -1;
   if (place >= 0) rtParameterPointer(place, sizeof(Vec4f), &m.texPlaces[0].x);
   // Lines and points use emissiveColor.
   const bool plain = m.colors.empty() && surface.lines;

@@ -221,6 +221,7 @@ bool Surfaces::multiplies(const Entry& entry) const {
 
 // Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
+  entry.surface.takesPlaces = false;
   const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   // Shaders of both kinds are not shared with each other.
   if (isShared(entry) && bool(shared_[entry.shared].customUser) != bool(parts.shader))
@@ -318,6 +319,7 @@ void Surfaces::makeX3d(Entry& entry) {
       *setup, parts,
       {.multiplies = multiplies(entry), .byNormal = entry.use.byNormal, .placed = entry.use.placed},
       {textures_, cubes_, volumes_}, world_, linear_);
+  entry.surface.takesPlaces = true;
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, "appearance");
 }
@@ -351,9 +353,12 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
   return effect;
 }
 
-RTid Surfaces::carrier() {
+Surface Surfaces::carrier() {
   if (carrier_ == 0) carrier_ = rtNewShader(classes_.get("X3DMaterial", ""));
-  return carrier_;
+  Surface surface;
+  surface.shader = carrier_;
+  surface.takesPlaces = true;
+  return surface;
 }
 
 void Surfaces::clear() {

@@ -27,6 +27,7 @@ TextureNeed textureNeed(Node* appearance);
 struct Surface {
   RTid shader = 0;
   bool lines = false;                 // it is for lines or points
+  bool takesPlaces = false;           // its class has the parameter texturePlace of vertices
   Color lineColor{1, 1, 1};           // for lines and points without colours of their own
   float lineWidth = 1, pointSize = 1; // in pixels
 };
@@ -61,8 +62,8 @@ class Surfaces {
     bool colored = false;  // lines need another colour or width
     bool textured = false; // they now need texture coordinates that they did not need before
   };
-  // Returns a shader for meshes whose texture coordinates in space shaders of instances use.
-  RTid carrier();
+  // Returns the surface of meshes whose texture coordinates in space shaders of instances use.
+  Surface carrier();
   // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.
   Effect update(Node& appearance);
   // Deletes the shaders of appearances that no shape uses any more. uses(appearance) returns
