@@ -74,19 +74,18 @@ std::optional<MaterialValues> backValues(const AppearanceParts& parts);
 // appearance. It may be a MultiTexture or a cube map; null: there is none.
 Node* colorTexture(const AppearanceParts& parts);
 
-// Returns the TextureTransform of the first picture, or null: the node itself, or of the parts of a
-// MultiTextureTransform the one with this mapping, else the first.
-const nodes::TextureTransform* firstTransform(Node* textureTransform,
-                                              std::string_view mapping = {});
+// Returns the transform of the first picture, or null: a TextureTransform, TextureTransform3D or
+// TextureTransformMatrix3D. It is the node itself, or of the parts of a MultiTextureTransform the
+// one with this mapping, else the first.
+const Node* firstTransform(Node* textureTransform, std::string_view mapping = {});
 // The same for the layer `layer` of a MultiTexture. Layers after the first have a transform only in
 // a MultiTextureTransform that is long enough.
-const nodes::TextureTransform* layerTransform(Node* textureTransform, size_t layer,
-                                              std::string_view mapping = {});
+const Node* layerTransform(Node* textureTransform, size_t layer, std::string_view mapping = {});
 
 // One picture of a surface, and how it lies on it.
 struct TextureLayer {
-  Node* texture = nullptr; // ImageTexture, PixelTexture, MovieTexture or a cube map
-  // Column-major matrix that maps (s, t, 0, 1) of the geometry to coordinates of the picture.
+  Node* texture = nullptr; // ImageTexture, PixelTexture, MovieTexture, a cube map or a 3D texture
+  // Column-major matrix that maps (s, t, r, q) of the geometry to coordinates of the picture.
   double transform[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::string mode, source, function; // words of a MultiTexture; empty: its defaults
 };
