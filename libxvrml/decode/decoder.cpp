@@ -20,7 +20,7 @@ namespace {
 constexpr auto slice = std::chrono::milliseconds(50); // between two looks at the process
 constexpr int mostIdle = 200;                         // slices in which it does not compute
 constexpr auto startTime = std::chrono::seconds(20);
-constexpr auto patience = std::chrono::seconds(10); // for a process that reads nothing
+constexpr auto patience = std::chrono::seconds(30); // for a process that reads nothing
 constexpr uint64_t leastRate = 4 << 20;             // bytes a second that it must read
 constexpr uint64_t slack = 64 << 20;                // bytes that libraries allocate on first use
 constexpr size_t mostReason = 500;                  // bytes of a message
@@ -110,7 +110,7 @@ void Decoder::start() {
 void Decoder::send(const File& file) {
   Channel& channel = *process_->channel;
   const auto until =
-      Clock::now() + 6 * patience + std::chrono::seconds(file.bytes.size() / leastRate);
+      Clock::now() + 2 * patience + std::chrono::seconds(file.bytes.size() / leastRate);
   std::span<const char> left(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   if (!decoding::send(channel, Op::decode, Request{file.format, 0, left.size()})) lost({});
   while (!left.empty()) {
