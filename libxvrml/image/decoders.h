@@ -15,7 +15,8 @@
 
 namespace xvrml {
 
-// Returns the bytes of a regular file of at most limits.fileBytes; throws std::runtime_error.
+// Returns the bytes of a regular file, or of a data: URL, of at most limits.fileBytes; throws
+// std::runtime_error.
 std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room);
 inline std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {
   return readPictureFile(path, ImageRoom{limits});
@@ -53,8 +54,9 @@ void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format);
 // header with little data costs little.
 void flipRows(Image& image);
 
-// The same for radiance pictures, which may have a quarter of limits.imagePixels.
-RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits);
+// The same for radiance pictures. checkRadianceSize refuses more pixels than a quarter of
+// limits.imagePixels.
+RadianceImage decodeRadiance(std::span<const uint8_t> bytes, const ImageRoom& room);
 void checkRadianceSize(int64_t width, int64_t height, const Limits& limits);
 void flipRows(RadianceImage& image);
 

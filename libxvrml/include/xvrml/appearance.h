@@ -142,8 +142,9 @@ struct TexturePicture {
   RadianceImage radiance;    // in place of `image` for a file of radiances (.hdr, .exr, .pfm)
   std::vector<uint8_t> file; // the bytes of the file; empty: the picture comes from no file
   std::string path;          // the file, or the data: URL
-  // "image/png", "image/jpeg", "image/gif", "image/vnd.radiance", "image/x-exr" or
-  // "image/x-portable-floatmap"; empty: the picture comes from no file.
+  // "image/png", "image/jpeg", "image/gif", "image/webp", "image/bmp", "image/x-tga",
+  // "image/vnd.radiance", "image/x-exr" or "image/x-portable-floatmap"; empty: the picture comes
+  // from no file.
   std::string type;
   std::string error; // why there is no picture; empty: there is one, or the node names none
   size_t url = 0;    // the place of the file in the node's list of URLs

@@ -1,6 +1,6 @@
-// channel.cpp: sends and receives messages over a socket. Part of the library and of
-// xvrml-script-host.
-#include "script/remote/channel.h"
+// channel.cpp: sends and receives messages over a socket. Part of the library and of the programs
+// that it starts.
+#include "process/channel.h"
 
 #include <algorithm>
 #include <cerrno>

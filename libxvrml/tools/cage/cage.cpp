@@ -1,4 +1,4 @@
-#include "cage.h"
+#include "tools/cage/cage.h"
 
 #include <cerrno>
 #include <csignal>

@@ -1,4 +1,4 @@
-#include "script/remote/child.h"
+#include "process/child.h"
 
 #include <array>
 #include <cerrno>
@@ -25,9 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* programName = "xvrml-script-host";
 // Environment variables that engines may need while they are prepared; the environment is empty
-// when a Script's program runs. LD_LIBRARY_PATH is not passed on. A user may have set it for
+// when a program of a world runs. LD_LIBRARY_PATH is not passed on. A user may have set it for
 // another program, perhaps with an empty element for the current folder, and it would choose this
 // program's libraries.
 constexpr std::array inheritedVariables = {"TCL_LIBRARY", "ASAN_OPTIONS", "UBSAN_OPTIONS",
@@ -64,8 +63,8 @@ struct Actions {
 
 } // namespace
 
-std::string findScriptHostProgram(std::string& why) {
-  if (const char* named = os::trustedEnvironment("XVRML_SCRIPT_HOST"); named && *named)
+std::string findHelper(const HelperProgram& helper, std::string& why) {
+  if (const char* named = os::trustedEnvironment(helper.variable); named && *named)
     return usable(named, why) ? std::string(named) : std::string();
   static const char here = 0;
   std::error_code error;
@@ -76,10 +75,10 @@ std::string findScriptHostProgram(std::string& why) {
   places.push_back(os::programFile(error).parent_path());
   for (const fs::path& place : places)
     for (const char* folder : {"../libexec/xvrml", "../../libexec/xvrml", "../bin", "."}) {
-      const fs::path program = fs::canonical(place / folder / programName, error);
+      const fs::path program = fs::canonical(place / folder / helper.name, error);
       if (!error) return usable(program, why) ? program.string() : std::string();
     }
-  why = fmt::format("the program {} is not installed beside the library", programName);
+  why = fmt::format("the program {} is not installed beside the library", helper.name);
   return {};
 }
 

@@ -1,10 +1,13 @@
 // channel.h: sends and receives whole messages over one end of a socket pair. Used by the browser,
-// which waits for a limited time, and by xvrml-script-host, which waits for ever. [one thread]
+// which waits for a limited time, and by the programs that it starts, which wait for ever. [one
+// thread]
 #pragma once
 
 #include <chrono>
+#include <string_view>
+#include <vector>
 
-#include "script/remote/wire.h"
+#include "process/message.h"
 
 namespace xvrml::wire {
 

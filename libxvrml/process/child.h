@@ -1,6 +1,6 @@
-// child.h: a process of the program xvrml-script-host: finds the program, starts it at one end of a
+// child.h: a process that works for the library: finds its program, starts it at one end of a
 // socket pair, limits its memory and ends it. It waits for its own processes only and leaves other
-// children of the application alone. [the browser's thread]
+// children of the application alone. [one thread at a time]
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,16 @@
 
 namespace xvrml {
 
-// Returns $XVRML_SCRIPT_HOST, or the program installed (or built) with the library. Returns "",
-// with the reason, if there is none.
-std::string findScriptHostProgram(std::string& why);
+// A program that the library starts, and the environment variable that may name another file.
+struct HelperProgram {
+  const char *name, *variable;
+};
+inline constexpr HelperProgram scriptHostProgram = {"xvrml-script-host", "XVRML_SCRIPT_HOST"};
+inline constexpr HelperProgram decoderProgram = {"xvrml-decoder", "XVRML_DECODER"};
+
+// Returns the file that the variable names, or the program installed (or built) with the library.
+// Returns "", with the reason, if there is none.
+std::string findHelper(const HelperProgram& helper, std::string& why);
 
 class Child {
  public:

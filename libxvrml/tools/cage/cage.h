@@ -1,5 +1,5 @@
-// cage.h: the sandbox of a process that runs untrusted programs. They may compute, and use their
-// memory and the socket. Linux only.
+// cage.h: the sandbox of a process that runs untrusted programs, or decodes untrusted files. It may
+// compute, and use its memory and the socket. Linux only.
 #pragma once
 
 #include <cstdint>
