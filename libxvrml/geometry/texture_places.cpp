@@ -10,6 +10,7 @@
 #include "geometry/sphere_facets.h"
 #include "geometry/texture_generator.h"
 #include "geometry/vector_math.h"
+#include "xvrml/world.h"
 
 namespace xvrml {
 namespace {
