@@ -3,8 +3,8 @@
 // has it as its context. [the browser's thread]
 //
 // The objects of Annex C are written for Duktape's stack API. It comes from Duktape, or from
-// quickjs/ (language.h). Errors are reported with longjmp, so a function that calls the API must
-// not own anything with a destructor. Data that must survive a call belongs in the heap or in
+// quickjs/ (quickjs/language.h). Errors are reported with longjmp, so a function that calls the API
+// must not own anything with a destructor. Data that must survive a call belongs in the heap or in
 // members here.
 #pragma once
 

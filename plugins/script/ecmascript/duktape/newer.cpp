@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <new>
 
-#include "slots.h"
-#include "tokens.h"
+#include "../slots.h"
+#include "../tokens.h"
 
 namespace ecma {
 namespace {

@@ -1,10 +1,7 @@
 // heap.cpp: Creates the runtime of QuickJS for one Script: memory, stack, and the watchdog.
-#include <sys/resource.h>
-
-#include <algorithm>
 #include <cstring>
 
-#include "interpreter.h"
+#include "../interpreter.h"
 #include "stack.h"
 
 using namespace ecma;
@@ -19,11 +16,11 @@ Interpreter& of(const ScriptStack* s) { return *static_cast<Interpreter*>(s->mem
 
 constexpr uint64_t reserveBytes = 16 << 10;
 
-// Notes what is used. Where there was no memory, lends some for the error about it.
-void* counted(JSMallocState* state, void* block) {
+// Notes what is used. Where `bytes` found no memory, lends some for the error about it.
+void* counted(JSMallocState* state, void* block, size_t bytes) {
   ScriptStack* s = owner(state);
   state->malloc_size = of(s).used;
-  if (block) return block;
+  if (block || bytes == 0) return block;
   if (!s->created) s->fatal(s->memory.udata, "no memory for an interpreter");
   if (!s->reserveOpen && of(s).most > 0) {
     of(s).most += reserveBytes;
@@ -33,17 +30,16 @@ void* counted(JSMallocState* state, void* block) {
 }
 void* allocate(JSMallocState* state, size_t bytes) {
   const duk_memory_functions& memory = owner(state)->memory;
-  return counted(state, memory.alloc_func(memory.udata, bytes));
+  return counted(state, memory.alloc_func(memory.udata, bytes), bytes);
 }
 void release(JSMallocState* state, void* block) {
   const duk_memory_functions& memory = owner(state)->memory;
   memory.free_func(memory.udata, block);
-  state->malloc_size = of(owner(state)).used;
+  counted(state, nullptr, 0);
 }
 void* reallocate(JSMallocState* state, void* block, size_t bytes) {
   const duk_memory_functions& memory = owner(state)->memory;
-  void* moved = memory.realloc_func(memory.udata, block, bytes);
-  return bytes > 0 ? counted(state, moved) : nullptr;
+  return counted(state, memory.realloc_func(memory.udata, block, bytes), bytes);
 }
 size_t unknownSize(const void*) { return 0; }
 
@@ -58,15 +54,10 @@ int interrupt(JSRuntime*, void* data) {
   return s->stopped;
 }
 
-// Returns how much of the thread's stack a program may use.
-size_t stackBytes() {
-  constexpr size_t least = 256 << 10, most = 4 << 20;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return 1 << 20;
-  return std::clamp(size_t(limit.rlim_cur) / 2, least, most);
-}
+// A program may use so much of the thread's stack, the same on every machine.
+constexpr size_t stackBytes = 1 << 20;
 
-// --- What the stack API needs to know of the language ---
+// --- The language ---
 
 bool prepare(ScriptStack* s) {
   static constexpr const char* text =
@@ -112,7 +103,7 @@ bool create(ScriptStack* s) {
   s->runtime = JS_NewRuntime2(&allocator, s);
   if (!s->runtime) return false;
   JS_SetRuntimeOpaque(s->runtime, s);
-  JS_SetMaxStackSize(s->runtime, stackBytes());
+  JS_SetMaxStackSize(s->runtime, stackBytes);
   s->js = JS_NewContextRaw(s->runtime);
   if (!s->js || registerObjects(s) < 0 || registerFunctions(s) < 0) return false;
   JS_SetContextOpaque(s->js, s);

@@ -3,7 +3,7 @@
 // browser's thread]
 //
 // Errors are reported with longjmp to the innermost protected call or native function, as in
-// Duktape. What differs from Duktape:
+// Duktape. It differs from Duktape in this:
 // * Hidden properties and finalizers exist only on objects made by duk_push_object(),
 //   duk_push_bare_object() and duk_push_proxy(), and on what inherits from them.
 // * A buffer can be only the value of a hidden property, so no program ever gets one.
