@@ -45,7 +45,7 @@ struct KnownEngine {
 };
 constexpr KnownEngine engines[] = {
     {"ecmascript", "Scripts in ECMAScript (javascript:, vrmlscript:)",
-     "build with Duktape 2 (Debian: duktape-dev)"},
+     "build with QuickJS (Debian 13: libquickjs) or Duktape 2 (Debian: duktape-dev)"},
     {"tcl", "Scripts in Tcl", "build with Tcl 8.6 (Debian: tcl-dev)"},
     {"python", "Scripts in Python, in trusted worlds",
      "build with Python that can be embedded and pybind11 (Debian: python3-dev pybind11-dev)"},

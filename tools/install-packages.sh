@@ -27,6 +27,9 @@ tests=(libglut-dev libglu1-mesa-dev libgtest-dev librapidcheck-dev libbenchmark-
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 
+# Debian 12 has none of these; a build without them does less (docs/scripts.md).
+newer=(libquickjs)
+
 # `--list` only prints the packages for building (tools/cross-aarch64.sh).
 if [ "${1:-}" = --list ]; then
   printf '%s\n' "${build[@]}"
@@ -41,6 +44,10 @@ if ! command -v apt-get >/dev/null; then
   echo "install-packages: no apt-get here; install the counterparts of these packages yourself:" "${wanted[@]}" >&2
   exit 0
 fi
+
+for package in "${newer[@]}"; do
+  apt-cache show "$package" >/dev/null 2>&1 && wanted+=("$package")
+done
 
 installed=$(dpkg-query -W -f '${db:Status-Abbrev} ${Package}\n' "${wanted[@]}" 2>/dev/null | sed -n 's/^ii  *//p' || true)
 missing=()

@@ -237,7 +237,7 @@ FOREIGN = [
 # A public header includes only the language's own headers and no third-party ones.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
 # Headers of the languages that script engines run.
-LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")
+LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h|quickjs/quickjs\.h)$")
 SEARCH = [
     "libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv",
     "tests", "common", "."

@@ -1,11 +1,17 @@
-#include "newer.h"
-
+// newer.cpp: Tells what of a program that does not compile is newer than ECMAScript 5.1.
 #include <cstdio>
+#include <new>
 
-#include "tokens.h"
+#include "../slots.h"
+#include "../tokens.h"
 
 namespace ecma {
 namespace {
+
+struct NewerSyntax {
+  uint32_t line = 0;  // counted from 1; 0: nothing was found
+  char what[10] = ""; // "=>", "let"
+};
 
 // Words that begin something newer than ECMAScript 5.1 where a name follows on the same line.
 bool isNewWord(std::string_view word) {
@@ -29,12 +35,13 @@ struct Search {
   }
   bool isNewSign(size_t i) const {
     const std::string_view it = word(i), next = word(i + 1);
-    return it == "=>" || it == "`" || (it == "." && next == "." && word(i + 2) == ".") ||
+    return it == "=>" || (it == "." && next == "." && word(i + 2) == ".") ||
            (it == "?" && (next == "." || next == "?"));
   }
   bool isNew(size_t i) const {
     switch (tokens[i].kind) {
     case Token::Kind::sign: return isNewSign(i);
+    case Token::Kind::literal: return word(i)[0] == '`';
     case Token::Kind::keyword: return (word(i) == "const" || word(i) == "var") && opens(i + 1);
     case Token::Kind::name:
       if (word(i) == "of") return i > 0 && tokens[i - 1].kind == Token::Kind::name;
@@ -45,14 +52,13 @@ struct Search {
   // Returns the text of what begins at token i.
   std::string_view spelled(size_t i) const {
     const char c = word(i)[0];
+    if (c == '`') return "`";
     if (c == '.') return "...";
     if (c == '?') return word(i + 1) == "." ? "?." : "??";
     if (tokens[i].kind == Token::Kind::keyword) return word(i + 1) == "{" ? "var {" : "var [";
     return word(i);
   }
 };
-
-} // namespace
 
 NewerSyntax findNewer(std::string_view program) {
   const Search search{program, Tokens(program).all()};
@@ -66,6 +72,21 @@ NewerSyntax findNewer(std::string_view program) {
     break;
   }
   return found;
+}
+
+} // namespace
+
+uint32_t explainSyntax(duk_context* ctx, const Interpreter& self) {
+  if (duk_get_error_code(ctx, -1) != DUK_ERR_SYNTAX_ERROR) return 0;
+  NewerSyntax newer;
+  try {
+    newer = findNewer({self.info->text.data, self.info->text.bytes});
+  } catch (const std::bad_alloc&) {} // the engine's own words have to do
+  if (newer.line == 0) return 0;
+  duk_push_sprintf(ctx, "SyntaxError: '%s' is newer than ECMAScript 5.1, which this engine runs",
+                   newer.what);
+  duk_replace(ctx, -2);
+  return newer.line;
 }
 
 } // namespace ecma
