@@ -42,10 +42,12 @@ Image image(const Bytes& bytes, World& world) {
 std::string whyNot(const Bytes& bytes, World& world) {
   try {
     const auto picture = decodePicture(bytes, world.room());
-    if (const auto* i = std::get_if<Image>(&picture))
+    if (const auto* i = std::get_if<Image>(&picture)) {
       EXPECT_EQ(i->pixels.size(), size_t(i->width) * size_t(i->height) * size_t(i->components));
-    if (const auto* r = std::get_if<RadianceImage>(&picture))
-      EXPECT_EQ(r->rgb.size(), size_t(r->width) * size_t(r->height) * 3);
+    } else {
+      const auto& r = std::get<RadianceImage>(picture);
+      EXPECT_EQ(r.rgb.size(), size_t(r.width) * size_t(r.height) * 3);
+    }
   } catch (const std::runtime_error& error) { return error.what(); }
   return "";
 }
