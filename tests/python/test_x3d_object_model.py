@@ -8,8 +8,7 @@ TABLE = pathlib.Path(__file__).parent / "x3d_fields.tsv"
 
 # Fields that are not there: docs/worlds.md says what happens to them.
 LEFT_OUT = {
-    "acousticProperties", "attrib", "autoRefresh", "autoRefreshTimeLimit", "fogCoord", "load",
-    "shaders"
+    "acousticProperties", "attrib", "autoRefresh", "autoRefreshTimeLimit", "load", "shaders"
 }
 LEFT_OUT_OF = {("AudioClip", "enabled"), ("MovieTexture", "enabled"), ("Sound", "enabled"),
                ("AudioClip", "gain"), ("MovieTexture", "gain"), ("MovieTexture", "pitch"),

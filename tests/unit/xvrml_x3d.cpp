@@ -73,8 +73,8 @@ TEST(X3d, TheHeadIsKept) {
 
 TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
   const auto world = load("#X3D V3.3 utf8\nCollisionSpace { }\nDEF L LinePickSensor { }\n"
-                          "LinePickSensor { }\nShape { geometry PointSet { fogCoord NULL } }\n"
-                          "Shape { geometry PointSet { fogCoord NULL } }\n"
+                          "LinePickSensor { }\nShape { geometry PointSet { normal NULL } }\n"
+                          "Shape { geometry PointSet { normal NULL } }\n"
                           "ROUTE L.enabled TO L.enabled");
   EXPECT_EQ(
       messagesOf(*world),
@@ -83,7 +83,7 @@ TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
                 "move",
                 "test.x3dv:3:7: warning: nodes of type 'LinePickSensor' (sensor) are not supported "
                 "and are left out here and below, with all that they hold: it sends no events",
-                "test.x3dv:5:29: warning: field 'fogCoord' of PointSet is not "
+                "test.x3dv:5:29: warning: field 'normal' of PointSet is not "
                 "supported: it is left out here and below",
                 "test.x3dv:7:7: warning: 'L' was left out above"}));
   EXPECT_EQ(world->scope.roots.size(), 2u);
