@@ -198,6 +198,7 @@ class Export {
     const edit::TextureT& d = texture.description;
     return {{"width", d.width},
             {"height", d.height},
+            {"depth", d.depth},
             {"components", d.components},
             {"float", d.isFloat},
             {"srgb", d.srgb},

@@ -17,8 +17,8 @@ namespace openrt {
 //                texCoords, colors, fogCoords: {offset, count} in PATH.bin, floats or uint32.
 //                offset: in bytes, a multiple of 4; count: number of values
 //   lights, camera, environment    shader and matrix
-//   textures     by id: width, height, components, float, srgb, texels {offset, count}: floats if
-//                `float`, else bytes; rows from the bottom up
+//   textures     by id: width, height, depth, components, float, srgb, texels {offset, count}:
+//                floats if `float`, else bytes; rows from the bottom up, slice by slice
 // Per-vertex parameters are not exported. Throws std::runtime_error.
 void exportScene(const Scene& scene, const ShaderRegistry& shaders, const std::string& path);
 

@@ -30,6 +30,9 @@ constexpr Field fields[] = {{"Anchor", "autoRefresh"},
                             {"ImageTexture", "autoRefresh"},
                             {"ImageTexture", "autoRefreshTimeLimit"},
                             {"ImageTexture", "load"},
+                            {"ImageTexture3D", "autoRefresh"},
+                            {"ImageTexture3D", "autoRefreshTimeLimit"},
+                            {"ImageTexture3D", "load"},
                             {"IndexedFaceSet", "attrib"},
                             {"IndexedLineSet", "attrib"},
                             {"IndexedLineSet", "normal"},
@@ -60,7 +63,7 @@ constexpr Field fields[] = {{"Anchor", "autoRefresh"},
                             {"TriangleStripSet", "attrib"}};
 
 // Lists fields and events of ours that X3D calls otherwise (ISO/IEC 19775-1 10.4.4, 23.4.1, 23.4.3,
-// :2023 34.4.1, 35.4.1).
+// :2023 34.4.1, 35.4.1, 40.4.5).
 constexpr int neverWritten = 99;
 struct Renamed {
   std::string_view type, x3d, own;
@@ -87,6 +90,8 @@ constexpr Renamed renamed[] = {
     {"LoadSensor", "children", "watchList", 4},
     {"LoadSensor", "set_children", "set_watchList", 4},
     {"LoadSensor", "children_changed", "watchList_changed", 4},
+    {"ParticleSystem", "color", "colorRamp", 4},
+    {"ParticleSystem", "texCoord", "texCoordRamp", 4},
     {"Switch", "children", "choice"},
     {"Switch", "set_children", "set_choice"},
     {"Switch", "children_changed", "choice_changed"},

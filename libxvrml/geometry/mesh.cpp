@@ -6,6 +6,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "geometry/texture_places.h"
 #include "geometry/thick.h"
 #include "xvrml/deformed.h"
 #include "xvrml/world.h"
@@ -17,6 +18,7 @@ void Mesh::viewOwn() {
   indices = ownIndices;
   normals = ownNormals;
   texCoords = ownTexCoords;
+  texPlaces = ownTexPlaces;
   colors = ownColors;
   alphas = ownAlphas;
   fogCoords = ownFogCoords;
@@ -28,8 +30,9 @@ Coordinates coordinates(const NodeRef& node) {
   if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
     result.points = drawnPoints(*coordinate);
   } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
-    result.own.reserve(exact->point.size());
-    for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
+    const std::span<const Vec3d> drawn = drawnPoints(*exact);
+    result.own.reserve(drawn.size());
+    for (const Vec3d& p : drawn) result.own.push_back({float(p.x), float(p.y), float(p.z)});
     result.points = result.own;
   }
   return result;
@@ -77,11 +80,6 @@ bool hasVertexAlpha(Node& geometry) {
              renderedNode(static_cast<NodeRef*>(node->storage(*field))->get())) != nullptr;
 }
 
-std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
-  auto* coordinate = nodeCast<nodes::TextureCoordinate>(firstTextureCoordinate(node));
-  return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
-}
-
 namespace {
 
 // Builds the mesh of a node if it has the type that the function takes. Returns whether it has.
@@ -109,6 +107,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   for (const TryBuild build : builders)
     if (build(node, options, mesh, faults)) break;
   generateTextureCoordinates(*node, options, mesh);
+  placeInVolume(*node, options, mesh);
   thicken(mesh, options, faults);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;

@@ -134,7 +134,8 @@ template <class Node> FaceSet valuesOf(const Node& node, Faults& faults) {
   ColorValues colors = colorValues(node.color);
   set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   set.normals.values = normalVectors(node.normal);
-  set.texCoords.values = textureCoordinates(node.texCoord);
+  TexCoordValues texCoords = textureCoordinates(node.texCoord);
+  set.takeTexCoords(texCoords.points, std::move(texCoords.own), std::move(texCoords.places));
   set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
   return set;
 }

@@ -168,6 +168,7 @@ const Named needContext[] = {
     CALL(rtDeleteTexture, w.texture),
     CALL(rtBindTexture, 0),
     CALL(rtTexImage2D, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
+    CALL(rtTexImage3D, 1, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
     CALL(rtTexParameteri, RT_TEXTURE_SRGB, 1),
     CALL(rtTexParameterfv, RT_TEXTURE_BORDER_COLOR, colour),
     CALL(rtFrameBuffer, 4, 4, RT_RGBA),
@@ -407,6 +408,7 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtGenTextures, 1, nullptr), WRONG(ID, Outside, rtDeleteTexture, 0),
     WRONG(ID, Outside, rtDeleteTexture, w.object), WRONG(ID, Outside, rtBindTexture, foreign),
     WRONG(OPERATION, Outside, rtTexImage2D, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
+    WRONG(OPERATION, Outside, rtTexImage3D, 1, 1, 1, 1, RT_UNSIGNED_BYTE, bytes),
     WRONG(OPERATION, Outside, rtTexParameteri, RT_TEXTURE_SRGB, 1),
     WRONG(OPERATION, Outside, rtTexParameterfv, RT_TEXTURE_BORDER_COLOR, colour),
     // Frames and queries.

@@ -177,11 +177,15 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     if (random() % 2) {
       std::vector<uint8_t> texels(4 * 3 * 3);
       for (uint8_t& t : texels) t = uint8_t(random());
-      rtTexImage2D(3, 4, 3, RT_UNSIGNED_BYTE, texels.data());
+      if (random() % 2)
+        rtTexImage2D(3, 4, 3, RT_UNSIGNED_BYTE, texels.data());
+      else
+        rtTexImage3D(3, 4, 1, 3, RT_UNSIGNED_BYTE, texels.data());
     }
     rtTexParameteri(RT_TEXTURE_MAG_FILTER,
                     random() % 2 ? RT_NEAREST : RT_LINEAR); // also affects existing texels
     rtTexParameteri(RT_TEXTURE_WRAP_S, random() % 2 ? RT_MIRRORED_REPEAT : RT_CLAMP_TO_BORDER);
+    rtTexParameteri(RT_TEXTURE_WRAP_R, random() % 2 ? RT_REPEAT : RT_CLAMP_TO_EDGE);
     const float border[4] = {number(0, 1), number(0, 1), number(0, 1), number(0, 1)};
     if (random() % 2) rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, border);
   }

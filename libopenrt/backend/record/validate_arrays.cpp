@@ -111,9 +111,10 @@ void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParamete
 }
 
 void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::TextureT* current) {
-  demand(t.components >= 1 && t.components <= 4 && isPictureSize(t.width, t.height),
+  demand(t.components >= 1 && t.components <= 4 && isVolumeSize(t.width, t.height, t.depth),
          "a texture has an impossible size");
-  demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
+  demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX && t.wrapR <= edit::Wrap::MAX,
+         "an unknown wrap");
   demand(t.border.empty() || t.border.size() == 4, "a border colour needs four numbers");
   for (const float part : t.border)
     demand(part >= 0 && part <= 1, "a border colour is out of range");
@@ -121,12 +122,12 @@ void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::Tex
   const auto found = commit.arrays.find(t.texels);
   if (found == commit.arrays.end()) {
     demand(current && t.texels == current->texels, "the texels did not arrive with their edit");
-    demand(t.width == current->width && t.height == current->height &&
+    demand(t.width == current->width && t.height == current->height && t.depth == current->depth &&
                t.components == current->components && t.isFloat == current->isFloat,
            "the texels have a wrong size");
     return;
   }
-  const uint64_t values = uint64_t(t.width) * t.height * t.components;
+  const uint64_t values = uint64_t(t.width) * t.height * t.depth * t.components;
   demand(found->second->size() == values * (t.isFloat ? sizeof(float) : 1),
          "the texels have a wrong size");
   if (t.isFloat) checkFinite(*found->second, "a texel is not finite");
