@@ -9,6 +9,7 @@ build=(
   g++ make cmake ninja-build ccache pkg-config git ca-certificates
   libembree-dev libtbb-dev libhwy-dev                           # ray kernels, threads, vectors
   libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
+  libwebp-dev libstb-dev libsndfile1-dev                        # more pictures, sounds
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
   libexpat1-dev                                                 # X3D in XML
   libflatbuffers-dev flatbuffers-compiler # scene edits
@@ -26,6 +27,9 @@ tests=(libglut-dev libglu1-mesa-dev libgtest-dev librapidcheck-dev libbenchmark-
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 
+# Debian 12 has none of these; a build without them does less (docs/scripts.md).
+newer=(libquickjs)
+
 # `--list` only prints the packages for building (tools/cross-aarch64.sh).
 if [ "${1:-}" = --list ]; then
   printf '%s\n' "${build[@]}"
@@ -40,6 +44,10 @@ if ! command -v apt-get >/dev/null; then
   echo "install-packages: no apt-get here; install the counterparts of these packages yourself:" "${wanted[@]}" >&2
   exit 0
 fi
+
+for package in "${newer[@]}"; do
+  apt-cache show "$package" >/dev/null 2>&1 && wanted+=("$package")
+done
 
 installed=$(dpkg-query -W -f '${db:Status-Abbrev} ${Package}\n' "${wanted[@]}" 2>/dev/null | sed -n 's/^ii  *//p' || true)
 missing=()

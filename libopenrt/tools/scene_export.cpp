@@ -134,6 +134,7 @@ class Export {
     m["normals"] = writeArray(g.normals);
     m["texCoords"] = writeArray(g.texCoords);
     m["colors"] = writeArray(g.colors);
+    m["fogCoords"] = writeArray(g.fogCoords);
     return m;
   }
 

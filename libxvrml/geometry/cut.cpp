@@ -15,7 +15,7 @@ constexpr uint32_t sphereRows = 64;
 
 struct Vertex {
   Vector point = Vector(0), normal = Vector(0), color = Vector(1);
-  double s = 0, t = 0, alpha = 1;
+  double s = 0, t = 0, alpha = 1, fogCoord = 0;
   Imath::V4d place = Imath::V4d(0); // from texPlaces
   int64_t original = -1;            // index into the mesh; -1: it lies on a plane
 };
@@ -30,6 +30,7 @@ Vertex between(const Vertex& a, const Vertex& b, double part) {
   v.t = mix(a.t, b.t);
   v.place = mix(a.place, b.place);
   v.alpha = mix(a.alpha, b.alpha);
+  v.fogCoord = mix(a.fogCoord, b.fogCoord);
   return v;
 }
 
@@ -113,6 +114,7 @@ class Cutter {
       if (!mesh_.colors.empty())
         v.color = Vector(mesh_.colors[i].r, mesh_.colors[i].g, mesh_.colors[i].b);
       if (!mesh_.alphas.empty()) v.alpha = mesh_.alphas[i];
+      if (!mesh_.fogCoords.empty()) v.fogCoord = mesh_.fogCoords[i];
       v.original = i;
       polygon_.push_back(v);
     }
@@ -151,6 +153,7 @@ class Cutter {
     if (!mesh_.colors.empty())
       out_.ownColors.push_back({float(v.color.x), float(v.color.y), float(v.color.z)});
     if (!mesh_.alphas.empty()) out_.ownAlphas.push_back(float(v.alpha));
+    if (!mesh_.fogCoords.empty()) out_.ownFogCoords.push_back(float(v.fogCoord));
     return index;
   }
 

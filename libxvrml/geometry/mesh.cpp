@@ -21,6 +21,7 @@ void Mesh::viewOwn() {
   texPlaces = ownTexPlaces;
   colors = ownColors;
   alphas = ownAlphas;
+  fogCoords = ownFogCoords;
 }
 
 Coordinates coordinates(const NodeRef& node) {
@@ -29,8 +30,9 @@ Coordinates coordinates(const NodeRef& node) {
   if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
     result.points = drawnPoints(*coordinate);
   } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
-    result.own.reserve(exact->point.size());
-    for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
+    const std::span<const Vec3d> drawn = drawnPoints(*exact);
+    result.own.reserve(drawn.size());
+    for (const Vec3d& p : drawn) result.own.push_back({float(p.x), float(p.y), float(p.z)});
     result.points = result.own;
   }
   return result;
@@ -56,6 +58,17 @@ ColorValues colorValues(const NodeRef& node) {
     values.rgb = values.own;
   }
   return values;
+}
+
+std::vector<float> fogCoordinates(const NodeRef& node, size_t points, Faults& faults) {
+  auto* given = nodeCast<nodes::FogCoordinate>(renderedNode(node.get()));
+  if (!given || given->depth.empty()) return {};
+  const size_t count = std::min<size_t>(points, given->depth.size());
+  std::vector<float> shares(points);
+  for (size_t i = 0; i < count; i++)
+    if (std::isfinite(given->depth[i])) shares[i] = given->depth[i];
+  for (size_t i = count; i < points; i++) faults.add(Fault::fogCoordMissing, i);
+  return shares;
 }
 
 bool hasVertexAlpha(Node& geometry) {

@@ -43,8 +43,7 @@ struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
   // Views of the node's own arrays where these can be used unchanged, else of the vectors below.
-  // One entry per vertex; normals, texCoords, texPlaces, colors and alphas are empty or as long as
-  // points.
+  // One entry per vertex; all but points are empty or as long as points.
   std::span<const Vec3f> points;
   std::span<const uint32_t> indices; // 3 per triangle, 2 per line segment, 1 per point
   std::span<const Vec3f> normals;    // empty: flat, with the face normal
@@ -52,7 +51,8 @@ struct Mesh {
   // Homogeneous texture coordinates in space, of which texCoords are the first two.
   std::span<const Vec4f> texPlaces;
   std::span<const Color> colors;
-  std::span<const float> alphas; // opacity, 0 to 1, of the colours of a ColorRGBA
+  std::span<const float> alphas;    // opacity, 0 to 1, of the colours of a ColorRGBA
+  std::span<const float> fogCoords; // finite shares of the fog
   // Takes the place of texCoords, which are those of the same mode in the frame of the geometry.
   TexGen texGen = TexGen::off;
   bool solid = true; // back faces are culled
@@ -67,7 +67,7 @@ struct Mesh {
   std::vector<Vec2f> ownTexCoords;
   std::vector<Vec4f> ownTexPlaces;
   std::vector<Color> ownColors;
-  std::vector<float> ownAlphas;
+  std::vector<float> ownAlphas, ownFogCoords;
   void viewOwn(); // makes all views refer to the owned vectors
 
   Mesh() = default;

@@ -127,7 +127,7 @@ class Generator {
 void separateFaces(Mesh& mesh) {
   std::vector<Vec3f> points, normals;
   std::vector<Color> colors;
-  std::vector<float> alphas;
+  std::vector<float> alphas, fogCoords;
   points.reserve(mesh.indices.size());
   for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
     const Vec3f a = mesh.points[mesh.indices[t]], b = mesh.points[mesh.indices[t + 1]],
@@ -143,12 +143,14 @@ void separateFaces(Mesh& mesh) {
       normals.push_back({float(n.x), float(n.y), float(n.z)});
       if (!mesh.colors.empty()) colors.push_back(mesh.colors[vertex]);
       if (!mesh.alphas.empty()) alphas.push_back(mesh.alphas[vertex]);
+      if (!mesh.fogCoords.empty()) fogCoords.push_back(mesh.fogCoords[vertex]);
     }
   }
   mesh.ownPoints = std::move(points);
   mesh.ownNormals = std::move(normals);
   mesh.ownColors = std::move(colors);
   mesh.ownAlphas = std::move(alphas);
+  mesh.ownFogCoords = std::move(fogCoords);
   mesh.ownIndices.resize(mesh.ownPoints.size());
   for (size_t i = 0; i < mesh.ownIndices.size(); ++i) mesh.ownIndices[i] = uint32_t(i);
   mesh.ownTexCoords.clear();

@@ -25,7 +25,7 @@ uint64_t contentHash(const Mesh& m) {
   const uint64_t colorless =
       hashed(m.texPlaces,
              hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
-  return hashed(m.alphas, hashed(m.colors, colorless));
+  return hashed(m.fogCoords, hashed(m.alphas, hashed(m.colors, colorless)));
 }
 
 double reachOf(const Mesh& m) {
@@ -39,8 +39,8 @@ double reachOf(const Mesh& m) {
 uint64_t ownBytes(const Mesh& m) {
   return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
          m.ownColors.capacity() * sizeof(Color) + m.ownAlphas.capacity() * sizeof(float) +
-         m.ownTexCoords.capacity() * sizeof(Vec2f) + m.ownTexPlaces.capacity() * sizeof(Vec4f) +
-         m.ownIndices.capacity() * sizeof(uint32_t);
+         m.ownFogCoords.capacity() * sizeof(float) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
+         m.ownTexPlaces.capacity() * sizeof(Vec4f) + m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
 // Takes the triangles out of a large mesh that is about to be released, if they are the faces of
@@ -212,7 +212,7 @@ bool Meshes::sameContent(int32_t a, int32_t b) {
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
          equalBytes(m.texPlaces, n.texPlaces) && equalBytes(m.colors, n.colors) &&
-         equalBytes(m.alphas, n.alphas);
+         equalBytes(m.alphas, n.alphas) && equalBytes(m.fogCoords, n.fogCoords);
 }
 
 int32_t Meshes::newGroup(uint64_t hash) {
@@ -416,6 +416,7 @@ void compact(const Mesh& mesh, Mesh& out) {
     if (!mesh.texPlaces.empty()) out.ownTexPlaces.push_back(mesh.texPlaces[i]);
     if (!mesh.colors.empty()) out.ownColors.push_back(mesh.colors[i]);
     if (!mesh.alphas.empty()) out.ownAlphas.push_back(mesh.alphas[i]);
+    if (!mesh.fogCoords.empty()) out.ownFogCoords.push_back(mesh.fogCoords[i]);
   }
   out.ownIndices.reserve(mesh.indices.size());
   for (const uint32_t i : mesh.indices)

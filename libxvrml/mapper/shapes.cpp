@@ -32,6 +32,7 @@ const Mesh& withLinearColors(const Mesh& mesh, Mesh& storage) {
   storage.texCoords = mesh.texCoords;
   storage.texPlaces = mesh.texPlaces;
   storage.alphas = mesh.alphas;
+  storage.fogCoords = mesh.fogCoords;
   storage.solid = mesh.solid;
   storage.ccw = mesh.ccw;
   storage.texGen = mesh.texGen;
@@ -231,8 +232,9 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
-  rtLineWidth(surface.lineWidth);
-  rtPointSize(surface.pointSize);
+  rtLineWidth(surface.style.line);
+  rtPointSize(surface.style.point);
+  rtLineStipple(surface.style.factor, surface.style.pattern);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   rtTexGen(textured ? RTenum(m.texGen) : RTenum(RT_TEX_GEN_OFF));
@@ -278,6 +280,7 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   } else {
     rtColorPointer(3, RT_FLOAT, 0, nullptr);
   }
+  rtFogCoordPointer(RT_FLOAT, 0, m.fogCoords.empty() ? nullptr : m.fogCoords.data());
   rtDrawElements(modeOf(m.kind), m.indices.size(), m.indices.data(), m.points.size());
   if (place >= 0) rtParameterPointer(place, 0, nullptr);
 }

@@ -133,24 +133,32 @@ TABLE = [
     part("xvrml-geometry", "libxvrml/geometry/",
          "geometry nodes as triangles, lines and points: pure functions",
          "xvrml-h xvrml-base common"),
+    part("xvrml-process", "libxvrml/process/",
+         "processes that work for the library, and messages to and from them", "common system"),
+    part("xvrml-decode", "libxvrml/decode/",
+         "decodes files of formats that need large libraries, in a process",
+         "xvrml-base xvrml-process common"),
+    part("cage", "libxvrml/tools/cage/", "the sandbox of such processes", "system"),
+    part("decoder", "libxvrml/tools/decoder/", "the program that decodes such files",
+         "cage xvrml-decode xvrml-process"),
     part("xvrml-image", "libxvrml/image/", "decodes pictures and films",
-         "xvrml-h xvrml-base common"),
+         "xvrml-h xvrml-base xvrml-decode common"),
     part("xvrml-event", "libxvrml/event/",
          "routes, cascades, and which nodes are part of the running world",
          "xvrml-h xvrml-base xvrml-graph xvrml-geometry common"),
     part(
         "xvrml-behaviour", "libxvrml/behaviour/",
         "what nodes do when events arrive and time passes; the viewer, the pointer, picking",
-        "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event common"),
+        "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-decode xvrml-image xvrml-event common"),
     part("xvrml-render", "libxvrml/render/",
          "walks over what a viewer sees, for renderers; appearances, pictures and meshes for them",
          "xvrml-h xvrml-base xvrml-graph xvrml-geometry xvrml-image xvrml-event"),
     part("script-remote", "libxvrml/script/remote/", "Scripts in processes of their own",
-         "script-sdk common system"),
+         "script-sdk xvrml-process common"),
     part("xvrml-script", "libxvrml/script/", "finds script engines and runs Script nodes with them",
          "xvrml-h script-sdk script-remote xvrml-base xvrml-graph xvrml-parse xvrml-event common system"),
     part("script-host", "libxvrml/tools/script_host/", "the program of those processes",
-         "script-sdk xvrml-script script-remote common system"),
+         "script-sdk xvrml-script script-remote xvrml-process cage common system"),
     part(
         "xvrml-browser", "libxvrml/browser/",
         "a running world: one object that owns all of the above",
@@ -211,7 +219,7 @@ PUBLIC = {"api-h", "gl-h", "rtut-h", "shader-sdk", "script-sdk", "xvrml-h", "map
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"),
-     {"backend-cluster", "script-remote", "vv-control", "vv-server", "system", "test"}, "sockets"),
+     {"backend-cluster", "xvrml-process", "vv-control", "vv-server", "system", "test"}, "sockets"),
     (re.compile(
         r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "vv-window", "test"}, "picture and font libraries"),
@@ -219,7 +227,8 @@ FOREIGN = [
     (re.compile(r"imgui"), {"vv-window"}, "Dear ImGui"),
     (re.compile(r"libwebsockets"), {"vv-server"}, "libwebsockets"),
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "picture", "test"}, "the ffmpeg libraries"),
-    (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
+    (re.compile(r"(OpenEXR/|Imf)"), {"picture", "decoder", "test"}, "OpenEXR"),
+    (re.compile(r"(webp/|stb/|sndfile)"), {"decoder", "test"}, "libraries that are used in the cage only"),
     (re.compile(r"(CLI/|CLI11)"), {"vv-options", "openrt-tools", "nodegen"}, "CLI11"),
     (re.compile(r"toml\+\+/"), {"vv-options", "binding"}, "toml++"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
@@ -228,7 +237,7 @@ FOREIGN = [
 # A public header includes only the language's own headers and no third-party ones.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
 # Headers of the languages that script engines run.
-LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")
+LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h|quickjs/quickjs\.h)$")
 SEARCH = [
     "libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv",
     "tests", "common", "."

@@ -7,6 +7,7 @@
 
 #include "picture_size.h"
 #include "scene/analytic.h"
+#include "scene/stipple.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -56,10 +57,13 @@ size_t cornersOf(edit::Primitive primitive) {
 
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   demand(g.texGen <= edit::TexGen::MAX, "unknown texture coordinates");
+  demand(g.stippleFactor >= 1 && g.stippleFactor <= Stipple::largestFactor,
+         "the factor of a stipple is not 1 to 256");
   const std::string problem = AnalyticSurface::problemOf(g.primitive, g.surface);
   if (!problem.empty()) throw std::runtime_error(problem);
   if (!hasVertices(g.primitive)) {
-    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors && !g.rest,
+    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors && !g.fogCoords &&
+               !g.rest,
            g.primitive == edit::Primitive::Sphere ? "a sphere has vertices"
                                                   : "an analytic surface has vertices");
     return;
@@ -78,6 +82,8 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   checkAttribute(commit, g.texCoords, vertices, 2,
                  "the texture coordinates have a wrong size or are not finite");
   checkAttribute(commit, g.colors, vertices, 4, "the colours have a wrong size or are not finite");
+  checkAttribute(commit, g.fogCoords, vertices, 1,
+                 "the fog coordinates have a wrong size or are not finite");
   demand(!g.rest || g.primitive == edit::Primitive::Triangles, "only meshes deform");
   checkAttribute(commit, g.rest, vertices, 3,
                  "the points at rest have a wrong size or are not finite");

@@ -116,7 +116,8 @@ template <class Points> std::vector<V4d> inSpace(const Points& points) {
 std::vector<V4d> controlPointsOf(const NodeRef& node) {
   Node* rendered = renderedNode(node.get());
   if (auto* single = nodeCast<nodes::Coordinate>(rendered)) return inSpace(drawnPoints(*single));
-  if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) return inSpace(exact->point);
+  if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered))
+    return inSpace(drawnPoints(*exact));
   return {};
 }
 std::vector<V4d> controlPointsOf(const MFVec2d& points) { return inSpace(points); }
@@ -201,7 +202,8 @@ std::optional<RationalSurface> makeTexturePatch(const Node& node, Faults& faults
   const auto* patch =
       nodeCast<nodes::NurbsTextureCoordinate>(firstTextureCoordinate(node.texCoord));
   if (patch) return makeSurface(netOf(*patch), false, false, faults);
-  const std::span<const Vec2f> given = textureCoordinates(node.texCoord);
+  const TexCoordValues values = textureCoordinates(node.texCoord);
+  const std::span<const Vec2f> given = values.points;
   if (given.empty()) return {};
   Net net = netOf(node);
   net.weights = {};

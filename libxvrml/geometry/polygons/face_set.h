@@ -54,6 +54,7 @@ struct FaceSet {
   Attribute<Color> colors;
   std::vector<float> alphas;    // as long as colors.values, or empty: opaque
   std::vector<Vec4f> texPlaces; // as long as texCoords.values, or empty: points on pictures
+  std::vector<float> fogCoords; // as long as points, or empty
   bool solid = true, ccw = true;
   bool convex = true; // promised by the author; checked
   // This many leading faces are split without checks (strips of quadrilaterals).

@@ -230,6 +230,12 @@ class Triangulation {
         [](const V3d& sum) {
           return Color{float(sum.x), float(sum.y), float(sum.z)};
         });
+    if (!set_.fogCoords.empty()) {
+      double share = 0;
+      for (uint32_t i = 0; i < c.count; i++)
+        share += c.weight[i] * double(set_.fogCoords[set_.corners[from[i]]]);
+      set_.fogCoords.push_back(float(share));
+    }
     if (set_.points.data() != set_.ownPoints.data())
       set_.ownPoints.assign(set_.points.begin(), set_.points.end());
     set_.ownPoints.push_back(toVec3f(place));

@@ -53,6 +53,8 @@ Mesh inPlace(FaceSet&& set, std::span<const uint32_t> triangles) {
     mesh.ownTexPlaces.resize(points);
     mesh.texPlaces = mesh.ownTexPlaces;
   }
+  mesh.ownFogCoords = std::move(set.fogCoords);
+  mesh.fogCoords = mesh.ownFogCoords;
   if (mesh.colors.empty() || set.alphas.empty()) return mesh;
   mesh.ownAlphas = std::move(set.alphas);
   mesh.ownAlphas.resize(points, 1.0f);
@@ -126,6 +128,7 @@ class Welder {
       mesh_.ownColors.push_back(key[2] == noValue ? Color{1, 1, 1} : set_.colors.values[key[2]]);
     if (has(set_.colors) && !set_.alphas.empty())
       mesh_.ownAlphas.push_back(key[2] == noValue ? 1.0f : set_.alphas[key[2]]);
+    if (!set_.fogCoords.empty()) mesh_.ownFogCoords.push_back(set_.fogCoords[point]);
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
 

@@ -142,16 +142,21 @@ struct TexturePicture {
   RadianceImage radiance;    // in place of `image` for a file of radiances (.hdr, .exr, .pfm)
   std::vector<uint8_t> file; // the bytes of the file; empty: the picture comes from no file
   std::string path;          // the file, or the data: URL
-  // "image/png", "image/jpeg", "image/gif", "image/vnd.radiance", "image/x-exr" or
-  // "image/x-portable-floatmap"; empty: the picture comes from no file.
+  // "image/png", "image/jpeg", "image/gif", "image/webp", "image/bmp", "image/x-tga",
+  // "image/vnd.radiance", "image/x-exr" or "image/x-portable-floatmap"; empty: the picture comes
+  // from no file.
   std::string type;
   std::string error; // why there is no picture; empty: there is one, or the node names none
+  size_t url = 0;    // the place of the file in the node's list of URLs
+  bool tooManyPixels = false; // why there is no picture: it has more than the limit imagePixels
 };
 enum class Decode : uint8_t { yes, no };
 // Returns the picture of an ImageTexture, a PixelTexture, or the frame that a MovieTexture of a
 // running world shows now. world: its limits hold, and its file is the base of the URLs of nodes in
-// no file. Decode::no reads a file without decoding it; `image` is then empty.
-TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes);
+// no file. Decode::no reads a file without decoding it; `image` is then empty. The file is that of
+// the first URL, from `url` on, that can be used.
+TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes,
+                              size_t url = 0);
 // Decodes the file of a picture that was read with Decode::no. Reads at most limits.imagePixels
 // pixels; otherwise `error` says what is wrong. Needs no world. [any thread]
 void decodeTexture(TexturePicture& picture, const Limits& limits);

@@ -11,7 +11,6 @@
 
 #include "geometry/node_matrix.h"
 #include "mapper/shading/layers.h"
-#include "mapper/shading/line_properties.h"
 #include "mapper/shading/material_parameters.h"
 #include "mapper/shading/physical.h"
 #include "mapper/shading/x3d_material.h"
@@ -34,13 +33,13 @@ namespace {
 // Sets the material (clause 4.14). Without a Material the surface is unlit.
 void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
   shader.integer("lit", m ? 1 : 0);
+  shader.number("transparency", m ? m->transparency : 0, 0, 1);
   if (!m) return;
   shader.color("diffuseColor", convert(m->diffuseColor, linear));
   shader.color("emissiveColor", convert(m->emissiveColor, linear));
   shader.color("specularColor", convert(m->specularColor, linear));
   shader.number("ambientIntensity", m->ambientIntensity, 0, 1);
   shader.number("shininess", m->shininess, 0, 1);
-  shader.number("transparency", m->transparency, 0, 1);
 }
 } // namespace
 
@@ -158,7 +157,7 @@ Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
 }
 
 // Makes the surface of lines and points (clauses 6.24 and 6.36) in the colours of the geometry,
-// else in emissiveColor: unlit, unless they are thick.
+// else in emissiveColor: unlit, unless they are thick, and as transparent as the material.
 Surface Surfaces::makeLines(const Entry& entry) {
   Node* appearance = entry.appearance.get();
   Surface surface;
@@ -168,11 +167,12 @@ Surface Surfaces::makeLines(const Entry& entry) {
   shader.integer("lit", entry.use.thick);
   if (entry.use.vertexAlpha) shader.integer("vertexAlpha", 1);
   const AppearanceParts parts = resolveAppearance(appearance);
-  if (parts.material)
-    surface.lineColor = convert(materialValues(parts.material).lineColor, linear_);
-  const LineSizes sizes = lineSizes(parts.plain);
-  surface.lineWidth = sizes.line;
-  surface.pointSize = sizes.point;
+  if (parts.material) {
+    const MaterialValues values = materialValues(parts.material);
+    surface.lineColor = convert(values.lineColor, linear_);
+    shader.number("transparency", values.transparency, 0, 1);
+  }
+  surface.style = lineStyle(parts.plain);
   warnOfLines(parts.plain, world_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
@@ -338,16 +338,16 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
       it->second.need = need;
     } else {
       const AppearanceParts parts = resolveAppearance(&appearance);
-      const Color color = parts.material
-                              ? convert(materialValues(parts.material).lineColor, linear_)
-                              : Surface().lineColor;
-      const LineSizes sizes = lineSizes(parts.plain);
+      const MaterialValues values = materialValues(parts.material);
+      const Color color = parts.material ? convert(values.lineColor, linear_) : Surface().lineColor;
+      if (it->second.own != 0)
+        ShaderSetup(classes_.get("VRML97", ""), it->second.own, sets_)
+            .number("transparency", values.transparency, 0, 1);
+      const LineStyle style = lineStyle(parts.plain);
       Surface& surface = it->second.surface;
-      effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
-                        sizes.point != surface.pointSize;
+      effect.colored |= !(color == surface.lineColor) || !(style == surface.style);
       surface.lineColor = color;
-      surface.lineWidth = sizes.line;
-      surface.pointSize = sizes.point;
+      surface.style = style;
     }
   }
   return effect;

@@ -14,6 +14,7 @@
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
+#include "mapper/shading/line_properties.h"
 #include "mapper/shading/textures.h"
 #include "mapper/shading/volumes.h"
 #include "xvrml/world.h"
@@ -26,10 +27,10 @@ TextureNeed textureNeed(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
-  bool lines = false;                 // it is for lines or points
-  bool takesPlaces = false;           // its class has the parameter texturePlace of vertices
-  Color lineColor{1, 1, 1};           // for lines and points without colours of their own
-  float lineWidth = 1, pointSize = 1; // in pixels
+  bool lines = false;       // it is for lines or points
+  bool takesPlaces = false; // its class has the parameter texturePlace of vertices
+  Color lineColor{1, 1, 1}; // for lines and points without colours of their own
+  LineStyle style;
 };
 
 // Says what a surface is used for.
@@ -59,7 +60,7 @@ class Surfaces {
   // use it.
   struct Effect {
     bool other = false;    // they need another shader
-    bool colored = false;  // lines need another colour or width
+    bool colored = false;  // lines need another colour or style
     bool textured = false; // they now need texture coordinates that they did not need before
   };
   // Returns the surface of meshes whose texture coordinates in space shaders of instances use.

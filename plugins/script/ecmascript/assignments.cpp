@@ -79,7 +79,8 @@ struct Rewriter {
     std::string out;
     size_t copied = 0;
     for (size_t i = 0; i < tokens.size(); ++i) {
-      const bool assigns = is(i, "=") && tokens[i].kind == Token::Kind::sign;
+      const bool assigns =
+          tokens[i].kind == Token::Kind::sign && (word(i) == "=" || word(i) == "=>");
       const bool returns = is(i, "return") && tokens[i].kind == Token::Kind::keyword &&
                            i + 1 < tokens.size() && !tokens[i + 1].line;
       const size_t end = assigns || returns ? chain(i + 1) : 0;

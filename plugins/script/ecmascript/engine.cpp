@@ -1,6 +1,6 @@
 // engine.cpp: Defines the plug-in with the engine "ecmascript" for javascript:, vrmlscript:,
-// ecmascript: and .js files (ISO/IEC 14772-1 Annex C), on Duktape. See docs/scripts.md. [the
-// browser's thread]
+// ecmascript: and .js files (ISO/IEC 14772-1 Annex C), on QuickJS or Duktape. See docs/scripts.md.
+// [the browser's thread]
 #include <ctime>
 
 #include "interpreter.h"
@@ -51,22 +51,10 @@ const char* const mimeTypes[] = {
     "application/ecmascript",   "application/x-ecmascript", "text/ecmascript", "text/x-ecmascript",
     "application/x-vrmlscript", "application/vrmlscript",   "text/vrmlscript", nullptr};
 const char* const suffixes[] = {".js", ".vs", nullptr};
-const XsEngine engine = {sizeof(XsEngine),
-                         0,
-                         "ecmascript",
-                         "ECMAScript 5.1 with the objects of ISO/IEC 14772-1 Annex C, on Duktape 2",
-                         schemes,
-                         mimeTypes,
-                         suffixes,
-                         create,
-                         destroy,
-                         initialize,
-                         event,
-                         eventsProcessed,
-                         shutdown,
-                         tick,
-                         prepare,
-                         prepareEvents};
+const XsEngine engine = {sizeof(XsEngine), 0,          "ecmascript", ecma::engineText,
+                         schemes,          mimeTypes,  suffixes,     create,
+                         destroy,          initialize, event,        eventsProcessed,
+                         shutdown,         tick,       prepare,      prepareEvents};
 const XsEngine* const engines[] = {&engine};
 
 } // namespace

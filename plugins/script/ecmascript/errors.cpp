@@ -4,9 +4,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include <new>
-
-#include "newer.h"
 #include "slots.h"
 
 namespace ecma {
@@ -18,42 +15,37 @@ void logText(Interpreter& self, int severity, uint32_t line, const char* text, s
 
 namespace {
 
-// Replaces a syntax error on top of the stack by one that names what the engine cannot know.
-// Returns its line; 0 if the program has nothing newer.
-uint32_t explainSyntax(duk_context* ctx, const Interpreter& self) {
-  if (duk_get_error_code(ctx, -1) != DUK_ERR_SYNTAX_ERROR) return 0;
-  NewerSyntax newer;
-  try {
-    newer = findNewer({self.info->text.data, self.info->text.bytes});
-  } catch (const std::bad_alloc&) {} // the engine's own words have to do
-  if (newer.line == 0) return 0;
-  duk_push_sprintf(ctx, "SyntaxError: '%s' is newer than ECMAScript 5.1, which this engine runs",
-                   newer.what);
-  duk_replace(ctx, -2);
-  return newer.line;
+struct Spot {
+  uint32_t line = 0;
+  char function[80] = "";
+};
+
+// Finds the first line of the trace that is in the program's own file: "at NAME (script:LINE...)"
+// or, for a syntax error of QuickJS, "at script:LINE...".
+Spot spotIn(const char* trace) {
+  Spot found;
+  const char *const end = std::strstr(trace, " (script:"), *name = end;
+  const char* const place = end ? end : std::strstr(trace, "at script:");
+  if (!place) return found;
+  found.line = uint32_t(std::strtoul(std::strchr(place, ':') + 1, nullptr, 10));
+  if (!end) return found;
+  while (name > trace && name[-1] != ' ') --name;
+  const auto length = size_t(end - name);
+  const bool named = *name != '[' && *name != '<' && std::strncmp(name, "global ", 7) != 0;
+  if (length < sizeof found.function && named) std::memcpy(found.function, name, length);
+  return found;
 }
 
 } // namespace
 
-// Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function. The first one in the
-// program's own file is reported.
 void reportError(Interpreter& self, const char* during) {
   duk_context* ctx = self.ctx;
   const duk_idx_t error = duk_get_top_index(ctx);
-  uint32_t line = explainSyntax(ctx, self);
-  char function[80] = "";
+  Spot spot;
+  spot.line = explainSyntax(ctx, self);
   if (duk_is_error(ctx, error)) {
     duk_get_prop_string(ctx, error, "stack");
-    const char* stack = duk_is_string(ctx, -1) ? duk_get_string(ctx, -1) : "";
-    const char* place = std::strstr(stack, " (script:");
-    if (place) {
-      line = uint32_t(std::strtoul(place + 9, nullptr, 10));
-      const char* name = place;
-      while (name > stack && name[-1] != ' ') --name;
-      const auto length = size_t(place - name);
-      if (length < sizeof function && *name != '[' && std::strncmp(name, "global ", 7) != 0)
-        std::memcpy(function, name, length);
-    }
+    if (duk_is_string(ctx, -1)) spot = spotIn(duk_get_string(ctx, -1));
     duk_pop(ctx);
   }
   duk_dup(ctx, error);
@@ -63,14 +55,13 @@ void reportError(Interpreter& self, const char* during) {
     duk_push_string(ctx, "DoubleError: alloc failed, also for the error about it");
     duk_replace(ctx, -2);
   }
-  duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? " (in " : "");
-  duk_push_string(ctx, *function                                         ? function
-                       : std::strcmp(during, "running the program") != 0 ? during
-                                                                         : "");
-  duk_push_string(ctx, *function || std::strcmp(during, "running the program") != 0 ? ")" : "");
+  const bool called = std::strcmp(during, "running the program") != 0;
+  duk_push_string(ctx, *spot.function || called ? " (in " : "");
+  duk_push_string(ctx, *spot.function ? spot.function : called ? during : "");
+  duk_push_string(ctx, *spot.function || called ? ")" : "");
   duk_concat(ctx, 4);
   const XsString text = textForHost(ctx, self, -1);
-  logText(self, 3, line, text.data, text.bytes);
+  logText(self, 3, spot.line, text.data, text.bytes);
 }
 
 void throwType(duk_context* ctx, const char* format, ...) {

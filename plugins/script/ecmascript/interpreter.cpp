@@ -1,5 +1,5 @@
 // interpreter.cpp: Creates the heap of a Script, runs its program and calls its functions. Every
-// entry is protected: an error of the program, missing memory and even a fatal error of Duktape
+// entry is protected: an error of the program, missing memory and even a fatal error of the engine
 // produce a message and XS_FAILED.
 #include "interpreter.h"
 
@@ -13,7 +13,7 @@
 namespace ecma {
 
 // A block of the heap's memory. All blocks are in a list, so that a heap can be freed after a fatal
-// error of Duktape.
+// error of the engine.
 struct alignas(16) Block { // the memory after the header has malloc's alignment
   Block *before, *after;
   duk_size_t bytes;
@@ -72,19 +72,19 @@ void* reallocate(void* account, void* memory, duk_size_t bytes) {
   return link(self, block);
 }
 
-// Frees all blocks of the heap without calling Duktape.
+// Frees all blocks of the heap without calling the engine.
 void freeHeap(Interpreter& self) {
   while (self.blocks) release(&self, self.blocks + 1);
 }
 
-// Called for a fatal error of Duktape. It must not return; every entry has set the jump target.
+// Called for a fatal error of the engine. It must not return; every entry has set the jump target.
 void onFatalError(void* account, const char* message) {
   Interpreter& self = *static_cast<Interpreter*>(account);
   self.dead = true;
-  logText(self, 3, 0, message ? message : "Duktape has given up",
-          message ? std::strlen(message) : 20);
+  logText(self, 3, 0, message ? message : "the engine has given up",
+          message ? std::strlen(message) : 23);
   if (self.fatalSet) std::longjmp(self.fatal, 1);
-  for (;;) {} // unreachable: Duktape is called only inside an entry
+  for (;;) {} // unreachable: the engine is called only inside an entry
 }
 
 // --- Protected entries ---
@@ -260,6 +260,7 @@ Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsR
   self->fatalSet = false;
   if (!self->ctx) {
     logText(*self, 3, 0, "no memory for an interpreter", 28);
+    freeHeap(*self); // what a failed creation has left
     delete self;
     return nullptr;
   }
@@ -283,7 +284,7 @@ void destroyInterpreter(Interpreter* self) {
       duk_destroy_heap(self->ctx);
     }
   }
-  freeHeap(*self); // what remains after a fatal error of Duktape
+  freeHeap(*self); // what remains after a fatal error, and all of QuickJS
   delete self;
 }
 
@@ -306,14 +307,17 @@ XsResult receiveEvent(Interpreter& self, const XsEvent& event) {
   } catch (const std::bad_alloc&) { return XS_FAILED; }
 }
 
+bool mustStop(Interpreter& self, uint64_t steps) {
+  self.stopped = self.stopped || self.host->shouldStop(self.host, self.self, steps);
+  return self.stopped;
+}
+
 void step(Interpreter& self) {
   constexpr uint32_t often = 256;
-  if (++self.nativeCalls >= often || self.stopped) {
-    if (!self.stopped && self.host->shouldStop(self.host, self.self, self.nativeCalls))
-      self.stopped = true;
-    self.nativeCalls = 0;
-    if (self.stopped) throwRange(self.ctx, "the Script is stopped");
-  }
+  if (++self.nativeCalls < often && !self.stopped) return;
+  const bool stops = mustStop(self, self.nativeCalls);
+  self.nativeCalls = 0;
+  if (stops) throwRange(self.ctx, "the Script is stopped");
 }
 
 } // namespace ecma

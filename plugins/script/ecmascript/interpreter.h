@@ -1,9 +1,11 @@
-// interpreter.h: Owns the interpreter of one Script: a Duktape heap with limited memory, the fields
-// of the Script and of the nodes it uses ("slots"), and the nodes it holds. Every function of the
-// engine has it as its context. [the browser's thread]
+// interpreter.h: Owns the interpreter of one Script: a heap with limited memory, the fields of the
+// Script and of the nodes it uses ("slots"), and the nodes it holds. Every function of the engine
+// has it as its context. [the browser's thread]
 //
-// Duktape reports errors with longjmp, so a function that calls Duktape must not own anything with
-// a destructor. Data that must survive a call belongs in the Duktape heap or in members here.
+// The objects of Annex C are written for Duktape's stack API. It comes from Duktape, or from
+// quickjs/ (quickjs/language.h). Errors are reported with longjmp, so a function that calls the API
+// must not own anything with a destructor. Data that must survive a call belongs in the heap or in
+// members here.
 #pragma once
 
 #include <csetjmp>
@@ -13,8 +15,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include <duktape.h>
 #include <xvrml/xscript_types.h>
+
+#include "language.h"
 
 namespace ecma {
 
@@ -55,7 +58,7 @@ struct Interpreter {
   duk_context* ctx = nullptr;
   bool stopped = false;     // the host has stopped the program; it must not run any more
   bool ending = false;      // the heap is being destroyed
-  bool dead = false;        // Duktape had a fatal error; the heap is freed without it
+  bool dead = false;        // the language had a fatal error; the heap is freed without it
   uint64_t call = 1;        // number of the current call by the host
   uint32_t nativeCalls = 0; // calls of native functions since shouldStop was last called
   uint64_t random = 0;      // state of Math.random
@@ -102,10 +105,15 @@ XsResult callFunction(Interpreter& self, const char* name, const XsValue* value,
 // Delivers an event: calls the function of the eventIn's name, or set_x for an inputOutput field x.
 XsResult receiveEvent(Interpreter& self, const XsEvent& event);
 
-// Called at the start of every native function: calls shouldStop now and then. Does not return when
+// Tells the host that the program has taken steps. Returns whether the Script is stopped.
+bool mustStop(Interpreter& self, uint64_t steps);
+// Called at the start of every native function: asks the host now and then. Does not return when
 // the Script is stopped.
 void step(Interpreter& self);
 
+// Replaces a syntax error on top of the stack by one that says more, if there is more to say.
+// Returns its line; 0: the error stays. Each engine has its own.
+uint32_t explainSyntax(duk_context* ctx, const Interpreter& self);
 // errors.cpp: says what the error on top of the stack is, with the program's line and the function.
 void reportError(Interpreter& self, const char* during);
 void logText(Interpreter& self, int severity, uint32_t line, const char* text, size_t bytes);

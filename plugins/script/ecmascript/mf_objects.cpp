@@ -48,7 +48,7 @@ duk_ret_t construct(duk_context* ctx) {
   step(self);
   const auto type = XsType(duk_get_current_magic(ctx));
   const duk_idx_t given = duk_get_top(ctx);
-  if (given == 1 && (duk_is_array(ctx, 0) || mfData(ctx, 0))) {
+  if (given == 1 && (duk_is_array(ctx, 0) || mfData(ctx, 0) || duk_is_buffer_data(ctx, 0))) {
     pushMfFrom(ctx, self, 0, type, typeName(type));
     return 1;
   }

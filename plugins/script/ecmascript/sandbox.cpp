@@ -1,5 +1,5 @@
 // sandbox.cpp: Removes from the global object everything that is not ECMAScript and could reach
-// Duktape's internals. Dates follow the world's time, and random numbers the program's text, so
+// the engine's internals. Dates follow the world's time, and random numbers the program's text, so
 // that a replayed world does the same.
 #include "slots.h"
 
@@ -53,6 +53,9 @@ void restrictGlobals(duk_context* ctx, Interpreter& self) {
   removeProperty(ctx, "Uint8Array", "allocPlain");
   removeProperty(ctx, "Uint8Array", "plainOf");
   removeProperty(ctx, nullptr, "performance");
+  // Remove what makes threads wait for each other.
+  removeProperty(ctx, nullptr, "Atomics");
+  removeProperty(ctx, nullptr, "SharedArrayBuffer");
   duk_get_global_string(ctx, "Math");
   duk_push_c_function(ctx, random, 0);
   duk_put_prop_string(ctx, -2, "random");

@@ -1,5 +1,6 @@
-// tokens.h: Splits the text of a program into the tokens of ECMAScript 5.1, for what looks at
-// programs before they run. Text that is no such program gives some tokens, too.
+// tokens.h: Splits the text of a program into the tokens of ECMAScript, for what looks at programs
+// before they run. Text that is no such program gives some tokens, too. The texts of a template are
+// literals; what stands in its ${ } is split.
 #pragma once
 
 #include <algorithm>
@@ -88,6 +89,12 @@ class Tokens {
       quoted(c);
       return Token::Kind::literal;
     }
+    if (c == '`' || (c == '}' && !templates_.empty() && templates_.back() == 0)) {
+      if (c == '}') templates_.pop_back();
+      templateText();
+      return Token::Kind::literal;
+    }
+    if (!templates_.empty() && (c == '{' || c == '}')) templates_.back() += c == '{' ? 1 : -1;
     if (c == '/' && patternMayStand()) {
       pattern();
       return Token::Kind::literal;
@@ -107,6 +114,17 @@ class Tokens {
   void quoted(char quote) {
     for (++at_; at_ < text_.size() && peek() != quote && peek() != '\n'; ++at_)
       if (peek() == '\\') ++at_;
+    at_ = std::min(at_ + 1, text_.size());
+  }
+
+  // Takes the text of a template up to its end, or to the next ${.
+  void templateText() {
+    for (++at_; at_ < text_.size() && peek() != '`'; ++at_) {
+      if (peek() == '\\') ++at_;
+      if (!begins("${")) continue;
+      at_ += 2;
+      return templates_.push_back(0);
+    }
     at_ = std::min(at_ + 1, text_.size());
   }
 
@@ -135,6 +153,7 @@ class Tokens {
   size_t at_ = 0;
   bool line_ = false;
   std::vector<Token> list_;
+  std::vector<int> templates_; // open braces within each ${ } that is not closed
 };
 
 } // namespace ecma

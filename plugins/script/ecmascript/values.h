@@ -1,4 +1,4 @@
-// values.h: Represents values of VRML's types in the Duktape heap, and converts the program's
+// values.h: Represents values of VRML's types in the heap, and converts the program's
 // values to them. SF tuples are objects over a fixed buffer of doubles. MF types are proxies over
 // one dynamic buffer (numbers) or an array (strings, nodes). [the browser's thread]
 #pragma once

@@ -14,19 +14,25 @@ std::string script(const std::string& declared, const std::string& program) {
 TEST_F(EcmaScript, ErrorsNameTheLineAndTheFunction) {
   const struct {
     const char* program;
-    const char* message;
+    std::string message;
   } cases[] = {
       {"\n\nvar x = ;",
-       "4: Script S: SyntaxError: empty expression not allowed (line 3, end of input)"},
+       "4: Script S: SyntaxError: " + wordsOf("empty expression not allowed (line 3, end of input)",
+                                              "unexpected token in expression: ';'")},
       {"function initialize() {\n  helper();\n}\nfunction helper() {\n  var o;\n  o.x = 1;\n}",
-       "7: Script S: TypeError: cannot write property 'x' of undefined (in helper)"},
+       "7: Script S: TypeError: cannot " + wordsOf("write", "set") +
+           " property 'x' of undefined (in helper)"},
       {"\nfunction initialize() { new SFVec3f(1, 2, 3).add(5) }",
        "3: Script S: TypeError: add: expected SFVec3f, got number 5 (in initialize)"},
       {"function initialize() {\n throw 'words' }", "2: Script S: words (in initialize)"},
       {"function initialize() {\n throw new Error('mine') }",
        "3: Script S: Error: mine (in initialize)"},
-      {"noSuchFunction(1)", "2: Script S: ReferenceError: identifier 'noSuchFunction' undefined"},
-      {"var a = 'open\nclose'", "2: Script S: SyntaxError: unterminated string (line 1)"},
+      {"noSuchFunction(1)",
+       "2: Script S: ReferenceError: " +
+           wordsOf("identifier 'noSuchFunction' undefined", "'noSuchFunction' is not defined")},
+      {"var a = 'open\nclose'",
+       "2: Script S: SyntaxError: " +
+           wordsOf("unterminated string (line 1)", "unexpected end of string")},
   };
   for (const auto& one : cases) {
     EcmaWorld r(script("", one.program));
@@ -115,7 +121,7 @@ TEST_F(EcmaScript, DeepRecursionIsAnError) {
     EXPECT_LE(printed.size(), 1u) << program.substr(0, 60);
     if (printed.empty()) continue;
     EXPECT_TRUE(printed[0] == "RangeError" || printed[0] == "TypeError" ||
-                printed[0] == "SyntaxError")
+                printed[0] == "SyntaxError" || printed[0] == "InternalError")
         << printed[0];
   }
 }
@@ -157,15 +163,12 @@ TEST_F(EcmaScript, ObjectsOfOtherKindsAreRefused) {
       "tries(function() { return SFVec3f.prototype.x });"
       "tries(function() { return MFVec3f.prototype.length });"
       "tries(function() { return Object.create(new SFVec3f(1, 2, 3)).x });"
-      "tries(function() { return new Proxy(new SFVec3f(1, 2, 3), {}).y });"
-      "tries(function() { var m = new MFVec3f(); m[0] = new Proxy(new SFVec3f(1, 2, 3), {}); "
-      "return m });"
       "tries(function() { m = Object.create(new MFVec3f(new SFVec3f())); return m.length });"
       "tries(function() { return new VrmlMatrix()[2][7] });"
       "tries(function() { return new VrmlMatrix(1, 2) });"
       "tries(function() { return Object.create(new SFNode('Group { }')).children.length });"));
-  EXPECT_EQ(r.takeOutput(), "TypeError\nTypeError\nTypeError\nTypeError\nundefined\n0\n1\n2\n[1 2 "
-                            "3]\nTypeError\nundefined\nTypeError\n0");
+  EXPECT_EQ(r.takeOutput(), "TypeError\nTypeError\nTypeError\nTypeError\nundefined\n0\n1\n"
+                            "TypeError\nundefined\nTypeError\n0");
 }
 
 TEST_F(EcmaScript, ChangesWhileAValueIsConverted) {

@@ -2,7 +2,10 @@
 // of programs with what they print. Tests are skipped if the engine is not built.
 #pragma once
 
+#include <algorithm>
+
 #include "conformance/events/tcl_world.h"
+#include "xvrml/script_engines.h"
 
 namespace xvrml {
 
@@ -24,6 +27,20 @@ class EcmaWorld : public TclWorld {
 };
 
 inline bool hasEcmaScript() { return std::filesystem::exists(XVRML_SCRIPTS "/ecmascript.so"); }
+
+// Returns whether the engine runs ECMAScript 2020 (QuickJS) and not only 5.1 (Duktape).
+inline bool runsEs2020() {
+  const std::vector<ScriptEngineInfo> engines = scriptEngines(engineFolders());
+  const auto engine = std::find_if(engines.begin(), engines.end(), [](const ScriptEngineInfo& one) {
+    return one.name == "ecmascript";
+  });
+  return engine != engines.end() && engine->text.find("2020") != std::string::npos;
+}
+
+// The engines' own words differ where the language leaves them open.
+inline std::string wordsOf(const char* duktape, const char* quickjs) {
+  return runsEs2020() ? quickjs : duktape;
+}
 
 class EcmaScript : public testing::Test {
  protected:

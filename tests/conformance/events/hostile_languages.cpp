@@ -95,6 +95,17 @@ constexpr Case cases[] = {
      "function f() { try { f(); } catch (e) { f(); } } while (1) { try { f(); } catch (e) {} }"},
     {"javascript", "DeepText", End::stopped,
      "var s = ''; for (var i = 0; i < 1000000; i++) s += '['; eval(s);"},
+    {"javascript", "EndlessJobs", End::stopped,
+     "if (typeof Promise == 'undefined') while (1);\n"
+     "function f() { Promise.resolve().then(f) } f();"},
+    {"javascript", "EndlessJobsThatCatch", End::stopped,
+     "if (typeof Promise == 'undefined') while (1);\n"
+     "function f() { Promise.reject(1).then(f, f); while (1); } f();"},
+    {"javascript", "WaitingThread", End::refused,
+     "Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0); print('reached');"},
+    {"javascript", "OtherModule", End::refused,
+     "(0, eval)('import(\"/etc/passwd\")').then(function() { print('reached') }); "
+     "print('refused');"},
     {"javascript", "Module", End::refused, "require('fs'); print('reached');"},
     {"javascript", "Network", End::refused, "new XMLHttpRequest(); print('reached');"},
     {"javascript", "Process", End::refused, "process.exit(0); print('reached');"},
@@ -130,7 +141,7 @@ TEST_P(HostileLanguages, AProgramCannotHoldTheWorldUp) {
   const Case& c = GetParam();
   if (!hasScriptEngine(c.language, XVRML_SCRIPTS)) GTEST_SKIP() << "no engine for " << c.language;
   BrowserOptions options;
-  options.scriptPath = XVRML_SCRIPTS ":" XVRML_TEST_SCRIPTS;
+  options.scriptPath = engineFolders() + ":" XVRML_TEST_SCRIPTS;
   options.scriptSeconds = 0.15;
   options.scriptMemory = 32 << 20;
   options.scriptPatience = 0.02;

@@ -13,6 +13,12 @@ namespace xvrml {
 // Where the Scripts of the current test run. ctest runs the tests of the languages a second time
 // with $XVRML_TEST_ISOLATION=always.
 inline const bool everythingInProcesses = std::getenv("XVRML_TEST_ISOLATION") != nullptr;
+// The folders with the project's engines. ctest runs the tests of ECMAScript a second time with
+// another engine, whose folder is $XVRML_TEST_ENGINES.
+inline std::string engineFolders() {
+  const char* other = std::getenv("XVRML_TEST_ENGINES");
+  return (other ? std::string(other) + ':' : std::string()) + XVRML_SCRIPTS;
+}
 inline BrowserOptions::Isolation isolationOfTest = BrowserOptions::Isolation::automatic;
 
 class ScriptsSomewhere : public testing::TestWithParam<BrowserOptions::Isolation> {

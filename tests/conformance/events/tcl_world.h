@@ -27,7 +27,7 @@ class TclWorld : public Scripted {
 
  private:
   static BrowserOptions with(BrowserOptions options) {
-    options.scriptPath = XVRML_SCRIPTS;
+    options.scriptPath = engineFolders();
     options.scriptIsolation = everythingInProcesses && !options.trustScripts
                                   ? BrowserOptions::Isolation::always
                                   : BrowserOptions::Isolation::never;
