@@ -1,4 +1,4 @@
-// ecmascript_2020.cpp: what programs of ECMAScript 2020 do with the objects of Annex C. Skipped
+// ecmascript_2020.cpp: programs of ECMAScript 2020 and later with the objects of Annex C. Skipped
 // where the engine runs ECMAScript 5.1 only.
 #include "conformance/events/ecmascript_world.h"
 
