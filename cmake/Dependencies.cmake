@@ -13,6 +13,9 @@ find_package(EXPAT REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(GIF REQUIRED)
+# WebP and sounds, for the program that decodes them
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(SNDFILE REQUIRED IMPORTED_TARGET sndfile)
 find_package(Freetype REQUIRED)
 pkg_check_modules(HARFBUZZ REQUIRED IMPORTED_TARGET harfbuzz)
 pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
@@ -39,7 +42,7 @@ if(OPENRT_FILMS)
   # films; without them MovieTextures show a still picture
   pkg_check_modules(FFMPEG IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
 endif()
-# without it only resource limits restrict untrusted scripts
+# without it only resource limits restrict untrusted scripts and the decoder
 pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp)
 if(OPENRT_WINDOW)
   pkg_check_modules(SDL2 IMPORTED_TARGET sdl2) # without it vv opens no window

@@ -80,8 +80,8 @@ Background readBackground(const std::string& text) {
     if (low == one.name) return {Kind::colour, unpacked(one.rgb), {}};
   if (low.starts_with('#')) return {Kind::colour, hexadecimal(low), {}};
   const std::string suffix = suffixOf(text);
-  if (isRadiance(suffix) || suffix == "png" || suffix == "jpg" || suffix == "jpeg" ||
-      suffix == "gif")
+  constexpr std::string_view suffixes[] = {"png", "jpg", "jpeg", "gif", "webp", "bmp", "tga"};
+  if (isRadiance(suffix) || std::ranges::find(suffixes, suffix) != std::end(suffixes))
     return {Kind::file, {}, text};
   if (low.find(',') != low.npos) return {Kind::colour, triple(low), {}};
   refuse(text);

@@ -18,7 +18,7 @@ struct Background {
   enum class Kind : unsigned char { world, none, colour, file, backdrop } kind = Kind::world;
   // display values from 0 to 1 (sRGB-encoded); linear pictures convert them to linear
   std::array<float, 3> colour{};
-  std::string file; // png, jpg or gif; exr, hdr and pfm hold radiance
+  std::string file; // png, jpg, gif, webp, bmp or tga; exr, hdr and pfm hold radiance
   bool operator==(const Background&) const = default;
 };
 
@@ -27,7 +27,7 @@ struct Background {
 Background readBackground(const std::string& text);
 inline constexpr const char* backgroundForms =
     "none, a colour (a name such as white, #rgb, #rrggbb, or R,G,B from 0 to 1) or a picture (png, "
-    "jpg, gif, exr, hdr, pfm)";
+    "jpg, gif, webp, bmp, tga, exr, hdr, pfm)";
 
 // Sets what a picture says about its background: whether it is transparent, and its backdrop.
 void setBackdrop(const Background& background, PictureFacts& picture);

@@ -71,15 +71,16 @@ void addEngines(std::string_view scriptPath, std::vector<Feature>& rows) {
 }
 
 Feature sandbox() {
-  Feature row{.name = "seccomp", .text = "a filter of system calls around Scripts of worlds"};
+  Feature row{.name = "seccomp",
+              .text = "a filter of system calls around Scripts and decoders of worlds"};
 #ifdef PICTURE_WITH_SECCOMP
   row.available = os::canFilterCalls();
   if (row.available)
     row.detail = "libseccomp";
   else
-    row.how = "a Linux kernel with CONFIG_SECCOMP_FILTER; Scripts run without the filter";
+    row.how = "a Linux kernel with CONFIG_SECCOMP_FILTER; both run without the filter";
 #else
-  row.how = "build with libseccomp (Debian: libseccomp-dev); Scripts run without the filter";
+  row.how = "build with libseccomp (Debian: libseccomp-dev); both run without the filter";
 #endif
   return row;
 }

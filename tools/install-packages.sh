@@ -9,6 +9,7 @@ build=(
   g++ make cmake ninja-build ccache pkg-config git ca-certificates
   libembree-dev libtbb-dev libhwy-dev                           # ray kernels, threads, vectors
   libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
+  libwebp-dev libstb-dev libsndfile1-dev                        # more pictures, sounds
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
   libexpat1-dev                                                 # X3D in XML
   libflatbuffers-dev flatbuffers-compiler # scene edits

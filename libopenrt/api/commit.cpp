@@ -142,11 +142,14 @@ class CommitBuilder {
     e->clockwise = built.state.clockwise;
     e->width = built.state.width;
     e->texGen = built.state.texGen;
+    e->stippleFactor = built.state.stipple.factor;
+    e->stipplePattern = built.state.stipple.pattern;
     e->points = addArray(built.points);
     e->indices = addArray(built.indices);
     e->normals = addArray(built.normals);
     e->texCoords = addArray(built.texCoords);
     e->colors = addArray(built.colors);
+    e->fogCoords = addArray(built.fogCoords);
     e->surface = built.surface;
     for (size_t i = 0; e->shader != 0 && i < built.parameters.size(); i++) {
       auto parameter = std::make_unique<edit::GeometryParameterT>();

@@ -97,8 +97,11 @@ void Context::requireOutsideDefinition() const {
 
 GeometryState Context::latch(edit::Primitive primitive) {
   scene.requireKind(boundShader, RTS_SURFACE);
-  GeometryState state{boundShader, name, matrices.top(), cull, clockwise, 1, texGen};
-  if (primitive == edit::Primitive::Lines) state.width = lineWidth;
+  GeometryState state{boundShader, name, matrices.top(), cull, clockwise, 1, texGen, {}};
+  if (primitive == edit::Primitive::Lines) {
+    state.width = lineWidth;
+    state.stipple = stipple;
+  }
   if (primitive == edit::Primitive::Points) state.width = pointSize;
   return state;
 }

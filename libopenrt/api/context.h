@@ -72,10 +72,11 @@ class Context {
   RTid boundShader = 0, boundTexture = 0;
   uint32_t name = 0;
   float lineWidth = 1, pointSize = 1;
+  Stipple stipple;
   edit::TexGen texGen = edit::TexGen::Off;
   bool cull = false, clockwise = false;
   VertexState attributes; // current attributes outside definitions, which do not inherit them
-  AttributeSource vertexArray, normalArray, texCoordArray, colorArray;
+  AttributeSource vertexArray, normalArray, texCoordArray, colorArray, fogCoordArray;
   std::vector<ParameterArray> parameterArrays;
 
   Definition& openDefinition();

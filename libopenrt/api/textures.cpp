@@ -14,16 +14,20 @@ TextureState& bound(Context& c) {
   return c.scene.texture(c.boundTexture);
 }
 
-void setImage(Context& c, int components, int width, int height, RTenum type, const void* pixels) {
+struct ImageSize {
+  int width, height, depth;
+};
+
+void setImage(Context& c, int components, const ImageSize& size, RTenum type, const void* pixels) {
   TextureState& state = bound(c);
   require(type == RT_UNSIGNED_BYTE || type == RT_FLOAT, RT_INVALID_ENUM,
           "the type must be RT_UNSIGNED_BYTE or RT_FLOAT");
   require(components >= 1 && components <= 4, RT_INVALID_VALUE, "an image has 1 to 4 components");
-  require(isPictureSize(width, height), RT_INVALID_VALUE,
+  require(isVolumeSize(size.width, size.height, size.depth), RT_INVALID_VALUE,
           "an image has 1 to 65536 pixels a side and at most 2^28 in all");
   require(pixels != nullptr, RT_INVALID_VALUE, "the pixels are NULL");
-  const size_t values =
-      static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(components);
+  const size_t values = static_cast<size_t>(size.width) * static_cast<size_t>(size.height) *
+                        static_cast<size_t>(size.depth) * static_cast<size_t>(components);
   auto texels = std::make_shared<Array>(values * (type == RT_FLOAT ? sizeof(float) : 1));
   std::memcpy(texels->data(), pixels, texels->size());
   if (type == RT_FLOAT)
@@ -32,8 +36,9 @@ void setImage(Context& c, int components, int width, int height, RTenum type, co
   c.scene.textures.markDirty(c.boundTexture, state);
   edit::TextureT& d = state.description;
   d.components = static_cast<uint32_t>(components);
-  d.width = static_cast<uint32_t>(width);
-  d.height = static_cast<uint32_t>(height);
+  d.width = static_cast<uint32_t>(size.width);
+  d.height = static_cast<uint32_t>(size.height);
+  d.depth = static_cast<uint32_t>(size.depth);
   d.isFloat = type == RT_FLOAT;
   state.texels = std::move(texels);
 }
@@ -76,6 +81,7 @@ void setParameter(Context& c, RTenum name, int value) {
   switch (name) {
   case RT_TEXTURE_WRAP_S: changed.wrapS = wrapOf(value); break;
   case RT_TEXTURE_WRAP_T: changed.wrapT = wrapOf(value); break;
+  case RT_TEXTURE_WRAP_R: changed.wrapR = wrapOf(value); break;
   case RT_TEXTURE_MAG_FILTER:
     require(value == RT_NEAREST || value == RT_LINEAR, RT_INVALID_ENUM,
             "the filter must be RT_NEAREST or RT_LINEAR");
@@ -114,8 +120,16 @@ void rtBindTexture(RTid texture) {
 }
 
 void rtTexImage2D(int components, int width, int height, RTenum type, const void* pixels) {
-  guarded("rtTexImage2D",
-          [&](Context& c) { setImage(c, components, width, height, type, pixels); });
+  guarded("rtTexImage2D", [&](Context& c) {
+    setImage(c, components, {width, height, 1}, type, pixels);
+  });
+}
+
+void rtTexImage3D(int components, int width, int height, int depth, RTenum type,
+                  const void* pixels) {
+  guarded("rtTexImage3D", [&](Context& c) {
+    setImage(c, components, {width, height, depth}, type, pixels);
+  });
 }
 
 void rtTexParameteri(RTenum name, int value) {

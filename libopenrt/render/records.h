@@ -111,11 +111,14 @@ struct Record {
   const float* normals = nullptr;    // stride 3, in the geometry's local frame
   const float* texCoords = nullptr;  // stride 2
   const float* colors = nullptr;     // stride 4
+  const float* fogCoords = nullptr;  // share of the fog, stride 1
   // The geometry's own values of shader parameters, already validated.
   const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;
   edit::TexGen texGen = edit::TexGen::Off;
-  float scale = 1; // not instanced: vertices times scale are in render space
+  uint16_t pattern = Stipple::solid;
+  const StippledLine* stippled = nullptr; // by line; null: they are solid
+  float scale = 1;                        // not instanced: vertices times scale are in render space
   const RecordFrames* frames = &noFrames;
   const AnalyticSurface* surface = nullptr;
   // Normals of the geometry -> render space (inverse transpose), not normalised.
@@ -123,6 +126,8 @@ struct Record {
   // Maps render space to the frame of the object that contains the geometry.
   const Affine* toObject = nullptr;
 
+  // Returns whether there is a gap between dashes at a place of a line.
+  bool isGap(uint32_t line, float u) const { return stippled[line].isGap(pattern, u); }
   // Returns corner 0, 1 or 2 of a triangle, as the kernel sees it.
   Vec3f corner(uint32_t triangle, int number) const {
     return vectorOf(vertices + 3 * size_t(indices[3 * size_t(triangle) + size_t(number)]));

@@ -268,7 +268,9 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
                                  {},
                                  AnalyticSurface::make(g->primitive, g->surface),
                                  array(g->rest),
-                                 g->texGen});
+                                 g->texGen,
+                                 array(g->fogCoords),
+                                 {g->stippleFactor, g->stipplePattern}});
     for (const auto& p : g->parameters)
       if (p)
         target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});

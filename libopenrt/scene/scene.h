@@ -15,6 +15,7 @@
 #include "scene/id_table.h"
 #include "scene/matrix.h"
 #include "scene/parameter_values.h"
+#include "scene/stipple.h"
 
 namespace openrt {
 
@@ -41,6 +42,8 @@ struct Geometry {
   // `points`. Null: `points`.
   ArrayPtr rest;
   edit::TexGen texGen = edit::TexGen::Off;
+  ArrayPtr fogCoords;
+  Stipple stipple; // dashes, where it is lines
 
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };
@@ -50,6 +53,16 @@ struct Object {
   bool dynamic = false;
   std::vector<Geometry> geometries;
 };
+
+// Returns whether primitives of this kind have a width in pixels.
+inline bool isThin(edit::Primitive primitive) {
+  return primitive == edit::Primitive::Lines || primitive == edit::Primitive::Points;
+}
+
+// Returns whether the geometry is dashed lines.
+inline bool isStippled(const Geometry& g) {
+  return g.primitive == edit::Primitive::Lines && g.stipple.pattern != Stipple::solid;
+}
 
 // A dynamic object that is one mesh with so many triangles or more has a tree of its own, which is
 // refitted when the mesh deforms. isRefitted() tells whether an object is one.

@@ -90,6 +90,9 @@ class Writer {
     e->colors = number(g.colors);
     e->rest = number(g.rest);
     e->texGen = g.texGen;
+    e->fogCoords = number(g.fogCoords);
+    e->stippleFactor = g.stipple.factor;
+    e->stipplePattern = g.stipple.pattern;
     if (g.surface) e->surface = g.surface->numbers();
     for (const GeometryParameter& own : g.parameters) {
       if (e->shader == 0) break; // parameters belong to the shader's class

@@ -1,5 +1,6 @@
-// texture.cpp: bilinear and nearest texture look-up. Bytes stay bytes in memory; a table decodes
-// each texel before filtering, because filtering encoded values would darken every edge.
+// texture.cpp: linear and nearest texture look-up in pictures and volumes. Bytes stay bytes in
+// memory; a table decodes each texel before filtering, because filtering encoded values would
+// darken every edge.
 #include "shading/texture.h"
 #include "srgb.h"
 
@@ -106,11 +107,11 @@ template <int components> void spread(const float* value, uint32_t i, float* con
 bool fits(const edit::TextureT& d, const ArrayPtr& texels) {
   constexpr uint32_t maxSide = 1u << 23; // halves of texels are exact in float
   if (!texels || d.components < 1 || d.components > 4 || d.width < 1 || d.height < 1 ||
-      d.width > maxSide || d.height > maxSide)
+      d.depth < 1 || d.width > maxSide || d.height > maxSide || d.depth > maxSide)
     return false;
-  const uint64_t bytes =
+  const uint64_t bytesOfSlice =
       uint64_t(d.width) * d.height * d.components * (d.isFloat ? sizeof(float) : 1);
-  return texels->size() >= bytes;
+  return texels->size() / bytesOfSlice >= d.depth;
 }
 
 } // namespace
@@ -215,6 +216,52 @@ void Texture::sampleBordered(const Texture& texture, uint32_t n, const float* co
   }
 }
 
+// Samples volumes: two neighbours along each axis, eight texels in all. Few worlds have volumes, so
+// one function serves every number of components.
+template <class Texel>
+void Texture::sampleVolumeAs(uint32_t n, const float* const str[3], float* const rgba[4]) const {
+  const Texel* texels = texels_->as<Texel>();
+  const float* alpha = decoding(false).data();
+  const auto width = size_t(axis_[0].size), height = size_t(axis_[1].size);
+  const int components = int(components_);
+  const auto at = [&](int32_t x, int32_t y, int32_t z, int c) -> float {
+    if (x < 0 || y < 0 || z < 0) return border_[c];
+    const Texel texel =
+        texels[((size_t(z) * height + size_t(y)) * width + size_t(x)) * components_ + size_t(c)];
+    if constexpr (std::is_same_v<Texel, float>)
+      return texel;
+    else
+      return (isAlpha(c, components) ? alpha : decode_)[static_cast<size_t>(texel)];
+  };
+  const auto mix = [](float a, float b, float part) { return a * (1 - part) + b * part; };
+  for (uint32_t i = 0; i < n; i++) {
+    const Neighbours s = neighbours(str[0][i], axis_[0], nearest_),
+                     t = neighbours(str[1][i], axis_[1], nearest_),
+                     r = neighbours(str[2][i], axis_[2], nearest_);
+    float value[4] = {};
+    for (int c = 0; c < components; c++) {
+      const auto row = [&](int32_t y, int32_t z) {
+        return mix(at(s.first, y, z, c), at(s.second, y, z, c), s.weight);
+      };
+      const auto slice = [&](int32_t z) {
+        return mix(row(t.first, z), row(t.second, z), t.weight);
+      };
+      value[c] = mix(slice(r.first), slice(r.second), r.weight);
+    }
+    const bool grey = components <= 2;
+    for (int c = 0; c < 3; c++) rgba[c][i] = value[grey ? 0 : c];
+    rgba[3][i] = components == 2 ? value[1] : components == 4 ? value[3] : 1.0f;
+  }
+}
+
+void Texture::sampleVolume(uint32_t n, const float* const str[3], float* const rgba[4]) const {
+  if (axis_[2].size == 1) return sample(n, str, rgba);
+  if (float_)
+    sampleVolumeAs<float>(n, str, rgba);
+  else
+    sampleVolumeAs<uint8_t>(n, str, rgba);
+}
+
 template <class Texel> void Texture::choose(bool nearest) {
   if (axis_[0].border || axis_[1].border) {
     static constexpr Sampler bordered[4][2] = {
@@ -242,6 +289,9 @@ Texture::Texture(const edit::TextureT& d, ArrayPtr texels)
   };
   axis_[0] = axis(d.width, d.wrapS);
   axis_[1] = axis(d.height, d.wrapT);
+  axis_[2] = axis(d.depth, d.wrapR);
+  float_ = d.isFloat;
+  nearest_ = d.nearest;
   if (d.border.size() == 4)
     for (uint32_t c = 0; c < components_; c++)
       border_[c] = d.border[isAlpha(int(c), int(components_)) ? 3 : c];

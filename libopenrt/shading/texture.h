@@ -10,9 +10,9 @@ namespace openrt {
 
 class Texture {
  public:
-  // texels: the array that description.texels refers to, rows from the bottom up. If the texels are
-  // too short for the description (a damaged recording), the texture has no components and samples
-  // as white.
+  // texels: the array that description.texels refers to, slices of rows from the bottom up. If the
+  // texels are too short for the description (a damaged recording), the texture has no components
+  // and samples as white.
   Texture(const edit::TextureT& description, ArrayPtr texels);
 
   // Returns 1 grey, 2 grey and alpha, 3 rgb, 4 rgba; 0: no image.
@@ -24,6 +24,8 @@ class Texture {
   void sample(uint32_t n, const float* const uv[2], float* const rgba[4]) const {
     sample_(*this, n, uv, rgba);
   }
+  // Does the same at (s, t, r). sample() sees the first slice of a texture with depth.
+  void sampleVolume(uint32_t n, const float* const str[3], float* const rgba[4]) const;
 
   // One axis of the image. Texel centres are at (i + 1/2) / size. Coordinates repeat, clamp (also
   // after they were mirrored into the image), or lead to the border.
@@ -38,13 +40,16 @@ class Texture {
   template <class Texel, int components, bool single>
   static void sampleBordered(const Texture& texture, uint32_t n, const float* const uv[2],
                              float* const rgba[4]);
+  template <class Texel>
+  void sampleVolumeAs(uint32_t n, const float* const str[3], float* const rgba[4]) const;
   template <class Texel> void choose(bool nearest);
   using Sampler = void (*)(const Texture&, uint32_t, const float* const[2], float* const[4]);
 
   ArrayPtr texels_;
-  Axis axis_[2];
+  Axis axis_[3];
   float border_[4] = {}; // as the components of a texel
   uint32_t components_ = 0;
+  bool float_ = false, nearest_ = false;
   const float* decode_; // table of 256: colour byte to linear value
   Sampler sample_;
 };

@@ -134,6 +134,7 @@ class Export {
     m["normals"] = writeArray(g.normals);
     m["texCoords"] = writeArray(g.texCoords);
     m["colors"] = writeArray(g.colors);
+    m["fogCoords"] = writeArray(g.fogCoords);
     return m;
   }
 
@@ -197,6 +198,7 @@ class Export {
     const edit::TextureT& d = texture.description;
     return {{"width", d.width},
             {"height", d.height},
+            {"depth", d.depth},
             {"components", d.components},
             {"float", d.isFloat},
             {"srgb", d.srgb},

@@ -14,11 +14,11 @@ namespace openrt {
 //   shaders      by id: class, library, kind, parameters by name (defaults where nothing was set)
 //   meshes       every placed geometry: kind (triangles, sphere, lines, points), shader, matrix
 //                to the world (column-major), cull, clockwise, radius; points, indices, normals,
-//                texCoords, colors: {offset, count} in PATH.bin, floats or uint32. offset: in
-//                bytes, a multiple of 4; count: number of values
+//                texCoords, colors, fogCoords: {offset, count} in PATH.bin, floats or uint32.
+//                offset: in bytes, a multiple of 4; count: number of values
 //   lights, camera, environment    shader and matrix
-//   textures     by id: width, height, components, float, srgb, texels {offset, count}: floats if
-//                `float`, else bytes; rows from the bottom up
+//   textures     by id: width, height, depth, components, float, srgb, texels {offset, count}:
+//                floats if `float`, else bytes; rows from the bottom up, slice by slice
 // Per-vertex parameters are not exported. Throws std::runtime_error.
 void exportScene(const Scene& scene, const ShaderRegistry& shaders, const std::string& path);
 

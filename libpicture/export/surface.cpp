@@ -28,7 +28,10 @@ Color notNegative(const Color& c) {
 
 bool isBlack(const Color& c) { return !(c.r > 0 || c.g > 0 || c.b > 0); }
 
-bool isCube(const xvrml::Node& texture) { return texture.type().is("environmentTexture"); }
+// Returns whether a texture is a cube map or a volume, which files of other formats do not have.
+bool isNoPicture(const xvrml::Node& texture) {
+  return texture.type().is("environmentTexture") || texture.type().is("texture3D");
+}
 
 std::string nameOf(const AppearanceParts& parts) {
   if (!parts.appearance) return "";
@@ -86,7 +89,7 @@ std::optional<SurfacePicture> Surfaces::pictureOf(const AppearanceParts& parts,
   const std::vector<xvrml::TextureLayer> layers = xvrml::textureLayers(alone);
   if (layers.empty() || !layers[0].texture) return {};
   const xvrml::TextureLayer& first = layers[0];
-  if (isCube(*first.texture)) {
+  if (isNoPicture(*first.texture)) {
     remarks_.leaveOut(first.texture->type().name);
     return {};
   }

@@ -14,6 +14,7 @@
 namespace xvrml {
 
 class World;
+class Decoder; // decode/decoder.h
 
 class Budget {
  public:
@@ -30,6 +31,9 @@ class Budget {
   uint64_t left() const;
   // Returns "limit worldBytes=4294967296", for messages.
   std::string name() const;
+
+  // The process that decodes files of the world. decoderOf() makes it; it ends with the budget.
+  std::shared_ptr<Decoder> decoder;
 
  private:
   const uint64_t limit_;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "behaviour/media.h"
-#include "behaviour/wav.h"
+#include "behaviour/sound_file.h"
 #include "event/live.h"
 
 namespace xvrml {
@@ -15,10 +15,11 @@ struct State : Media {
     clip = nullptr;
     path.clear();
     share = mediaShare(events);
+    limits = loadOptions(events).limits;
     diagnostics = &events.diagnostics();
     double seconds = -1;
     readFirst(events, node, static_cast<nodes::AudioClip&>(node).url, [&](const std::string& file) {
-      seconds = readWavInfo(file).duration;
+      seconds = soundLength(file, room());
       path = file;
       return true;
     });
@@ -32,6 +33,9 @@ struct State : Media {
   }
   void play(Events&, Node&, const TimeStep& step) override { position = step.fraction * duration; }
 
+  ImageRoom room() const { return {limits, ~uint64_t(0), share.budget().get()}; }
+
+  Limits limits;
   std::string path; // empty: no file could be read
   std::shared_ptr<const Clip> clip;
   double position = 0; // playing position in seconds
@@ -52,10 +56,11 @@ Playing playingOf(const Node& node) {
   if (!state || !state->time.active() || state->time.paused() || state->path.empty()) return {};
   if (!state->clip) {
     try {
-      state->clip = std::make_shared<Clip>(readWav(state->path, [&](uint64_t bytes) {
-        if (!state->share.take(bytes))
-          throw std::runtime_error(overBudgetMessage(bytes, *state->share.budget()));
-      }));
+      state->clip =
+          std::make_shared<Clip>(readSound(state->path, state->room(), [&](uint64_t bytes) {
+            if (!state->share.take(bytes))
+              throw std::runtime_error(overBudgetMessage(bytes, *state->share.budget()));
+          }));
     } catch (const std::exception& failure) {
       state->diagnostics->warn(node.source, "AudioClip: no sound: " + std::string(failure.what()));
       state->path.clear(); // the clip's events continue

@@ -34,5 +34,6 @@ void addTimeSensorBehaviours(const AddBehaviour& add);
 void addAudioClipBehaviours(const AddBehaviour& add);
 void addMovieTextureBehaviours(const AddBehaviour& add);
 void addTextBehaviours(const AddBehaviour& add);
+void addParticleBehaviours(const AddBehaviour& add); // particles/particle_system.cpp
 
 } // namespace xvrml

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "edit/lines.h"
 #include "graph/field_access.h"
 #include "parse/loader.h"
 #include "parse/parser.h"
@@ -31,7 +32,7 @@ Document::~Document() = default;
 
 const DocumentText& Document::read(const std::string& text, const std::string& name) {
   DocumentText& made = texts_.emplace_back();
-  made.text = text;
+  made.text = withLineFeed(text, lineFeedOf(file().text), isXml());
   try {
     made.world = loadWithLayout(made.text, name, options_, made.layout, world().head.version);
   } catch (...) {

@@ -42,8 +42,8 @@ class Document {
   const DocumentText& file() const { return texts_.front(); }
   DocumentText& file() { return texts_.front(); }
 
-  // Reads nodes from a text in the encoding of the file, without a header. name: for the places of
-  // its nodes, different from all others. Throws LoadError.
+  // Reads nodes from a text in the encoding of the file, without a header. Its lines get the ends
+  // of the file's. name: for the places of its nodes, different from all others. Throws LoadError.
   const DocumentText& read(const std::string& text, const std::string& name);
   // Forgets the text that was read last, because none of its nodes is put in.
   void forgetLastText();

@@ -200,7 +200,7 @@ NodeRef Editor::insert(const NodeSlot& given, std::string_view text) {
   impl_->nodes.checkPlace(slot, {scope.roots[0], scope.roots[0]});
   MFNode made;
   try {
-    made = impl_->file.live().read(std::string(text), name);
+    made = impl_->file.live().read(read->text, name);
   } catch (const LoadError& error) { throw EditError(error.diagnostic.text()); }
   if (made.size() != 1) throw EditError("the text could not be read a second time");
   const Twin node{made[0], scope.roots[0]};

@@ -43,29 +43,56 @@ std::string_view lineFeedOf(std::string_view text) {
   return found.empty() ? "\n" : found;
 }
 
+namespace {
+
+// Returns whether the byte `at` ends a line.
+bool endsLineAt(std::string_view text, size_t at) {
+  return text[at] == '\n' || (text[at] == '\r' && text.substr(at + 1, 1) != "\n");
+}
+
+// Follows the strings and comments of a text in ClassicVRML or JSON.
+struct Strings {
+  bool isInside = false; // the byte that was taken last belongs to a string
+  bool isEscaped = false, inComment = false;
+
+  void take(char c) {
+    if (isInside) {
+      isInside = isEscaped || c != '"';
+      isEscaped = !isEscaped && c == '\\';
+    } else if (c == '\n' || c == '\r') {
+      inComment = false;
+    } else if (!inComment) {
+      isInside = c == '"';
+      inComment = c == '#';
+    }
+  }
+};
+
+} // namespace
+
+std::string withLineFeed(std::string_view text, std::string_view feed, bool isXml) {
+  std::string out;
+  out.reserve(text.size());
+  Strings strings;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (!isXml) strings.take(text[i]);
+    if (strings.isInside || (text[i] != '\n' && text[i] != '\r'))
+      out += text[i];
+    else if (endsLineAt(text, i))
+      out += feed;
+  }
+  return out;
+}
+
 std::string indented(std::string_view text, std::string_view from, std::string_view to) {
   std::string out;
-  bool inString = false, inComment = false;
+  Strings strings;
   for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    out += c;
-    if (inString) {
-      if (c == '\\' && i + 1 < text.size())
-        out += text[++i];
-      else if (c == '"')
-        inString = false;
-      continue;
-    }
-    const bool ends = c == '\n' || (c == '\r' && text.substr(i + 1, 1) != "\n");
-    if (ends) {
-      inComment = false;
-      if (text.substr(i + 1).starts_with(from)) {
-        out += to;
-        i += from.size();
-      }
-    } else if (!inComment) {
-      inString = c == '"';
-      inComment = c == '#';
+    out += text[i];
+    strings.take(text[i]);
+    if (!strings.isInside && endsLineAt(text, i) && text.substr(i + 1).starts_with(from)) {
+      out += to;
+      i += from.size();
     }
   }
   return out;
@@ -97,8 +124,7 @@ std::string indentedXml(std::string_view text, std::string_view from, std::strin
     } else if (c == '<') {
       inTag = true;
     }
-    const bool ends = c == '\n' || (c == '\r' && text.substr(i + 1, 1) != "\n");
-    if (!ends || quote != 0) continue;
+    if (!endsLineAt(text, i) || quote != 0) continue;
     const std::string_view rest = text.substr(i + 1);
     const size_t word = rest.find_first_not_of(" \t");
     const bool isText = i >= comment && !inTag && word != rest.npos && rest[word] != '<';

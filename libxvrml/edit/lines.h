@@ -34,6 +34,9 @@ bool endsLine(std::string_view text, size_t at);
 bool endsXmlLine(std::string_view text, size_t at);
 // Returns the end of lines that the text uses: that of its first line; "\n" for a single line.
 std::string_view lineFeedOf(std::string_view text);
+// Returns a text whose lines end with `feed`. isXml: those within strings do so, too, because an
+// XML reader takes all ends of lines as the same (XML 1.0, 2.11); else strings stay as they are.
+std::string withLineFeed(std::string_view text, std::string_view feed, bool isXml);
 // Return the text of a node with another indentation: lines that begin with `from` begin with `to`
 // instead. The first line, and lines within strings, values and texts, stay.
 std::string indented(std::string_view text, std::string_view from, std::string_view to);

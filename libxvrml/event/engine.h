@@ -185,6 +185,7 @@ class Engine final : public Events {
   void renewExpansion(Node& node);
   void addFigures(const std::vector<NodeRef>& nodes);
   void moveFigures();
+  void noteSkin(const Node& figure);
   void reuseNodes(Node& old, Node& fresh);
   using Watchers = std::map<uint32_t, Node*>; // by Live::order
   void callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&));
@@ -195,6 +196,7 @@ class Engine final : public Events {
   std::vector<Live*> lives_;
   std::deque<Event> queue_;
   Watchers ticking_, looking_, deforming_;
+  std::map<Node*, NodeRef> skins_; // nodes whose vectors these figures move
   FieldChanges changes_;
   std::vector<NodeRef> outdated_; // plug-in nodes whose expansion may have changed
   std::vector<NodeRef> swept_;    // nodes with deleted links

@@ -1,6 +1,8 @@
 // figures.cpp: keeps the skins of figures where their joints are, in a running world. Any change
 // may concern them, so all are moved again after the cascade; the renderer sees those that are
-// drawn in another way.
+// drawn in another way. Vertices that are taken out of a figure go back to rest.
+#include <utility>
+
 #include "event/engine.h"
 #include "geometry/figure.h"
 #include "xvrml/nodes.h"
@@ -13,16 +15,23 @@ void Engine::addFigures(const std::vector<NodeRef>& nodes) {
     if (!deforms(node->type())) continue;
     deforming_[liveOf(*node)->order] = node.get();
     deform(*node, &diagnostics_);
+    noteSkin(*node);
   }
+}
+
+void Engine::noteSkin(const Node& figure) {
+  for (Node* part : skinOf(figure)) skins_.emplace(part, part);
 }
 
 void Engine::moveFigures() {
   if (!figuresOutdated_) return;
-  for (const auto& [order, node] : deforming_)
-    for (Node* moved : deform(*node, nullptr))
-      changed(*moved,
-              *moved->type().find(moved->type().index == nodes::Coordinate::typeIndex ? "point"
-                                                                                      : "vector"));
+  const auto before = std::exchange(skins_, {});
+  for (const auto& [order, node] : deforming_) {
+    for (Node* moved : deform(*node, nullptr)) changed(*moved, vectorsOf(*moved));
+    noteSkin(*node);
+  }
+  for (const auto& [part, held] : before)
+    if (!skins_.contains(part) && straighten(*part)) changed(*part, vectorsOf(*part));
   figuresOutdated_ = false;
 }
 

@@ -76,7 +76,7 @@ void Engine::forget(LiveBase* base) noexcept {
   }
   engine.ticking_.erase(live->order);
   engine.looking_.erase(live->order);
-  engine.deforming_.erase(live->order);
+  if (engine.deforming_.erase(live->order) > 0) engine.figuresOutdated_ = true;
   engine.observer->forgotten(*live->node);
   if (auto* instance = nodeCast<ProtoInstance>(live->node)) engine.disconnectBody(*instance);
   if (auto* script = nodeCast<ScriptNode>(live->node); script && engine.scripts)

@@ -59,6 +59,13 @@ struct ColorValues {
   std::vector<float> alphas; // opacity of each colour, 0 to 1; empty for a Color
 };
 
+// The points of a TextureCoordinate, TextureCoordinate3D or TextureCoordinate4D.
+struct TexCoordValues {
+  std::span<const Vec2f> points; // the node's, or `own`
+  std::vector<Vec2f> own;
+  std::vector<Vec4f> places; // (s, t, r, q) of each point; empty for a TextureCoordinate
+};
+
 // The points of a Coordinate or CoordinateDouble.
 struct Coordinates {
   std::span<const Vec3f> points; // the node's, or `own`
@@ -70,7 +77,10 @@ struct Coordinates {
 Coordinates coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
 ColorValues colorValues(const NodeRef& node);
-std::span<const Vec2f> textureCoordinates(const NodeRef& node);
+TexCoordValues textureCoordinates(const NodeRef& node);
+
+// Returns the fog coordinate of each of so many points; empty without a FogCoordinate.
+std::vector<float> fogCoordinates(const NodeRef& node, size_t points, Faults& faults);
 
 inline uint64_t triangleLimit(const MeshOptions& options) {
   return options.limits ? options.limits->triangles : Limits().triangles;

@@ -15,8 +15,9 @@ constexpr uint32_t sphereRows = 64;
 
 struct Vertex {
   Vector point = Vector(0), normal = Vector(0), color = Vector(1);
-  double s = 0, t = 0, alpha = 1;
-  int64_t original = -1; // index into the mesh; -1: it lies on a plane
+  double s = 0, t = 0, alpha = 1, fogCoord = 0;
+  Imath::V4d place = Imath::V4d(0); // from texPlaces
+  int64_t original = -1;            // index into the mesh; -1: it lies on a plane
 };
 
 Vertex between(const Vertex& a, const Vertex& b, double part) {
@@ -27,7 +28,9 @@ Vertex between(const Vertex& a, const Vertex& b, double part) {
   v.color = mix(a.color, b.color);
   v.s = mix(a.s, b.s);
   v.t = mix(a.t, b.t);
+  v.place = mix(a.place, b.place);
   v.alpha = mix(a.alpha, b.alpha);
+  v.fogCoord = mix(a.fogCoord, b.fogCoord);
   return v;
 }
 
@@ -104,9 +107,14 @@ class Cutter {
         v.s = mesh_.texCoords[i].x;
         v.t = mesh_.texCoords[i].y;
       }
+      if (!mesh_.texPlaces.empty()) {
+        const Vec4f& p = mesh_.texPlaces[i];
+        v.place = {p.x, p.y, p.z, p.w};
+      }
       if (!mesh_.colors.empty())
         v.color = Vector(mesh_.colors[i].r, mesh_.colors[i].g, mesh_.colors[i].b);
       if (!mesh_.alphas.empty()) v.alpha = mesh_.alphas[i];
+      if (!mesh_.fogCoords.empty()) v.fogCoord = mesh_.fogCoords[i];
       v.original = i;
       polygon_.push_back(v);
     }
@@ -139,9 +147,13 @@ class Cutter {
     out_.ownPoints.push_back(toVec3f(v.point));
     if (!mesh_.normals.empty()) out_.ownNormals.push_back(toVec3f(v.normal));
     if (!mesh_.texCoords.empty()) out_.ownTexCoords.push_back({float(v.s), float(v.t)});
+    if (!mesh_.texPlaces.empty())
+      out_.ownTexPlaces.push_back(
+          {float(v.place.x), float(v.place.y), float(v.place.z), float(v.place.w)});
     if (!mesh_.colors.empty())
       out_.ownColors.push_back({float(v.color.x), float(v.color.y), float(v.color.z)});
     if (!mesh_.alphas.empty()) out_.ownAlphas.push_back(float(v.alpha));
+    if (!mesh_.fogCoords.empty()) out_.ownFogCoords.push_back(float(v.fogCoord));
     return index;
   }
 

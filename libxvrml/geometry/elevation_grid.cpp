@@ -84,8 +84,12 @@ Mesh buildGrid(const Grid& node, const MeshOptions& options, Faults& faults, con
        Fault::colorMissing, faults);
   bind(set.normals, normalVectors(node.normal), node.normalPerVertex, set.points.size(), faces,
        Fault::normalMissing, faults);
-  bind(set.texCoords, textureCoordinates(node.texCoord), true, set.points.size(), faces,
-       Fault::texCoordMissing, faults);
+  TexCoordValues texCoords = textureCoordinates(node.texCoord);
+  set.takeTexCoords(texCoords.points, std::move(texCoords.own), std::move(texCoords.places));
+  bind(set.texCoords, set.texCoords.values, true, set.points.size(), faces, Fault::texCoordMissing,
+       faults);
+  if constexpr (requires { node.fogCoord; })
+    set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
   if (options.needTexCoords &&
       set.texCoords.values.empty()) { // the whole texture, S along x and T along z
     set.texCoords.own.reserve(set.points.size());

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,16 +20,14 @@
 namespace xvrml {
 namespace {
 
-using Vectors = std::vector<Vec3f>;
-
 // Vertices that are being moved.
 struct Vertices {
-  Vectors points;
+  std::vector<Vector> points;
   uint64_t missing = 0; // indices without a vertex
   bool moved = false;
 
   // Returns the vertex of an index; null: there is none.
-  Vec3f* at(int32_t index) {
+  Vector* at(int32_t index) {
     if (index >= 0 && size_t(index) < points.size()) return &points[size_t(index)];
     ++missing;
     return nullptr;
@@ -82,12 +81,6 @@ std::vector<Joint> jointsOf(const nodes::HAnimHumanoid& figure) {
   return joints;
 }
 
-// Returns where a vertex goes; its former place if floats cannot hold the new one.
-Vec3f finiteOr(const Vec3f& former, const Vec3f& moved) {
-  return std::isfinite(moved.x) && std::isfinite(moved.y) && std::isfinite(moved.z) ? moved
-                                                                                    : former;
-}
-
 // Moves vertices by displacers, each by its weight.
 void displace(const MFNode& displacers, Vertices& vertices) {
   for (const NodeRef& one : displacers) {
@@ -96,10 +89,9 @@ void displace(const MFNode& displacers, Vertices& vertices) {
     const float weight = std::isfinite(displacer->weight) ? displacer->weight : 0;
     const size_t count = std::min(displacer->coordIndex.size(), displacer->displacements.size());
     for (size_t i = 0; i < count; ++i) {
-      Vec3f* const p = vertices.at(displacer->coordIndex[i]);
+      Vector* const p = vertices.at(displacer->coordIndex[i]);
       if (!p || weight == 0) continue;
-      const Vec3f& d = displacer->displacements[i];
-      *p = finiteOr(*p, {p->x + weight * d.x, p->y + weight * d.y, p->z + weight * d.z});
+      *p += vector(displacer->displacements[i]) * double(weight);
       vertices.moved = true;
     }
   }
@@ -131,21 +123,67 @@ Vec3f moveNormal(const Matrix& m, const Vec3f& normal) {
   return {float(n.x / length), float(n.y / length), float(n.z / length)};
 }
 
-Vec3f movePoint(const Matrix& m, const Vec3f& point) {
-  const Vector p = transformPoint(m, vector(point));
-  return finiteOr(point, {float(p.x), float(p.y), float(p.z)});
+template <class T> const T* deformableOf(const Node& node) { return dynamic_cast<const T*>(&node); }
+template <class T> T* deformableOf(Node& node) { return dynamic_cast<T*>(&node); }
+
+// Draws vectors in place of the node's own. Returns whether that is a change.
+template <class Deformable, class Vectors>
+bool show(Deformable& node, std::span<const typename Vectors::value_type> drawn, Vectors vectors) {
+  if (drawn.size() == vectors.size() &&
+      (drawn.empty() || std::memcmp(drawn.data(), vectors.data(), drawn.size_bytes()) == 0))
+    return false;
+  node.moved = std::make_unique<Vectors>(std::move(vectors));
+  return true;
 }
 
-// Draws vectors in place of the node's own; null: its own. Returns whether that is a change.
-template <class T> bool show(T* node, std::span<const Vec3f> drawn, const Vectors* vectors) {
-  auto* const deformable = dynamic_cast<Deformable<T>*>(node);
-  if (!deformable || (!vectors && !deformable->moved)) return false;
-  const bool same =
-      vectors && drawn.size() == vectors->size() &&
-      (drawn.empty() || std::memcmp(drawn.data(), vectors->data(), drawn.size_bytes()) == 0);
-  if (same) return false;
-  deformable->moved = vectors ? std::make_unique<Vectors>(*vectors) : nullptr;
-  return true;
+// Returns points in the precision of a node. A point that it cannot hold stays at rest.
+template <class V> std::vector<V> pointsAs(const std::vector<V>& rest, const Vertices& vertices) {
+  using Number = decltype(V::x);
+  std::vector<V> points(rest);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Vector& p = vertices.points[i];
+    const V moved{Number(p.x), Number(p.y), Number(p.z)};
+    if (std::isfinite(moved.x) && std::isfinite(moved.y) && std::isfinite(moved.z))
+      points[i] = moved;
+  }
+  return points;
+}
+
+// The node that has the vertices of a figure, in single or in double precision.
+class Coordinates {
+ public:
+  explicit Coordinates(const NodeRef& node) {
+    Node* const rendered = renderedNode(node.get());
+    if (!rendered) return;
+    single_ = deformableOf<DeformableCoordinate>(*rendered);
+    exact_ = deformableOf<DeformableCoordinateDouble>(*rendered);
+  }
+  Node* node() const { return single_ ? static_cast<Node*>(single_) : exact_; }
+  Vertices atRest() const {
+    Vertices vertices;
+    const auto add = [&vertices](const auto& points) {
+      vertices.points.reserve(points.size());
+      for (const auto& p : points) vertices.points.emplace_back(p.x, p.y, p.z);
+    };
+    single_ ? add(single_->point) : add(exact_->point);
+    return vertices;
+  }
+  // Draws the vertices where they are now. Returns whether that is a change.
+  bool show(const Vertices& vertices) const {
+    if (!vertices.moved) return straighten(*node());
+    return single_
+               ? xvrml::show(*single_, drawnPoints(*single_), pointsAs(single_->point, vertices))
+               : xvrml::show(*exact_, drawnPoints(*exact_), pointsAs(exact_->point, vertices));
+  }
+
+ private:
+  DeformableCoordinate* single_ = nullptr;
+  DeformableCoordinateDouble* exact_ = nullptr;
+};
+
+DeformableNormal* normalOf(const nodes::HAnimHumanoid& figure) {
+  Node* const rendered = renderedNode(figure.skinNormal.get());
+  return rendered ? deformableOf<DeformableNormal>(*rendered) : nullptr;
 }
 
 void warnOf(const Node& node, const Vertices& vertices, Diagnostics* diagnostics) {
@@ -157,26 +195,26 @@ void warnOf(const Node& node, const Vertices& vertices, Diagnostics* diagnostics
 }
 
 std::vector<Node*> deformSegment(const nodes::HAnimSegment& segment, Diagnostics* diagnostics) {
-  auto* const coord = nodeCast<nodes::Coordinate>(renderedNode(segment.coord.get()));
-  if (!coord || segment.displacers.empty()) return {};
-  Vertices vertices{coord->point};
+  const Coordinates coord(segment.coord);
+  if (!coord.node() || segment.displacers.empty()) return {};
+  Vertices vertices = coord.atRest();
   displace(segment.displacers, vertices);
   warnOf(segment, vertices, diagnostics);
-  if (!show(coord, drawnPoints(*coord), vertices.moved ? &vertices.points : nullptr)) return {};
-  return {coord};
+  if (!coord.show(vertices)) return {};
+  return {coord.node()};
 }
 
 std::vector<Node*> deformSkin(const nodes::HAnimHumanoid& figure, Diagnostics* diagnostics) {
-  auto* const coord = nodeCast<nodes::Coordinate>(renderedNode(figure.skinCoord.get()));
-  if (!coord) return {};
-  auto* const normal = nodeCast<nodes::Normal>(renderedNode(figure.skinNormal.get()));
+  const Coordinates coord(figure.skinCoord);
+  if (!coord.node()) return {};
+  DeformableNormal* const normal = normalOf(figure);
   const std::vector<Joint> joints = jointsOf(figure);
-  Vertices vertices{coord->point};
+  Vertices vertices = coord.atRest();
   for (const Joint& joint : joints) displace(joint.node->displacers, vertices);
   std::vector<Matrix> blended(vertices.points.size());
   for (const Joint& joint : joints) blend(joint, vertices, blended);
   warnOf(figure, vertices, diagnostics);
-  Vectors normals = normal ? normal->vector : Vectors();
+  MFVec3f normals = normal ? normal->vector : MFVec3f();
   const bool fits = normals.size() == blended.size();
   if (normal && !fits && vertices.moved && diagnostics)
     diagnostics->warn(figure.source, fmt::format("HAnimHumanoid: skinNormal has {} normals and "
@@ -184,13 +222,13 @@ std::vector<Node*> deformSkin(const nodes::HAnimHumanoid& figure, Diagnostics* d
                                                  "are at rest",
                                                  normals.size(), blended.size()));
   for (size_t i = 0; vertices.moved && i < blended.size(); ++i) {
-    vertices.points[i] = movePoint(blended[i], vertices.points[i]);
+    vertices.points[i] = transformPoint(blended[i], vertices.points[i]);
     if (fits) normals[i] = moveNormal(blended[i], normals[i]);
   }
   std::vector<Node*> changed;
-  if (show(coord, drawnPoints(*coord), vertices.moved ? &vertices.points : nullptr))
-    changed.push_back(coord);
-  if (normal && show(normal, drawnNormals(*normal), vertices.moved && fits ? &normals : nullptr))
+  if (coord.show(vertices)) changed.push_back(coord.node());
+  if (normal && (vertices.moved && fits ? show(*normal, drawnNormals(*normal), std::move(normals))
+                                        : straighten(*normal)))
     changed.push_back(normal);
   return changed;
 }
@@ -198,18 +236,51 @@ std::vector<Node*> deformSkin(const nodes::HAnimHumanoid& figure, Diagnostics* d
 } // namespace
 
 std::span<const Vec3f> drawnPoints(const nodes::Coordinate& node) {
-  const auto* deformable = dynamic_cast<const Deformable<nodes::Coordinate>*>(&node);
+  const auto* deformable = deformableOf<DeformableCoordinate>(node);
+  return deformable && deformable->moved ? *deformable->moved : node.point;
+}
+
+std::span<const Vec3d> drawnPoints(const nodes::CoordinateDouble& node) {
+  const auto* deformable = deformableOf<DeformableCoordinateDouble>(node);
   return deformable && deformable->moved ? *deformable->moved : node.point;
 }
 
 std::span<const Vec3f> drawnNormals(const nodes::Normal& node) {
-  const auto* deformable = dynamic_cast<const Deformable<nodes::Normal>*>(&node);
+  const auto* deformable = deformableOf<DeformableNormal>(node);
   return deformable && deformable->moved ? *deformable->moved : node.vector;
 }
 
 bool deforms(const NodeType& type) {
   return type.index == nodes::HAnimHumanoid::typeIndex ||
          type.index == nodes::HAnimSegment::typeIndex;
+}
+
+std::vector<Node*> skinOf(const Node& node) {
+  std::vector<Node*> parts;
+  const auto add = [&parts](Node* part) {
+    if (part) parts.push_back(part);
+  };
+  if (const auto* figure = nodeCast<nodes::HAnimHumanoid>(&node)) {
+    add(Coordinates(figure->skinCoord).node());
+    add(normalOf(*figure));
+  } else if (const auto* segment = nodeCast<nodes::HAnimSegment>(&node)) {
+    if (!segment->displacers.empty()) add(Coordinates(segment->coord).node());
+  }
+  return parts;
+}
+
+bool straighten(Node& part) {
+  const auto reset = [](auto* deformable) {
+    return std::exchange(deformable->moved, nullptr) != nullptr;
+  };
+  if (auto* single = deformableOf<DeformableCoordinate>(part)) return reset(single);
+  if (auto* exact = deformableOf<DeformableCoordinateDouble>(part)) return reset(exact);
+  auto* const normal = deformableOf<DeformableNormal>(part);
+  return normal && reset(normal);
+}
+
+const FieldInfo& vectorsOf(const Node& part) {
+  return *part.type().find(part.type().index == nodes::Normal::typeIndex ? "vector" : "point");
 }
 
 std::vector<Node*> deform(const Node& node, Diagnostics* diagnostics) {

@@ -14,8 +14,15 @@ namespace xvrml {
 bool deforms(const NodeType& type);
 
 // Moves the vertices of such a node to where its joints and displacers have them now. Returns the
-// Coordinate and the Normal that are drawn in another way than before. diagnostics: receives one
-// warning of what is wrong with the node; null: none is made.
+// parts of its skin that are drawn in another way than before. diagnostics: receives one warning of
+// what is wrong with the node; null: none is made.
 std::vector<Node*> deform(const Node& node, Diagnostics* diagnostics);
+// Returns the parts of its skin that such a node moves, or may move: a Coordinate or
+// CoordinateDouble, and a Normal.
+std::vector<Node*> skinOf(const Node& node);
+// Lets a part of a skin be drawn as it is at rest. Returns whether that is a change.
+bool straighten(Node& part);
+// Returns the field of such a part whose vectors are drawn.
+const FieldInfo& vectorsOf(const Node& part);
 
 } // namespace xvrml

@@ -171,7 +171,9 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
   ColorValues colors = colorValues(node.color);
   set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   set.normals.values = normalVectors(node.normal);
-  set.texCoords.values = textureCoordinates(node.texCoord);
+  TexCoordValues texCoords = textureCoordinates(node.texCoord);
+  set.takeTexCoords(texCoords.points, std::move(texCoords.own), std::move(texCoords.places));
+  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
   Mesh mesh;
   if (set.ownPoints.empty() && buildInPlace(node, set, options, mesh)) return mesh;
 

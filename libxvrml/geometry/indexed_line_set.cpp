@@ -14,6 +14,7 @@ namespace {
 struct Lines {
   const NodeRef& coord;
   const NodeRef& color;
+  const NodeRef& fogCoord;
   std::span<const int32_t> coordIndex;
   bool colorPerVertex = true;
   std::span<const int32_t> colorIndex = {};
@@ -23,10 +24,11 @@ class LineReader {
  public:
   LineReader(const Lines& node, Faults& faults)
       : node_(node), faults_(faults), given_(coordinates(node.coord)), points_(given_.points),
-        values_(colorValues(node.color)), colors_(values_.rgb) {
+        values_(colorValues(node.color)), colors_(values_.rgb),
+        fogCoords_(fogCoordinates(node.fogCoord, points_.size(), faults)) {
     // Colours that match the points one to one need no extra vertices.
     ownVertices_ = !given_.own.empty() || !allFinite(points_) || !allFinite(colors_) ||
-                   !values_.alphas.empty() ||
+                   !values_.alphas.empty() || !fogCoords_.empty() ||
                    (!colors_.empty() && (!node.colorPerVertex || !node.colorIndex.empty() ||
                                          colors_.size() < points_.size()));
   }
@@ -94,6 +96,7 @@ class LineReader {
     uint32_t point = uint32_t(node_.coordIndex[place]);
     if (!ownVertices_) return point;
     mesh_.ownPoints.push_back(points_[point]);
+    if (!fogCoords_.empty()) mesh_.ownFogCoords.push_back(fogCoords_[point]);
     if (!colors_.empty()) addColor(place, point, line);
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
@@ -123,6 +126,7 @@ class LineReader {
   std::span<const Vec3f> points_;
   ColorValues values_;
   std::span<const Color> colors_;
+  std::vector<float> fogCoords_;
   bool ownVertices_ = false;
   Mesh mesh_;
 };
@@ -130,7 +134,8 @@ class LineReader {
 } // namespace
 
 Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions&, Faults& faults) {
-  const Lines lines{node.coord, node.color, node.coordIndex, node.colorPerVertex, node.colorIndex};
+  const Lines lines{node.coord,      node.color,          node.fogCoord,
+                    node.coordIndex, node.colorPerVertex, node.colorIndex};
   return LineReader(lines, faults).run();
 }
 
@@ -159,7 +164,7 @@ Mesh buildLineSet(const nodes::LineSet& node, const MeshOptions&, Faults& faults
     next = end;
   }
   if (node.vertexCount.empty() && points > 0) faults.note("vertexCount is empty; nothing is drawn");
-  return LineReader({node.coord, node.color, index}, faults).run();
+  return LineReader({node.coord, node.color, node.fogCoord, index}, faults).run();
 }
 
 } // namespace xvrml

@@ -6,6 +6,7 @@
 
 #include "geometry/builders.h"
 #include "geometry/texture_generator.h"
+#include "geometry/texture_places.h"
 #include "geometry/thick.h"
 #include "xvrml/deformed.h"
 #include "xvrml/world.h"
@@ -17,8 +18,10 @@ void Mesh::viewOwn() {
   indices = ownIndices;
   normals = ownNormals;
   texCoords = ownTexCoords;
+  texPlaces = ownTexPlaces;
   colors = ownColors;
   alphas = ownAlphas;
+  fogCoords = ownFogCoords;
 }
 
 Coordinates coordinates(const NodeRef& node) {
@@ -27,8 +30,9 @@ Coordinates coordinates(const NodeRef& node) {
   if (auto* coordinate = nodeCast<nodes::Coordinate>(rendered)) {
     result.points = drawnPoints(*coordinate);
   } else if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) {
-    result.own.reserve(exact->point.size());
-    for (const Vec3d& p : exact->point) result.own.push_back({float(p.x), float(p.y), float(p.z)});
+    const std::span<const Vec3d> drawn = drawnPoints(*exact);
+    result.own.reserve(drawn.size());
+    for (const Vec3d& p : drawn) result.own.push_back({float(p.x), float(p.y), float(p.z)});
     result.points = result.own;
   }
   return result;
@@ -56,6 +60,17 @@ ColorValues colorValues(const NodeRef& node) {
   return values;
 }
 
+std::vector<float> fogCoordinates(const NodeRef& node, size_t points, Faults& faults) {
+  auto* given = nodeCast<nodes::FogCoordinate>(renderedNode(node.get()));
+  if (!given || given->depth.empty()) return {};
+  const size_t count = std::min<size_t>(points, given->depth.size());
+  std::vector<float> shares(points);
+  for (size_t i = 0; i < count; i++)
+    if (std::isfinite(given->depth[i])) shares[i] = given->depth[i];
+  for (size_t i = count; i < points; i++) faults.add(Fault::fogCoordMissing, i);
+  return shares;
+}
+
 bool hasVertexAlpha(Node& geometry) {
   Node* node = renderedNode(&geometry);
   if (!node) return false;
@@ -63,11 +78,6 @@ bool hasVertexAlpha(Node& geometry) {
   if (!field || field->type != FieldType::SFNode) return false;
   return nodeCast<nodes::ColorRGBA>(
              renderedNode(static_cast<NodeRef*>(node->storage(*field))->get())) != nullptr;
-}
-
-std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
-  auto* coordinate = nodeCast<nodes::TextureCoordinate>(firstTextureCoordinate(node));
-  return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
 }
 
 namespace {
@@ -97,6 +107,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   for (const TryBuild build : builders)
     if (build(node, options, mesh, faults)) break;
   generateTextureCoordinates(*node, options, mesh);
+  placeInVolume(*node, options, mesh);
   thicken(mesh, options, faults);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;

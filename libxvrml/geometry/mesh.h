@@ -35,17 +35,24 @@ struct ExactSurface {
 // (openrt/geometry.h).
 enum class TexGen : uint8_t { off, position, normal, reflection, sphereNormal, sphereReflection };
 
+// How the textures of a shape are placed: it has none, pictures, or volumes, which have three
+// coordinates (ISO/IEC 19775-1 clause 33).
+enum class TextureNeed : uint8_t { none, picture, volume };
+
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
   // Views of the node's own arrays where these can be used unchanged, else of the vectors below.
-  // One entry per vertex; normals, texCoords, colors and alphas are empty or as long as points.
+  // One entry per vertex; all but points are empty or as long as points.
   std::span<const Vec3f> points;
   std::span<const uint32_t> indices; // 3 per triangle, 2 per line segment, 1 per point
   std::span<const Vec3f> normals;    // empty: flat, with the face normal
   std::span<const Vec2f> texCoords;
+  // Homogeneous texture coordinates in space, of which texCoords are the first two.
+  std::span<const Vec4f> texPlaces;
   std::span<const Color> colors;
-  std::span<const float> alphas; // opacity, 0 to 1, of the colours of a ColorRGBA
+  std::span<const float> alphas;    // opacity, 0 to 1, of the colours of a ColorRGBA
+  std::span<const float> fogCoords; // finite shares of the fog
   // Takes the place of texCoords, which are those of the same mode in the frame of the geometry.
   TexGen texGen = TexGen::off;
   bool solid = true; // back faces are culled
@@ -58,8 +65,9 @@ struct Mesh {
   std::vector<Vec3f> ownPoints, ownNormals;
   std::vector<uint32_t> ownIndices;
   std::vector<Vec2f> ownTexCoords;
+  std::vector<Vec4f> ownTexPlaces;
   std::vector<Color> ownColors;
-  std::vector<float> ownAlphas;
+  std::vector<float> ownAlphas, ownFogCoords;
   void viewOwn(); // makes all views refer to the owned vectors
 
   Mesh() = default;
@@ -89,6 +97,8 @@ struct MeshOptions {
   // Diameters in the units of the node: points become balls, and lines rods (thick.h). 0: they are
   // thin.
   float pointSize = 0, lineWidth = 0;
+  // The shape has a volume: make texPlaces if the node has none.
+  bool needTexPlaces = false;
 };
 
 // Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if

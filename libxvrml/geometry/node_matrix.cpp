@@ -93,4 +93,22 @@ Matrix matrixOf(const Node& node) {
   return function ? function(node) : Matrix();
 }
 
+// ISO/IEC 14772-1 6.49, ISO/IEC 19775-1 33.4.6 and 33.4.7.
+Matrix textureMatrixOf(const Node* textureTransform) {
+  if (const auto* t = nodeCast<nodes::TextureTransform>(textureTransform))
+    return textureMatrix(t->center, t->rotation, t->scale, t->translation);
+  if (const auto* t = nodeCast<nodes::TextureTransform3D>(textureTransform)) {
+    const Vector center = vector(t->center);
+    const Matrix turn = compose(scaling(vector(t->scale)), rotation(t->rotation));
+    return compose(compose(translation(-center), turn),
+                   translation(center + vector(t->translation)));
+  }
+  Matrix matrix;
+  if (const auto* t = nodeCast<nodes::TextureTransformMatrix3D>(textureTransform)) {
+    const Matrix4f& given = *t->matrix;
+    for (int i = 0; i < 16; ++i) (&matrix.x[0][0])[i] = double(given.m[i]);
+  }
+  return matrix;
+}
+
 } // namespace xvrml

@@ -13,6 +13,10 @@ bool hasMatrix(const Node& node);
 // Returns the matrix of a node; the identity if hasMatrix is false.
 Matrix matrixOf(const Node& node);
 
+// Returns the matrix of a TextureTransform, TextureTransform3D or TextureTransformMatrix3D for
+// (s, t, r, q); the identity for null.
+Matrix textureMatrixOf(const Node* textureTransform);
+
 // Returns the matrix from geocentric metres to the coordinates of the world that holds the node
 // (GlobeOrigin).
 Matrix globeToWorld(const Node& node);

@@ -13,6 +13,7 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
   ColorValues values = colorValues(node.color);
   const std::span<const Color> colors = values.rgb;
   if (points.empty() || points.size() >= UINT32_MAX) return mesh;
+  std::vector<float> fogCoords = fogCoordinates(node.fogCoord, points.size(), faults);
   for (uint32_t i = 0; i < points.size(); i++) {
     if (isFinite(points[i]))
       mesh.ownIndices.push_back(i);
@@ -26,6 +27,7 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
         mesh.ownColors.push_back(index < colors.size() ? colors[index] : Color{1, 1, 1});
       if (!values.alphas.empty())
         mesh.ownAlphas.push_back(index < colors.size() ? values.alphas[index] : 1.0f);
+      if (!fogCoords.empty()) mesh.ownFogCoords.push_back(fogCoords[index]);
     }
     std::iota(mesh.ownIndices.begin(), mesh.ownIndices.end(), 0);
     mesh.viewOwn();
@@ -33,6 +35,8 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
     mesh.ownPoints = std::move(given.own); // keeps its storage
     mesh.points = points;
     mesh.indices = mesh.ownIndices;
+    mesh.ownFogCoords = std::move(fogCoords);
+    mesh.fogCoords = mesh.ownFogCoords;
     if (!colors.empty() && (colors.size() < points.size() || !values.alphas.empty())) {
       mesh.ownColors.assign(colors.begin(), colors.end());
       mesh.ownColors.resize(points.size(), Color{1, 1, 1});

@@ -82,12 +82,15 @@ Point unit(Point p) {
   return {p.x / length, p.y / length, p.z / length};
 }
 
-Vec2f pair(double s, double t) {
+Vec4f placeOf(const Point& p) {
   const auto number = [](double v) {
     return std::isfinite(v) ? float(std::clamp(v, -1e30, 1e30)) : 0.0f;
   };
-  return {number(s), number(t)};
+  return {number(p.x), number(p.y), number(p.z), 1};
 }
+
+// Returns what maps the sphere of unit vectors to texture coordinates of 0 to 1.
+Point halved(const Point& p) { return {p.x / 2 + .5, p.y / 2 + .5, p.z / 2 + .5}; }
 
 class Generator {
  public:
@@ -96,22 +99,23 @@ class Generator {
       if (std::isfinite(parameter[i])) numbers_[i] = double(parameter[i]);
     if (kind == Kind::noise && parameter.size() < 3) numbers_[0] = numbers_[1] = numbers_[2] = 1;
   }
-  Vec2f at(const Vec3f& point, const Vec3f& normal) const {
+  Vec4f at(const Vec3f& point, const Vec3f& normal) const {
     const Point p{point.x, point.y, point.z}, n{normal.x, normal.y, normal.z};
     switch (kind_) {
-    case Kind::position: return pair(p.x, p.y);
-    case Kind::normal: return pair(n.x, n.y);
-    case Kind::sphere: return pair(n.x / 2 + .5, n.y / 2 + .5);
+    case Kind::position: return placeOf(p);
+    case Kind::normal: return placeOf(n);
+    case Kind::sphere: return placeOf(halved(n));
     case Kind::reflection: {
       const Point d = unit({p.x - numbers_[1], p.y - numbers_[2], p.z - numbers_[3]});
       const double twice = 2 * (d.x * n.x + d.y * n.y + d.z * n.z);
-      return pair((d.x - twice * n.x) / 2 + .5, (d.y - twice * n.y) / 2 + .5);
+      return placeOf(halved({d.x - twice * n.x, d.y - twice * n.y, d.z - twice * n.z}));
     }
     case Kind::noise: break;
     }
     const Point q{p.x * numbers_[0] + numbers_[3], p.y * numbers_[1] + numbers_[4],
                   p.z * numbers_[2] + numbers_[5]};
-    return pair(noise(q.x, q.y, q.z), noise(q.x + 19.1, q.y + 47.3, q.z + 7.7));
+    return placeOf({noise(q.x, q.y, q.z), noise(q.x + 19.1, q.y + 47.3, q.z + 7.7),
+                    noise(q.x + 31.7, q.y + 5.9, q.z + 71.3)});
   }
 
  private:
@@ -123,7 +127,7 @@ class Generator {
 void separateFaces(Mesh& mesh) {
   std::vector<Vec3f> points, normals;
   std::vector<Color> colors;
-  std::vector<float> alphas;
+  std::vector<float> alphas, fogCoords;
   points.reserve(mesh.indices.size());
   for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
     const Vec3f a = mesh.points[mesh.indices[t]], b = mesh.points[mesh.indices[t + 1]],
@@ -139,23 +143,19 @@ void separateFaces(Mesh& mesh) {
       normals.push_back({float(n.x), float(n.y), float(n.z)});
       if (!mesh.colors.empty()) colors.push_back(mesh.colors[vertex]);
       if (!mesh.alphas.empty()) alphas.push_back(mesh.alphas[vertex]);
+      if (!mesh.fogCoords.empty()) fogCoords.push_back(mesh.fogCoords[vertex]);
     }
   }
   mesh.ownPoints = std::move(points);
   mesh.ownNormals = std::move(normals);
   mesh.ownColors = std::move(colors);
   mesh.ownAlphas = std::move(alphas);
+  mesh.ownFogCoords = std::move(fogCoords);
   mesh.ownIndices.resize(mesh.ownPoints.size());
   for (size_t i = 0; i < mesh.ownIndices.size(); ++i) mesh.ownIndices[i] = uint32_t(i);
   mesh.ownTexCoords.clear();
+  mesh.ownTexPlaces.clear();
   mesh.viewOwn();
-}
-
-// Returns the texCoord of a geometry node, null if it has no such field.
-const NodeRef* texCoordOf(const Node& geometry) {
-  const FieldInfo* field = geometry.type().find("texCoord");
-  if (!field || field->type != FieldType::SFNode) return nullptr;
-  return static_cast<const NodeRef*>(geometry.storage(*field));
 }
 
 // Warns if pictures were to have different coordinates.
@@ -172,6 +172,12 @@ void checkSets(const Node* texCoord, const MeshOptions& options) {
 }
 
 } // namespace
+
+const NodeRef* texCoordOf(const Node& geometry) {
+  const FieldInfo* field = geometry.type().find("texCoord");
+  if (!field || field->type != FieldType::SFNode) return nullptr;
+  return static_cast<const NodeRef*>(geometry.storage(*field));
+}
 
 Node* firstTextureCoordinate(const NodeRef& texCoord) {
   Node* node = renderedNode(texCoord.get());
@@ -205,7 +211,7 @@ void generateTextureCoordinates(Node& geometry, const MeshOptions& options, Mesh
                     "\", expected COORD, SPHERE or another name of ISO/IEC 19775-1 18.4.8: the "
                     "coordinates are those without texCoord");
   mesh.texGen = mode->texGen;
-  if (mode->camera && mode->texGen == TexGen::off)
+  if (mode->camera && (mode->texGen == TexGen::off || options.needTexPlaces))
     warn(options, *node,
          "mode " + node->mode +
              " is computed in the frame of the shape, not of the camera: the picture does not "
@@ -217,10 +223,14 @@ void generateTextureCoordinates(Node& geometry, const MeshOptions& options, Mesh
   if (byNormal && mesh.normals.empty()) separateFaces(mesh);
   const Generator generator(mode->kind, node->parameter);
   mesh.ownTexCoords.resize(mesh.points.size());
-  for (size_t i = 0; i < mesh.points.size(); ++i)
-    mesh.ownTexCoords[i] =
-        generator.at(mesh.points[i], byNormal ? mesh.normals[i] : Vec3f{0, 0, 0});
+  if (options.needTexPlaces) mesh.ownTexPlaces.resize(mesh.points.size());
+  for (size_t i = 0; i < mesh.points.size(); ++i) {
+    const Vec4f place = generator.at(mesh.points[i], byNormal ? mesh.normals[i] : Vec3f{0, 0, 0});
+    mesh.ownTexCoords[i] = {place.x, place.y};
+    if (options.needTexPlaces) mesh.ownTexPlaces[i] = place;
+  }
   mesh.texCoords = mesh.ownTexCoords;
+  mesh.texPlaces = mesh.ownTexPlaces;
 }
 
 } // namespace xvrml

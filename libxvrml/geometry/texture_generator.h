@@ -11,11 +11,14 @@ namespace xvrml {
 // a MultiTextureCoordinate. Prototype instances are resolved; null: none.
 Node* firstTextureCoordinate(const NodeRef& texCoord);
 
+// Returns the field texCoord of a geometry node, null if it has no such field.
+const NodeRef* texCoordOf(const Node& geometry);
+
 // Returns whether cube maps on a geometry are looked up by its normal, not by the reflected ray.
 bool looksUpByNormal(Node& geometry);
 
-// Replaces the texture coordinates of a mesh of triangles if its geometry has a
-// TextureCoordinateGenerator, and warns of what its mode cannot be here.
+// Replaces the texture coordinates, also those in space, of a mesh of triangles if its geometry has
+// a TextureCoordinateGenerator, and warns of what its mode cannot be here.
 void generateTextureCoordinates(Node& geometry, const MeshOptions& options, Mesh& mesh);
 
 } // namespace xvrml

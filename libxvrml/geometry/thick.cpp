@@ -47,6 +47,7 @@ class Thickener {
     made_.ownNormals.push_back(toVec3f(normal));
     if (!thin_.colors.empty()) made_.ownColors.push_back(thin_.colors[place]);
     if (!thin_.alphas.empty()) made_.ownAlphas.push_back(thin_.alphas[place]);
+    if (!thin_.fogCoords.empty()) made_.ownFogCoords.push_back(thin_.fogCoords[place]);
   }
 
   void addBall(uint32_t place) {

@@ -125,7 +125,7 @@ template <class T> void bind(Attribute<T>& attribute, uint32_t used, Fault fault
 constexpr float smoothAll = 4; // more than any angle between faces
 
 // Returns a set with the values of a node and no faces.
-template <class Node> FaceSet valuesOf(const Node& node) {
+template <class Node> FaceSet valuesOf(const Node& node, Faults& faults) {
   FaceSet set;
   Coordinates given = coordinates(node.coord);
   set.takePoints(given.points, std::move(given.own));
@@ -134,7 +134,9 @@ template <class Node> FaceSet valuesOf(const Node& node) {
   ColorValues colors = colorValues(node.color);
   set.takeColors(colors.rgb, std::move(colors.own), std::move(colors.alphas));
   set.normals.values = normalVectors(node.normal);
-  set.texCoords.values = textureCoordinates(node.texCoord);
+  TexCoordValues texCoords = textureCoordinates(node.texCoord);
+  set.takeTexCoords(texCoords.points, std::move(texCoords.own), std::move(texCoords.places));
+  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
   return set;
 }
 
@@ -143,7 +145,7 @@ template <class Node> FaceSet valuesOf(const Node& node) {
 template <class Node, class Read> Mesh build(const Node& node, Pattern pattern, bool smooth,
                                              const MeshOptions& options, Faults& faults,
                                              Corners corners, const Read& read) {
-  FaceSet set = valuesOf(node);
+  FaceSet set = valuesOf(node, faults);
   if (set.points.size() >= noValue / 2 || corners.index.size() >= noValue / 2) {
     faults.note("too many points or indices");
     return {};
@@ -172,7 +174,8 @@ constexpr auto byIndex = [](SetReader& reader, uint32_t) { reader.runsByIndex();
 
 Mesh buildIndexedTriangleSet(const nodes::IndexedTriangleSet& node, const MeshOptions& options,
                              Faults& faults) {
-  const FaceSet set = valuesOf(node);
+  Faults unused; // build() finds them again
+  const FaceSet set = valuesOf(node, unused);
   Mesh mesh;
   if (set.ownPoints.empty() && set.points.size() < noValue / 2 && node.index.size() < noValue / 2 &&
       buildPlain({node.index, false, node.normalPerVertex ? smoothAll : 0, node.solid, node.ccw},

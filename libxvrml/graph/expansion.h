@@ -1,6 +1,7 @@
-// expansion.h: the expansion of a plug-in's node: the standard nodes that it stands for
-// (xvrml/node_plugin.h). It is stored in the node. renderedNode() and the event engine read it, and
-// the engine renews it when fields change. [the thread that owns the node]
+// expansion.h: the expansion of a node: the standard nodes that a plug-in's node
+// (xvrml/node_plugin.h) and a ParticleSystem stand for. It is stored in the node. renderedNode()
+// and the event engine read it, and the engine renews it when fields change. [the thread that owns
+// the node]
 #pragma once
 
 #include "xvrml/node.h"

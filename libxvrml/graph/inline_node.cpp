@@ -3,6 +3,7 @@
 #include "graph/inline_node.h"
 
 #include "base/deformable.h"
+#include "base/particle_clock.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
@@ -10,8 +11,10 @@ namespace xvrml {
 NodeRef makeStaticNode(const NodeType& type) {
   switch (type.index) {
   case nodes::Inline::typeIndex: return NodeRef(new InlineNode());
-  case nodes::Coordinate::typeIndex: return NodeRef(new Deformable<nodes::Coordinate>());
-  case nodes::Normal::typeIndex: return NodeRef(new Deformable<nodes::Normal>());
+  case nodes::Coordinate::typeIndex: return NodeRef(new DeformableCoordinate());
+  case nodes::CoordinateDouble::typeIndex: return NodeRef(new DeformableCoordinateDouble());
+  case nodes::Normal::typeIndex: return NodeRef(new DeformableNormal());
+  case nodes::ParticleSystem::typeIndex: return NodeRef(new TimedParticleSystem());
   default: return NodeRef(type.create(type));
   }
 }

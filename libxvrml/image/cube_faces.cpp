@@ -85,7 +85,7 @@ CubePictures decodeCube(std::span<const uint8_t> bytes, const ImageRoom& room) {
   if (looksLikeDds(bytes)) return decodeDds(bytes, room);
   CubePictures pictures;
   if (looksLikeRadiance(bytes.data(), bytes.size()))
-    pictures.radiance = cut(decodeRadiance(bytes.data(), bytes.size(), room.limits));
+    pictures.radiance = cut(decodeRadiance(bytes, room));
   else
     pictures.images = cut(decodeImage(bytes.data(), bytes.size(), room));
   return pictures;

@@ -1,6 +1,6 @@
-// dds.cpp: decodes cube maps in DDS files (Microsoft, "Programming Guide for DDS"): uncompressed
-// pixels of 8 to 32 bits, half and single floats, and the blocks BC1, BC2 and BC3 (DXT1, DXT3,
-// DXT5). Everything is compared with the length of the file before memory is taken.
+// dds.cpp: decodes cube maps and volumes in DDS files (Microsoft, "Programming Guide for DDS"):
+// uncompressed pixels of 8 to 32 bits, half and single floats, and the blocks BC1, BC2 and BC3
+// (DXT1, DXT3, DXT5). Everything is compared with the length of the file before memory is taken.
 #include <fmt/format.h>
 
 #include <bit>
@@ -9,6 +9,7 @@
 
 #include "image/cube_faces.h"
 #include "image/decoders.h"
+#include "image/volume.h"
 
 namespace xvrml {
 namespace {
@@ -42,7 +43,8 @@ struct Format {
 };
 
 struct Header {
-  uint32_t side = 0, levels = 1;
+  uint32_t width = 0, height = 0, depth = 1, levels = 1;
+  bool cube = false; // with all faces
   Format format;
   size_t data = 128;
 };
@@ -98,27 +100,28 @@ Format legacyFormat(Bytes bytes) {
 Header readHeader(Bytes bytes) {
   Header header;
   if (word(bytes, 4) != 124 || word(bytes, 76) != 32) refuse("the header is damaged");
-  header.side = word(bytes, 16);
-  if (word(bytes, 12) != header.side) refuse("the faces of a cube map are square");
+  header.height = word(bytes, 12);
+  header.width = word(bytes, 16);
   if (word(bytes, 8) & 0x20000) header.levels = std::max(1u, word(bytes, 28));
   if (header.levels > 32) refuse("it has too many levels of detail");
-  bool cube = (word(bytes, 112) & 0xfe00) == 0xfe00; // a cube with all faces
+  header.cube = (word(bytes, 112) & 0xfe00) == 0xfe00;
+  bool volume = word(bytes, 112) & 0x200000;
   if ((word(bytes, 80) & 4) && word(bytes, 84) == fourCc("DX10")) {
     header.data = 148;
     header.format = dxgiFormat(word(bytes, 128));
-    cube = cube || (word(bytes, 136) & 4);
-    if (word(bytes, 140) > 1) refuse("it is a list of cube maps");
+    header.cube = header.cube || (word(bytes, 136) & 4);
+    volume = volume || word(bytes, 132) == 4;
+    if (word(bytes, 140) > 1) refuse("it is a list of pictures");
   } else {
     header.format = legacyFormat(bytes);
   }
-  if (!cube) refuse("it is no cube map with six faces");
+  if (volume) header.depth = word(bytes, 24);
   return header;
 }
 
-uint64_t bytesOfLevel(const Format& format, uint64_t side) {
-  if (!format.isBlocks()) return side * ((side * format.bits + 7) / 8);
-  const uint64_t blocks = (side + 3) / 4;
-  return blocks * blocks * (format.coding == Coding::bc1 ? 8 : 16);
+uint64_t bytesOfLevel(const Format& format, uint64_t width, uint64_t height) {
+  if (!format.isBlocks()) return height * ((width * format.bits + 7) / 8);
+  return ((width + 3) / 4) * ((height + 3) / 4) * (format.coding == Coding::bc1 ? 8 : 16);
 }
 
 // Returns the bits of a mask as a number of 0..255.
@@ -178,17 +181,18 @@ void alphaBlock(const uint8_t* block, Coding coding, uint8_t (&pixels)[16][4]) {
 
 void decodeBlocks(Bytes data, const Format& format, Image& image) {
   const size_t size = format.coding == Coding::bc1 ? 8 : 16;
-  const size_t side = size_t(image.width), across = (side + 3) / 4;
-  image.pixels.resize(side * side * 4);
-  for (size_t by = 0; by < across; ++by)
+  const size_t width = size_t(image.width), height = size_t(image.height);
+  const size_t across = (width + 3) / 4, down = (height + 3) / 4;
+  image.pixels.resize(width * height * 4);
+  for (size_t by = 0; by < down; ++by)
     for (size_t bx = 0; bx < across; ++bx) {
       const uint8_t* block = data.data() + (by * across + bx) * size;
       uint8_t pixels[16][4];
       colourBlock(block + (size - 8), size == 16, pixels);
       if (size == 16) alphaBlock(block, format.coding, pixels);
       for (size_t i = 0; i < 16; ++i)
-        if (const size_t x = 4 * bx + i % 4, y = 4 * by + i / 4; x < side && y < side)
-          std::memcpy(&image.pixels[(y * side + x) * 4], pixels[i], 4);
+        if (const size_t x = 4 * bx + i % 4, y = 4 * by + i / 4; x < width && y < height)
+          std::memcpy(&image.pixels[(y * width + x) * 4], pixels[i], 4);
     }
 }
 
@@ -236,12 +240,15 @@ CubePictures decodeDds(Bytes bytes, const ImageRoom& room) {
                                          CubeFace::bottom, CubeFace::back, CubeFace::front};
   const Header header = readHeader(bytes);
   const Format& format = header.format;
-  const uint64_t side = header.side;
+  if (!header.cube) refuse("it is no cube map with six faces");
+  if (header.width != header.height) refuse("the faces of a cube map are square");
+  const uint64_t side = header.width;
   checkImageSize(side, 6 * side, uint64_t(format.isFloat() ? 12 : 4), 0, room, "DDS");
   if (format.isFloat()) checkRadianceSize(int64_t(side), int64_t(6 * side), room.limits);
   uint64_t faceBytes = 0;
   for (uint32_t level = 0; level < header.levels; ++level)
-    faceBytes += bytesOfLevel(format, std::max<uint64_t>(1, level < 32 ? side >> level : 0));
+    faceBytes += bytesOfLevel(format, std::max<uint64_t>(1, side >> level),
+                              std::max<uint64_t>(1, side >> level));
   if (header.data > bytes.size() || faceBytes * cubeFaces > bytes.size() - header.data)
     refuse("it ends too early");
   CubePictures pictures;
@@ -276,6 +283,31 @@ CubePictures decodeDds(Bytes bytes, const ImageRoom& room) {
     turn(face, face.pixels, size_t(face.components));
   }
   return pictures;
+}
+
+// The first level of detail has all its slices before those of the next one.
+Volume decodeDdsVolume(Bytes bytes, const ImageRoom& room) {
+  const Header header = readHeader(bytes);
+  const Format& format = header.format;
+  if (header.cube) refuse("it is a cube map, not a volume");
+  if (format.isFloat()) refuse("a volume of floats is not read");
+  checkVolumeSize({header.width, header.height, header.depth}, uint64_t(format.components), 0, room,
+                  "DDS picture");
+  const uint64_t sliceBytes = bytesOfLevel(format, header.width, header.height);
+  if (header.data > bytes.size() || sliceBytes * header.depth > bytes.size() - header.data)
+    refuse("it ends too early");
+  Volume volume{int(header.width), int(header.height), int(header.depth), format.components, {}};
+  for (size_t i = 0; i < header.depth; ++i) {
+    const Bytes data = bytes.subspan(header.data + size_t(sliceBytes) * i, size_t(sliceBytes));
+    Image slice{volume.width, volume.height, volume.components, {}};
+    if (format.isBlocks())
+      decodeBlocks(data, format, slice);
+    else
+      decodeMasks(data, format, slice);
+    flipRows(slice);
+    volume.pixels.insert(volume.pixels.end(), slice.pixels.begin(), slice.pixels.end());
+  }
+  return volume;
 }
 
 } // namespace xvrml

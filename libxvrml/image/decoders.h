@@ -15,7 +15,8 @@
 
 namespace xvrml {
 
-// Returns the bytes of a regular file of at most limits.fileBytes; throws std::runtime_error.
+// Returns the bytes of a regular file, or of a data: URL, of at most limits.fileBytes; throws
+// std::runtime_error.
 std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room);
 inline std::vector<uint8_t> readPictureFile(const std::string& path, const Limits& limits) {
   return readPictureFile(path, ImageRoom{limits});
@@ -34,8 +35,13 @@ Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room);
 
 inline constexpr uint64_t maximumImageSide = 65536; // largest side of a texture
 
-// Throws std::runtime_error if the picture has no pixels, a side above maximumImageSide, or more
-// pixels than limits.imagePixels. Decoders call it before they allocate memory for the picture.
+// The picture has more pixels than limits.imagePixels.
+struct TooManyPixels : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Throws std::runtime_error if the picture has no pixels, a side above maximumImageSide, or and
+// TooManyPixels. Decoders call it before they allocate memory for the picture.
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format);
 // Does the same. Also throws if `components` bytes per pixel, plus `working` bytes during decoding,
 // exceed what `room` allows.
@@ -50,7 +56,7 @@ void flipRows(Image& image);
 
 // The same for radiance pictures. checkRadianceSize refuses more pixels than a quarter of
 // limits.imagePixels.
-RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits);
+RadianceImage decodeRadiance(std::span<const uint8_t> bytes, const ImageRoom& room);
 void checkRadianceSize(int64_t width, int64_t height, const Limits& limits);
 void flipRows(RadianceImage& image);
 

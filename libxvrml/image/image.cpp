@@ -9,6 +9,7 @@
 #include "base/data_url.h"
 #include "base/regular_file.h"
 #include "image/decoders.h"
+#include "image/foreign.h"
 
 namespace xvrml {
 
@@ -20,7 +21,7 @@ void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const
         "{} picture of {} x {} pixels: a side has at most {}, see the limit 'imagePixels' ({})",
         format, width, height, maximumImageSide, limits.imagePixels));
   if (width * height > limits.imagePixels)
-    throw std::runtime_error(
+    throw TooManyPixels(
         fmt::format("{} picture of {} x {} pixels is beyond the limit 'imagePixels' ({})", format,
                     width, height, limits.imagePixels));
 }
@@ -62,7 +63,10 @@ std::string_view mediaTypeOf(std::span<const uint8_t> bytes) {
   if (startsWith("\x89PNG\r\n\x1a\n")) return "image/png";
   if (startsWith("\xff\xd8\xff")) return "image/jpeg";
   if (startsWith("GIF87a") || startsWith("GIF89a")) return "image/gif";
-  if (!looksLikeRadiance(bytes.data(), bytes.size())) return {};
+  if (!looksLikeRadiance(bytes.data(), bytes.size())) {
+    const ForeignFormat* const foreign = foreignFormat(bytes);
+    return foreign ? foreign->mediaType : std::string_view();
+  }
   return bytes[0] == '#'   ? "image/vnd.radiance"
          : bytes[0] == 'P' ? "image/x-portable-floatmap"
                            : "image/x-exr";
@@ -74,16 +78,17 @@ Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
   if (type == "image/png") return decodePng(content, room);
   if (type == "image/jpeg") return decodeJpeg(content, room);
   if (type == "image/gif") return decodeGif(content, room);
+  if (const ForeignFormat* foreign = foreignFormat(content))
+    return decodeForeign(*foreign, content, room);
   if (size == 0) throw std::runtime_error("the file is empty");
   if (!type.empty()) throw std::runtime_error("a picture of radiance cannot be used here");
   throw std::runtime_error(
-      "not a PNG, JPEG or GIF picture, nor one of radiance (.hdr, .pfm, .exr)");
+      "not a PNG, JPEG, GIF, WebP, BMP or TGA picture, nor one of radiance (.hdr, .pfm, .exr)");
 }
 
 std::variant<Image, RadianceImage> decodePicture(std::span<const uint8_t> bytes,
                                                  const ImageRoom& room) {
-  if (looksLikeRadiance(bytes.data(), bytes.size()))
-    return decodeRadiance(bytes.data(), bytes.size(), room.limits);
+  if (looksLikeRadiance(bytes.data(), bytes.size())) return decodeRadiance(bytes, room);
   return decodeImage(bytes.data(), bytes.size(), room);
 }
 

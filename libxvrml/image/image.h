@@ -1,5 +1,5 @@
-// image.h: reads pictures of worlds: PNG, JPEG, GIF (first frame), recognised by content. [any
-// thread]
+// image.h: reads pictures of worlds: PNG, JPEG, GIF (first frame), WebP, BMP and TGA, recognised by
+// content. [any thread]
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,9 @@ struct ImageRoom {
   const Limits& limits;
   // For the decoded picture: the rest of the total for a world's pictures.
   uint64_t bytes = ~uint64_t(0);
-  // The world's budget; decoders compare with it and reserve nothing.
-  const Budget* budget = nullptr;
+  // The world's budget; decoders compare with it and reserve nothing. It also has the process that
+  // decodes foreign formats.
+  Budget* budget = nullptr;
 };
 
 // Decode a picture to 8 bits per component, with rows from the bottom up. The components are those

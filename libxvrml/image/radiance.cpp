@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "image/decoders.h"
+#include "image/foreign.h"
 
 namespace xvrml {
 
@@ -130,7 +131,7 @@ void checkRadianceSize(int64_t width, int64_t height, const Limits& limits) {
   if (width < 1 || height < 1) refuse(fmt::format("a picture of {} x {} pixels", width, height));
   if (width > 65536 || height > 65536 ||
       uint64_t(width) * uint64_t(height) > limits.imagePixels / 4)
-    refuse(fmt::format(
+    throw TooManyPixels(fmt::format(
         "{} x {} pixels of radiance are beyond a quarter of the limit 'imagePixels' ({})", width,
         height, limits.imagePixels));
 }
@@ -149,16 +150,19 @@ bool looksLikeRadiance(const uint8_t* bytes, size_t size) {
          startsWith(content, "PF\r\n") || startsWith(content, "\x76\x2f\x31\x01");
 }
 
-RadianceImage decodeRadiance(const uint8_t* bytes, size_t size, const Limits& limits) {
-  const Bytes content(bytes, size);
-  if (!looksLikeRadiance(bytes, size))
+RadianceImage decodeRadiance(Bytes content, const ImageRoom& room) {
+  if (!looksLikeRadiance(content.data(), content.size()))
     refuse("is not a picture of radiance (OpenEXR, Radiance or colour PFM)");
-  RadianceImage image = content[0] == '#'   ? decodeHdr(content, limits)
-                        : content[0] == 'P' ? decodePfm(content, limits)
-                                            : decodeExr(content, limits);
+  RadianceImage image = content[0] == '#'   ? decodeHdr(content, room.limits)
+                        : content[0] == 'P' ? decodePfm(content, room.limits)
+                                            : decodeExr(content, room);
   for (const float v : image.rgb)
     if (!(v >= 0) || v > 1e30f) refuse(fmt::format("holds {}, which is no radiance", v));
   return image;
+}
+
+RadianceImage decodeRadiance(const uint8_t* bytes, size_t size, const Limits& limits) {
+  return decodeRadiance(Bytes(bytes, size), ImageRoom{limits});
 }
 
 RadianceImage readRadiance(const std::string& path, const Limits& limits) {

@@ -20,7 +20,8 @@ using namespace mapper;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
     : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), cubes(w, textures),
-      custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, cubes, custom),
+      volumes(w, textures), custom(w, classes, textures),
+      surfaces(w, o.linearColor, classes, textures, cubes, volumes, custom),
       objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes, custom),
       fogs(w, o.linearColor, classes),
       environment(w, o.linearColor, classes, textures, cubes, custom),
@@ -42,6 +43,7 @@ OpenRTMapper::Impl::~Impl() {
     surfaces.clear();
     custom.clear();
     cubes.clear();
+    volumes.clear();
     textures.clear();
   } catch (const std::bad_alloc&) {} // the remaining objects are freed with the context
 }

@@ -27,6 +27,7 @@ struct OpenRTMapper::Impl {
   mapper::ShaderClasses classes;
   mapper::Textures textures;
   mapper::CubeMaps cubes;
+  mapper::Volumes volumes;
   mapper::CustomShaders custom;
   mapper::Surfaces surfaces;
   mapper::Objects objects;

@@ -23,8 +23,9 @@ uint64_t contentHash(const Mesh& m) {
   const uint64_t flags =
       uint64_t(m.kind) | uint64_t(m.solid) << 8 | uint64_t(m.ccw) << 9 | uint64_t(m.texGen) << 16;
   const uint64_t colorless =
-      hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags))));
-  return hashed(m.alphas, hashed(m.colors, colorless));
+      hashed(m.texPlaces,
+             hashed(m.texCoords, hashed(m.normals, hashed(m.indices, hashed(m.points, flags)))));
+  return hashed(m.fogCoords, hashed(m.alphas, hashed(m.colors, colorless)));
 }
 
 double reachOf(const Mesh& m) {
@@ -38,7 +39,8 @@ double reachOf(const Mesh& m) {
 uint64_t ownBytes(const Mesh& m) {
   return m.ownPoints.capacity() * sizeof(Vec3f) + m.ownNormals.capacity() * sizeof(Vec3f) +
          m.ownColors.capacity() * sizeof(Color) + m.ownAlphas.capacity() * sizeof(float) +
-         m.ownTexCoords.capacity() * sizeof(Vec2f) + m.ownIndices.capacity() * sizeof(uint32_t);
+         m.ownFogCoords.capacity() * sizeof(float) + m.ownTexCoords.capacity() * sizeof(Vec2f) +
+         m.ownTexPlaces.capacity() * sizeof(Vec4f) + m.ownIndices.capacity() * sizeof(uint32_t);
 }
 
 // Takes the triangles out of a large mesh that is about to be released, if they are the faces of
@@ -55,7 +57,7 @@ template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
 
 } // namespace
 
-int32_t Meshes::add(Node& geometry, bool textured) {
+int32_t Meshes::add(Node& geometry, TextureNeed need) {
   const auto [known, fresh] = index_.insert(&geometry, int32_t(entries_.size()));
   if (fresh && !free_.empty()) {
     *known = free_.back();
@@ -65,7 +67,7 @@ int32_t Meshes::add(Node& geometry, bool textured) {
   }
   const int32_t mesh = *known;
   if (fresh) entries_[size_t(mesh)].geometry = NodeRef(&geometry);
-  if (textured) needTexture(mesh);
+  require(mesh, need);
   count(mesh, 1);
   return mesh;
 }
@@ -107,10 +109,10 @@ int32_t Meshes::find(const Node* geometry) const {
   return known ? *known : none_;
 }
 
-bool Meshes::needTexture(int32_t mesh) {
+bool Meshes::require(int32_t mesh, TextureNeed need) {
   Entry& entry = entries_[size_t(mesh)];
-  if (entry.textured) return false;
-  entry.textured = true;
+  if (entry.need >= need) return false;
+  entry.need = need;
   if (!entry.known) return false;
   changed(mesh);
   return true;
@@ -173,14 +175,15 @@ const Mesh& Meshes::get(int32_t mesh) {
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
-  const MeshOptions options{.needTexCoords = entry.textured,
+  const MeshOptions options{.needTexCoords = entry.need != TextureNeed::none,
                             .limits = &limits,
                             .diagnostics = entry.said ? &silent : &world_.diagnostics,
                             .limitName = name,
                             .exactShapes = exactShapes_,
                             .former = entry.topology.get(),
                             .pointSize = pointSize_,
-                            .lineWidth = lineWidth_};
+                            .lineWidth = lineWidth_,
+                            .needTexPlaces = entry.need == TextureNeed::volume};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
@@ -191,6 +194,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   entry.extent.kind = entry.mesh->kind;
   entry.extent.alpha = !entry.mesh->alphas.empty();
   entry.extent.byNormal = looksUpByNormal(*entry.geometry);
+  entry.extent.placed = hasTexPlaces(*entry.geometry);
   entry.extent.thick = isThick(*entry.mesh, *entry.geometry);
   entry.extent.primitives = primitivesOf(*entry.mesh);
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
@@ -207,7 +211,8 @@ bool Meshes::sameContent(int32_t a, int32_t b) {
   return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && m.texGen == n.texGen &&
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&
-         equalBytes(m.colors, n.colors) && equalBytes(m.alphas, n.alphas);
+         equalBytes(m.texPlaces, n.texPlaces) && equalBytes(m.colors, n.colors) &&
+         equalBytes(m.alphas, n.alphas) && equalBytes(m.fogCoords, n.fogCoords);
 }
 
 int32_t Meshes::newGroup(uint64_t hash) {
@@ -408,8 +413,10 @@ void compact(const Mesh& mesh, Mesh& out) {
     out.ownPoints.push_back(mesh.points[i]);
     if (!mesh.normals.empty()) out.ownNormals.push_back(mesh.normals[i]);
     if (!mesh.texCoords.empty()) out.ownTexCoords.push_back(mesh.texCoords[i]);
+    if (!mesh.texPlaces.empty()) out.ownTexPlaces.push_back(mesh.texPlaces[i]);
     if (!mesh.colors.empty()) out.ownColors.push_back(mesh.colors[i]);
     if (!mesh.alphas.empty()) out.ownAlphas.push_back(mesh.alphas[i]);
+    if (!mesh.fogCoords.empty()) out.ownFogCoords.push_back(mesh.fogCoords[i]);
   }
   out.ownIndices.reserve(mesh.indices.size());
   for (const uint32_t i : mesh.indices)

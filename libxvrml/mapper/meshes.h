@@ -10,6 +10,7 @@
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
 #include "geometry/texture_generator.h"
+#include "geometry/texture_places.h"
 #include "mapper/outermost.h"
 #include "mapper/ration.h"
 #include "xvrml/mapper.h"
@@ -24,24 +25,25 @@ class Meshes {
   void setExactShapes(bool exact);
   // Sets the diameters of points and lines; 0: they are thin. Meshes are then built again.
   void setThickness(float points, float lines);
-  // Returns the mesh number of a geometry node and adds a user. textured: the user has a texture.
-  int32_t add(Node& geometry, bool textured);
+  // Returns the mesh number of a geometry node and adds a user with these textures.
+  int32_t add(Node& geometry, TextureNeed need);
   void drop(int32_t mesh); // removes one user
   // Numbers without users. They are not reused before recycle().
   const std::vector<int32_t>& dropped() const { return dropped_; }
   void recycle();
   int32_t find(const Node* geometry) const;
   size_t size() const { return entries_.size(); }
-  // Requires texture coordinates from now on. Returns true if an already built mesh has to be
-  // rebuilt.
-  bool needTexture(int32_t mesh);
+  // Requires texture coordinates for these textures from now on. Returns true if an already built
+  // mesh has to be rebuilt.
+  bool require(int32_t mesh, TextureNeed need);
   // Returns whether shapes need another surface, because since the mesh was built events have put a
   // ColorRGBA in place of a Color, or a Color in place of a ColorRGBA, or have changed how cube
-  // maps are looked up.
+  // maps are looked up, or whether texture coordinates are in space.
   bool switchedSurface(int32_t mesh) const {
     const Entry& entry = entries_[size_t(mesh)];
     return entry.known && (entry.extent.alpha != hasVertexAlpha(*entry.geometry) ||
-                           entry.extent.byNormal != looksUpByNormal(*entry.geometry));
+                           entry.extent.byNormal != looksUpByNormal(*entry.geometry) ||
+                           entry.extent.placed != hasTexPlaces(*entry.geometry));
   }
   // Invalidates the mesh because fields of the node have changed, or only the vectors of its
   // Coordinate or Normal.
@@ -59,6 +61,7 @@ class Meshes {
     double reach = 0;      // largest absolute coordinate
     bool alpha = false;    // it has opacities
     bool byNormal = false; // looksUpByNormal
+    bool placed = false;   // hasTexPlaces
     bool thick = false;    // balls or rods in place of points or lines
   };
   Extent extent(int32_t mesh);
@@ -89,7 +92,8 @@ class Meshes {
     uint32_t users = 0;
     // The group of equal content, and the neighbours in its list.
     int32_t group = none_, next = none_, previous = none_;
-    bool textured = false, known = false, dynamic = false, said = false;
+    TextureNeed need = TextureNeed::none;
+    bool known = false, dynamic = false, said = false;
   };
   struct Group { // meshes with equal content
     uint64_t hash = 0;

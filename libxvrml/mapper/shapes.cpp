@@ -30,7 +30,9 @@ const Mesh& withLinearColors(const Mesh& mesh, Mesh& storage) {
   storage.indices = mesh.indices;
   storage.normals = mesh.normals;
   storage.texCoords = mesh.texCoords;
+  storage.texPlaces = mesh.texPlaces;
   storage.alphas = mesh.alphas;
+  storage.fogCoords = mesh.fogCoords;
   storage.solid = mesh.solid;
   storage.ccw = mesh.ccw;
   storage.texGen = mesh.texGen;
@@ -167,7 +169,8 @@ SurfaceUse Objects::useOf(const Item& item) const {
   return {.lines = lines,
           .thick = lines && graph_.meshes.extent(item.mesh).thick,
           .vertexAlpha = hasVertexAlpha(geometry),
-          .byNormal = looksUpByNormal(geometry)};
+          .byNormal = looksUpByNormal(geometry),
+          .placed = hasTexPlaces(geometry)};
 }
 
 // Writes a shape. Its number is the name of everything it draws, so that the id channel tells
@@ -191,7 +194,7 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
     load(matrix);
     HalfSpaces kept;
     for (const HalfSpace& halfSpace : kept_) kept.push_back(inside(halfSpace, matrix));
-    if (!draw(item.mesh, surface, isTextured(appearance), kept)) return;
+    if (!draw(item.mesh, surface, textureNeed(appearance) != TextureNeed::none, kept)) return;
   }
   ++parts_[size_t(writing_)].shapes;
   report(world_.diagnostics, item.node->source, "Shape");
@@ -229,8 +232,9 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured, const Ha
   if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
-  rtLineWidth(surface.lineWidth);
-  rtPointSize(surface.pointSize);
+  rtLineWidth(surface.style.line);
+  rtPointSize(surface.style.point);
+  rtLineStipple(surface.style.factor, surface.style.pattern);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   rtTexGen(textured ? RTenum(m.texGen) : RTenum(RT_TEX_GEN_OFF));
@@ -255,6 +259,10 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   rtNormalPointer(RT_FLOAT, sizeof(Vec3f), m.normals.empty() ? nullptr : m.normals.data());
   rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
                     textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
+  // Texture coordinates in space are a parameter of vertices.
+  const bool placed = surface.takesPlaces && textured && !m.texPlaces.empty();
+  const int place = placed ? rtParameterHandle("texturePlace") : -1;
+  if (place >= 0) rtParameterPointer(place, sizeof(Vec4f), &m.texPlaces[0].x);
   // Lines and points use emissiveColor.
   const bool plain = m.colors.empty() && surface.lines;
   const int components = m.alphas.empty() ? 3 : 4;
@@ -272,7 +280,9 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured, b
   } else {
     rtColorPointer(3, RT_FLOAT, 0, nullptr);
   }
+  rtFogCoordPointer(RT_FLOAT, 0, m.fogCoords.empty() ? nullptr : m.fogCoords.data());
   rtDrawElements(modeOf(m.kind), m.indices.size(), m.indices.data(), m.points.size());
+  if (place >= 0) rtParameterPointer(place, 0, nullptr);
 }
 
 } // namespace xvrml::mapper

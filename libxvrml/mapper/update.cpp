@@ -148,7 +148,8 @@ void OpenRTMapper::Impl::appearanceChanged(Work& work, Node& first) {
   }
   const bool cube = first.type().is("environmentTexture");
   if (cube) cubes.changed(first);
-  if (!cube && first.type().is("texture") && !textures.changed(first))
+  const bool volume = volumes.changed(first);
+  if (!cube && first.type().is("texture") && !textures.changed(first) && !volume)
     return; // only the picture changed
   walkHolders(first, work.visited, [&](Node& node) {
     if (node.type().index == nodes::ORTShader::typeIndex) custom.changed(node);
@@ -183,9 +184,8 @@ void OpenRTMapper::Impl::newSurfaces(Work& work) {
 // Adds texture coordinates to the shape's mesh if its appearance needs them.
 void OpenRTMapper::Impl::textured(Work& work, ItemId shape) {
   const Item& item = graph.items[shape];
-  if (!isTextured(static_cast<nodes::Shape&>(*item.node).appearance.get()) ||
-      !graph.meshes.needTexture(item.mesh))
-    return;
+  const TextureNeed need = textureNeed(static_cast<nodes::Shape&>(*item.node).appearance.get());
+  if (!graph.meshes.require(item.mesh, need)) return;
   work.meshes.push_back(item.mesh);
   work.regroup = true; // it no longer equals meshes without texture coordinates
 }

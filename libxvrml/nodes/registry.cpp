@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "xvrml/node_table.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
@@ -100,6 +101,7 @@ NodeType makeNodeType(const NodeRow& row, int index) {
     type.fields.back().rareOffset = field.rareOffset;
   }
   readFieldNames(type);
+  if (index == nodes::ParticleSystem::typeIndex) type.expand = expandParticleSystem;
   for (const FieldRevision& one : nodes::revisions())
     if (one.type == index && one.access == Access::exposedField)
       for (FieldInfo& field : type.fields)

@@ -22,6 +22,10 @@ using RenderCall = bool (*)(Renderer& renderer, Node& node, const RenderState& s
 void setRenderCall(const NodeType& type, RenderCall call);
 RenderCall renderCallOf(const NodeType& type); // null for all other types
 
+// Returns the Shape that is drawn for a ParticleSystem (behaviour/particles/drawn.cpp), for
+// NodeType::expand.  [the thread that owns the node]
+NodeRef expandParticleSystem(const Node& node);
+
 // Returns the name of the field that holds a node of this type in the XML encoding of X3D, where
 // the file does not say it (containerField, ISO/IEC 19776-1): "geometry" for a Box. It is that of
 // the type or of the nearest abstract type that has one, otherwise "children".  [any thread]

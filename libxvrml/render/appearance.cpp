@@ -1,7 +1,7 @@
 // appearance.cpp: finds what an appearance consists of.
 #include "xvrml/appearance.h"
 
-#include "geometry/matrix.h"
+#include "geometry/node_matrix.h"
 
 namespace xvrml {
 namespace {
@@ -129,36 +129,51 @@ std::optional<MaterialValues> backValues(const AppearanceParts& parts) {
   return values;
 }
 
-const nodes::TextureTransform* firstTransform(Node* textureTransform, std::string_view mapping) {
-  Node* node = renderedNode(textureTransform);
-  const auto* multi = nodeCast<nodes::MultiTextureTransform>(node);
-  if (!multi) return nodeCast<nodes::TextureTransform>(node);
-  if (!mapping.empty())
-    for (const NodeRef& part : multi->textureTransform)
-      if (const auto* t = nodeCast<nodes::TextureTransform>(renderedNode(part.get()));
-          t && t->mapping == mapping)
-        return t;
-  if (multi->textureTransform.empty()) return nullptr;
-  return nodeCast<nodes::TextureTransform>(renderedNode(multi->textureTransform[0].get()));
+namespace {
+
+// Returns a node if it transforms texture coordinates by a matrix, else null.
+const Node* singleTransform(Node* node) {
+  Node* rendered = renderedNode(node);
+  const bool single = nodeCast<nodes::TextureTransform>(rendered) ||
+                      nodeCast<nodes::TextureTransform3D>(rendered) ||
+                      nodeCast<nodes::TextureTransformMatrix3D>(rendered);
+  return single ? rendered : nullptr;
 }
 
-const nodes::TextureTransform* layerTransform(Node* textureTransform, size_t layer,
-                                              std::string_view mapping) {
+std::string_view mappingOf(const Node* transform) {
+  if (const auto* t = nodeCast<nodes::TextureTransform>(transform)) return t->mapping;
+  if (const auto* t = nodeCast<nodes::TextureTransform3D>(transform)) return t->mapping;
+  if (const auto* t = nodeCast<nodes::TextureTransformMatrix3D>(transform)) return t->mapping;
+  return {};
+}
+
+} // namespace
+
+const Node* firstTransform(Node* textureTransform, std::string_view mapping) {
+  Node* node = renderedNode(textureTransform);
+  const auto* multi = nodeCast<nodes::MultiTextureTransform>(node);
+  if (!multi) return singleTransform(node);
+  if (!mapping.empty())
+    for (const NodeRef& part : multi->textureTransform)
+      if (const Node* t = singleTransform(part.get()); t && mappingOf(t) == mapping) return t;
+  if (multi->textureTransform.empty()) return nullptr;
+  return singleTransform(multi->textureTransform[0].get());
+}
+
+const Node* layerTransform(Node* textureTransform, size_t layer, std::string_view mapping) {
   if (layer == 0) return firstTransform(textureTransform, mapping);
   const auto* multi = nodeCast<nodes::MultiTextureTransform>(renderedNode(textureTransform));
   if (!multi || layer >= multi->textureTransform.size()) return nullptr;
-  return nodeCast<nodes::TextureTransform>(renderedNode(multi->textureTransform[layer].get()));
+  return singleTransform(multi->textureTransform[layer].get());
 }
 
 namespace {
 
-TextureLayer layerOf(Node* texture, const nodes::TextureTransform* t) {
+TextureLayer layerOf(Node* texture, const Node* transform) {
   TextureLayer layer;
   layer.texture = texture;
-  if (t) {
-    const Matrix matrix = textureMatrix(t->center, t->rotation, t->scale, t->translation);
-    if (finite(matrix)) toArray(matrix, layer.transform);
-  }
+  const Matrix matrix = textureMatrixOf(transform);
+  if (finite(matrix)) toArray(matrix, layer.transform);
   return layer;
 }
 

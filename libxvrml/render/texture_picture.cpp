@@ -1,6 +1,7 @@
 // texture_picture.cpp: the pictures of texture nodes for programs. Nothing is kept: each call reads
 // and decodes anew.
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "image/decoders.h"
@@ -32,29 +33,48 @@ TexturePicture readPicture(const std::string& path, const World& world, Decode m
   return picture;
 }
 
+// Returns the picture of the first URL that can be used, else what is wrong with the first URL.
+TexturePicture pictureOf(const nodes::ImageTexture& texture, const World& world, Decode mode,
+                         size_t url) {
+  TexturePicture none;
+  for (; url < texture.url.size(); ++url) {
+    std::optional<TexturePicture> found;
+    const std::string error = openFirst({texture.url[url]}, texture, world,
+                                        [&](const std::string& path, std::string& why) {
+                                          try {
+                                            found = readPicture(path, world, mode);
+                                          } catch (const std::exception& failure) {
+                                            why = failure.what();
+                                          }
+                                          return found.has_value();
+                                        });
+    if (found) {
+      found->url = url;
+      return *std::move(found);
+    }
+    if (none.error.empty()) none.error = error;
+  }
+  return none;
+}
+
 } // namespace
 
 void decodeTexture(TexturePicture& picture, const Limits& limits) {
   if (picture.file.empty()) return;
   try {
     decode(picture, ImageRoom{limits});
+  } catch (const TooManyPixels& failure) {
+    picture.error = failure.what();
+    picture.tooManyPixels = true;
   } catch (const std::exception& failure) { picture.error = failure.what(); }
 }
 
-TexturePicture texturePicture(const Node& texture, const World& world, Decode decode) {
+TexturePicture texturePicture(const Node& texture, const World& world, Decode decode, size_t url) {
   TexturePicture picture;
   const Node* rendered = renderedNode(const_cast<Node*>(&texture));
   const Node& node = rendered ? *rendered : texture;
   if (const auto* file = nodeCast<nodes::ImageTexture>(&node)) {
-    bool found = false;
-    picture.error =
-        openFirst(file->url, node, world, [&](const std::string& path, std::string& why) {
-          try {
-            picture = readPicture(path, world, decode);
-            found = true;
-          } catch (const std::exception& failure) { why = failure.what(); }
-          return found;
-        });
+    picture = pictureOf(*file, world, decode, url);
   } else if (const auto* pixels = nodeCast<nodes::PixelTexture>(&node)) {
     picture.image = pixels->image;
   } else if (nodeCast<nodes::MovieTexture>(&node)) {

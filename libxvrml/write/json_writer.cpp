@@ -140,7 +140,7 @@ class JsonWriter : public Writer {
       if (field.declared || !field.value || instance) continue;
       const std::string_view name = spelled(node.type(), field.info->name);
       if (holdsNodes(*field.info))
-        writeNodes(name, field);
+        writeNodes(name, field, keepsNull(node.type()));
       else
         attribute(name, field.info->type, field.value);
     }
@@ -194,24 +194,30 @@ class JsonWriter : public Writer {
     }
     attribute("name", field.info->name);
     if (field.value && holdsNodes(*field.info))
-      writeNodes("children", field);
+      writeNodes("children", field, false);
     else if (field.value)
       attribute("value", field.info->type, field.value);
     close('}');
   }
 
-  // JSON has no word for NULL in a list of nodes.
-  void writeNodes(std::string_view name, const Field& field) {
+  // JSON has no word for NULL in a list of nodes. isSelecting: the places in the list matter, and
+  // an empty Group takes that of NULL.
+  void writeNodes(std::string_view name, const Field& field, bool isSelecting) {
     const bool single = field.info->type == FieldType::SFNode;
     if (single && !*static_cast<const NodeRef*>(field.value)) return;
     member(fmt::format("-{}", name));
     if (single) return node(static_cast<const NodeRef*>(field.value)->get(), name);
     open('[');
     for (const NodeRef& child : *static_cast<const MFNode*>(field.value)) {
-      if (!child) continue;
+      if (!child && !isSelecting) continue;
       separate();
       line();
-      node(child.get(), name);
+      if (child) {
+        node(child.get(), name);
+      } else {
+        openItem("Group");
+        closeItem();
+      }
     }
     close(']');
   }

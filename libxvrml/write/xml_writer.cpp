@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/x3d.h"
+#include "graph/field_access.h"
 #include "nodes/registry.h"
 #include "printable.h"
 #include "write/value_writer.h"
@@ -15,7 +16,6 @@ namespace {
 bool holdsText(FieldType type) {
   return type == FieldType::SFString || type == FieldType::MFString;
 }
-bool holdsNodes(FieldType type) { return type == FieldType::SFNode || type == FieldType::MFNode; }
 
 // Returns the only string of a url that is a program in the text and may stand in a CDATA section;
 // null for other urls.
@@ -158,7 +158,7 @@ class XmlWriter : public Writer {
     const std::string* program = nullptr;
     if (!instance) {
       for (const Field& field : content.fields) {
-        if (field.declared || !field.value || holdsNodes(field.info->type)) continue;
+        if (field.declared || !field.value || holdsNodes(*field.info)) continue;
         if (element == "Script" && field.info->name == "url" && (program = programOf(field.value)))
           continue;
         attribute(spelled(node.type(), field.info->name), field.info->type, field.value);
@@ -173,8 +173,8 @@ class XmlWriter : public Writer {
         if (field.value) writeElement("fieldValue", field, "value");
       } else if (field.declared) {
         writeElement("field", field, "value");
-      } else if (field.value && holdsNodes(field.info->type)) {
-        writeNodes(field, spelled(node.type(), field.info->name));
+      } else if (field.value && holdsNodes(*field.info)) {
+        writeNodes(field, spelled(node.type(), field.info->name), keepsNull(node.type()));
       }
     }
     if (program) {
@@ -225,12 +225,12 @@ class XmlWriter : public Writer {
       attribute("type", fieldTypeName(field.info->type));
     }
     attribute("name", field.info->name);
-    const bool nodes = field.value && holdsNodes(field.info->type);
+    const bool nodes = field.value && holdsNodes(*field.info);
     if (field.value && !nodes) attribute(valueName, field.info->type, field.value);
     text_ += '>';
     const size_t before = text_.size();
     indent_ += 2;
-    if (nodes) writeNodes(field, "");
+    if (nodes) writeNodes(field, "", false);
     indent_ -= 2;
     if (text_.size() == before) {
       text_.back() = '/';
@@ -241,11 +241,16 @@ class XmlWriter : public Writer {
     text_ += fmt::format("</{}>", element);
   }
 
-  void writeNodes(const Field& field, std::string_view place) {
+  // XML has no word for NULL. isSelecting: the places in a list matter, and an empty Group takes
+  // that of NULL.
+  void writeNodes(const Field& field, std::string_view place, bool isSelecting) {
     const auto write = [&](Node* child) {
-      if (!child) return; // XML has no word for NULL
+      if (!child && !isSelecting) return;
       line();
-      node(child, place);
+      if (child)
+        node(child, place);
+      else
+        text_ += "<Group/>";
     };
     if (field.info->type == FieldType::SFNode) {
       write(static_cast<const NodeRef*>(field.value)->get());

@@ -205,6 +205,13 @@ inline FakeHost::FakeHost() : RtsHost{} {
       for (uint32_t i = 0; i < n; i++)
         rgba[c][i] = value[c] + (c == 0 && texture != 0 ? 10 * uv[0][i] + 100 * uv[1][i] : 0);
   };
+  // The green component depends on r.
+  sampleVolume = [](RtsBatch* b, RtsTexture texture, uint32_t n, const float* const str[3],
+                    float* const rgba[4]) {
+    FakeHost& host = fake(b);
+    host.sample(b, texture, n, str, rgba);
+    for (uint32_t i = 0; texture != 0 && i < n; i++) rgba[1][i] += 10 * str[2][i];
+  };
   RtsHost::components = [](const RtsHost* h, RtsTexture texture) {
     return texture == 0 ? 0u : static_cast<const FakeHost*>(h)->textures[texture - 1].components;
   };

@@ -32,7 +32,7 @@ import zipfile
 
 LARGE = 64 << 10  # bytes of code: large enough that some function has an array on its stack
 WANTED = ("libopenrt.so", "libxvrml.so", "libxvrml_openrt.so", "vv", "openrt-replay",
-          "xvrml-script-host", "vrml97.so")
+          "xvrml-script-host", "xvrml-decoder", "vrml97.so")
 OURS = re.compile(r"lib(openrt|xvrml)[\w]*\.so|_xvrml|vv$|openrt-|xvrml-|nodegen$")
 PRINTERS = {"printf", "fprintf", "sprintf", "snprintf", "vsnprintf"}
 ENDBR64 = b"\xf3\x0f\x1e\xfa"

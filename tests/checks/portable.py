@@ -29,7 +29,7 @@ CALLS = re.compile(
 FILES = re.compile(r'"(/proc/(?!self/cgroup)|/dev/(?!null\b|stdin\b|stdout\b|tty\b)|/sys/(?!fs/cgroup))')
 # These stay elsewhere, for these reasons.
 EXCEPT = {
-    "libxvrml/tools/script_host/cage.cpp": "the filter of system calls, built where libseccomp is",
+    "libxvrml/tools/cage/cage.cpp": "the filter of system calls, built where libseccomp is",
     "libopenrt/backend/cluster/net/greeting.cpp": "asks glibc for its version, if it is glibc",
 }
 NOISE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'',

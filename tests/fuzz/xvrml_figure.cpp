@@ -2,7 +2,6 @@
 // stay finite where they are finite at rest. libFuzzer calls this on one thread.
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <string>
 
 #include "geometry/figure.h"
@@ -13,23 +12,24 @@ namespace {
 
 using namespace xvrml;
 
-bool isFinite(std::span<const Vec3f> vectors) {
-  return std::all_of(vectors.begin(), vectors.end(), [](const Vec3f& v) {
+template <class Vectors> bool isFinite(const Vectors& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(), [](const auto& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   });
 }
 
+template <class Drawn, class Rest> void checkVectors(const Drawn& drawn, const Rest& rest) {
+  if (drawn.size() != rest.size()) __builtin_trap();
+  if (isFinite(rest) && !isFinite(drawn)) __builtin_trap();
+}
+
 void check(const Node& node) {
-  if (const auto* coord = nodeCast<nodes::Coordinate>(&node)) {
-    const auto points = drawnPoints(*coord);
-    if (points.size() != coord->point.size()) __builtin_trap();
-    if (isFinite(coord->point) && !isFinite(points)) __builtin_trap();
-  }
-  if (const auto* normal = nodeCast<nodes::Normal>(&node)) {
-    const auto vectors = drawnNormals(*normal);
-    if (vectors.size() != normal->vector.size()) __builtin_trap();
-    if (isFinite(normal->vector) && !isFinite(vectors)) __builtin_trap();
-  }
+  if (const auto* coord = nodeCast<nodes::Coordinate>(&node))
+    checkVectors(drawnPoints(*coord), coord->point);
+  if (const auto* exact = nodeCast<nodes::CoordinateDouble>(&node))
+    checkVectors(drawnPoints(*exact), exact->point);
+  if (const auto* normal = nodeCast<nodes::Normal>(&node))
+    checkVectors(drawnNormals(*normal), normal->vector);
 }
 
 } // namespace

@@ -66,6 +66,48 @@ TEST(VrmlVertexAlpha, PhysicalMaterialsUseThem) {
               .25, 0, .75);
 }
 
+// Lines and points have the transparency of their material (ISO/IEC 19775-1 12.4.4), unless a
+// ColorRGBA gives them opacities of their own.
+TEST(VrmlVertexAlpha, LinesAreAsTransparentAsTheirMaterial) {
+  const auto line = [](const std::string& color) {
+    return "Shape { appearance Appearance { material DEF M Material { emissiveColor 1 0 0 "
+           "transparency 0.75 } lineProperties LineProperties { linewidthScaleFactor 9 } } "
+           "geometry LineSet { vertexCount 2 " +
+           color + " coord Coordinate { point [ -1 0 0, 1 0 0 ] } } }\n";
+  };
+  const std::string green = "color Color { color [ 0 1 0, 0 1 0 ] }";
+  const std::string opaque = "color ColorRGBA { color [ 0 1 0 1, 0 1 0 1 ] }";
+  Scene scene(sky + line(""), x3d);
+  expectColor(scene.render(Scene::at(0, 0, 10, .01))[0], .25, 0, .75);
+  expectColor(Scene(sky + line(green), x3d).render(Scene::at(0, 0, 10, .01))[0], 0, .25, .75);
+  expectColor(Scene(sky + line(opaque), x3d).render(Scene::at(0, 0, 10, .01))[0], 0, 1, 0);
+}
+
+// A ray meets a line or a point once, also where lines of one list join.
+TEST(VrmlVertexAlpha, LinesAndPointsCoverWhatIsBehindOnce) {
+  const auto shape = [](const std::string& geometry) {
+    return "Shape { appearance Appearance { material Material { emissiveColor 1 0 0 transparency "
+           "0.5 } lineProperties LineProperties { linewidthScaleFactor 9 } pointProperties "
+           "PointProperties { pointSizeScaleFactor 9 pointSizeMaxValue 9 } } geometry " +
+           geometry + " }\n";
+  };
+  std::string dense; // pieces of less than a pixel
+  for (int i = -50; i <= 50; ++i) dense += std::to_string(i * .02) + " 0 0, ";
+  for (const std::string& geometry :
+       {std::string(
+            "LineSet { vertexCount 3 coord Coordinate { point [ -1 0 0, 0 0 0, 1 0 0 ] } }"),
+        std::string("IndexedLineSet { coordIndex [ 0 1 2 -1 ] coord Coordinate { point [ -1 0 0, 0 "
+                    "0 0, 1 0.3 0 ] } }"),
+        std::string("PointSet { coord Coordinate { point [ 0 0 0 ] } }"),
+        "LineSet { vertexCount 101 coord Coordinate { point [ " + dense + "] } }"})
+    expectColor(Scene(sky + shape(geometry), x3d).render(Scene::at(0, 0, 10, .01))[0], .5, 0, .5);
+  // Lines of two shapes, one behind the other.
+  const std::string line = "LineSet { vertexCount 2 coord Coordinate { point [ -1 0 0, 1 0 0 ] } }";
+  const std::string behind = "Transform { translation 0 0 -1 children " + shape(line) + " }\n";
+  expectColor(Scene(sky + shape(line) + behind, x3d).render(Scene::at(0, 0, 10, .01))[0], .75, 0,
+              .25);
+}
+
 // A ray to the lamp passes a square of this opacity.
 TEST(VrmlVertexAlpha, ShadowsAreAsDense) {
   const std::string scene = dark + "PointLight { location 0 0 5 attenuation 1 0 0 }\n" +

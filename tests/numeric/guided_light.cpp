@@ -104,6 +104,23 @@ TEST_F(GuidedLight, PhotonsDoNotChangeTheMean) {
   EXPECT_NEAR(with, without, .01 * without);
 }
 
+// Paths of three surfaces by way of a floor, a mirror and a ceiling do not count where two are the
+// limit, with photons or without.
+TEST_F(GuidedLight, PhotonsDoNotMakePathsLonger) {
+  rtQuality(RT_MAX_DEPTH, 2);
+  placeAt(0, square(matt(.8), 2));
+  placeAt(2, square(matt(.8), 2), true);
+  placeAt({0, 0, .5}, sphere(mirror(.9), .4));
+  placeAt({.6, 0, 1}, square(matt(0, 20), .1), true);
+  cameraAt({-1.2, 0, 1}, {-1.2, 0, 2}, 40);
+  double without = 0, with = 0;
+  constexpr int rounds = 512, few = 8, many = 512;
+  for (int r = 0; r < rounds; r++) without += Scene::mean(picture(8, few, 100 + r)) / rounds;
+  for (int r = 0; r < rounds * few / many; r++)
+    with += Scene::mean(picture(8, many, 1 + r)) / (rounds * few / many);
+  EXPECT_NEAR(with, without, .01 * without);
+}
+
 TEST_F(GuidedLight, ThePictureDoesNotDependOnThreads) {
   std::vector<std::vector<float>> pictures;
   const RTcontext own = rtGetCurrent();

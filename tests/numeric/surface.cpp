@@ -79,6 +79,44 @@ TEST_F(Surface, AnInstanceHasAFogOfItsOwn) {
   expectColor(look(-2), fogged(.25));
 }
 
+// The fog coordinate of vertices is the share of the fog, whatever the distance (rtFogCoordf).
+TEST_F(Surface, FogCoordinatesReplaceTheDistance) {
+  const Shader paint("VRML97");
+  const RTid plane = rtBeginObject(0);
+  rtBindShader(paint);
+  rtBegin(RT_QUADS);
+  for (const int x : {-1, 1})
+    for (const int y : {-x, x}) {
+      rtFogCoordf(x < 0 ? 0 : 2); // held in 0..1 after interpolation
+      rtVertex2f(float(x), float(y));
+    }
+  rtEnd();
+  rtEndObject();
+  rtBindShader(0);
+  const RTid placed = place(plane);
+  use(tilted(0));
+  const auto air = [](int type) {
+    return Shader("VRML97Environment")
+        .set("fogRange", {30})
+        .set("fogColor", {1, 0, 0})
+        .setInt("fogType", type);
+  };
+  const double lit = .8;
+  const auto fogged = [&](double share) {
+    return Vec{(1 - share) * lit + share, (1 - share) * lit, (1 - share) * lit};
+  };
+  for (const int type : {1, 2, 3, 4}) {
+    rtUseEnvironment(air(type));
+    expectColor(look(-.75), fogged(.25));
+    expectColor(look(-.25), fogged(.75));
+    expectColor(look(.5), fogged(1));
+  }
+  rtUseEnvironment(air(0)); // clear air
+  expectGrey(look(.5), lit);
+  rtInstanceFog(placed, air(1));
+  expectColor(look(-.5), fogged(.5));
+}
+
 TEST_F(Surface, FogDoesNotReachTheBackground) {
   Shader air("VRML97Environment");
   air.setList("skyColor", {.25f, .5f, .75f}).set("fogRange", {1}).setInt("fogType", 1);

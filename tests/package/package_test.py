@@ -205,6 +205,13 @@ with tempfile.TemporaryDirectory() as scratch:
         said = run(prefix / "bin/vv", "js.wrl", "--check", "--strict", cwd=scratch)
         if "runs" not in said or not (prefix / "libexec/xvrml/xvrml-script-host").exists():
             sys.exit(f"Scripts do not run in processes of the installed program: {said}")
+    (scratch / "bmp.wrl").write_text(
+        "#VRML V2.0 utf8\nShape { geometry Box { } appearance Appearance { texture ImageTexture { url\n"
+        '"data:image/bmp;base64,Qk06AAAAAAAAADYAAAAoAAAAAQAAAAEAAAABABgAAAAAAAQAAAAAAAAAAAAAAAAAAAAAAAAAAAD/AA=="'
+        " } } }\n")
+    run(prefix / "bin/vv", "bmp.wrl", "-o", "bmp.png", "--size", "16x12", "--strict", cwd=scratch)
+    if not (prefix / "libexec/xvrml/xvrml-decoder").exists():
+        sys.exit("the program that decodes pictures is not installed")
     if "native" in engines:
         native = next(prefix.rglob("scripts/native.so")).parent.parent / "native"
         native.mkdir()

@@ -233,18 +233,26 @@ def test_the_menu_of_a_probe_keeps_it_in_the_world(editor, vv):
         return [y for y in range(300, 370) if sum(max(p) > 150 for p in rows[y][170:400]) > 8]
 
     editor.until(lines, "the list")
+    found = []
+
+    def keeps(y):
+        press(w, 200, y, button=3)
+        w.key("Down", "Return", "ctrl+s")
+        return "ORTSensor" in text(vv)
 
     def tried():
-        for y in lines(editor.rows()):
-            press(w, 200, y, button=3)
-            w.key("Down", "Return", "ctrl+s")
-            if "ORTSensor" in text(vv):
-                return True
-        return False
+        found.extend(y for y in lines(editor.rows()) if not found and keeps(y))
+        return found
 
     w.wait(tried, "the sensor")
     now = text(vv)
     assert now.count("ORTSensor") == 1 and 'description "probe 1"' in now
+    w.key("ctrl+z", "ctrl+s")
+    w.wait(lambda: "ORTSensor" not in text(vv), "no sensor")
+    press(w, 200, found[0], button=3)
+    w.key("D", "e", "s", "k", "Return")
+    w.wait(lambda: keeps(found[0]), "the sensor with a name")
+    assert 'description "Desk"' in text(vv)
 
 
 @pytest.mark.timed

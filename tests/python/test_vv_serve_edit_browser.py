@@ -309,6 +309,8 @@ def test_the_light_of_a_lamp_is_measured_and_compared(browser, serve, vv):
     move_pointer(browser, -0.6, 0.6)
     browser.keys("u")
     assert "\u00b1" in until_probe(browser, "lx trusted")
+    type_into(browser, "#readings input", "Desk")
+    browser.script("document.getElementById('picture').focus()")
     browser.keys("b")
     until_script(browser, "window.editor.light.state.complete === true")
     move_pointer(browser, 0.3, 0.6)
@@ -319,6 +321,7 @@ def test_the_light_of_a_lamp_is_measured_and_compared(browser, serve, vv):
     until_script(browser, "document.getElementById('tool').textContent === ''")
     assert shown(browser, number_input("translation", 1)) == "3"
     until_probe(browser, "B - A: -", " significant")
+    assert shown(browser, "#readings input") == "Desk"
     wraps = browser.script(
         "return [...document.querySelectorAll('.quantity')].map(e => e.getClientRects().length)")
     assert set(wraps) == {1}

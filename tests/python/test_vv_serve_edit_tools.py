@@ -267,6 +267,8 @@ def test_the_light_that_falls_on_a_surface_is_measured(serve):
     read = until(page, "probes", lambda t: t["list"] and t["list"][0]["state"] == "read")
     before = read["list"][0]["illuminance"]
     assert before > 0 and "luminance" not in read["list"][0]
+    page.edit("name_probe", probe=1, name="Desk")
+    assert until(page, "probes", lambda t: "name" in t["list"][0])["list"][0]["name"] == "Desk"
     page.edit("keep_in_world", probe=1)
     history(page, undo="Keep probe 1", unsaved=True)
     until(page, "sheet", lambda t: t["title"] == "ORTSensor")

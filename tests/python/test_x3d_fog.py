@@ -149,3 +149,68 @@ def test_mirrors_show_it_over_the_whole_way():
     square = f"Transform {{ translation 2 0 0 rotation 0 1 0 -1.570796 children [ {BLUE} {RED} ] }}"
     world = xvrml.loads(HEAD.replace("V3.3", "V4.0") + mirror + square, "a.x3dv")
     near(colors(world)[1], (1 - 12 / 20, 0, 12 / 20))
+
+
+# FogCoordinate (24.4.3): x of vertices, and the geometry of a red strip from x = -3 to 3.
+STRIP = "coord Coordinate { point [ -3 -1 0, 3 -1 0, 3 1 0, -3 1 0 ] }"
+GEOMETRIES = {
+    "QuadSet": f"QuadSet {{ {STRIP} %s }}",
+    "IndexedFaceSet": f"IndexedFaceSet {{ coordIndex [ 0 1 2 3 -1 ] {STRIP} %s }}",
+    "IndexedTriangleSet": f"IndexedTriangleSet {{ index [ 0 1 2 0 2 3 ] {STRIP} %s }}",
+    "TriangleFanSet": f"TriangleFanSet {{ fanCount 4 {STRIP} %s }}",
+    "ElevationGrid": "ElevationGrid { xDimension 2 zDimension 2 xSpacing 6 zSpacing 2 "
+                     "height [ 0 0 0 0 ] solid FALSE %s }",
+    "LineSet": "LineSet { vertexCount 2 coord Coordinate { point [ -3 .05 0, 3 .05 0 ] } %s }",
+}
+
+
+def strip(name, depth):
+    """Returns a group with a strip, whose fog coordinate is 0 at the left and 1 at the right."""
+    shape = f"""Shape {{ appearance Appearance {{ material Material {{ emissiveColor 1 0 0 }}
+      lineProperties LineProperties {{ linewidthScaleFactor 9 }} }}
+      geometry {GEOMETRIES[name] % ('fogCoord DEF D FogCoordinate { depth [ ' + depth + ' ] }')} }}"""
+    if name == "ElevationGrid":
+        shape = f"Transform {{ rotation 1 0 0 1.5707963 translation -3 1 0 children [ {shape} ] }}"
+    return f"Group {{ children [ {BLUE} {shape} ] }}"
+
+
+DEPTHS = {"ElevationGrid": "0 1 0 1", "LineSet": "0 1"}
+
+
+@pytest.mark.parametrize("name", GEOMETRIES)
+def test_a_fog_coordinate_is_the_share_of_the_fog(name):
+    shares = [(x + 3) / 6 for x in (LEFT, MIDDLE, RIGHT)]
+    for found, share in zip(colors(strip(name, DEPTHS.get(name, "0 1 1 0"))), shares):
+        near(found, CLEAR * (1 - share) + np.array((0, 0, share)))
+
+
+def test_without_fog_it_has_no_effect_and_without_depths_the_distance_counts():
+    for found in colors(strip("QuadSet", "0 1 1 0").replace(BLUE, "")):
+        near(found, CLEAR)
+    for found, x in zip(colors(strip("QuadSet", "")), (LEFT, MIDDLE, RIGHT)):
+        near(found, hidden(x))
+
+
+def test_points_without_a_depth_are_clear_and_told_of():
+    world = xvrml.loads(HEAD + strip("QuadSet", "1 1"), "a.x3dv")
+    assert colors(world)[1][0] < 1
+    assert any("without a fog coordinate" in str(w) for w in world.warnings)
+
+
+def test_depths_change_as_if_they_had_stood_so_in_the_file():
+    world = xvrml.loads(HEAD + strip("QuadSet", "0 0 0 0"), "a.x3dv")
+    near(colors(world)[1], CLEAR)
+    world["D"].depth = [1, 1, 1, 1]
+    near(colors(world)[1], (0, 0, 1))
+
+
+def test_faces_that_are_cut_or_cross_themselves_keep_their_fog():
+    cut = strip("QuadSet", "0 1 1 0").replace(
+        "children [", "children [ ClipPlane { plane 1 0 0 1 }", 1)
+    left, middle, _ = colors(cut)
+    near(left, (0, 0, 0))
+    share = (MIDDLE + 3) / 6
+    near(middle, CLEAR * (1 - share) + np.array((0, 0, share)))
+    bow = strip("IndexedFaceSet", "1 1 1 1").replace("[ 0 1 2 3 -1 ]", "[ 0 2 1 3 -1 ]").replace(
+        "IndexedFaceSet {", "IndexedFaceSet { convex FALSE solid FALSE")
+    near(colors(bow)[2], (0, 0, 1))

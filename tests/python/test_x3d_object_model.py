@@ -8,8 +8,7 @@ TABLE = pathlib.Path(__file__).parent / "x3d_fields.tsv"
 
 # Fields that are not there: docs/worlds.md says what happens to them.
 LEFT_OUT = {
-    "acousticProperties", "attrib", "autoRefresh", "autoRefreshTimeLimit", "fogCoord", "load",
-    "shaders"
+    "acousticProperties", "attrib", "autoRefresh", "autoRefreshTimeLimit", "load", "shaders"
 }
 LEFT_OUT_OF = {("AudioClip", "enabled"), ("MovieTexture", "enabled"), ("Sound", "enabled"),
                ("AudioClip", "gain"), ("MovieTexture", "gain"), ("MovieTexture", "pitch"),
@@ -18,7 +17,8 @@ LEFT_OUT_OF = {("AudioClip", "enabled"), ("MovieTexture", "enabled"), ("Sound", 
                ("ComposedCubeMapTexture", "textureProperties")}
 # VRML97's names, which X3D gives to no field of the same node.
 OURS = {("Switch", "children"): "choice", ("LOD", "children"): "level",
-        ("Collision", "enabled"): "collide", ("LoadSensor", "children"): "watchList"}
+        ("Collision", "enabled"): "collide", ("LoadSensor", "children"): "watchList",
+        ("ParticleSystem", "color"): "colorRamp", ("ParticleSystem", "texCoord"): "texCoordRamp"}
 OURS.update({("ComposedCubeMapTexture", side + "Texture"): side
              for side in ("back", "bottom", "front", "left", "right", "top")})
 # Where the text of the standard differs from the object model (ISO/IEC 19775-1:2013 20.4.1, 32.4.3;

@@ -294,9 +294,16 @@ TEST_F(Library, AProbeIsKeptAsASensor) {
   EXPECT_EQ(sensor->position, (Vec3f{1, 0.5f, 0}));
   EXPECT_EQ(sensor->direction, (Vec3f{0, 0, 1}));
   EXPECT_EQ(sensor->quantity, "ILLUMINANCE");
+  EXPECT_EQ(sensor->description, "probe 1");
   EXPECT_THROW(keepInWorld(*editor, probes.all()[0], front()), EditError) << "it is there";
   editor->undo();
   EXPECT_EQ(text(), hall);
+  probes.rename(1, "Desk");
+  keepInWorld(*editor, probes.all()[0], front());
+  EXPECT_TRUE(has("description \"Desk\"")) << text();
+  Probes shown;
+  showSensors(*editor, shown);
+  EXPECT_EQ(titleOf(shown.all().at(0)), "1 Desk");
 }
 
 TEST_F(Library, SensorsAreShownAsProbes) {

@@ -28,7 +28,7 @@ constexpr const char* hall = "#VRML V2.0 utf8\n"
 std::vector<std::string> labels(const EditModel& model) {
   std::vector<std::string> all;
   for (const OutlineRow& row : model.rows())
-    all.push_back(std::string(size_t(row.depth), '.') + (row.isUse ? "USE " : "") + row.label);
+    all.push_back(std::string(size_t(row.depth), '.') + (row.isUse ? "USE " : "") + row.label());
   return all;
 }
 
@@ -163,12 +163,12 @@ TEST_F(Model, AValueChangesNoRows) {
   EXPECT_EQ(world.editor.editor().nodeChanges(), nodes);
   world.editor.editor().rename(*world.node("LAMP"), "SUN");
   EXPECT_TRUE(update());
-  EXPECT_EQ(model.rows().at(1).label, "SUN  PointLight");
+  EXPECT_EQ(model.rows().at(1).label(), "SUN  PointLight");
   EXPECT_EQ(model.sheet().title, "SUN  PointLight");
   EXPECT_GT(world.editor.editor().nodeChanges(), nodes);
   world.editor.undo();
   update();
-  EXPECT_EQ(model.rows().at(1).label, "LAMP  PointLight");
+  EXPECT_EQ(model.rows().at(1).label(), "LAMP  PointLight");
 }
 
 // So does a selection, where there are many rows: those of what it opens are added to the others.
@@ -347,8 +347,8 @@ TEST(EditorModel, HostileNamesAndLongListsAreShown) {
   EditModel model;
   model.select(world.node("P"), false);
   model.update(world.editor, front(), false, 0);
-  EXPECT_LT(model.rows().at(0).label.size(), 100u);
-  for (const OutlineRow& one : model.rows()) EXPECT_EQ(one.label.find('\x1b'), std::string::npos);
+  EXPECT_LT(model.rows().at(0).label().size(), 100u);
+  for (const OutlineRow& one : model.rows()) EXPECT_EQ(one.label().find('\x1b'), std::string::npos);
   if (!model.sheet().node) return; // a Coordinate among the roots may be left out
   EXPECT_TRUE(row(model, "point").isLong);
   EXPECT_EQ(row(model, "point").size, 1000u);

@@ -32,7 +32,7 @@ std::string groups(int count) {
 std::string textOf(const std::vector<OutlineRow>& rows) {
   std::string text;
   for (const OutlineRow& row : rows) {
-    text += std::string(size_t(row.depth), '.') + row.label + (row.isUse ? " USE" : "") +
+    text += std::string(size_t(row.depth), '.') + row.label() + (row.isUse ? " USE" : "") +
             (row.isOpen    ? " -"
              : row.canOpen ? " +"
                            : "") +
@@ -85,12 +85,12 @@ TEST(Outline, OpeningAndClosingReadNoOtherRows) {
   update("B", true);
   EXPECT_EQ(model.rows().size(), closed + 2);
   EXPECT_EQ(model.rows().at(2).depth, 2);
-  EXPECT_EQ(model.rows().at(3).label, "OLD  Group");
+  EXPECT_EQ(model.rows().at(3).label(), "OLD  Group");
   update("A", false);
-  EXPECT_EQ(model.rows().at(1).label, "OLD  Group");
+  EXPECT_EQ(model.rows().at(1).label(), "OLD  Group");
   update("A", true); // B is open still
   EXPECT_EQ(model.rows().size(), closed + 2);
-  EXPECT_EQ(model.rows().at(3).label, "OLD  Group");
+  EXPECT_EQ(model.rows().at(3).label(), "OLD  Group");
 }
 
 // A Script that holds itself is opened once.

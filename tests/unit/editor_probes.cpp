@@ -140,15 +140,34 @@ TEST_F(ProbesOfAWall, SeveralProbesShareTheChanceOfAnError) {
 TEST_F(ProbesOfAWall, TheTableHasALineForEachProbe) {
   probes.add({0, 0, 1});
   probes.add({0, 50, 1});
+  probes.rename(2, "Desk, \"left\"");
   read(grey(10, 1));
   probes.keep();
   read(grey(15, 0));
   EXPECT_EQ(probes.csv(),
             "probe,x,y,z,quantity,unit,value,half_width,trusted,before,before_half_width,"
             "difference,difference_half_width,significant,left,top,width,height,"
-            "least,most,uniformity\n"
-            "1,0,0,1,luminance,cd/m2,15,0,true,10,1,5,1,true,,,,,,,\n"
-            "2,0,50,1,luminance,cd/m2,,,,,,,,,,,,,,,\n");
+            "least,most,uniformity,name\n"
+            "1,0,0,1,luminance,cd/m2,15,0,true,10,1,5,1,true,,,,,,,,\n"
+            "2,0,50,1,luminance,cd/m2,,,,,,,,,,,,,,,,\"Desk, \"\"left\"\"\"\n");
+}
+
+TEST_F(ProbesOfAWall, AProbeSaysItsName) {
+  probes.add({0, 0, 1});
+  EXPECT_EQ(titleOf(probes.all()[0]), "1");
+  probes.rename(1, "Desk");
+  probes.rename(7, "no probe has this number");
+  EXPECT_EQ(titleOf(probes.all()[0]), "1 Desk");
+  read(grey(200, 3));
+  EXPECT_EQ(probeText(probes.all()[0], {}), "1 Desk  200 cd/m2 +- 1.5 %  trusted");
+  probes.rename(1, "two\nlines\x1b");
+  EXPECT_EQ(probes.all()[0].name, "two lines\\x1b");
+  std::string umlauts;
+  for (int i = 0; i < 1000; ++i) umlauts += "\xc3\xa4";
+  probes.rename(1, "x" + umlauts);
+  EXPECT_EQ(probes.all()[0].name, "x" + umlauts.substr(0, 198)) << "no half character";
+  probes.rename(1, "");
+  EXPECT_EQ(titleOf(probes.all()[0]), "1");
 }
 
 TEST_F(ProbesOfAWall, ARectangleIsReadInItsOwnView) {
@@ -164,7 +183,7 @@ TEST_F(ProbesOfAWall, ARectangleIsReadInItsOwnView) {
   EXPECT_NEAR(probes.differences()[0]->value, .5, 1e-5);
   EXPECT_TRUE(probes.differences()[0]->isSignificant);
   EXPECT_NE(
-      probes.csv().find("\n1,,,,luminance,cd/m2,10,0,true,9.5,0,0.5,0,true,2,2,4,4,10,10,1\n"),
+      probes.csv().find("\n1,,,,luminance,cd/m2,10,0,true,9.5,0,0.5,0,true,2,2,4,4,10,10,1,\n"),
       std::string::npos)
       << probes.csv();
   EXPECT_NE(probeText(probes.all()[0], probes.differences()[0]).find("uniformity 1"),
@@ -239,7 +258,7 @@ TEST_F(ProbesOfAWall, ASensorOfSeveralPointsHasTheirMean) {
   EXPECT_EQ(probeText(probes.all()[0], {}),
             "1  mean 250 lx +- 3.2 %  trusted  100 to 400, uniformity 0.4");
   EXPECT_EQ(probes.all()[0].now.samples, 32u);
-  EXPECT_NE(probes.csv().find("1,2,2,1,illuminance,lx,250,8,true,,,,,,,,,,100,400,0.4\n"),
+  EXPECT_NE(probes.csv().find("1,2,2,1,illuminance,lx,250,8,true,,,,,,,,,,100,400,0.4,\n"),
             std::string::npos)
       << probes.csv();
   reading.trusted[2] = 0;

@@ -113,6 +113,13 @@ TEST(Reports, TheTableHasALineForEachThing) {
                                                 "", "0.8", "", "0.5", "", "", "", "line 3"}));
 }
 
+TEST(Reports, AProbeHasItsName) {
+  Report report = example();
+  report.probes.front().name = "Desk <left>";
+  EXPECT_TRUE(has(reportPage(report), "<tr><td>1 Desk &lt;left&gt;<td>"));
+  EXPECT_EQ(linesOf(reportTable(report))[2][1], "1 Desk <left>");
+}
+
 TEST(Reports, NothingOfAWorldIsAFormulaOrABreakOfTheTable) {
   Report report = example();
   report.fields.front() = {1, "T", "=1+1", "a,b", "two \"words\"", "-1 0 0"};

@@ -107,6 +107,34 @@ TEST_F(Textures, OfTheNodeAndOfItsFieldsAreShown) {
   std::filesystem::remove(folder + "thumbnail_grey.png");
 }
 
+TEST_F(Textures, TheNextUrlIsShownInPlaceOfADamagedFile) {
+  writePng("thumbnail_good.png", 90);
+  write("thumbnail_cut.png",
+        std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\4\0\0\0\4\x08\0\0\0\0", 29));
+  writePng("thumbnail_large.png", 1, 6000); // 36 million pixels, which renderers show
+  const auto shown = [this](const char* urls) {
+    EditedWorld world(fmt::format("#VRML V2.0 utf8\nShape {{ appearance Appearance {{ texture "
+                                  "DEF T ImageTexture {{ url [ {} ] }} }} }}\n",
+                                  urls));
+    world.editor.select({world.node("T")});
+    const Thumbnail* const found = wait(world, "T");
+    return found ? *found : Thumbnail();
+  };
+  const Thumbnail second =
+      shown("\"thumbnail_cut.png\" \"thumbnail_none.png\" \"thumbnail_good.png\"");
+  EXPECT_EQ(second.error, "");
+  ASSERT_EQ(second.width, 4);
+  EXPECT_EQ(second.rgba[0], 90);
+  const Thumbnail none = shown("\"thumbnail_cut.png\" \"thumbnail_none.png\"");
+  EXPECT_EQ(none.width, 0);
+  EXPECT_NE(none.error.find("PNG"), std::string::npos) << none.error;
+  const Thumbnail large = shown("\"thumbnail_large.png\" \"thumbnail_good.png\"");
+  EXPECT_EQ(large.width, 0) << "another picture than the renderer's";
+  EXPECT_NE(large.error.find("6000 x 6000"), std::string::npos) << large.error;
+  for (const char* file : {"thumbnail_good.png", "thumbnail_cut.png", "thumbnail_large.png"})
+    std::filesystem::remove(folder + file);
+}
+
 TEST_F(Textures, AnEditShowsAnotherPicture) {
   writePng("thumbnail_1.png", 10);
   writePng("thumbnail_2.png", 20);

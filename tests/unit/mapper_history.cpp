@@ -67,7 +67,12 @@ TEST_P(MapRandomHistory, ChangedAndMappedFromNothingAreTheSame) {
       case 1: change(transforms[below(6)], "set_rotation", Rotation{0, 1, 0, number(0, 6)}); break;
       case 2: change("FC", "set_point", MFVec3f{vector(1), vector(1), vector(1), vector(1)}); break;
       case 3: change(below(2) ? "M0" : "M1", "set_diffuseColor", color()); break;
-      case 4: change("ML", "set_emissiveColor", color()); break;
+      case 4:
+        if (below(2))
+          change("ML", "set_emissiveColor", color());
+        else
+          change("ML", "set_transparency", number(0, 1));
+        break;
       case 5: change("S", "set_whichChoice", int32_t(below(4)) - 1); break;
       case 6:
         change(groups[below(7)], "addChildren", MFNode{NodeRef(&node(children[below(8)]))});

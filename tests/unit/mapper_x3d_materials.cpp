@@ -446,7 +446,7 @@ TEST_F(MapX3dMaterials, LinesHaveAWidth) {
   EXPECT_NEAR(bright("linewidthScaleFactor 10"), 10, .6f);
   EXPECT_NEAR(bright("linewidthScaleFactor 10 applied FALSE"), 1, .3f);
   silent();
-  EXPECT_NEAR(bright("linewidthScaleFactor -1e38 linetype 2"), 1, .3f);
+  EXPECT_NEAR(bright("linewidthScaleFactor -1e38 linetype 6"), 1, .3f);
   EXPECT_EQ(messages(), 1u);
 }
 

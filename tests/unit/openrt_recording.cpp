@@ -399,6 +399,11 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"TextureHuge", [](Example& e) { e.texture.width = e.texture.height = 65536; },
               "impossible size"},
         Fault{"TextureWrap", [](Example& e) { e.texture.wrapS = edit::Wrap(5); }, "unknown wrap"},
+        Fault{"TextureWrapR", [](Example& e) { e.texture.wrapR = edit::Wrap(5); }, "unknown wrap"},
+        Fault{"TextureNoDepth", [](Example& e) { e.texture.depth = 0; }, "impossible size"},
+        Fault{"TextureManyTexels", [](Example& e) { e.texture.depth = 1u << 30; },
+              "impossible size"},
+        Fault{"TextureDepth", [](Example& e) { e.texture.depth = 2; }, "wrong size"},
         Fault{"TextureBorder",
               [](Example& e) {
                 e.texture.border = {0, 0, 0};

@@ -252,7 +252,7 @@ TEST_F(Replay, AnExportCountsTheValuesOfTextures) {
   rtGenTextures(2, textures);
   std::string bytes = "fifteen  texels";
   rtBindTexture(textures[0]);
-  rtTexImage2D(1, 5, 3, RT_UNSIGNED_BYTE, bytes.data());
+  rtTexImage3D(1, 5, 1, 3, RT_UNSIGNED_BYTE, bytes.data());
   const float floats[3] = {1, 2, 3};
   rtBindTexture(textures[1]);
   rtTexImage2D(3, 1, 1, RT_FLOAT, floats);
@@ -267,13 +267,17 @@ TEST_F(Replay, AnExportCountsTheValuesOfTextures) {
   };
   std::string json = contents("scene.json");
   std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
-  EXPECT_NE(json.find("\"components\":1,\"float\":false,\"srgb\":false,\"texels\":{\"offset\":0,"
-                      "\"count\":15}"),
-            std::string::npos)
+  EXPECT_NE(
+      json.find(
+          "\"components\":1,\"depth\":3,\"float\":false,\"srgb\":false,\"texels\":{\"offset\":0,"
+          "\"count\":15}"),
+      std::string::npos)
       << json;
-  EXPECT_NE(json.find("\"components\":3,\"float\":true,\"srgb\":false,\"texels\":{\"offset\":16,"
-                      "\"count\":3}"),
-            std::string::npos)
+  EXPECT_NE(
+      json.find(
+          "\"components\":3,\"depth\":1,\"float\":true,\"srgb\":false,\"texels\":{\"offset\":16,"
+          "\"count\":3}"),
+      std::string::npos)
       << json;
   bytes.append(1, '\0').append(reinterpret_cast<const char*>(floats), sizeof floats);
   EXPECT_EQ(contents("scene.json.bin"), bytes);

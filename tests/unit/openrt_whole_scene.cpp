@@ -95,10 +95,11 @@ class Comparer {
   bool equal(const Geometry& a, const Geometry& b) const {
     return a.primitive == b.primitive && known(a.shader) == known(b.shader) && a.name == b.name &&
            same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
-           a.width == b.width && a.texGen == b.texGen && same(a.points, b.points) &&
-           same(a.indices, b.indices) && same(a.normals, b.normals) &&
-           same(a.texCoords, b.texCoords) && same(a.colors, b.colors) && same(a.rest, b.rest) &&
-           !a.surface == !b.surface && (!a.surface || *a.surface == *b.surface) &&
+           a.width == b.width && a.texGen == b.texGen && a.stipple == b.stipple &&
+           same(a.points, b.points) && same(a.indices, b.indices) && same(a.normals, b.normals) &&
+           same(a.texCoords, b.texCoords) && same(a.colors, b.colors) &&
+           same(a.fogCoords, b.fogCoords) && same(a.rest, b.rest) && !a.surface == !b.surface &&
+           (!a.surface || *a.surface == *b.surface) &&
            (known(a.shader) == 0 ||
             std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
                        b.parameters.end(), [](auto& x, auto& y) {
@@ -142,11 +143,13 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     rtBindShader(shader);
     rtLoadName(random() % 9);
     rtTexGen(random() % (RT_TEX_GEN_SPHERE_REFLECTION + 1));
+    rtLineStipple(int(random() % 3 + 1), uint16_t(random()));
     if (random() % 3 == 0) return rtSphere(number(.2f, 1));
     rtBegin(random() % 4 ? RT_TRIANGLES : RT_LINES);
     for (int i = 0; i < 6; i++) {
       rtColor3f(number(0, 1), number(0, 1), number(0, 1));
       rtTexCoord2f(number(0, 1), number(0, 1));
+      rtFogCoordf(number(0, 1));
       if (shader == varying) rtParameter3f(varyingColor, number(0, 1), number(0, 1), number(0, 1));
       rtVertex3f(number(-1, 1), number(-1, 1), number(-1, 1));
     }
@@ -174,11 +177,15 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
     if (random() % 2) {
       std::vector<uint8_t> texels(4 * 3 * 3);
       for (uint8_t& t : texels) t = uint8_t(random());
-      rtTexImage2D(3, 4, 3, RT_UNSIGNED_BYTE, texels.data());
+      if (random() % 2)
+        rtTexImage2D(3, 4, 3, RT_UNSIGNED_BYTE, texels.data());
+      else
+        rtTexImage3D(3, 4, 1, 3, RT_UNSIGNED_BYTE, texels.data());
     }
     rtTexParameteri(RT_TEXTURE_MAG_FILTER,
                     random() % 2 ? RT_NEAREST : RT_LINEAR); // also affects existing texels
     rtTexParameteri(RT_TEXTURE_WRAP_S, random() % 2 ? RT_MIRRORED_REPEAT : RT_CLAMP_TO_BORDER);
+    rtTexParameteri(RT_TEXTURE_WRAP_R, random() % 2 ? RT_REPEAT : RT_CLAMP_TO_EDGE);
     const float border[4] = {number(0, 1), number(0, 1), number(0, 1), number(0, 1)};
     if (random() % 2) rtTexParameterfv(RT_TEXTURE_BORDER_COLOR, border);
   }

@@ -256,6 +256,8 @@ TEST(ServerMessage, ReadsToolsAndLight) {
   EXPECT_EQ(edited<edit::PointAt>(R"("command":"point","x":0.25,"y":0)").place->x, 0.25);
   EXPECT_FALSE(edited<edit::PointAt>(R"("command":"point")").place) << "it rests no more";
   EXPECT_EQ(edited<edit::KeepInWorld>(R"("command":"keep_in_world","probe":2)").probe, 2);
+  EXPECT_EQ(edited<edit::NameProbe>(R"("command":"name_probe","probe":2,"name":"Desk")").name,
+            "Desk");
   edited<edit::ShowSensors>(R"("command":"show_sensors")");
   edited<edit::ProbeTable>(R"("command":"probe_table")");
   edited<edit::Report>(R"("command":"report")");
@@ -272,6 +274,7 @@ TEST(ServerMessage, RefusesEditsThatAreNone) {
   has(R"("command":"rows","first":-1,"count":3)", "from 0 to");
   has(R"("command":"rows","first":0,"count":501)", "from 0 to 500");
   has(R"("command":"rows","first":0.5,"count":1)", "a whole number");
+  has(R"("command":"name_probe","probe":1,"name":")" + std::string(201, 'x') + "\"", "200 bytes");
   has(R"("command":"open","node":-1,"open":true)", "the number of a node");
   has(R"("command":"open","node":"LAMP","open":true)", "the number of a node");
   has(R"("command":"select","node":1.5)", "the number of a node");

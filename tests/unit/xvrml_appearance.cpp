@@ -165,6 +165,20 @@ TEST(TexturePicture, SaysWhyThereIsNone) {
   EXPECT_EQ(texturePicture(textureIn(*none), *none).error, "");
 }
 
+TEST(TexturePicture, BeginsWithTheUrlThatIsWanted) {
+  const auto world =
+      worldOf(std::string("Shape { appearance Appearance { texture ImageTexture { url [ "
+                          "\"missing.png\" \"") +
+              gif + "\" \"other.png\" ] } } }");
+  const TexturePicture first = texturePicture(textureIn(*world), *world, Decode::no);
+  EXPECT_EQ(first.url, 1u);
+  EXPECT_EQ(first.error, "");
+  const TexturePicture behind = texturePicture(textureIn(*world), *world, Decode::no, 2);
+  EXPECT_TRUE(behind.file.empty());
+  EXPECT_NE(behind.error.find("other.png"), std::string::npos) << behind.error;
+  EXPECT_EQ(texturePicture(textureIn(*world), *world, Decode::no, 3).error, "");
+}
+
 TEST(TexturePicture, ObeysTheLimitsOfTheWorld) {
   auto world =
       worldOf(std::string("Shape { appearance Appearance { texture ImageTexture { url \"") + gif +

@@ -226,27 +226,6 @@ TEST_P(Edited, WhatIsRefusedIsSaid) {
             "'Shape' is no node with children");
 }
 
-TEST_P(Edited, LineEndsAndTheByteOrderMarkStay) {
-  load("DEF G Group {\r\n}\r\n", "#VRML V2.0 utf8\r\n");
-  editor->insert({&node("G"), "children", 0}, "Group { }");
-  EXPECT_EQ(editor->text(), "#VRML V2.0 utf8\r\nDEF G Group {\r\n  children [\r\n    Group { }\r\n"
-                            "  ]\r\n}\r\n");
-  EXPECT_EQ(editor->bytes(), editor->text());
-}
-
-TEST_P(Edited, NewLinesEndAsThoseOfTheFile) {
-  load("Shape { geometry PointSet { coord DEF C Coordinate { } } }\r\n"
-       "Shape { geometry PointSet { coord DEF D Coordinate { point [ 0 0 0, 1 1 1 ] } } }\r\n",
-       "#VRML V2.0 utf8\r\n");
-  for (const char* name : {"C", "D"}) editor->set(node(name), "point", MFVec3f(100));
-  editor->wrap({nullptr, "", 0});
-  const std::string now = editor->text();
-  EXPECT_GT(std::count(now.begin(), now.end(), '\n'), 5);
-  for (size_t i = now.find('\n'); i != now.npos; i = now.find('\n', i + 1))
-    EXPECT_EQ(now[i - 1], '\r') << i;
-  undoAll();
-}
-
 TEST(Editor, PackedFilesStayPacked) {
   const Folder folder;
   const std::string text = "#VRML V2.0 utf8\nDEF L PointLight { }\n";

@@ -270,6 +270,17 @@ TEST_P(EditedXml, LineEndsStay) {
   undoAll();
 }
 
+TEST_P(EditedXml, TextsThatAreInsertedGetTheEndsOfLinesOfTheFile) {
+  load("<Scene>\r\n  <Group DEF='G'/>\r\n</Scene></X3D>", "<X3D version='3.3'>\r\n", "w.x3d");
+  editor->insert({&node("G"), "children", 0},
+                 "<Script>\n  <!-- it's -->\n  <field name='v' type='MFFloat'\n    "
+                 "accessType='inputOutput' value='1\n2'/><![CDATA[ecmascript:\n1]]>\n</Script>");
+  const std::string now = editor->text();
+  EXPECT_EQ(std::count(now.begin(), now.end(), '\n'), 11);
+  EXPECT_EQ(std::count(now.begin(), now.end(), '\r'), 11);
+  undoAll();
+}
+
 TEST(XmlEditor, EmptyScenesAreFilled) {
   const Folder folder;
   for (const auto& [text, filled] :

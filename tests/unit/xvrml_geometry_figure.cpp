@@ -1,13 +1,14 @@
 // xvrml_geometry_figure.cpp: skins of figures: blended joints, displacers, and what hostile ones
 // do. The places of vertices follow from the formula of linear blend skinning by hand.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "geometry/builders.h"
 #include "geometry/figure.h"
-#include "geometry/mesh.h"
 #include "xvrml/browser.h"
 #include "xvrml/deformed.h"
 #include "xvrml/nodes.h"
@@ -100,6 +101,24 @@ TEST(Figure, SkinsMayBeNurbs) {
   for (const Vec3f& point : mesh.points) EXPECT_EQ(point.z, 7);
 }
 
+// Geospatial places need more digits than floats have.
+TEST(Figure, CoordinatesInDoublePrecisionKeepTheirDigits) {
+  const auto world = load(
+      "DEF F HAnimHumanoid { skinCoord DEF C CoordinateDouble { point [ 4000000.001 0 0, 1 0 0 ] "
+      "} skeleton HAnimJoint { skinCoordIndex [ 0 1 ] translation 0 0.125 0 } }\n"
+      "DEF S HAnimSegment { coord DEF D CoordinateDouble { point 4000000.001 0 0 } displacers "
+      "HAnimDisplacer { coordIndex 0 displacements 0.125 0 0 weight 1 } }\n"
+      "Shape { geometry DEF P PointSet { coord USE C } }");
+  for (const char* name : {"F", "S"})
+    EXPECT_EQ(deform(*world->scope.names.at(name), nullptr).size(), 1u);
+  const auto skin = drawnPoints(named<nodes::CoordinateDouble>(*world, "C"));
+  EXPECT_EQ(skin[0], (Vec3d{4000000.001, 0.125, 0}));
+  EXPECT_EQ(drawnPoints(named<nodes::CoordinateDouble>(*world, "D"))[0],
+            (Vec3d{4000000.126, 0, 0}));
+  EXPECT_EQ(coordinates(named<nodes::PointSet>(*world, "P").coord).points[1],
+            (Vec3f{1, 0.125f, 0}));
+}
+
 // A displacer moves vertices before the joints turn them; it belongs to a joint or to a segment.
 TEST(Figure, DisplacersMoveVertices) {
   const auto world =
@@ -181,6 +200,57 @@ TEST(Figure, ASkinFollowsItsJointsInARunningWorld) {
   EXPECT_TRUE(reported);
   ASSERT_TRUE(browser.set(coord, "point", MFVec3f{{0, 0, 0}, {1, 0, 0}, {4, 0, 0}, {3, 1, 0}}));
   expectNear(drawnPoints(coord)[2], {1, -3, 0}); // another rest
+}
+
+bool isReported(Browser& browser, const Node& node) {
+  const FieldChanges changes = browser.takeChanges();
+  return std::any_of(changes.begin(), changes.end(),
+                     [&node](const FieldChange& change) { return change.node.get() == &node; });
+}
+
+TEST(Figure, WhatIsTakenOutGoesBackToRest) {
+  auto loaded = load(bar + "DEF G HAnimHumanoid { }");
+  auto& coord = named<nodes::Coordinate>(*loaded, "C");
+  auto& normal = named<nodes::Normal>(*loaded, "N");
+  Browser browser(std::move(loaded));
+  browser.takeChanges();
+  ASSERT_TRUE(browser.set(*browser.node("F"), "skinCoord", NodeRef())); // the first event at all
+  expectNear(drawnPoints(coord)[2], {2, 0, 0});
+  EXPECT_EQ(drawnNormals(normal).data(), normal.vector.data()) << "without vertices";
+  EXPECT_TRUE(isReported(browser, coord));
+  ASSERT_TRUE(browser.set(coord, "point", MFVec3f{{5, 0, 0}}));
+  EXPECT_EQ(drawnPoints(coord).size(), 1u) << "its own points are drawn again";
+  ASSERT_TRUE(browser.set(coord, "point", MFVec3f{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 1, 0}}));
+  ASSERT_TRUE(browser.set(*browser.node("F"), "skinCoord", NodeRef(&coord)));
+  expectNear(drawnPoints(coord)[2], {1, 1, 0});
+  // Another figure takes it over within one event, and has no joints.
+  ASSERT_TRUE(browser.set(*browser.node("G"), "skinCoord", NodeRef(&coord)));
+  ASSERT_TRUE(browser.set(*browser.node("F"), "skinCoord", NodeRef()));
+  expectNear(drawnPoints(coord)[2], {2, 0, 0});
+}
+
+TEST(Figure, ASegmentWithoutDisplacersIsAtRest) {
+  auto loaded = load("DEF S HAnimSegment { coord DEF C Coordinate { point 1 0 0 } displacers "
+                     "HAnimDisplacer { coordIndex 0 displacements 0 4 0 weight 0.5 } }");
+  auto& coord = named<nodes::Coordinate>(*loaded, "C");
+  Browser browser(std::move(loaded));
+  expectNear(drawnPoints(coord)[0], {1, 2, 0});
+  ASSERT_TRUE(browser.set(*browser.node("S"), "displacers", MFNode()));
+  expectNear(drawnPoints(coord)[0], {1, 0, 0});
+}
+
+TEST(Figure, AFigureThatGoesLeavesItsSkinAtRest) {
+  auto loaded =
+      load(bar + "Shape { geometry IndexedFaceSet { coord USE C coordIndex [ 0 1 2 ] } }");
+  auto& coord = named<nodes::Coordinate>(*loaded, "C");
+  Browser browser(std::move(loaded));
+  browser.tick(0);
+  expectNear(drawnPoints(coord)[2], {1, 1, 0});
+  browser.world().scope.names.erase("F");
+  browser.removeRoot(*browser.world().scope.roots[0]);
+  browser.tick(1);
+  browser.takeChanges();
+  expectNear(drawnPoints(coord)[2], {2, 0, 0});
 }
 
 } // namespace

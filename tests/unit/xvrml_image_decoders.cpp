@@ -305,7 +305,7 @@ TEST(ImageDamage, RoomIsCheckedFirst) {
     EXPECT_EQ(with({limits, 40'000}), "");
     EXPECT_NE(with({limits, 29'999}).find("all pictures of a world"), std::string::npos)
         << with({limits, 29'999});
-    const Budget wide(1 << 20), narrow(29'999);
+    Budget wide(1 << 20), narrow(29'999);
     EXPECT_EQ(with({limits, 40'000, &wide}), "");
     EXPECT_NE(with({limits, 40'000, &narrow}).find("worldBytes=29999"), std::string::npos);
   }
@@ -314,7 +314,7 @@ TEST(ImageDamage, RoomIsCheckedFirst) {
 TEST(ImageDamage, OtherFilesAreNoPictures) {
   EXPECT_NE(refusal({}).find("empty"), std::string::npos);
   std::string world = "#VRML V2.0 utf8\nShape {}\n";
-  EXPECT_NE(refusal(Bytes(world.begin(), world.end())).find("not a PNG, JPEG or GIF"),
+  EXPECT_NE(refusal(Bytes(world.begin(), world.end())).find("not a PNG, JPEG, GIF"),
             std::string::npos);
   EXPECT_NE(refusal(Bytes(1000, 0)), "");
 }

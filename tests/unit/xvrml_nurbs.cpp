@@ -314,6 +314,27 @@ Mesh together(const Mesh& a, const Mesh& b) {
   return both;
 }
 
+TEST(Nurbs, PiecesOfATrimmedSurfaceKeepTheirEnds) {
+  Made<nodes::NurbsTrimmedSurface> surface("NurbsTrimmedSurface");
+  surface->uDimension = 4;
+  surface->vDimension = surface->uOrder = surface->vOrder = 2;
+  surface->uKnot = numbers({0, 0, 1, 1, 2, 2});
+  surface->controlPoint = coordinate(
+      {{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {5, 0, 1}, {0, 1, 0}, {1, 1, 0}, {5, 1, 0}, {5, 1, 1}});
+  Made<nodes::ContourPolyline2D> outline("ContourPolyline2D");
+  outline->controlPoint = {{0.5, 0}, {2, 0}, {2, 1}, {0.5, 1}};
+  surface->trimmingContour = {contour(outline)};
+  const Built built = build(surface);
+  expectSound(built.mesh);
+  EXPECT_NEAR(area(built.mesh), 1.5, 1e-5);
+  for (size_t i = 0; i < built.mesh.points.size(); i++) {
+    const bool isFirst = built.mesh.points[i].x < 1.0001f;
+    EXPECT_EQ(built.mesh.points[i].x, isFirst ? built.mesh.points[i].x : 5.0f);
+    EXPECT_EQ(std::abs(built.mesh.normals[i].z), isFirst ? 1 : 0);
+    EXPECT_EQ(std::abs(built.mesh.normals[i].x), isFirst ? 0 : 1);
+  }
+}
+
 TEST(Nurbs, ContoursLeaveWhatIsOnTheirLeft) {
   const double disk = 200 * std::sin(2 * std::numbers::pi / 200) / 2 * 4; // a circle's, radius 2
   Made<nodes::NurbsTrimmedSurface> surface("NurbsTrimmedSurface");

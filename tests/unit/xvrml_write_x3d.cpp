@@ -1,6 +1,7 @@
 // xvrml_write_x3d.cpp: worlds written as X3D, in ClassicVRML and in XML (ISO/IEC 19776-1 and -2).
 #include <gtest/gtest.h>
 
+#include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
 namespace {
@@ -252,6 +253,21 @@ TEST(WriteX3d, PrototypesHaveAnInterfaceABodyAndConnections) {
     <ExternProtoDeclare name='E' url='"e.wrl"'>
       <field accessType='initializeOnly' type='SFFloat' name='x'/>
     </ExternProtoDeclare>)");
+}
+
+// The positions of what Switch and LOD choose from stay, and so does what is drawn.
+TEST(WriteX3d, AnEmptyGroupTakesThePlaceOfNull) {
+  const char* const text = "Switch { whichChoice 1 choice [ NULL Shape { } NULL ] }\n"
+                           "Group { children [ NULL Shape { } ] }";
+  EXPECT_EQ(scene(text), "\n    <Switch whichChoice='1'>\n      <Group/>\n      <Shape/>\n      "
+                         "<Group/>\n    </Switch>\n    <Group>\n      <Shape/>\n    </Group>");
+  const auto again = loadWorldFromMemory(
+      written(std::string("#VRML V2.0 utf8\n") + text, Encoding::x3dJson), "w.x3dj");
+  const auto& choice = nodeCast<nodes::Switch>(again->scope.roots.at(0))->choice;
+  ASSERT_EQ(choice.size(), 3u);
+  EXPECT_TRUE(nodeCast<nodes::Group>(choice[0]));
+  EXPECT_TRUE(nodeCast<nodes::Shape>(choice[1]));
+  EXPECT_EQ(nodeCast<nodes::Group>(again->scope.roots.at(1))->children.size(), 1u);
 }
 
 TEST(WriteX3d, RoutesAreElements) {

@@ -72,18 +72,18 @@ TEST(X3d, TheHeadIsKept) {
 }
 
 TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
-  const auto world = load("#X3D V3.3 utf8\nParticleSystem { }\nDEF L LinePickSensor { }\n"
-                          "LinePickSensor { }\nShape { geometry PointSet { fogCoord NULL } }\n"
-                          "Shape { geometry PointSet { fogCoord NULL } }\n"
+  const auto world = load("#X3D V3.3 utf8\nCollisionSpace { }\nDEF L LinePickSensor { }\n"
+                          "LinePickSensor { }\nShape { geometry PointSet { normal NULL } }\n"
+                          "Shape { geometry PointSet { normal NULL } }\n"
                           "ROUTE L.enabled TO L.enabled");
   EXPECT_EQ(
       messagesOf(*world),
-      (Messages{"test.x3dv:2:1: warning: nodes of type 'ParticleSystem' (particles) are not "
-                "supported and are left out here and below, with all that they hold: no particles "
-                "are drawn",
+      (Messages{"test.x3dv:2:1: warning: nodes of type 'CollisionSpace' (physics) are not "
+                "supported and are left out here and below, with all that they hold: bodies do not "
+                "move",
                 "test.x3dv:3:7: warning: nodes of type 'LinePickSensor' (sensor) are not supported "
                 "and are left out here and below, with all that they hold: it sends no events",
-                "test.x3dv:5:29: warning: field 'fogCoord' of PointSet is not "
+                "test.x3dv:5:29: warning: field 'normal' of PointSet is not "
                 "supported: it is left out here and below",
                 "test.x3dv:7:7: warning: 'L' was left out above"}));
   EXPECT_EQ(world->scope.roots.size(), 2u);

@@ -23,6 +23,11 @@ Transform { translation -1 0 0 children Shape {
 Transform { translation 1.5 0 0 children Shape {
   appearance Appearance { material Material { } } geometry Text { string "wheel" } } }
 """
+# a BMP picture of one pixel
+BITMAP = """#VRML V2.0 utf8
+Shape { geometry Box { } appearance Appearance { texture ImageTexture { url
+  "data:image/bmp;base64,Qk06AAAAAAAAADYAAAAoAAAAAQAAAAEAAAABABgAAAAAAAQAAAAAAAAAAAAAAAAAAAAAAAAAAAD/AA==" } } }
+"""
 HEADER = "#VRML V2.0 utf8\nDEF S Script { eventOut SFFloat x url "
 PROGRAMS = {  # engine: trusted, program
     "JavaScript": (False, '"javascript:function initialize() { x = 42; }"'),
@@ -63,6 +68,13 @@ def main():
         check=False)
     assert done.returncode == 0 and not done.stderr, done
     assert by_vv.read_bytes().startswith(b"\x89PNG")
+
+    if not emulated:  # a picture that another process of the wheel decodes
+        textured = folder / "textured.wrl"
+        textured.write_text(BITMAP)
+        world = xvrml.load(textured)
+        world.render(size=(16, 12), spp=1)
+        assert not world.warnings, world.warnings
 
     listed = subprocess.run([vv, "--list-features", "--json"],
                             capture_output=True,

@@ -65,7 +65,8 @@ void keepInWorld(WorldEditor& editor, const Probe& probe, const EditView& view) 
     file.set(*made, "position", reading.position);
     file.set(*made, "direction", reading.direction);
     file.set(*made, "quantity", std::string(reading.quantity));
-    file.set(*made, "description", fmt::format("probe {}", probe.number));
+    file.set(*made, "description",
+             probe.name.empty() ? fmt::format("probe {}", probe.number) : probe.name);
   });
   editor.select({made});
 }
@@ -93,7 +94,8 @@ void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
     if (hasProbe(probes, sensor)) continue;
     if (probes.all().size() >= most)
       throw EditError(fmt::format("there are {} probes already", most));
-    probes.addSensor(sensor, sensor.name.substr(0, 64));
+    probes.addSensor(sensor);
+    probes.rename(probes.all().back().number, sensor.name);
   }
   if (probes.all().size() == before)
     throw EditError(hasLarge ? fmt::format("the file has no more sensors of at most {} points: vv "

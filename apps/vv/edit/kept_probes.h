@@ -11,14 +11,15 @@ namespace vv {
 inline bool canBeKept(const Probe& probe) { return !probe.isMean(); }
 
 // Adds an ORTSensor at the end of the file that reads what a probe reads: the illuminance at its
-// point, or the luminance that the viewer of this view sees there. One step; selects the sensor.
+// point, or the luminance that the viewer of this view sees there. Its description is the name of
+// the probe. One step; selects the sensor.
 // Throws xvrml::EditError if the file has that sensor, or the probe is not in the picture.
 void keepInWorld(WorldEditor& editor, const Probe& probe, const EditView& view);
 
 // Adds a probe for each ORTSensor of the file that has no probe yet, until there are `most` probes:
-// one of several points reads their mean. Those with more than mostPoints points are left out.
-// Throws xvrml::EditError if there is none to be added, or no room, and picture::SensorError for a
-// sensor whose fields make no sense.
+// one of several points reads their mean. The probe has the name of the sensor. Those with more
+// than mostPoints points are left out. Throws xvrml::EditError if there is none to be added, or no
+// room, and picture::SensorError for a sensor whose fields make no sense.
 inline constexpr int mostPoints = 1000;
 void showSensors(WorldEditor& editor, Probes& probes, size_t most = ~size_t(0));
 

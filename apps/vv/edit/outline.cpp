@@ -50,12 +50,27 @@ bool contains(std::string_view text, std::string_view part) {
   return std::search(text.begin(), text.end(), part.begin(), part.end(), same) != text.end();
 }
 
-bool matches(const Node& node, std::string_view text) {
-  if (contains(node.defName, text) || contains(node.type().name, text)) return true;
-  return std::any_of(
-      node.type().fields.begin(), node.type().fields.end(),
-      [text](const FieldInfo& field) { return holdsValue(field) && contains(field.name, text); });
-}
+// Looks for a text in nodes. Each type is looked at once: a million nodes have a few types.
+class Search {
+ public:
+  explicit Search(std::string_view text) : text_(text) {}
+  bool matches(const Node& node) {
+    const NodeType& type = node.type();
+    const auto [known, isNew] = types_.try_emplace(&type, false);
+    if (isNew) known->second = matchesType(type);
+    return known->second || contains(node.defName, text_);
+  }
+
+ private:
+  bool matchesType(const NodeType& type) const {
+    return contains(type.name, text_) ||
+           std::any_of(type.fields.begin(), type.fields.end(), [this](const FieldInfo& field) {
+             return holdsValue(field) && contains(field.name, text_);
+           });
+  }
+  const std::string_view text_;
+  std::unordered_map<const NodeType*, bool> types_;
+};
 
 // A place that is still to be visited.
 struct Open {
@@ -68,12 +83,11 @@ PlacedNode placed(const Open& open) {
   return {open.node, NodeRef(open.slot.parent), open.slot.field, open.slot.index};
 }
 
-std::vector<Open> rootPlaces(const World& world) {
-  std::vector<Open> places;
+// Calls visit(place) for each root, until it returns false.
+template <class Visit> void forEachRoot(const World& world, const Visit& visit) {
   const std::vector<NodeRef>& roots = world.scope.roots;
-  for (size_t i = roots.size(); i-- > 0;)
-    if (roots[i]) places.push_back({{nullptr, "", i}, roots[i], 0});
-  return places;
+  for (size_t i = 0; i < roots.size(); ++i)
+    if (roots[i] && !visit(Open{{nullptr, "", i}, roots[i], 0})) return;
 }
 
 // Appends the children of a node, so that the first one is visited next.
@@ -87,17 +101,13 @@ void appendChildPlaces(std::vector<Open>& open, const Open& parent) {
 
 // Returns the row of a place, which is closed.
 OutlineRow closedRow(const Open& place) {
-  OutlineRow row{place.node, place.depth, labelOf(*place.node), hasChildren(*place.node),
-                 false,      false,       placed(place)};
-  if (place.slot.parent && !place.slot.field.empty() && place.slot.field != "children")
-    row.label = place.slot.field + ": " + row.label;
-  return row;
+  return {place.node, place.depth, hasChildren(*place.node), false, false, placed(place)};
 }
 
-// Returns the rows of places, the last one first, and of what is open in them. seen: receives their
-// nodes.
-std::vector<OutlineRow> rowsOf(std::vector<Open> open, const OpenNodes& opened, SeenNodes& seen) {
-  std::vector<OutlineRow> rows;
+// Appends the rows of places, the last one first, and of what is open in them, and empties the
+// places. seen: receives their nodes.
+void addRowsOf(std::vector<Open>& open, const OpenNodes& opened, SeenNodes& seen,
+               std::vector<OutlineRow>& rows) {
   while (!open.empty()) {
     const Open place = std::move(open.back());
     open.pop_back();
@@ -107,7 +117,6 @@ std::vector<OutlineRow> rowsOf(std::vector<Open> open, const OpenNodes& opened, 
     if (row.isOpen) appendChildPlaces(open, place);
     rows.push_back(std::move(row));
   }
-  return rows;
 }
 
 } // namespace
@@ -120,9 +129,22 @@ std::string labelOf(const Node& node) {
   return name.empty() ? node.type().name : printable(name) + "  " + node.type().name;
 }
 
+std::string OutlineRow::label() const {
+  const bool isInField = depth > 0 && !place.field.empty() && place.field != "children";
+  return (isInField ? place.field + ": " : "") + labelOf(*node);
+}
+
 std::vector<OutlineRow> Outline::rows(const World& world) const {
   SeenNodes seen;
-  return rowsOf(rootPlaces(world), open_, seen);
+  std::vector<OutlineRow> rows;
+  rows.reserve(world.scope.roots.size());
+  std::vector<Open> places;
+  forEachRoot(world, [&](const Open& root) {
+    places.push_back(root);
+    addRowsOf(places, open_, seen, rows);
+    return true;
+  });
+  return rows;
 }
 
 void Outline::setOpen(const NodeRef& node, bool open) {
@@ -170,7 +192,8 @@ bool Outline::changeRowsOf(const Node& node, std::vector<OutlineRow>& rows) cons
   }
   std::vector<Open> places;
   appendChildPlaces(places, {{}, row->node, row->depth});
-  std::vector<OutlineRow> added = rowsOf(std::move(places), open_, seen);
+  std::vector<OutlineRow> added;
+  addRowsOf(places, open_, seen, added);
   if (std::any_of(rows.begin(), rows.end(), standsIn)) return false;
   row->isOpen = true;
   rows.insert(first, std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
@@ -180,15 +203,20 @@ bool Outline::changeRowsOf(const Node& node, std::vector<OutlineRow>& rows) cons
 std::vector<OutlineRow> Outline::find(const World& world, std::string_view text, size_t most) {
   std::vector<OutlineRow> found;
   SeenNodes seen;
-  std::vector<Open> open = rootPlaces(world);
-  while (!open.empty() && found.size() < most) {
-    const Open place = std::move(open.back());
-    open.pop_back();
-    if (!seen.insert(place.node.get())) continue;
-    if (matches(*place.node, text))
-      found.push_back({place.node, 0, labelOf(*place.node), false, false, false, placed(place)});
-    appendChildPlaces(open, place);
-  }
+  Search search(text);
+  std::vector<Open> open;
+  forEachRoot(world, [&](const Open& root) {
+    open.push_back(root);
+    while (!open.empty() && found.size() < most) {
+      const Open place = std::move(open.back());
+      open.pop_back();
+      if (!seen.insert(place.node.get())) continue;
+      if (search.matches(*place.node))
+        found.push_back({place.node, 0, false, false, false, placed(place)});
+      appendChildPlaces(open, place);
+    }
+    return found.size() < most;
+  });
   return found;
 }
 
@@ -222,12 +250,17 @@ MFNode nodesOfFile(const World& world, const std::vector<PickHit::Step>& path) {
 // Finds a node by a walk over the file.
 static std::vector<Node*> searchFor(const World& world, const Node& node) {
   std::unordered_map<const Node*, Node*> parents;
-  std::vector<Open> open = rootPlaces(world);
-  while (!open.empty() && !parents.contains(&node)) {
-    const Open place = std::move(open.back());
-    open.pop_back();
-    if (parents.emplace(place.node.get(), place.slot.parent).second) appendChildPlaces(open, place);
-  }
+  std::vector<Open> open;
+  forEachRoot(world, [&](const Open& root) {
+    open.push_back(root);
+    while (!open.empty() && !parents.contains(&node)) {
+      const Open place = std::move(open.back());
+      open.pop_back();
+      if (parents.emplace(place.node.get(), place.slot.parent).second)
+        appendChildPlaces(open, place);
+    }
+    return !parents.contains(&node);
+  });
   std::vector<Node*> path;
   if (!parents.contains(&node)) return path;
   for (Node* at = const_cast<Node*>(&node); at; at = parents[at]) path.push_back(at);

@@ -17,11 +17,14 @@ namespace vv {
 
 struct OutlineRow {
   xvrml::NodeRef node;
-  int depth = 0;
-  std::string label; // "LAMP  PointLight"
+  int depth = 0; // 0 for roots and for what a search has found
   bool canOpen = false, isOpen = false;
   bool isUse = false; // the node stands further up, too
   PlacedNode place{}; // this one of its places
+
+  // Returns what the row says: "LAMP  PointLight", or "geometry: Box" in a field of its own. It is
+  // made when the row is drawn, because most of a million are not.
+  std::string label() const;
 };
 
 // Nodes whose children are to be seen. It keeps them, so that no address comes again.

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "edit/csv_field.h"
 #include "holm.h"
+#include "printable.h"
 
 namespace vv {
 
@@ -54,8 +56,23 @@ void readArea(Probe& probe, const picture::Picture& picture, const EditView& vie
   probe.state = Probe::State::read;
 }
 
+// Returns a name in one line, of at most Probe::mostNameBytes, without half a character at its end.
+std::string shortName(std::string_view text) {
+  std::string name = printable(text);
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  size_t size = std::min(name.size(), Probe::mostNameBytes);
+  while (size < name.size() && (static_cast<unsigned char>(name[size]) & 0xc0) == 0x80) --size;
+  name.resize(size);
+  return name;
+}
+
 } // namespace
 
+std::string titleOf(const Probe& probe) {
+  return probe.name.empty() ? std::to_string(probe.number)
+                            : fmt::format("{} {}", probe.number, probe.name);
+}
 const char* quantityOf(const Probe& probe) {
   return readsIlluminance(probe) ? "illuminance" : "luminance";
 }
@@ -70,7 +87,7 @@ std::string lightText(const picture::PixelReading& light, const char* unit) {
 }
 
 std::string probeText(const Probe& probe, const std::optional<Difference>& change) {
-  std::string text = fmt::format("{}  {}", probe.number, probe.isMean() ? "mean " : "");
+  std::string text = fmt::format("{}  {}", titleOf(probe), probe.isMean() ? "mean " : "");
   switch (probe.state) {
   case Probe::State::waiting:
     return text + (probe.sensor ? "is being measured" : "waits for a still picture");
@@ -123,6 +140,11 @@ void Probes::addSensor(const picture::PlacedSensor& sensor, std::string seen) {
 void Probes::add(const Region& region, const EditView& view) {
   add({0, 0, 0});
   probes_.back().area = {region, view, {}};
+}
+
+void Probes::rename(int number, std::string_view name) {
+  for (Probe& probe : probes_)
+    if (probe.number == number) probe.name = shortName(name);
 }
 
 bool Probes::readPictures() const {
@@ -223,7 +245,7 @@ std::string Probes::csv() const {
   std::string text =
       "probe,x,y,z,quantity,unit,value,half_width,trusted,before,before_half_width,difference,"
       "difference_half_width,significant,left,top,width,height,least,most,"
-      "uniformity\n";
+      "uniformity,name\n";
   const std::vector<std::optional<Difference>> changes = differences();
   for (size_t i = 0; i < probes_.size(); ++i) {
     const Probe& probe = probes_[i];
@@ -247,7 +269,7 @@ std::string Probes::csv() const {
     text += several && isRead ? fmt::format(",{:.9g},{:.9g},{:.9g}", several->least, several->most,
                                             several->uniformity())
                               : ",,,";
-    text += "\n";
+    text += "," + (probe.name.empty() ? "" : csvField(probe.name)) + "\n";
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "edit/comparison.h"
@@ -23,7 +24,10 @@ struct Probe {
     RegionReading reading;
   };
 
+  static constexpr size_t mostNameBytes = 200;
+
   int number = 0;
+  std::string name;              // that a user has given it, or its sensor; "": none
   std::array<double, 3> point{}; // in the world, if there is no area
   std::string seen; // what it was put on: node, look, distance, place and normal; "" if nothing
   std::optional<Area> area;
@@ -44,12 +48,14 @@ struct Probe {
   const MeanReading* several() const { return area ? &area->reading : points ? &*points : nullptr; }
 };
 
+// Returns how a probe is called: "1", or "1 Desk" with a name.
+std::string titleOf(const Probe& probe);
 // Return what a probe reads: "luminance" in "cd/m2", or "illuminance" in "lx".
 const char* quantityOf(const Probe& probe);
 const char* unitOf(const Probe& probe);
 // Returns a luminance with its 95 % interval, or an illuminance: "412 cd/m2 +- 1.5 %  trusted".
 std::string lightText(const picture::PixelReading& light, const char* unit);
-// Returns what a probe says: "1  412 cd/m2 +- 1.5 %  trusted   B - A: -41 +- 8, significant".
+// Returns what a probe says: "1 Desk  412 cd/m2 +- 1.5 %  trusted   B - A: -41 +- 8, significant".
 std::string probeText(const Probe& probe, const std::optional<Difference>& change);
 
 // The place of the picture where a pointer rests, from -1 to 1 each way, and what is seen there.
@@ -73,6 +79,8 @@ class Probes {
   void addSensor(const picture::PlacedSensor& sensor, std::string seen = {});
   // Adds a rectangle of the pictures of this view.
   void add(const Region& region, const EditView& view);
+  // Names the probe of this number, if there is one. Longer names are cut.
+  void rename(int number, std::string_view name);
   void clear();
   // Reads all probes from a picture of this view, which has picture::readingChannels and only
   // unbiased samples. A probe behind something else, or where nothing is any more, is hidden. A

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base64.h"
+#include "edit/csv_field.h"
 #include "printable.h"
 
 namespace vv {
@@ -47,22 +48,6 @@ std::string escaped(std::string_view text) {
     }
   }
   return out;
-}
-
-// Returns a text as a field of CSV (RFC 4180). One that a spreadsheet would take for a formula gets
-// an apostrophe before it.
-std::string quoted(std::string_view text) {
-  const auto isNumber = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
-  const bool isFormula =
-      !text.empty() &&
-      (text[0] == '=' || text[0] == '@' ||
-       ((text[0] == '+' || text[0] == '-') && !(text.size() > 1 && isNumber(text[1]))));
-  std::string out = isFormula ? "\"'" : "\"";
-  for (const char c : printable(text)) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
 }
 
 std::string interval(double value, double halfWidth, bool sign = false) {
@@ -140,8 +125,9 @@ void addProbes(const Report& report, std::string& out) {
         change ? fmt::format("{}, {}", verdictOf(*change), stateOf(probe)) : stateOf(probe);
     out += fmt::format("<tr><td>{}<td>{}<td>{}, {}<td class=n>{}<td class=n>{}<td "
                        "class=n>{}<td>{}</tr>\n",
-                       probe.number, placeOf(probe), quantityOf(probe), unitOf(probe), before, now,
-                       change ? interval(change->value, change->halfWidth, true) : "", verdict);
+                       escaped(titleOf(probe)), placeOf(probe), quantityOf(probe), unitOf(probe),
+                       before, now, change ? interval(change->value, change->halfWidth, true) : "",
+                       verdict);
   }
   out += "</table>\n<p class=weak>± is half of the 95 % interval. A change is significant at 5 % "
          "for all probes together (Holm), if both intervals can be trusted.</p>\n";
@@ -191,12 +177,13 @@ std::string reportTable(const Report& report) {
   std::string out = "kind,name,field,x,y,z,before,before_half_width,now,now_half_width,difference,"
                     "difference_half_width,remark\n";
   for (const ReportPicture& one : report.pictures)
-    out += fmt::format("picture,{},,{},{},,,,,,,,{}\n", quoted(one.title), one.width, one.height,
-                       quoted(one.command));
+    out += fmt::format("picture,{},,{},{},,,,,,,,{}\n", csvField(one.title), one.width, one.height,
+                       csvField(one.command));
   for (size_t i = 0; i < report.probes.size(); ++i) {
     const Probe& probe = report.probes[i];
     const std::optional<Difference>& change = changeOf(report, i);
-    out += fmt::format("probe,{},{} in {},", probe.number, quantityOf(probe), unitOf(probe));
+    out += fmt::format("probe,{},{} in {},", csvField(titleOf(probe)), quantityOf(probe),
+                       unitOf(probe));
     out += probe.area ? std::string(",,,")
                       : fmt::format("{:.9g},{:.9g},{:.9g},", probe.point[0], probe.point[1],
                                     probe.point[2]);
@@ -210,12 +197,12 @@ std::string reportTable(const Report& report) {
     std::string remark = change ? fmt::format("{}, ", verdictOf(*change)) : "";
     remark += stateOf(probe);
     if (probe.isMean()) remark += ", " + placeOf(probe);
-    out += quoted(remark) + "\n";
+    out += csvField(remark) + "\n";
   }
   for (const xvrml::ChangedField& field : report.fields)
-    out += fmt::format("field,{},{},,,,{},,{},,,,{}\n", quoted(ownerOf(field)), quoted(field.field),
-                       quoted(field.before), quoted(field.now),
-                       field.line > 0 ? quoted(fmt::format("line {}", field.line)) : "");
+    out += fmt::format("field,{},{},,,,{},,{},,,,{}\n", csvField(ownerOf(field)),
+                       csvField(field.field), csvField(field.before), csvField(field.now),
+                       field.line > 0 ? csvField(fmt::format("line {}", field.line)) : "");
   return out;
 }
 

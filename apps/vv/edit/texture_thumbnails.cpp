@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "libpicture/export/picture_source.h"
-#include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 
 namespace vv {
@@ -85,13 +84,6 @@ Thumbnail failed(std::string error) {
   return thumbnail;
 }
 
-Thumbnail decoded(TexturePicture picture) {
-  Limits limits;
-  limits.imagePixels = TextureThumbnails::mostPixels;
-  decodeTexture(picture, limits);
-  return picture.error.empty() ? thumbnailOf(picture::shownImage(picture)) : failed(picture.error);
-}
-
 } // namespace
 
 int Thumbnail::magnification() const { return std::max(1, side / std::max({1, width, height})); }
@@ -138,6 +130,14 @@ std::vector<NodeRef> TextureThumbnails::nodes() const {
   return nodes;
 }
 
+TextureThumbnails::Decoded TextureThumbnails::decoded(TexturePicture picture) {
+  Limits limits;
+  limits.imagePixels = mostPixels;
+  decodeTexture(picture, limits);
+  if (picture.error.empty()) return {thumbnailOf(picture::shownImage(picture))};
+  return {failed(picture.error), !picture.tooManyPixels};
+}
+
 void TextureThumbnails::show(Entry& entry, Thumbnail thumbnail) {
   entry.thumbnail = std::move(thumbnail);
   entry.thumbnail.number = ++count_;
@@ -157,8 +157,12 @@ bool TextureThumbnails::look(const PropertySheet& sheet) {
     const Node* const texture = textureIn(node);
     if (const auto* const file = nodeCast<nodes::ImageTexture>(texture)) {
       const size_t urls = numberOf(file->url);
-      entry.isDue |= !isKnown || urls != entry.urls;
-      entry.urls = urls;
+      if (!isKnown || urls != entry.urls) {
+        entry.isDue = true;
+        entry.urls = urls;
+        entry.url = 0;
+        entry.error.clear();
+      }
     } else if (const auto* const pixels = nodeCast<nodes::PixelTexture>(texture)) {
       Thumbnail now = thumbnailOf(pixels->image);
       if (now.width != entry.thumbnail.width || now.rgba != entry.thumbnail.rgba) {
@@ -182,36 +186,43 @@ bool TextureThumbnails::begin(const World& world) {
   const Node* const texture = textureIn(due->node);
   if (!texture) return false;
   try {
-    TexturePicture picture = texturePicture(*texture, world, Decode::no);
-    if (picture.error.empty()) {
-      decoding_ = {due->node, due->urls,
+    TexturePicture picture = texturePicture(*texture, world, Decode::no, due->url);
+    if (!picture.file.empty()) {
+      decoding_ = {due->node, due->urls, picture.url,
                    std::async(std::launch::async, [picture = std::move(picture)]() mutable {
                      return decoded(std::move(picture));
                    })};
       return false;
     }
-    show(*due, failed(picture.error));
+    show(*due, failed(due->error.empty() ? picture.error : due->error));
   } catch (const std::exception& failure) { // there is no memory, or no thread
     show(*due, failed(failure.what()));
   }
   return true;
 }
 
-// Takes the thumbnail that has been decoded. Returns whether it is shown.
+// Takes the thumbnail that has been decoded. Returns whether it is shown. A file that is damaged
+// makes the next URL due, as it does for renderers.
 bool TextureThumbnails::take() {
   using namespace std::chrono_literals;
   if (!decoding_.result.valid() || decoding_.result.wait_for(0s) == std::future_status::timeout)
     return false;
-  Thumbnail thumbnail;
+  Decoded decoded;
   try {
-    thumbnail = decoding_.result.get();
-  } catch (const std::exception& failure) { thumbnail = failed(failure.what()); }
-  for (Entry& entry : entries_)
-    if (entry.node == decoding_.node && entry.urls == decoding_.urls) {
-      show(entry, std::move(thumbnail));
-      return true;
-    }
-  return false;
+    decoded = decoding_.result.get();
+  } catch (const std::exception& failure) { decoded.thumbnail = failed(failure.what()); }
+  const auto entry = std::find_if(entries_.begin(), entries_.end(), [this](const Entry& one) {
+    return one.node == decoding_.node && one.urls == decoding_.urls;
+  });
+  if (entry == entries_.end()) return false;
+  if (decoded.isDamaged) {
+    if (entry->error.empty()) entry->error = std::move(decoded.thumbnail.error);
+    entry->url = decoding_.url + 1;
+    entry->isDue = true;
+    return false;
+  }
+  show(*entry, std::move(decoded.thumbnail));
+  return true;
 }
 
 } // namespace vv

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edit/properties.h"
+#include "xvrml/appearance.h"
 
 namespace vv {
 
@@ -46,19 +47,27 @@ class TextureThumbnails {
  private:
   struct Entry {
     xvrml::NodeRef node;
-    size_t urls = 0;    // a number of its URLs, which differs where they do
-    bool isDue = false; // its file must be read
+    size_t urls = 0;     // a number of its URLs, which differs where they do
+    bool isDue = false;  // its file must be read
+    size_t url = 0;      // the URL to begin with: those before it cannot be decoded
+    std::string error{}; // what is wrong with the first of these
     Thumbnail thumbnail{};
     bool isShown() const { return thumbnail.width > 0 || !thumbnail.error.empty(); }
+  };
+  struct Decoded {
+    Thumbnail thumbnail;
+    bool isDamaged = false; // renderers show the picture of another URL
   };
   // A file that is being decoded.
   struct Decoding {
     xvrml::NodeRef node;
     size_t urls = 0;
-    std::future<Thumbnail> result;
+    size_t url = 0; // which of them it is
+    std::future<Decoded> result;
   };
 
   bool look(const PropertySheet& sheet);
+  static Decoded decoded(xvrml::TexturePicture picture);
   bool begin(const xvrml::World& world);
   bool take();
   void show(Entry& entry, Thumbnail thumbnail);

@@ -297,7 +297,8 @@ const OptionInfo table[] = {
      "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
          picture::formatsWith(&picture::Format::keepsAlpha) +
          " files are transparent there. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to "
-         "1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
+         "1. FILE: a picture that covers the whole frame (png, jpg, gif, webp, bmp, tga; exr, hdr, "
+         "pfm).",
      setBackground, with(inPresets, inViews, Purpose::surroundings)},
     {"--denoise", "", "Picture",
      "Remove the noise of the pictures of -o by Open Image Denoise 2, which must be installed "

@@ -63,6 +63,10 @@ size_t count(Members& m, const char* name) {
   return size_t(json::wholeNumberOf(m.at(name), m.need(name), 0, largestIndex));
 }
 
+int probe(Members& m) {
+  return json::wholeNumberOf(m.at("probe"), m.need("probe"), 1, largestIndex);
+}
+
 bool isOpen(Members& m) { return json::switchOf(m.at("open"), m.need("open")); }
 
 Place from(Members& m) { return place(m, "x0", "y0"); }
@@ -262,10 +266,11 @@ constexpr Row table[] = {
        const bool rests = m.has("x") || m.has("y");
        return LightCommand(PointAt{rests ? std::optional(place(m)) : std::nullopt});
      }},
-    {"keep_in_world",
+    {"keep_in_world", [](Members& m) -> Command { return LightCommand(KeepInWorld{probe(m)}); }},
+    {"name_probe",
      [](Members& m) -> Command {
-       return LightCommand(
-           KeepInWorld{json::wholeNumberOf(m.at("probe"), m.need("probe"), 1, largestIndex)});
+       const int number = probe(m);
+       return LightCommand(NameProbe{number, text(m, "name", mostNameBytes)});
      }},
     {"show_sensors", [](Members&) -> Command { return LightCommand(ShowSensors{}); }},
     {"probe_table", [](Members&) -> Command { return LightCommand(ProbeTable{}); }},

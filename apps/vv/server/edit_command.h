@@ -170,11 +170,15 @@ struct PointAt {
 struct KeepInWorld {
   int probe = 0; // its number
 };
+struct NameProbe {
+  int probe = 0; // its number
+  std::string name;
+};
 struct ShowSensors {};
 struct ProbeTable {};
 struct Report {};
 using LightCommand = std::variant<PutProbe, Measure, KeepProbes, ClearProbes, Compare, PointAt,
-                                  KeepInWorld, ShowSensors, ProbeTable, Report>;
+                                  KeepInWorld, NameProbe, ShowSensors, ProbeTable, Report>;
 
 // --- Files that are put into the world ---
 

@@ -105,12 +105,20 @@ void EditLight::perform(uint64_t, const EditView&, bool, const edit::ClearProbes
   light_.probes().clear();
 }
 
-void EditLight::perform(uint64_t, const EditView& view, bool, const edit::KeepInWorld& keep) {
+const Probe& EditLight::probeOf(int number) {
   const std::vector<Probe>& probes = light_.probes().all();
   const auto probe = std::find_if(probes.begin(), probes.end(),
-                                  [&](const Probe& one) { return one.number == keep.probe; });
+                                  [&](const Probe& one) { return one.number == number; });
   if (probe == probes.end()) throw EditError("this probe has been removed");
-  keepInWorld(world_.session().editor(), *probe, view);
+  return *probe;
+}
+
+void EditLight::perform(uint64_t, const EditView& view, bool, const edit::KeepInWorld& keep) {
+  keepInWorld(world_.session().editor(), probeOf(keep.probe), view);
+}
+
+void EditLight::perform(uint64_t, const EditView&, bool, const edit::NameProbe& name) {
+  light_.probes().rename(probeOf(name.probe).number, name.name);
 }
 
 void EditLight::perform(uint64_t, const EditView&, bool, const edit::ShowSensors&) {

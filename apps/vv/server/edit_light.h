@@ -53,10 +53,13 @@ class EditLight {
   void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::Compare& compare);
   void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::PointAt& point);
   void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::KeepInWorld& keep);
+  void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::NameProbe& name);
   void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::ShowSensors& show);
   void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::ProbeTable& table);
   void perform(uint64_t page, const EditView& view, bool isLeaders, const edit::Report& report);
   void needRoom();
+  // Returns the probe of a number. Throws xvrml::EditError.
+  const Probe& probeOf(int number);
 
   ServedWorld& world_;
   Host& host_;

@@ -143,7 +143,7 @@ std::string rowsText(const EditModel& model, json::NodeNumbers& numbers, int fir
                end = std::min(begin + size_t(count), all.size());
   for (size_t i = begin; i < end; ++i) {
     const OutlineRow& row = all[i];
-    Json one = {{"node", numbers.of(row.node)}, {"depth", row.depth}, {"label", row.label}};
+    Json one = {{"node", numbers.of(row.node)}, {"depth", row.depth}, {"label", row.label()}};
     if (row.canOpen && !row.isUse) one["open"] = row.isOpen;
     if (row.isUse) one["use"] = true;
     if (model.isSelected(*row.node)) one["selected"] = true;

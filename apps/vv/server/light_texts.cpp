@@ -44,6 +44,7 @@ std::string probesText(const Probes& probes) {
   for (size_t i = 0; i < changes.size(); ++i) {
     const Probe& probe = probes.all()[i];
     Json one = {{"number", probe.number}, {"state", nameOf(probe.state)}};
+    if (!probe.name.empty()) one["name"] = probe.name;
     if (probe.area) one["area"] = true;
     if (!probe.seen.empty()) one["seen"] = probe.seen;
     if (probe.state == Probe::State::read) {

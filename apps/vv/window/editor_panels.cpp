@@ -257,7 +257,7 @@ void EditorPanels::drawRow(const OutlineRow& row, int number) {
     if (!model_.isSelected(*row.node)) model_.select(row.node, false);
   }
   ImGui::SameLine(0, 0);
-  ImGui::TextUnformatted((row.isUse ? "USE " + row.label : row.label).c_str());
+  ImGui::TextUnformatted(((row.isUse ? "USE " : "") + row.label()).c_str());
   if (row.isUse) ImGui::PopStyleColor();
   ImGui::PopID();
 }
@@ -400,13 +400,29 @@ void EditorPanels::drawProbes() {
   ImGui::End();
 }
 
+// Draws the field for the name of a probe at the top of its menu.
+void EditorPanels::drawProbeName(const Probe& probe) {
+  if (ImGui::IsWindowAppearing()) {
+    name_ = probe.name;
+    ImGui::SetKeyboardFocusHere();
+  }
+  if (ImGui::InputTextWithHint("##probename", "Name of the probe", &name_,
+                               ImGuiInputTextFlags_EnterReturnsTrue |
+                                   ImGuiInputTextFlags_AutoSelectAll)) {
+    probes_.rename(probe.number, name_);
+    ImGui::CloseCurrentPopup();
+  }
+}
+
 // Draws the menu of a probe, whose line is the last item.
 void EditorPanels::drawProbeMenu(const Probe& probe) {
-  const char* const menuHint =
-      canBeKept(probe) ? "A right click keeps it in the world, as a sensor" : "";
+  const char* const menuHint = canBeKept(probe)
+                                   ? "A right click names it, or keeps it in the world, as a sensor"
+                                   : "A right click names it";
   hint(probe.seen + (probe.seen.empty() ? "" : "\n") + menuHint);
   ImGui::PushID(probe.number);
   if (Menu menu; menu.beginContext("##probe")) {
+    drawProbeName(probe);
     if (menu.item("Keep in the world", "Add an ORTSensor that reads the same",
                   canBeKept(probe) && model_.readOnly().empty()))
       model_.edit([probe, view = view_](WorldEditor& editor) { keepInWorld(editor, probe, view); });

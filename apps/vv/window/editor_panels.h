@@ -67,6 +67,7 @@ class EditorPanels {
   void drawFrames() const;
   void drawProbes();
   void drawProbeMenu(const Probe& probe);
+  void drawProbeName(const Probe& probe);
 
   PanelWidths widths_ = readPanelWidths(panelStateFile()); // what the user has chosen
   float outlineWidth_ = 0, sheetWidth_ = 0;                // as the panels were drawn last

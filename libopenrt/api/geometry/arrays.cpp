@@ -39,6 +39,7 @@ void draw(Context& c, RTenum mode, size_t first, size_t count, const uint32_t* i
                 advanced(c.normalArray, first),
                 advanced(c.texCoordArray, first),
                 advanced(c.colorArray, first),
+                advanced(c.fogCoordArray, first),
                 {},
                 definition.formerIndices};
   if (c.boundShader != 0 && !c.parameterArrays.empty()) {
@@ -76,6 +77,12 @@ void rtTexCoordPointer(int size, RTenum type, size_t stride, const void* pointer
 void rtColorPointer(int size, RTenum type, size_t stride, const void* pointer) {
   guarded("rtColorPointer", [&](Context& c) {
     c.colorArray = checkedSource(size, 3, 4, type, false, stride, pointer);
+  });
+}
+
+void rtFogCoordPointer(RTenum type, size_t stride, const void* pointer) {
+  guarded("rtFogCoordPointer", [&](Context& c) {
+    c.fogCoordArray = checkedSource(1, 1, 1, type, false, stride, pointer);
   });
 }
 

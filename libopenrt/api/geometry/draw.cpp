@@ -232,6 +232,8 @@ std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState
                               current.texCoord, "a texture coordinate is not finite");
   built.colors = attribute(call, call.colors, 4, current.present & HasColor, current.color,
                            "a colour is not finite");
+  built.fogCoords = attribute(call, call.fogCoords, 1, current.present & HasFogCoord,
+                              &current.fogCoord, "a fog coordinate is not finite");
   std::vector<uint32_t> ordinals;
   built.indices = collectIndices(call, built.points->as<float>(), degenerate,
                                  call.parameters.empty() ? nullptr : &ordinals);

@@ -37,6 +37,13 @@ void setColor(Context& c, float r, float g, float b, float a) {
   v.present |= HasColor;
 }
 
+void setFogCoord(Context& c, float share) {
+  require(finite(share), RT_INVALID_VALUE, "the coordinate is not finite");
+  VertexState& v = c.currentAttributes();
+  v.fogCoord = share;
+  v.present |= HasFogCoord;
+}
+
 void requirePointer(const void* pointer) {
   require(pointer != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
 }
@@ -143,6 +150,10 @@ void rtColor4fv(const float* v) {
   });
 }
 
+void rtFogCoordf(float share) {
+  guarded("rtFogCoordf", [&](Context& c) { setFogCoord(c, share); });
+}
+
 void rtTexGen(RTenum mode) {
   guarded("rtTexGen", [&](Context& c) {
     require(mode <= RT_TEX_GEN_SPHERE_REFLECTION, RT_INVALID_ENUM,
@@ -157,6 +168,14 @@ void rtLineWidth(float pixels) {
 
 void rtPointSize(float pixels) {
   guarded("rtPointSize", [&](Context& c) { setPixels(c.pointSize, pixels); });
+}
+
+void rtLineStipple(int factor, uint16_t pattern) {
+  guarded("rtLineStipple", [&](Context& c) {
+    require(factor >= 1 && factor <= Stipple::largestFactor, RT_INVALID_VALUE,
+            "the factor must be 1 to 256");
+    c.stipple = {uint16_t(factor), pattern};
+  });
 }
 
 void rtEnable(RTenum capability) {

@@ -222,6 +222,7 @@ void ObjectBuilder::flush(size_t vertexCount) {
     built.normals = vertices_.copyNormals(vertexCount);
     built.texCoords = vertices_.copyTexCoords(vertexCount);
     built.colors = vertices_.copyColors(vertexCount);
+    built.fogCoords = vertices_.copyFogCoords(vertexCount);
     addParameters(built, vertexCount);
     done_.push_back(std::move(built));
   }
@@ -264,8 +265,8 @@ void ObjectBuilder::draw(const DrawCall& call, const GeometryState& state) {
 void ObjectBuilder::shareArrays(BuiltGeometry& built) {
   if (done_.empty()) return;
   recent_.resize(recentArrays);
-  for (ArrayPtr* array :
-       {&built.points, &built.indices, &built.normals, &built.texCoords, &built.colors}) {
+  for (ArrayPtr* array : {&built.points, &built.indices, &built.normals, &built.texCoords,
+                          &built.colors, &built.fogCoords}) {
     if (!*array) continue;
     ArrayPtr& known = recent_[XXH3_64bits((*array)->data(), (*array)->size()) % recentArrays];
     const bool same = known && known->size() == (*array)->size() &&

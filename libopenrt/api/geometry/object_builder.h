@@ -22,6 +22,7 @@
 #include "openrt/openrts.h"
 #include "scene/array_blocks.h"
 #include "scene/matrix.h"
+#include "scene/stipple.h"
 
 namespace openrt {
 
@@ -32,10 +33,11 @@ struct GeometryState {
   bool cull = false, clockwise = false;
   float width = 1;
   edit::TexGen texGen = edit::TexGen::Off;
+  Stipple stipple; // dashes, where it is lines
   bool operator==(const GeometryState& other) const {
     return shader == other.shader && name == other.name && cull == other.cull &&
            clockwise == other.clockwise && width == other.width && texGen == other.texGen &&
-           matrix.m == other.matrix.m;
+           stipple == other.stipple && matrix.m == other.matrix.m;
   }
 };
 
@@ -65,7 +67,7 @@ struct DrawCall {
   RTenum mode = RT_TRIANGLES;
   size_t count = 0, vertexCount = 0;
   const uint32_t* indices = nullptr; // vertex indices; null stands for 0, 1, 2 ...
-  AttributeSource points, normals, texCoords, colors;
+  AttributeSource points, normals, texCoords, colors, fogCoords;
   std::vector<ParameterSource> parameters;
   ArrayPtr formerIndices; // an array that is used if its bytes are those of the indices; or null
 };
@@ -80,7 +82,7 @@ struct BuiltParameter {
 struct BuiltGeometry {
   GeometryState state;
   edit::Primitive primitive = edit::Primitive::Triangles;
-  ArrayPtr points, indices, normals, texCoords, colors;
+  ArrayPtr points, indices, normals, texCoords, colors, fogCoords;
   std::vector<BuiltParameter> parameters;
   std::vector<double> surface; // numbers of a quadric or an asphere
 };

@@ -24,6 +24,7 @@ void VertexBuffer::reserve(size_t capacity) {
   Floats normals = attributes_ & HasNormal ? grown(normals_, 3, capacity) : nullptr;
   Floats texCoords = attributes_ & HasTexCoord ? grown(texCoords_, 2, capacity) : nullptr;
   Floats colors = attributes_ & HasColor ? grown(colors_, 4, capacity) : nullptr;
+  Floats fogCoords = attributes_ & HasFogCoord ? grown(fogCoords_, 1, capacity) : nullptr;
   Floats parameters =
       attributes_ & HasParameters ? grown(parameters_, parameterFloats_, capacity) : nullptr;
   parameters_ = std::move(parameters);
@@ -31,6 +32,7 @@ void VertexBuffer::reserve(size_t capacity) {
   normals_ = std::move(normals);
   texCoords_ = std::move(texCoords);
   colors_ = std::move(colors);
+  fogCoords_ = std::move(fogCoords);
   capacity_ = capacity;
 }
 
@@ -42,6 +44,8 @@ void VertexBuffer::addAttributes(uint8_t attributes) {
       added & HasTexCoord ? std::make_unique_for_overwrite<float[]>(2 * capacity_) : nullptr;
   Floats colors =
       added & HasColor ? std::make_unique_for_overwrite<float[]>(4 * capacity_) : nullptr;
+  Floats fogCoords =
+      added & HasFogCoord ? std::make_unique_for_overwrite<float[]>(capacity_) : nullptr;
   const VertexState unset;
   if (added & HasNormal) {
     std::fill_n(normals.get(), 3 * count_, unset.normal[0]);
@@ -54,6 +58,10 @@ void VertexBuffer::addAttributes(uint8_t attributes) {
   if (added & HasColor) {
     std::fill_n(colors.get(), 4 * count_, unset.color[0]);
     colors_ = std::move(colors);
+  }
+  if (added & HasFogCoord) {
+    std::fill_n(fogCoords.get(), count_, unset.fogCoord);
+    fogCoords_ = std::move(fogCoords);
   }
   attributes_ |= added;
 }
@@ -84,6 +92,7 @@ void VertexBuffer::restart(uint8_t attributes, size_t parameterFloats) {
   if (!(attributes & HasNormal)) normals_.reset();
   if (!(attributes & HasTexCoord)) texCoords_.reset();
   if (!(attributes & HasColor)) colors_.reset();
+  if (!(attributes & HasFogCoord)) fogCoords_.reset();
 }
 
 void VertexBuffer::dropFront(size_t n) {
@@ -96,6 +105,7 @@ void VertexBuffer::dropFront(size_t n) {
   shift(normals_, 3);
   shift(texCoords_, 2);
   shift(colors_, 4);
+  shift(fogCoords_, 1);
   shift(parameters_, parameterFloats_);
   count_ = rest;
 }

@@ -11,13 +11,20 @@
 
 namespace openrt {
 
-enum Attribute : uint8_t { HasNormal = 1, HasTexCoord = 2, HasColor = 4, HasParameters = 8 };
+enum Attribute : uint8_t {
+  HasNormal = 1,
+  HasTexCoord = 2,
+  HasColor = 4,
+  HasParameters = 8,
+  HasFogCoord = 16
+};
 
 // The current attributes, which the next vertex gets.
 struct VertexState {
   float normal[3] = {0, 0, 0}; // 0 0 0: the geometric normal of the face
   float texCoord[2] = {0, 0};
   float color[4] = {1, 1, 1, 1};
+  float fogCoord = 0;
   // Parameter values for the latched shader: VertexBuffer::parameterFloats() floats
   // (HasParameters).
   const float* parameters = nullptr;
@@ -66,6 +73,9 @@ class VertexBuffer {
   ArrayPtr copyColors(size_t n) const {
     return attributes_ & HasColor ? copy(colors_.get(), 4 * n) : nullptr;
   }
+  ArrayPtr copyFogCoords(size_t n) const {
+    return attributes_ & HasFogCoord ? copy(fogCoords_.get(), n) : nullptr;
+  }
   size_t parameterFloats() const { return parameterFloats_; }
   const float* parameters(size_t vertex) const {
     return parameters_.get() + parameterFloats_ * vertex;
@@ -92,6 +102,7 @@ class VertexBuffer {
       c[2] = state.color[2];
       c[3] = state.color[3];
     }
+    if (attributes_ & HasFogCoord) fogCoords_[count_] = state.fogCoord;
     if (attributes_ & HasParameters)
       std::copy_n(state.parameters, parameterFloats_,
                   parameters_.get() + parameterFloats_ * count_);
@@ -102,7 +113,7 @@ class VertexBuffer {
 
   size_t count_ = 0, capacity_ = 0, parameterFloats_ = 0;
   uint8_t attributes_ = 0;
-  Floats points_, normals_, texCoords_, colors_, parameters_;
+  Floats points_, normals_, texCoords_, colors_, fogCoords_, parameters_;
 };
 
 } // namespace openrt

@@ -56,47 +56,80 @@ class LineSplitter {
   std::vector<double> cuts_;
 };
 
+// Appends to an array that is empty as long as every element has the value `usual`. before: the
+// number of elements that are there, or stood for.
+template <class T>
+void append(std::vector<T>& array, size_t before, const T& usual, const T& value, bool isUsual) {
+  if (array.empty() && isUsual) return;
+  array.resize(before, usual);
+  array.push_back(value);
+}
+
+class ThinWriter {
+ public:
+  ThinWriter(Part& part, const ThinGeometry& thin, const PixelFootprint& footprint, float scale)
+      : part_(part), thin_(thin), footprint_(footprint), scale_(scale) {}
+
+  // Adds a vertex with the radius that half of the width in pixels has there.
+  void addVertex(const Vec3f& p) {
+    const float depth = dot(p / scale_ - footprint_.eye, footprint_.axis);
+    const float pixel = footprint_.constant + footprint_.slope * std::fabs(depth);
+    part_.vertices.insert(part_.vertices.end(),
+                          {p.x, p.y, p.z, 0.5f * thin_.geometry.width * pixel * scale_});
+  }
+
+  // Adds a piece of a line. span: which part of the line it is. follows: it begins where the piece
+  // before it ends.
+  void addPiece(uint32_t line, const Vec3f& start, const Vec3f& end, const Part::Span& span,
+                bool follows) {
+    const size_t pieces = part_.indices.size();
+    const bool joined = follows && thin_.transparent;
+    append(part_.spans, pieces, {0, 1}, span, span.from == 0 && span.to == 1);
+    if (joined) part_.joints.back() |= RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+    append(part_.joints, pieces, uint8_t(0), uint8_t(joined ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0),
+           !thin_.transparent);
+    if (!joined) addVertex(start);
+    part_.indices.push_back(uint32_t(part_.vertices.size() / 4 - 1));
+    part_.primitives.add(thin_.record, line);
+    addVertex(end);
+  }
+
+ private:
+  Part& part_;
+  const ThinGeometry& thin_;
+  const PixelFootprint& footprint_;
+  float scale_;
+};
+
 } // namespace
 
-void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t record,
-             const PixelFootprint& footprint, float scale) {
-  if (!consistent(g) || !toKernel.usable()) return;
-  const std::vector<float> points = bakePoints(g, toKernel);
+void addThin(Part& part, const ThinGeometry& thin, const PixelFootprint& footprint, float scale) {
+  const Geometry& g = thin.geometry;
+  if (!consistent(g) || !thin.toKernel.usable()) return;
+  const std::vector<float> points = bakePoints(g, thin.toKernel);
   const uint32_t* index = g.indices->as<uint32_t>();
-  const auto put = [&](const Vec3f& p) {
-    const float depth = dot(p / scale - footprint.eye, footprint.axis);
-    const float radius =
-        0.5f * g.width * (footprint.constant + footprint.slope * std::fabs(depth)) * scale;
-    part.vertices.insert(part.vertices.end(), {p.x, p.y, p.z, radius});
-  };
   const auto pointOf = [&](uint32_t i) { return vectorOf(points.data() + 3 * size_t(i)); };
   const auto count = uint32_t(g.primitives());
+  ThinWriter writer(part, thin, footprint, scale);
   if (g.primitive != edit::Primitive::Lines) {
-    for (uint32_t i = 0; i < count; i++) put(pointOf(index[i]));
-    part.primitives.add(record, 0, count);
+    for (uint32_t i = 0; i < count; i++) writer.addVertex(pointOf(index[i]));
+    part.primitives.add(thin.record, 0, count);
     return;
   }
   LineSplitter splitter(footprint, scale);
   for (uint32_t i = 0; i < count; i++) {
     const Vec3f a = pointOf(index[2 * i]), b = pointOf(index[2 * i + 1]);
-    double from = 0;
-    const auto addPiece = [&](const Vec3f& start, const Vec3f& end, double to) {
-      if (part.spans.empty() && (from > 0 || to < 1))
-        part.spans.resize(part.indices.size(), {0, 1}); // the lines before are whole
-      if (from > 0 || to < 1 || !part.spans.empty()) part.spans.push_back({float(from), float(to)});
-      part.indices.push_back(uint32_t(part.vertices.size() / 4));
-      part.primitives.add(record, i);
-      put(start);
-      put(end);
-      from = to;
-    };
+    bool follows = i > 0 && index[2 * i - 1] == index[2 * i];
     Vec3f start = a;
+    double from = 0;
     for (const double cut : splitter.cuts(Vec3d(a), Vec3d(b))) {
       const Vec3f end(Vec3d(a) + (Vec3d(b) - Vec3d(a)) * cut);
-      addPiece(start, end, cut);
+      writer.addPiece(i, start, end, {float(from), float(cut)}, follows);
+      follows = true;
       start = end;
+      from = cut;
     }
-    addPiece(start, b, 1);
+    writer.addPiece(i, start, b, {float(from), 1}, follows);
   }
 }
 

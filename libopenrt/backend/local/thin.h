@@ -16,9 +16,17 @@ struct PixelFootprint {
   bool operator==(const PixelFootprint&) const = default;
 };
 
-// Adds a geometry's lines or points to a part of their kind. `scale` converts render space to the
-// top level's frame.
-void addThin(Part& part, const Geometry& geometry, const Matrix4d& toKernel, uint32_t record,
-             const PixelFootprint& footprint, float scale);
+// A geometry of lines or points where it is placed.
+struct ThinGeometry {
+  const Geometry& geometry;
+  Matrix4d toKernel; // to the top level's frame
+  uint32_t record = 0;
+  bool transparent = false; // rays go on behind it
+};
+
+// Adds lines or points to a part of their kind. `scale` converts render space to the top level's
+// frame. Transparent lines that follow each other in the list and share a vertex are joined, so
+// that a ray enters them once.
+void addThin(Part& part, const ThinGeometry& thin, const PixelFootprint& footprint, float scale);
 
 } // namespace openrt

@@ -7,6 +7,7 @@
 
 #include "picture_size.h"
 #include "scene/analytic.h"
+#include "scene/stipple.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -56,10 +57,13 @@ size_t cornersOf(edit::Primitive primitive) {
 
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   demand(g.texGen <= edit::TexGen::MAX, "unknown texture coordinates");
+  demand(g.stippleFactor >= 1 && g.stippleFactor <= Stipple::largestFactor,
+         "the factor of a stipple is not 1 to 256");
   const std::string problem = AnalyticSurface::problemOf(g.primitive, g.surface);
   if (!problem.empty()) throw std::runtime_error(problem);
   if (!hasVertices(g.primitive)) {
-    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors && !g.rest,
+    demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors && !g.fogCoords &&
+               !g.rest,
            g.primitive == edit::Primitive::Sphere ? "a sphere has vertices"
                                                   : "an analytic surface has vertices");
     return;
@@ -78,6 +82,8 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   checkAttribute(commit, g.texCoords, vertices, 2,
                  "the texture coordinates have a wrong size or are not finite");
   checkAttribute(commit, g.colors, vertices, 4, "the colours have a wrong size or are not finite");
+  checkAttribute(commit, g.fogCoords, vertices, 1,
+                 "the fog coordinates have a wrong size or are not finite");
   demand(!g.rest || g.primitive == edit::Primitive::Triangles, "only meshes deform");
   checkAttribute(commit, g.rest, vertices, 3,
                  "the points at rest have a wrong size or are not finite");
@@ -105,9 +111,10 @@ void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParamete
 }
 
 void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::TextureT* current) {
-  demand(t.components >= 1 && t.components <= 4 && isPictureSize(t.width, t.height),
+  demand(t.components >= 1 && t.components <= 4 && isVolumeSize(t.width, t.height, t.depth),
          "a texture has an impossible size");
-  demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
+  demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX && t.wrapR <= edit::Wrap::MAX,
+         "an unknown wrap");
   demand(t.border.empty() || t.border.size() == 4, "a border colour needs four numbers");
   for (const float part : t.border)
     demand(part >= 0 && part <= 1, "a border colour is out of range");
@@ -115,12 +122,12 @@ void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::Tex
   const auto found = commit.arrays.find(t.texels);
   if (found == commit.arrays.end()) {
     demand(current && t.texels == current->texels, "the texels did not arrive with their edit");
-    demand(t.width == current->width && t.height == current->height &&
+    demand(t.width == current->width && t.height == current->height && t.depth == current->depth &&
                t.components == current->components && t.isFloat == current->isFloat,
            "the texels have a wrong size");
     return;
   }
-  const uint64_t values = uint64_t(t.width) * t.height * t.components;
+  const uint64_t values = uint64_t(t.width) * t.height * t.depth * t.components;
   demand(found->second->size() == values * (t.isFloat ? sizeof(float) : 1),
          "the texels have a wrong size");
   if (t.isFloat) checkFinite(*found->second, "a texel is not finite");

@@ -333,7 +333,7 @@ typedef struct RTmachineStats {
 /* The light transport of the last frame. */
 typedef struct RTtransportStats {
   RTenum chosen;            /* RT_TRANSPORT_* that made the frame */
-  char reason[96];          /* the reason for people */
+  char reason[192];         /* the reason for people */
   uint32_t leavesOut;       /* RT_LEAVES_* bits */
   uint64_t unreachedLights; /* lights whose rays by way of mirrors or glass are not followed;
                                RT_TRANSPORT_LIGHT follows them if the class of the light has an

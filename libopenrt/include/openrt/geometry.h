@@ -26,9 +26,9 @@ enum {
 };
 
 /* rtBegin opens a list of vertices of one mode, rtEnd closes it. rtBegin latches the bound shader,
- * the name and the current matrix. Each vertex latches normal, texture coordinate and colour. An
- * object begins without normals, texture coordinates and colours: its vertices have those that were
- * set since rtBeginObject. A normal of 0 0 0 stands for the normal of the face. Positions given in
+ * the name and the current matrix. Each vertex latches normal, texture coordinate, colour and
+ * fog coordinate. An object begins without any of them: its vertices have those that were set since
+ * rtBeginObject. A normal of 0 0 0 stands for the normal of the face. Positions given in
  * double keep their precision wherever they lie (up to 1e38). Degenerate primitives are dropped and
  * counted (RTstats.rejected.primitives). [context-thread] */
 RT_API void rtBegin(RTenum mode);
@@ -47,10 +47,22 @@ RT_API void rtColor3fv(const float* v);
 RT_API void rtColor4f(float r, float g, float b, float a);
 RT_API void rtColor4fv(const float* v);
 
+/* Sets the fog coordinate: the share of the fog in front of a place, in place of the share that
+ * follows from the distance. 0: none; 1: as much as at the end of an endless way. Between vertices
+ * it is interpolated and then held in 0..1. It has no effect where there is no fog (rtInstanceFog,
+ * rtUseEnvironment), nor on spheres and other surfaces that are equations. [context-thread] */
+RT_API void rtFogCoordf(float share);
+
 /* Set the width of lines and the diameter of points, in pixels as seen by the camera (default 1,
  * range > 0). rtBegin latches them. [context-thread] */
 RT_API void rtLineWidth(float pixels);
 RT_API void rtPointSize(float pixels);
+/* Sets the dashes of lines: 16 cells of `factor` pixels each (1 to 256) along the line as the
+ * camera sees it, of which those are drawn whose bit is 1, beginning with bit 0. The pattern goes
+ * on from a line to the next one in the list if they share a vertex, and begins anew elsewhere.
+ * Default 1, 0xffff: solid. Beyond 32,768 pixels from the middle of the picture lines are solid.
+ * rtBegin latches it. [context-thread] */
+RT_API void rtLineStipple(int factor, uint16_t pattern);
 
 /* Texture coordinates in the camera's frame, in place of those of vertices: x is right, y up, the
  * viewer at the origin. The camera is that of the frame, also in mirrors and through glass. */
@@ -121,7 +133,7 @@ RT_API void rtAsphere(double curvature, double conic, size_t termCount, const do
 enum { RT_FLOAT = 0x1406, RT_DOUBLE = 0x140A, RT_UNSIGNED_BYTE = 0x1401, RT_UNSIGNED_INT = 0x1405 };
 
 /* Set the source of an attribute for rtDrawArrays and rtDrawElements. [context-thread]
- *  - size: components of an element (vertex 3, normal 3, texture 2, colour 3 or 4).
+ *  - size: components of an element (vertex 3, normal 3, texture 2, colour 3 or 4, fog 1).
  *  - type: RT_FLOAT; for vertices also RT_DOUBLE.
  *  - stride: bytes from one element to the next; 0 means tightly packed.
  *  - pointer: NULL turns the array off. The draw calls read it, so it must stay valid until the
@@ -130,6 +142,7 @@ RT_API void rtVertexPointer(int size, RTenum type, size_t stride, const void* po
 RT_API void rtNormalPointer(RTenum type, size_t stride, const void* pointer);
 RT_API void rtTexCoordPointer(int size, RTenum type, size_t stride, const void* pointer);
 RT_API void rtColorPointer(int size, RTenum type, size_t stride, const void* pointer);
+RT_API void rtFogCoordPointer(RTenum type, size_t stride, const void* pointer);
 /* Draws count vertices, beginning with element first. [context-thread] */
 RT_API void rtDrawArrays(RTenum mode, size_t first, size_t count);
 /* Draws the vertices that count 32-bit indices name. vertexCount is the number of elements in the

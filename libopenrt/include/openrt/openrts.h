@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 0 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 1 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -454,6 +454,11 @@ struct RtsHost {
    * from the camera and has passed transparent surfaces at most. Writes 0 for directions from which
    * light is wanted: those of mirrored, refracted and scattered rays and of light samples. */
   void (*backdrop)(RtsBatch* batch, uint32_t* seen);
+  /* As `sample`, at n texture coordinates of three numbers (s, t, r), for a texture that may be a
+   * volume (rtTexImage3D). A texture without depth ignores r; `sample` sees the first slice of a
+   * volume. */
+  void (*sampleVolume)(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const str[3],
+                       float* const rgba[4]);
 };
 #define RTS_MAX_LOBES 8
 

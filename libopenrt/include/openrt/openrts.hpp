@@ -171,6 +171,8 @@ template <> struct HitOf<float> : Tracer, HitNumbers<float> {
   float cosine() const { return std::fmin(1.0f, std::fmax(0.0f, -dot(direction, normal))); }
   // Returns the filtered texel (linear rgba) at texture coordinates; white if there is no texture.
   Vec4 sample(Texture texture, Vec2 place) const;
+  // The same for a texture that may be a volume (rtTexImage3D), at (s, t, r).
+  Vec4 sampleVolume(Texture texture, Vec3 place) const;
 
   using Tracer::findHit;
   using Tracer::occluded;

@@ -115,6 +115,20 @@ inline Vec4 Hit::sample(Texture texture, Vec2 place) const {
   return {out[0][0], out[1][0], out[2][0], out[3][0]};
 }
 
+inline Vec4 Hit::sampleVolume(Texture texture, Vec3 place) const {
+  if (texture.id == 0) return {1, 1, 1, 1};
+  alignas(64) float in[3][RTS_LANES], out[4][RTS_LANES];
+  for (int i = 0; i < RTS_LANES; i++) {
+    in[0][i] = place.x;
+    in[1][i] = place.y;
+    in[2][i] = place.z;
+  }
+  const float* const str[3] = {in[0], in[1], in[2]};
+  float* const rgba[4] = {out[0], out[1], out[2], out[3]};
+  host->sampleVolume(batch, texture.id, 1, str, rgba);
+  return {out[0][0], out[1][0], out[2][0], out[3][0]};
+}
+
 inline Hit::Local Hit::local() const {
   if (!detail::askVectors(*this, &RtsHost::local, asked->local)) return {position, geometric};
   float* const* a = asked->local;

@@ -134,6 +134,7 @@ enum {
   RT_TEXTURE_MAG_FILTER = 0x2800,
   RT_TEXTURE_WRAP_S = 0x2802,
   RT_TEXTURE_WRAP_T = 0x2803,
+  RT_TEXTURE_WRAP_R = 0x8072,
   RT_TEXTURE_SRGB = 0x8C40,
   RT_TEXTURE_BORDER_COLOR = 0x1004
 };
@@ -147,10 +148,16 @@ RT_API void rtBindTexture(RTid texture);
  *  - type: RT_UNSIGNED_BYTE (0 .. 255 stands for 0 .. 1) or RT_FLOAT.
  *  - pixels: rows from the bottom (t = 0) up, tightly packed. */
 RT_API void rtTexImage2D(int components, int width, int height, RTenum type, const void* pixels);
+/* Sets the image of the bound texture to a volume: depth slices, each as rtTexImage2D has it, from
+ * r = 0 on. A side has 1 to 65536 texels, and all together are at most 2^28. Surfaces of the class
+ * X3DMaterial look it up at (s, t, r), the shader's function sampleVolume of openrts.h; everything
+ * else sees the first slice. [context-thread] */
+RT_API void rtTexImage3D(int components, int width, int height, int depth, RTenum type,
+                         const void* pixels);
 /* Sets a property of the bound texture. [context-thread]
- *  - RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T: RT_REPEAT (default), RT_MIRRORED_REPEAT (every other
- *    copy is mirrored), RT_CLAMP_TO_EDGE (the edge goes on) or RT_CLAMP_TO_BORDER (beyond the edges
- *    is the border).
+ *  - RT_TEXTURE_WRAP_S, RT_TEXTURE_WRAP_T, RT_TEXTURE_WRAP_R: RT_REPEAT (default),
+ * RT_MIRRORED_REPEAT (every other copy is mirrored), RT_CLAMP_TO_EDGE (the edge goes on) or
+ * RT_CLAMP_TO_BORDER (beyond the edges is the border).
  *  - RT_TEXTURE_MAG_FILTER: RT_LINEAR (default) or RT_NEAREST.
  *  - RT_TEXTURE_SRGB: 1 if bytes are sRGB-encoded (colours are decoded, alpha is not); 0 (default)
  *    if they are linear. */

@@ -75,6 +75,25 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
   }
 }
 
+namespace {
+
+// Farther than any fog ends. Its square is a float.
+constexpr float endless = 1e18f;
+
+// Returns the way from the eye to hit i, in render space.
+Vec3f wayTo(const RtsBatch& batch, uint32_t i) {
+  const RtsHits& h = batch.points->hits;
+  return batch.states->flagsOf(batch.order[i]).deflected() ? load(h.direction, i) * h.distance[i]
+                                                           : load(h.position, i) - batch.scene.eye;
+}
+
+Vec3f extended(const Vec3f& way) {
+  const float far = length(way);
+  return far > 0 && std::isfinite(far) ? way * (1 / far) * endless : Vec3f{0, 0, endless};
+}
+
+} // namespace
+
 Fog fogAt(const RtsBatch& batch) {
   const RenderScene& scene = batch.scene;
   const bool own = batch.fog != 0; // the fog of an instance has the axes of the world
@@ -86,10 +105,12 @@ Fog fogAt(const RtsBatch& batch) {
   const uint32_t n = h.count, size = padded(n);
   float* fromEye[3];
   for (auto& a : fromEye) a = batch.arena.take<float>(size);
+  auto* share = batch.arena.take<float>(size);
   for (uint32_t i = 0; i < size; i++) {
-    const bool deflected = batch.states->flagsOf(batch.order[std::min(i, n - 1)]).deflected();
-    const Vec3f toHit =
-        deflected ? load(h.direction, i) * h.distance[i] : load(h.position, i) - scene.eye;
+    const uint32_t hit = std::min(i, n - 1);
+    const Vec3f way = wayTo(batch, hit);
+    share[i] = fogCoordAt(scene, *batch.points, hit);
+    const Vec3f toHit = share[i] < 0 ? way : extended(way);
     store(own ? toHit : scene.environment.toLocal.direction(toHit), fromEye, i);
   }
   for (auto& a : fog.airlight) a = batch.arena.takeZero<float>(size);
@@ -99,6 +120,8 @@ Fog fogAt(const RtsBatch& batch) {
   const RunningShader running(*shader.shaderClass);
   shader.shaderClass->attenuate(&scene.host, &lanes, shader.params, n, fromEye, fog.airlight,
                                 fog.transmittance);
+  for (uint32_t i = 0; i < size; i++)
+    if (share[i] >= 0) fog.transmittance[i] = 1 - share[i] * (1 - fog.transmittance[i]);
   return fog;
 }
 

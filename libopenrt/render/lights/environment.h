@@ -32,7 +32,8 @@ struct Fog {                                         // by hit
   }
 };
 // Evaluates the fog in front of the hits of a batch. On mirrored and refracted paths the fog has
-// the whole path length, in the direction of the current ray.
+// the whole path length, in the direction of the current ray. A fog coordinate of the geometry
+// replaces the length: it is the share of what an endless way takes away.
 Fog fogAt(const RtsBatch& batch);
 
 } // namespace openrt

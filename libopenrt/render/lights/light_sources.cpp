@@ -47,8 +47,7 @@ bool sameSpecularSurfaces(const RenderScene& a, const RenderScene& b) {
 bool LightSources::isTarget(const RenderScene& scene, const Record& record, Kind kind) {
   const uint32_t traits = (*scene.shaders)[record.shader].traits;
   if (kind != Kind::glossy) return traits & RTS_SPECULAR;
-  return (traits & RTS_GLOSSY) && record.primitive != edit::Primitive::Lines &&
-         record.primitive != edit::Primitive::Points;
+  return (traits & RTS_GLOSSY) && !isThin(record.primitive);
 }
 
 void LightSources::boundTargets(const RenderScene& scene) {

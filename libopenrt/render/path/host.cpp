@@ -39,6 +39,12 @@ void sample(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const 
   textures[texture < textures.size() ? texture : 0].sample(padded(n), uv, rgba);
 }
 
+void sampleVolume(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const str[3],
+                  float* const rgba[4]) {
+  const auto& textures = *batch->scene.textures;
+  textures[texture < textures.size() ? texture : 0].sampleVolume(padded(n), str, rgba);
+}
+
 uint32_t components(const RtsHost* host, RtsTexture texture) {
   const auto* textures = static_cast<const RenderHost*>(host)->textures;
   return textures && texture && texture < textures->size() ? (*textures)[texture].components() : 0;
@@ -153,6 +159,7 @@ void fillHost(RtsHost& host) {
   host.path = path;
   host.error = error;
   host.backdrop = backdrop;
+  host.sampleVolume = sampleVolume;
 }
 
 } // namespace openrt

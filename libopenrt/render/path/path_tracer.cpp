@@ -38,13 +38,14 @@ void PathTracer::follow(Wave& wave, PixelSamples& found) {
   for (level_++; !next_.empty() || !guided_.empty(); level_++) {
     std::swap(queue_, next_);
     next_.clear();
+    // The waves below start guided rays that meet the surfaces of the next level.
+    guided_.follow(samples_, level_, found);
     queue_.cut(level_, scene_.frame.depth, tile_.ledger.cutByDepth);
     tile_.counters.secondary += queue_.size();
     for (size_t begin = 0; begin < queue_.size() && !stopped(); begin += most) {
       loadWave(queue_, begin, uint32_t(std::min<size_t>(most, queue_.size() - begin)), wave);
       traceWave(wave, found);
     }
-    guided_.follow(samples_, level_, found);
   }
 }
 

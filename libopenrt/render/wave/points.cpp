@@ -182,6 +182,32 @@ void computeBlock(const RenderScene& scene, const Rays& rays, const RayHits& hit
   finishPoints(block, out, i);
 }
 
+// The vertices of the primitive that a ray has hit, with the weights of linear interpolation there.
+struct HitCorners {
+  size_t count = 1;
+  const uint32_t* vertex = nullptr;
+  float weight[3] = {1, 0, 0};
+
+  // Returns a component of an attribute with so many floats per vertex.
+  float mix(const float* values, size_t floats, size_t component) const {
+    float sum = 0;
+    for (size_t c = 0; c < count; c++)
+      sum += weight[c] * values[floats * size_t(vertex[c]) + component];
+    return sum;
+  }
+};
+
+HitCorners cornersOf(const Record& r, const RayHits& hits, uint32_t lane) {
+  HitCorners corners;
+  const float u = hits.u[lane], along = std::clamp(u, 0.0f, 1.0f);
+  if (r.primitive == edit::Primitive::Triangles)
+    corners = {3, nullptr, {1 - u - hits.v[lane], u, hits.v[lane]}};
+  else if (r.primitive == edit::Primitive::Lines)
+    corners = {2, nullptr, {1 - along, along, 0}};
+  corners.vertex = r.indices + corners.count * size_t(hits.primitive[lane]);
+  return corners;
+}
+
 // Makes a private copy of the shader's parameters with the geometry's own values interpolated at
 // the hit.
 const void* ownParameters(const RenderScene& scene, const Record& r, const RayHits& hits,
@@ -190,27 +216,15 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
   auto* block = arena.take<std::byte>(shader.shaderClass->paramSize);
   std::memcpy(block, shader.params, shader.shaderClass->paramSize);
   const size_t primitive = hits.primitive[lane];
-  const size_t corners = r.primitive == edit::Primitive::Triangles ? 3
-                         : r.primitive == edit::Primitive::Lines   ? 2
-                                                                   : 1;
-  const float u = corners == 2 ? std::clamp(hits.u[lane], 0.0f, 1.0f) : hits.u[lane],
-              v = corners == 3 ? hits.v[lane] : 0;
-  const float w[3] = {1 - u - v, u, v};
+  const HitCorners corners = cornersOf(r, hits, lane);
   for (uint32_t p = 0; p < r.parameterCount; p++) {
     const GeometryParameter& own = r.parameters[p];
     const RtsParam& param = shader.shaderClass->params[own.index];
     const size_t n = parameterFloats(param.type);
     const float* values = own.values->as<float>();
     float mixed[16] = {};
-    if (own.perVertex && corners > 1) {
-      for (size_t c = 0; c < corners; c++) {
-        const float* at = values + n * size_t(r.indices[corners * primitive + c]);
-        for (size_t k = 0; k < n; k++) mixed[k] += w[c] * at[k];
-      }
-    } else {
-      std::copy_n(values + n * (own.perVertex ? size_t(r.indices[primitive]) : primitive), n,
-                  mixed);
-    }
+    for (size_t k = 0; k < n; k++)
+      mixed[k] = own.perVertex ? corners.mix(values, n, k) : values[n * primitive + k];
     // Interpolation weights may be below 0 by a rounding error.
     if (param.minimum != 0 || param.maximum != 0)
       for (size_t k = 0; k < n; k++) mixed[k] = std::clamp(mixed[k], param.minimum, param.maximum);
@@ -323,6 +337,15 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   points.rayHits = &hits;
   points.order = order;
   return points;
+}
+
+float fogCoordAt(const RenderScene& scene, const Points& points, uint32_t i) {
+  constexpr float none = -1;
+  if (points.record[i] == noHit) return none; // a sensor
+  const Record& r = scene.records[points.record[i]];
+  if (!r.fogCoords) return none;
+  return std::clamp(cornersOf(r, *points.rayHits, points.order[i]).mix(r.fogCoords, 1, 0), 0.0f,
+                    1.0f);
 }
 
 bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out) {

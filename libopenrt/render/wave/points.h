@@ -42,16 +42,21 @@ inline bool isBackFaceHit(const RenderScene& scene, const Rays& rays, const RayH
   const float d = dot(n, load(rays.dir, lane));
   return r.flip ? d < 0 : d > 0;
 }
-// Returns whether the hit is a back face that is culled.
+// Returns whether the hit is a back face that is culled, or in a gap of a dashed line.
 inline bool isCulledHit(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                         uint32_t lane) {
-  return scene.records[hits.record[lane]].cull && isBackFaceHit(scene, rays, hits, lane);
+  const Record& r = scene.records[hits.record[lane]];
+  return r.cull && (isBackFaceHit(scene, rays, hits, lane) ||
+                    (r.stippled && r.isGap(hits.primitive[lane], hits.u[lane])));
 }
 
 // Lifts the point of hit i from its flat triangle to the smooth surface that the vertex normals
 // describe, on the side of the shading normal: J. Hanika, "Hacking the Shadow Terminator", Ray
 // Tracing Gems II, ch. 4. Returns false and writes nothing if the surface is flat.
 bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out);
+
+// Returns the fog coordinate of hit i, or a negative number if its geometry has none.
+float fogCoordAt(const RenderScene& scene, const Points& points, uint32_t i);
 
 // Moves p along the unit vector n out of the error bound, then by one more float on every axis: M.
 // Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., 3.9.5.

@@ -116,7 +116,8 @@ template <class Points> std::vector<V4d> inSpace(const Points& points) {
 std::vector<V4d> controlPointsOf(const NodeRef& node) {
   Node* rendered = renderedNode(node.get());
   if (auto* single = nodeCast<nodes::Coordinate>(rendered)) return inSpace(drawnPoints(*single));
-  if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered)) return inSpace(exact->point);
+  if (auto* exact = nodeCast<nodes::CoordinateDouble>(rendered))
+    return inSpace(drawnPoints(*exact));
   return {};
 }
 std::vector<V4d> controlPointsOf(const MFVec2d& points) { return inSpace(points); }

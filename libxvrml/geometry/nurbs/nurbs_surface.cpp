@@ -1,8 +1,11 @@
 // nurbs_surface.cpp: NurbsPatchSurface and NurbsTrimmedSurface (ISO/IEC 19775-1 27.4.7, 27.4.14):
 // equal steps of both parameters, with exact normals at their ends, and lines where it may bend.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 
 #include "geometry/builders.h"
@@ -28,10 +31,8 @@ class Patch {
     return point.alongU.cross(point.alongV).length();
   }
 
-  // Returns the vertex at fractions of both ranges.
-  SurfaceVertex at(double u, double v) const {
-    return at(ParameterStep{surface_.u.at(u), u}, ParameterStep{surface_.v.at(v), v});
-  }
+  const KnotVector& u() const { return surface_.u; }
+  const KnotVector& v() const { return surface_.v; }
   SurfaceVertex at(const ParameterStep& u, const ParameterStep& v) const {
     const RationalSurface::Point point = surface_.at(surface_.u.basis(u), surface_.v.basis(v));
     SurfaceVertex vertex{point.place, surface_.normal(point, u.t, v.t, scale_), {}};
@@ -128,15 +129,51 @@ std::vector<double> linesOf(const Steps& steps) {
   return lines;
 }
 
-Mesh meshOfPart(const Patch& patch, const TrimmedCells& cells, Faults& faults) {
-  Mesh mesh;
-  for (const V2d& corner : cells.corners) {
-    const SurfaceVertex vertex =
-        patch.at(std::clamp(corner.x, 0.0, 1.0), std::clamp(corner.y, 0.0, 1.0));
-    addVertex(mesh, toVec3f(vertex.place), toVec3f(vertex.normal), vertex.texCoord);
+// Makes the vertices of triangles between two lines of one parameter. Where the surface may bend,
+// or has a gap, a corner has a vertex for each side.
+class SidesOfBends {
+ public:
+  SidesOfBends(const KnotVector& knots, const Steps& steps) : knots_(knots) {
+    for (const ParameterStep& step : steps)
+      if (step.side == ParameterStep::Side::before) bends_[step.fraction] = step.t;
   }
-  for (size_t t = 0; t + 2 < cells.triangles.size(); t += 3)
-    addTriangle(mesh, cells.triangles[t], cells.triangles[t + 1], cells.triangles[t + 2]);
+  // Returns the step of a corner of a triangle. middle: of the triangle.
+  ParameterStep at(double corner, double middle) const {
+    using Side = ParameterStep::Side;
+    if (const auto bend = bends_.find(corner); bend != bends_.end())
+      return {bend->second, corner, middle < corner ? Side::before : Side::after};
+    const double fraction = std::clamp(corner, 0.0, 1.0);
+    return {knots_.at(fraction), fraction};
+  }
+
+ private:
+  const KnotVector& knots_;
+  std::map<double, double> bends_; // the knots of fractions
+};
+
+Mesh meshOfPart(const Patch& patch, const Steps& uSteps, const Steps& vSteps,
+                const TrimmedCells& cells, Faults& faults) {
+  using Side = ParameterStep::Side;
+  const SidesOfBends alongU(patch.u(), uSteps), alongV(patch.v(), vSteps);
+  std::map<std::tuple<uint32_t, Side, Side>, uint32_t> vertices;
+  Mesh mesh;
+  for (size_t t = 0; t + 2 < cells.triangles.size(); t += 3) {
+    V2d middle(0.0);
+    for (size_t k = 0; k < 3; ++k) middle += cells.corners[cells.triangles[t + k]] / 3;
+    std::array<uint32_t, 3> numbers;
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t corner = cells.triangles[t + k];
+      const ParameterStep u = alongU.at(cells.corners[corner].x, middle.x),
+                          v = alongV.at(cells.corners[corner].y, middle.y);
+      const auto [known, isNew] =
+          vertices.try_emplace({corner, u.side, v.side}, uint32_t(vertices.size()));
+      numbers[k] = known->second;
+      if (!isNew) continue;
+      const SurfaceVertex vertex = patch.at(u, v);
+      addVertex(mesh, toVec3f(vertex.place), toVec3f(vertex.normal), vertex.texCoord);
+    }
+    addTriangle(mesh, numbers[0], numbers[1], numbers[2]);
+  }
   return finishSurface(std::move(mesh), false, faults);
 }
 
@@ -158,8 +195,9 @@ Mesh buildSurface(const Node& node, const MeshOptions& options, Faults& faults) 
   if (contours.empty())
     mesh = meshOfAll(patch, u, v, faults);
   else
-    mesh = meshOfPart(
-        patch, trimCells(linesOf(u), linesOf(v), contours, triangleLimit(options), faults), faults);
+    mesh = meshOfPart(patch, u, v,
+                      trimCells(linesOf(u), linesOf(v), contours, triangleLimit(options), faults),
+                      faults);
   mesh.solid = node.solid;
   return mesh;
 }

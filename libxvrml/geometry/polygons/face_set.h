@@ -52,7 +52,9 @@ struct FaceSet {
   Attribute<Vec3f> normals;
   Attribute<Vec2f> texCoords;
   Attribute<Color> colors;
-  std::vector<float> alphas; // as long as colors.values, or empty: opaque
+  std::vector<float> alphas;    // as long as colors.values, or empty: opaque
+  std::vector<Vec4f> texPlaces; // as long as texCoords.values, or empty: points on pictures
+  std::vector<float> fogCoords; // as long as points, or empty
   bool solid = true, ccw = true;
   bool convex = true; // promised by the author; checked
   // This many leading faces are split without checks (strips of quadrilaterals).
@@ -72,6 +74,14 @@ struct FaceSet {
   void takePoints(std::span<const Vec3f> given, std::vector<Vec3f>&& own) {
     ownPoints = std::move(own); // keeps its storage
     points = given;
+  }
+  // Sets the values of the texture coordinates. own: what `given` refers to, or empty if a node
+  // owns it.
+  void takeTexCoords(std::span<const Vec2f> given, std::vector<Vec2f>&& own,
+                     std::vector<Vec4f>&& places) {
+    texCoords.own = std::move(own); // keeps its storage
+    texCoords.values = given;
+    texPlaces = std::move(places);
   }
   // Sets the values of the colours. own: what `rgb` refers to, or empty if a node owns it.
   void takeColors(std::span<const Color> rgb, std::vector<Color>&& own,

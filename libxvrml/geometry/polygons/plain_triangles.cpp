@@ -75,7 +75,8 @@ bool buildPlain(const PlainTriangles& triangles, const FaceSet& set, const MeshO
   const bool smooth = set.normals.values.empty() && triangles.creaseAngle > 0;
   if (index.size() / (triangles.ended ? 4 : 3) + 1 > triangleLimit(options) ||
       points.size() / 4 > index.size() || (smooth && index.size() < manyIndices) ||
-      !set.alphas.empty() || !matchPoints(set.colors.values, points.size()) ||
+      !set.alphas.empty() || !set.texPlaces.empty() || !set.fogCoords.empty() ||
+      !matchPoints(set.colors.values, points.size()) ||
       !matchPoints(set.texCoords.values, points.size()) ||
       !matchPoints(set.normals.values, points.size()) || !areUnit(set.normals.values) ||
       !allFinite(points))

@@ -198,8 +198,16 @@ class Triangulation {
         set_.texCoords,
         [&](auto values, const uint32_t* at) {
           V2d sum(0, 0);
-          for (uint32_t i = 0; i < c.count; i++)
+          Imath::V4d place(0, 0, 0, 0);
+          for (uint32_t i = 0; i < c.count; i++) {
             if (at[i] != noValue) sum += V2d(values[at[i]].x, values[at[i]].y) * c.weight[i];
+            if (set_.texPlaces.empty()) continue;
+            const Vec4f& p = at[i] != noValue ? set_.texPlaces[at[i]] : Vec4f();
+            place += Imath::V4d(p.x, p.y, p.z, p.w) * c.weight[i];
+          }
+          if (!set_.texPlaces.empty())
+            set_.texPlaces.push_back(
+                {float(place.x), float(place.y), float(place.z), float(place.w)});
           return sum;
         },
         [](const V2d& sum) {
@@ -222,6 +230,12 @@ class Triangulation {
         [](const V3d& sum) {
           return Color{float(sum.x), float(sum.y), float(sum.z)};
         });
+    if (!set_.fogCoords.empty()) {
+      double share = 0;
+      for (uint32_t i = 0; i < c.count; i++)
+        share += c.weight[i] * double(set_.fogCoords[set_.corners[from[i]]]);
+      set_.fogCoords.push_back(float(share));
+    }
     if (set_.points.data() != set_.ownPoints.data())
       set_.ownPoints.assign(set_.points.begin(), set_.points.end());
     set_.ownPoints.push_back(toVec3f(place));

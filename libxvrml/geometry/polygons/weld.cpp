@@ -48,6 +48,13 @@ Mesh inPlace(FaceSet&& set, std::span<const uint32_t> triangles) {
   takeAttribute(set.normals, points, mesh.normals, mesh.ownNormals);
   takeAttribute(set.texCoords, points, mesh.texCoords, mesh.ownTexCoords);
   takeAttribute(set.colors, points, mesh.colors, mesh.ownColors);
+  if (!mesh.texCoords.empty() && !set.texPlaces.empty()) {
+    mesh.ownTexPlaces = std::move(set.texPlaces);
+    mesh.ownTexPlaces.resize(points);
+    mesh.texPlaces = mesh.ownTexPlaces;
+  }
+  mesh.ownFogCoords = std::move(set.fogCoords);
+  mesh.fogCoords = mesh.ownFogCoords;
   if (mesh.colors.empty() || set.alphas.empty()) return mesh;
   mesh.ownAlphas = std::move(set.alphas);
   mesh.ownAlphas.resize(points, 1.0f);
@@ -115,10 +122,13 @@ class Welder {
       mesh_.ownNormals.push_back(key[0] == noValue ? Vec3f{0, 0, 1} : set_.normals.values[key[0]]);
     if (has(set_.texCoords))
       mesh_.ownTexCoords.push_back(key[1] == noValue ? Vec2f{0, 0} : set_.texCoords.values[key[1]]);
+    if (has(set_.texCoords) && !set_.texPlaces.empty())
+      mesh_.ownTexPlaces.push_back(key[1] == noValue ? Vec4f() : set_.texPlaces[key[1]]);
     if (has(set_.colors))
       mesh_.ownColors.push_back(key[2] == noValue ? Color{1, 1, 1} : set_.colors.values[key[2]]);
     if (has(set_.colors) && !set_.alphas.empty())
       mesh_.ownAlphas.push_back(key[2] == noValue ? 1.0f : set_.alphas[key[2]]);
+    if (!set_.fogCoords.empty()) mesh_.ownFogCoords.push_back(set_.fogCoords[point]);
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
 

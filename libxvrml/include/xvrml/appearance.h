@@ -74,19 +74,18 @@ std::optional<MaterialValues> backValues(const AppearanceParts& parts);
 // appearance. It may be a MultiTexture or a cube map; null: there is none.
 Node* colorTexture(const AppearanceParts& parts);
 
-// Returns the TextureTransform of the first picture, or null: the node itself, or of the parts of a
-// MultiTextureTransform the one with this mapping, else the first.
-const nodes::TextureTransform* firstTransform(Node* textureTransform,
-                                              std::string_view mapping = {});
+// Returns the transform of the first picture, or null: a TextureTransform, TextureTransform3D or
+// TextureTransformMatrix3D. It is the node itself, or of the parts of a MultiTextureTransform the
+// one with this mapping, else the first.
+const Node* firstTransform(Node* textureTransform, std::string_view mapping = {});
 // The same for the layer `layer` of a MultiTexture. Layers after the first have a transform only in
 // a MultiTextureTransform that is long enough.
-const nodes::TextureTransform* layerTransform(Node* textureTransform, size_t layer,
-                                              std::string_view mapping = {});
+const Node* layerTransform(Node* textureTransform, size_t layer, std::string_view mapping = {});
 
 // One picture of a surface, and how it lies on it.
 struct TextureLayer {
-  Node* texture = nullptr; // ImageTexture, PixelTexture, MovieTexture or a cube map
-  // Column-major matrix that maps (s, t, 0, 1) of the geometry to coordinates of the picture.
+  Node* texture = nullptr; // ImageTexture, PixelTexture, MovieTexture, a cube map or a 3D texture
+  // Column-major matrix that maps (s, t, r, q) of the geometry to coordinates of the picture.
   double transform[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   std::string mode, source, function; // words of a MultiTexture; empty: its defaults
 };
@@ -143,16 +142,21 @@ struct TexturePicture {
   RadianceImage radiance;    // in place of `image` for a file of radiances (.hdr, .exr, .pfm)
   std::vector<uint8_t> file; // the bytes of the file; empty: the picture comes from no file
   std::string path;          // the file, or the data: URL
-  // "image/png", "image/jpeg", "image/gif", "image/vnd.radiance", "image/x-exr" or
-  // "image/x-portable-floatmap"; empty: the picture comes from no file.
+  // "image/png", "image/jpeg", "image/gif", "image/webp", "image/bmp", "image/x-tga",
+  // "image/vnd.radiance", "image/x-exr" or "image/x-portable-floatmap"; empty: the picture comes
+  // from no file.
   std::string type;
   std::string error; // why there is no picture; empty: there is one, or the node names none
+  size_t url = 0;    // the place of the file in the node's list of URLs
+  bool tooManyPixels = false; // why there is no picture: it has more than the limit imagePixels
 };
 enum class Decode : uint8_t { yes, no };
 // Returns the picture of an ImageTexture, a PixelTexture, or the frame that a MovieTexture of a
 // running world shows now. world: its limits hold, and its file is the base of the URLs of nodes in
-// no file. Decode::no reads a file without decoding it; `image` is then empty.
-TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes);
+// no file. Decode::no reads a file without decoding it; `image` is then empty. The file is that of
+// the first URL, from `url` on, that can be used.
+TexturePicture texturePicture(const Node& texture, const World& world, Decode decode = Decode::yes,
+                              size_t url = 0);
 // Decodes the file of a picture that was read with Decode::no. Reads at most limits.imagePixels
 // pixels; otherwise `error` says what is wrong. Needs no world. [any thread]
 void decodeTexture(TexturePicture& picture, const Limits& limits);

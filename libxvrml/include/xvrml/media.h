@@ -39,7 +39,7 @@ struct Playing {
   bool loop = false;
 };
 // Returns what an AudioClip of a running world plays at the last tick. Its samples are read by the
-// first call, from WAVE files with PCM or float samples.
+// first call. libsndfile reads the file, in the process xvrml-decoder.
 Playing playingOf(const Node& audioClip);
 
 // --- Sound (clause 6.42) ---

@@ -152,8 +152,8 @@ struct NodeType {
   // Null for types that a world declares, and for a node's own type.
   Node* (*create)(const NodeType& type);
   std::string clause; // clause of the standard, "6.6"; empty: not a standard node
-  // Returns the nodes that a plug-in's node stands for (xvrml/node_plugin.h). Null: the node itself
-  // is rendered.
+  // Returns the nodes that a plug-in's node (xvrml/node_plugin.h) or a ParticleSystem stands for.
+  // Null: the node itself is rendered.
   NodeRef (*expand)(const Node& node) = nullptr;
 
   // Returns whether `abstract` contains the name.
@@ -210,8 +210,7 @@ class Node {
   // Sets a field. Returns false, and changes nothing, if the value's type is not the field's.
   bool set(const FieldInfo& field, Value value);
 
-  // Returns where a plug-in's node keeps its expansion (NodeType::expand); null for all other
-  // nodes.
+  // Returns where a node keeps its expansion; null for nodes whose type has no `expand`.
   virtual NodeRef* expansion() { return nullptr; }
 
   // DEF name, "" if none (not called `name`: nodes may have a field of that name)

@@ -16,9 +16,10 @@ struct RadianceImage {
 };
 
 // Reads a Radiance picture (.hdr), a colour PFM or an OpenEXR picture. The format is recognised by
-// the content. OpenEXR files must have one scan-line part with the channels R, G, B or Y and one of
-// the compressions NONE, RLE, ZIPS and ZIP. A pixel counts four times against limits.imagePixels.
-// Throws std::runtime_error with a text that says what is wrong with the file.
+// the content. OpenEXR files, of any compression and with lines or tiles, give the channels R, G, B
+// or Y of their first part that has them. Another process decodes them, the program xvrml-decoder.
+// A pixel counts four times against limits.imagePixels. Throws std::runtime_error with a text that
+// says what is wrong with the file.
 RadianceImage readRadiance(const std::string& path, const Limits& limits = {});
 RadianceImage decodeRadiance(const uint8_t* bytes, size_t size, const Limits& limits = {});
 

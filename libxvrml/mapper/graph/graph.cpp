@@ -109,7 +109,7 @@ void Graph::planItem(ItemId id) {
   item.children = children;
   int32_t mesh = none;
   if (auto* shape = nodeCast<nodes::Shape>(item.node); shape && item.kind == Kind::shape)
-    mesh = meshes.add(*renderedNode(shape->geometry.get()), isTextured(shape->appearance.get()));
+    mesh = meshes.add(*renderedNode(shape->geometry.get()), textureNeed(shape->appearance.get()));
   if (item.mesh != none) meshes.drop(item.mesh);
   item.mesh = mesh;
 }

@@ -149,7 +149,9 @@ void Objects::defineMesh(int32_t mesh) {
   open(part, graph_.meshes.dynamic(mesh));
   rtLoadName(0);
   rtLoadIdentity();
-  if (draw(mesh, Surface(), true)) parts_[size_t(part)].reach = graph_.meshes.extent(mesh).reach;
+  const bool placed = !graph_.meshes.get(mesh).texPlaces.empty();
+  if (draw(mesh, placed ? surfaces_.carrier() : Surface(), true))
+    parts_[size_t(part)].reach = graph_.meshes.extent(mesh).reach;
   close();
   report(world_.diagnostics, graph_.meshes.geometry(mesh).source,
          graph_.meshes.geometry(mesh).type().name);

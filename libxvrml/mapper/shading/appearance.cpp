@@ -9,8 +9,8 @@
 
 #include <xxhash.h>
 
+#include "geometry/node_matrix.h"
 #include "mapper/shading/layers.h"
-#include "mapper/shading/line_properties.h"
 #include "mapper/shading/material_parameters.h"
 #include "mapper/shading/physical.h"
 #include "mapper/shading/x3d_material.h"
@@ -20,25 +20,26 @@
 
 namespace xvrml::mapper {
 
-bool isTextured(Node* appearance) {
+TextureNeed textureNeed(Node* appearance) {
   const AppearanceParts parts = resolveAppearance(appearance);
-  if (parts.shader || (parts.texture && !isCubeMap(parts.texture))) return true;
-  if (parts.material && hasPictures(*parts.material)) return true;
+  if (showsVolume(parts)) return TextureNeed::volume;
+  if (parts.shader || (parts.texture && !isCubeMap(parts.texture))) return TextureNeed::picture;
+  if (parts.material && hasPictures(*parts.material)) return TextureNeed::picture;
   Node* back = parts.plain ? renderedNode(parts.plain->backMaterial.get()) : nullptr;
-  return back && hasPictures(*back);
+  return back && hasPictures(*back) ? TextureNeed::picture : TextureNeed::none;
 }
 
 namespace {
 // Sets the material (clause 4.14). Without a Material the surface is unlit.
 void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
   shader.integer("lit", m ? 1 : 0);
+  shader.number("transparency", m ? m->transparency : 0, 0, 1);
   if (!m) return;
   shader.color("diffuseColor", convert(m->diffuseColor, linear));
   shader.color("emissiveColor", convert(m->emissiveColor, linear));
   shader.color("specularColor", convert(m->specularColor, linear));
   shader.number("ambientIntensity", m->ambientIntensity, 0, 1);
   shader.number("shininess", m->shininess, 0, 1);
-  shader.number("transparency", m->transparency, 0, 1);
 }
 } // namespace
 
@@ -69,8 +70,8 @@ Surfaces::Key Surfaces::keyOf(const AppearanceParts& parts, RTid texture, bool m
       add(convert(color, linear_));
     for (const float number : {m->ambientIntensity, m->shininess, m->transparency}) add(number);
   }
-  if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform); t && texture != 0)
-    add(textureMatrix(t->center, t->rotation, t->scale, t->translation));
+  if (const Node* t = firstTransform(parts.textureTransform); t && texture != 0)
+    add(textureMatrixOf(t));
   const XXH128_hash_t digest = XXH3_128bits(bytes.data(), size);
   return {digest.low64, digest.high64};
 }
@@ -135,13 +136,13 @@ void Surfaces::leaveShared(Entry& entry) {
 
 Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
   Node* node = renderedNode(appearance);
-  // Lines have no cube maps.
-  if (use.lines) use.byNormal = false;
+  // Lines have no textures.
+  if (use.lines) use.byNormal = use.placed = false;
   const auto [it, fresh] = entries_[placeOf(use)].try_emplace(node);
   Entry& entry = it->second;
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
-  entry.textured = isTextured(node);
+  entry.need = textureNeed(node);
   entry.use = use;
   const AppearanceParts parts = resolveAppearance(node);
   const uint64_t bytes = parts.shader ? bytesOfSurface : bytesOfSharedSurface;
@@ -156,7 +157,7 @@ Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
 }
 
 // Makes the surface of lines and points (clauses 6.24 and 6.36) in the colours of the geometry,
-// else in emissiveColor: unlit, unless they are thick.
+// else in emissiveColor: unlit, unless they are thick, and as transparent as the material.
 Surface Surfaces::makeLines(const Entry& entry) {
   Node* appearance = entry.appearance.get();
   Surface surface;
@@ -166,11 +167,12 @@ Surface Surfaces::makeLines(const Entry& entry) {
   shader.integer("lit", entry.use.thick);
   if (entry.use.vertexAlpha) shader.integer("vertexAlpha", 1);
   const AppearanceParts parts = resolveAppearance(appearance);
-  if (parts.material)
-    surface.lineColor = convert(materialValues(parts.material).lineColor, linear_);
-  const LineSizes sizes = lineSizes(parts.plain);
-  surface.lineWidth = sizes.line;
-  surface.pointSize = sizes.point;
+  if (parts.material) {
+    const MaterialValues values = materialValues(parts.material);
+    surface.lineColor = convert(values.lineColor, linear_);
+    shader.number("transparency", values.transparency, 0, 1);
+  }
+  surface.style = lineStyle(parts.plain);
   warnOfLines(parts.plain, world_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
@@ -219,6 +221,7 @@ bool Surfaces::multiplies(const Entry& entry) const {
 
 // Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
+  entry.surface.takesPlaces = false;
   const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   // Shaders of both kinds are not shared with each other.
   if (isShared(entry) && bool(shared_[entry.shared].customUser) != bool(parts.shader))
@@ -230,7 +233,8 @@ void Surfaces::makeSurface(Entry& entry) {
     }
     if (isShared(entry)) leaveShared(entry); // the class is not there
   }
-  if (!parts.shader && needsX3dMaterial(parts)) return makeX3d(entry);
+  const bool isPlaced = entry.use.placed && parts.texture && !isPhysical(parts.material);
+  if (!parts.shader && (isPlaced || needsX3dMaterial(parts))) return makeX3d(entry);
   if (!parts.shader && isPhysical(parts.material)) return makePhysical(entry);
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
@@ -271,9 +275,8 @@ void Surfaces::makeSurface(Entry& entry) {
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (entry.use.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);
-  if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform); t && texture != 0)
-    shader.matrix("textureTransform",
-                  textureMatrix(t->center, t->rotation, t->scale, t->translation));
+  if (const Node* t = firstTransform(parts.textureTransform); t && texture != 0)
+    shader.matrix("textureTransform", textureMatrixOf(t));
   else if (!shader.fresh())
     shader.matrix("textureTransform", Matrix());
   report(world_.diagnostics, entry.appearance ? entry.appearance->source : SourcePosition(),
@@ -312,8 +315,11 @@ void Surfaces::makeX3d(Entry& entry) {
   const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   std::optional<ShaderSetup> setup;
   if (!setUp(entry, &Entry::x3d, classes_.get("X3DMaterial", ""), setup)) return;
-  setX3dMaterial(*setup, parts, {.multiplies = multiplies(entry), .byNormal = entry.use.byNormal},
-                 {textures_, cubes_}, world_, linear_);
+  setX3dMaterial(
+      *setup, parts,
+      {.multiplies = multiplies(entry), .byNormal = entry.use.byNormal, .placed = entry.use.placed},
+      {textures_, cubes_, volumes_}, world_, linear_);
+  entry.surface.takesPlaces = true;
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, "appearance");
 }
@@ -327,27 +333,36 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
       const RTid before = it->second.surface.shader;
       if (it->second.bytes > 0) makeSurface(it->second);
       effect.other |= it->second.surface.shader != before;
-      const bool textured = isTextured(&appearance);
-      effect.textured |= textured && !it->second.textured;
-      it->second.textured = textured;
+      const TextureNeed need = textureNeed(&appearance);
+      effect.textured |= need > it->second.need;
+      it->second.need = need;
     } else {
       const AppearanceParts parts = resolveAppearance(&appearance);
-      const Color color = parts.material
-                              ? convert(materialValues(parts.material).lineColor, linear_)
-                              : Surface().lineColor;
-      const LineSizes sizes = lineSizes(parts.plain);
+      const MaterialValues values = materialValues(parts.material);
+      const Color color = parts.material ? convert(values.lineColor, linear_) : Surface().lineColor;
+      if (it->second.own != 0)
+        ShaderSetup(classes_.get("VRML97", ""), it->second.own, sets_)
+            .number("transparency", values.transparency, 0, 1);
+      const LineStyle style = lineStyle(parts.plain);
       Surface& surface = it->second.surface;
-      effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
-                        sizes.point != surface.pointSize;
+      effect.colored |= !(color == surface.lineColor) || !(style == surface.style);
       surface.lineColor = color;
-      surface.lineWidth = sizes.line;
-      surface.pointSize = sizes.point;
+      surface.style = style;
     }
   }
   return effect;
 }
 
+Surface Surfaces::carrier() {
+  if (carrier_ == 0) carrier_ = rtNewShader(classes_.get("X3DMaterial", ""));
+  Surface surface;
+  surface.shader = carrier_;
+  surface.takesPlaces = true;
+  return surface;
+}
+
 void Surfaces::clear() {
+  if (carrier_ != 0) rtDeleteShader(carrier_);
   for (Entries& entries : entries_)
     for (auto& [node, entry] : entries) forget(entry);
 }

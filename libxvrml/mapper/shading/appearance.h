@@ -9,24 +9,28 @@
 #include <vector>
 
 #include "base/index_table.h"
+#include "geometry/mesh.h"
 #include "mapper/ration.h"
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/custom_shaders.h"
+#include "mapper/shading/line_properties.h"
 #include "mapper/shading/textures.h"
+#include "mapper/shading/volumes.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapper {
 
-// Returns whether shapes of this appearance need texture coordinates: it has a texture, or a custom
+// Returns which texture coordinates shapes of this appearance need: it has a texture, or a custom
 // shader that may use them.
-bool isTextured(Node* appearance);
+TextureNeed textureNeed(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
-  bool lines = false;                 // it is for lines or points
-  Color lineColor{1, 1, 1};           // for lines and points without colours of their own
-  float lineWidth = 1, pointSize = 1; // in pixels
+  bool lines = false;       // it is for lines or points
+  bool takesPlaces = false; // its class has the parameter texturePlace of vertices
+  Color lineColor{1, 1, 1}; // for lines and points without colours of their own
+  LineStyle style;
 };
 
 // Says what a surface is used for.
@@ -39,14 +43,15 @@ struct SurfaceUse {
   bool vertexAlpha = false;
   // Cube maps are looked up by the normal (TextureCoordinateGenerator).
   bool byNormal = false;
+  bool placed = false; // the geometry has texture coordinates in space
 };
 
 class Surfaces {
  public:
   Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
-           CubeMaps& cubes, CustomShaders& custom)
+           CubeMaps& cubes, Volumes& volumes, CustomShaders& custom)
       : world_(world), linear_(linearColor), classes_(classes), textures_(textures), cubes_(cubes),
-        custom_(custom), quota_(world, "appearances") {}
+        volumes_(volumes), custom_(custom), quota_(world, "appearances") {}
 
   // Returns the surface of a Shape's appearance, which may be null or a prototype instance.
   Surface surfaceFor(Node* appearance, SurfaceUse use);
@@ -55,9 +60,11 @@ class Surfaces {
   // use it.
   struct Effect {
     bool other = false;    // they need another shader
-    bool colored = false;  // lines need another colour or width
-    bool textured = false; // they now have a texture and had none before
+    bool colored = false;  // lines need another colour or style
+    bool textured = false; // they now need texture coordinates that they did not need before
   };
+  // Returns the surface of meshes whose texture coordinates in space shaders of instances use.
+  Surface carrier();
   // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.
   Effect update(Node& appearance);
   // Deletes the shaders of appearances that no shape uses any more. uses(appearance) returns
@@ -97,14 +104,14 @@ class Surfaces {
     uint32_t shared = IndexTable::none;
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
-    bool textured = false;
+    TextureNeed need = TextureNeed::none;
     SurfaceUse use;
   };
   using Entries = std::unordered_map<const Node*, Entry>;
   // Returns the place in entries_ of surfaces for a use.
   static size_t placeOf(SurfaceUse use) {
-    return size_t(use.thick) * 8 + size_t(use.lines) * 4 + size_t(use.byNormal) * 2 +
-           size_t(use.vertexAlpha);
+    return size_t(use.placed) * 16 + size_t(use.thick) * 8 + size_t(use.lines) * 4 +
+           size_t(use.byNormal) * 2 + size_t(use.vertexAlpha);
   }
   Surface makeLines(const Entry& entry);
   void makeSurface(Entry& entry);
@@ -127,9 +134,11 @@ class Surfaces {
   ShaderClasses& classes_;
   Textures& textures_;
   CubeMaps& cubes_;
+  Volumes& volumes_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries entries_[16]; // by placeOf()
+  Entries entries_[32]; // by placeOf()
+  RTid carrier_ = 0;
   std::vector<Shared> shared_;
   std::vector<uint32_t> freeShared_;
   IndexTable sharedByKey_;

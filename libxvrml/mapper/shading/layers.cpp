@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/node_matrix.h"
 #include "xvrml/appearance.h"
 
 namespace xvrml::mapper {
@@ -85,26 +86,20 @@ class Reader {
   World& world_;
 };
 
-Matrix matrixOf(const nodes::TextureTransform* t) {
-  return t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix();
-}
-
-// Appends the six numbers of layerTransforms for the picture i >= 1.
+// Appends the sixteen numbers of layerTransforms for the picture i >= 1.
 void appendTransform(Node* textureTransform, size_t i, std::vector<float>& numbers) {
-  const Matrix m = matrixOf(layerTransform(textureTransform, i));
-  std::array<float, 6> six = {float(m.x[0][0]), float(m.x[0][1]), float(m.x[1][0]),
-                              float(m.x[1][1]), float(m.x[3][0]), float(m.x[3][1])};
-  for (const float x : six)
-    if (!std::isfinite(x)) six = {1, 0, 0, 1, 0, 0};
-  numbers.insert(numbers.end(), six.begin(), six.end());
+  const Matrix m = textureMatrixOf(layerTransform(textureTransform, i));
+  const auto isFloat = [](double x) { return std::isfinite(float(x)); };
+  const Matrix used = std::all_of(data(m), data(m) + 16, isFloat) ? m : Matrix();
+  for (int k = 0; k < 16; ++k) numbers.push_back(float(data(used)[k]));
 }
 
 } // namespace
 
 void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform, std::string_view mapping,
-               bool multiplies, Textures& textures, World& world, bool linear) {
+               bool multiplies, const LayerPictures& from, World& world, bool linear) {
   Node* node = renderedNode(texture);
-  shader.matrix("textureTransform", matrixOf(firstTransform(textureTransform, mapping)));
+  shader.matrix("textureTransform", textureMatrixOf(firstTransform(textureTransform, mapping)));
   std::array<RTid, mostLayers> ids{};
   std::vector<float> layers, transforms;
   if (const auto* multi = nodeCast<nodes::MultiTexture>(node)) {
@@ -117,7 +112,7 @@ void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform, std::
       if (nodeCast<nodes::MultiTexture>(picture))
         reader.warn("texture has another MultiTexture, which is left out");
       else
-        ids[i] = textures.ofNode(picture);
+        ids[i] = from.of(picture);
       reader.layer(i, layers);
       if (i > 0) appendTransform(textureTransform, i, transforms);
     }
@@ -126,7 +121,7 @@ void setLayers(ShaderSetup& shader, Node* texture, Node* textureTransform, std::
                              std::clamp(color.b, 0.0f, 1.0f), std::clamp(multi->alpha, 0.0f, 1.0f)};
     shader.floats("factor", factor);
   } else {
-    ids[0] = textures.ofNode(node);
+    ids[0] = from.of(node);
     if (multiplies) layers = {0, 0, 0, 0};
   }
   for (size_t i = 0; i < mostLayers; ++i)

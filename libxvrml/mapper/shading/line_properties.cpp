@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
 #include <string>
 
 namespace xvrml::mapper {
@@ -18,6 +20,45 @@ float pixels(float size) {
   return std::isfinite(size) && size > 0 ? std::min(size, mostPixels) : 1;
 }
 
+// Returns the pattern of dashes and gaps in turn, whose lengths are given in cells; they repeat.
+constexpr uint16_t patternOf(std::initializer_list<int> lengths) {
+  uint16_t pattern = 0;
+  for (int cell = 0; cell < 16;) {
+    bool dash = true;
+    for (const int length : lengths) {
+      for (int i = 0; i < length && cell < 16; i++) pattern |= uint16_t(dash << cell++);
+      dash = !dash;
+    }
+  }
+  return pattern;
+}
+
+// A type of line by its number (ISO/IEC 19775-1 table 12.2). The standard does not say how long
+// dashes are; these repeat after 16 or 32 pixels.
+struct LineType {
+  int32_t number;
+  int factor; // pixels of a cell
+  uint16_t pattern;
+};
+constexpr LineType lineTypes[] = {
+    {2, 1, patternOf({9, 7})},              // dashed
+    {3, 1, patternOf({2, 2})},              // dotted
+    {4, 1, patternOf({8, 3, 2, 3})},        // dashed and dotted
+    {5, 1, patternOf({6, 2, 2, 2, 2, 2})},  // a dash and two dots
+    {9, 2, patternOf({8, 8})},              // stitch line
+    {10, 2, patternOf({8, 2, 4, 2})},       // chain line
+    {11, 2, patternOf({9, 2, 3, 2})},       // centre line
+    {12, 2, patternOf({12, 4})},            // hidden line
+    {13, 2, patternOf({6, 2, 2, 2, 2, 2})}, // phantom line
+};
+
+// Returns null for solid lines, and for types that are not drawn.
+const LineType* typeOf(int32_t number) {
+  const auto found = std::find_if(std::begin(lineTypes), std::end(lineTypes),
+                                  [=](const LineType& type) { return type.number == number; });
+  return found == std::end(lineTypes) ? nullptr : found;
+}
+
 // The size of a point at distance 0. Attenuation with distance is left out.
 float pointSize(const nodes::PointProperties& p) {
   const float near = p.attenuation.x > 0 ? p.pointSizeScaleFactor / std::sqrt(p.attenuation.x)
@@ -27,23 +68,29 @@ float pointSize(const nodes::PointProperties& p) {
 
 } // namespace
 
-LineSizes lineSizes(const nodes::Appearance* appearance) {
-  LineSizes sizes;
-  if (!appearance) return sizes;
-  if (const auto* lines = propertyOf<nodes::LineProperties>(appearance->lineProperties))
-    if (lines->applied) sizes.line = pixels(lines->linewidthScaleFactor);
+LineStyle lineStyle(const nodes::Appearance* appearance) {
+  LineStyle style;
+  if (!appearance) return style;
+  if (const auto* lines = propertyOf<nodes::LineProperties>(appearance->lineProperties);
+      lines && lines->applied) {
+    style.line = pixels(lines->linewidthScaleFactor);
+    if (const LineType* type = typeOf(lines->linetype)) {
+      style.pattern = type->pattern;
+      style.factor = type->factor;
+    }
+  }
   if (const auto* points = propertyOf<nodes::PointProperties>(appearance->pointProperties))
-    sizes.point = pointSize(*points);
-  return sizes;
+    style.point = pointSize(*points);
+  return style;
 }
 
 void warnOfLines(const nodes::Appearance* appearance, World& world) {
   if (!appearance) return;
   if (const auto* lines = propertyOf<nodes::LineProperties>(appearance->lineProperties);
-      lines && lines->applied && lines->linetype != 1)
-    world.diagnostics.warn(lines->source, "LineProperties: linetype is " +
-                                              std::to_string(lines->linetype) +
-                                              "; only 1, solid lines, can be drawn");
+      lines && lines->applied && lines->linetype != 1 && !typeOf(lines->linetype))
+    world.diagnostics.warn(lines->source,
+                           "LineProperties: linetype is " + std::to_string(lines->linetype) +
+                               "; 1 to 5 and 9 to 13 are drawn, all others as 1, solid lines");
   if (const auto* points = propertyOf<nodes::PointProperties>(appearance->pointProperties);
       points && (points->attenuation.y != 0 || points->attenuation.z != 0))
     world.diagnostics.warn(points->source,

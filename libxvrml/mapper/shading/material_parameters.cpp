@@ -1,5 +1,6 @@
 #include "mapper/shading/material_parameters.h"
 
+#include "geometry/node_matrix.h"
 #include "mapper/shading/cube_maps.h"
 #include "xvrml/mapper.h"
 
@@ -79,10 +80,8 @@ void setMaterialParameters(ShaderSetup& shader, const ShaderClass& shaderClass,
     world.diagnostics.warn(picture->source,
                            "the shader " + node.name +
                                " has no parameter texture: the picture is not used");
-  if (const nodes::TextureTransform* t = firstTransform(parts.textureTransform);
-      set.takes("textureTransform", RT_PARAM_MATRIX))
-    shader.matrix("textureTransform",
-                  t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
+  if (set.takes("textureTransform", RT_PARAM_MATRIX))
+    shader.matrix("textureTransform", textureMatrixOf(firstTransform(parts.textureTransform)));
   if (const auto* m = nodeCast<nodes::Material>(parts.material))
     setLit(set, *m);
   else if (const auto* sides = nodeCast<nodes::TwoSidedMaterial>(parts.material))

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "geometry/node_matrix.h"
 #include "mapper/shading/cube_maps.h"
 
 namespace xvrml::mapper {
@@ -38,9 +39,7 @@ template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
   shader.number("transparency", m.transparency, 0, 1);
   shader.integer("alphaMode", alphaModeOf(parts.plain, world));
   shader.number("alphaCutoff", parts.plain ? parts.plain->rare.get().alphaCutoff : 0.5f, 0, 1);
-  const nodes::TextureTransform* t = firstTransform(parts.textureTransform);
-  shader.matrix("textureTransform",
-                t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
+  shader.matrix("textureTransform", textureMatrixOf(firstTransform(parts.textureTransform)));
 }
 
 constexpr float standardIndex = 1.5f; // a reflectance of 0.04

@@ -53,6 +53,7 @@ Textures::Sampling Textures::samplingOf(bool repeatS, bool repeatT,
   Sampling sampling;
   sampling.wrapS = wrapOf(p->boundaryModeS, "boundaryModeS", *p, world_);
   sampling.wrapT = wrapOf(p->boundaryModeT, "boundaryModeT", *p, world_);
+  sampling.wrapR = wrapOf(p->boundaryModeR, "boundaryModeR", *p, world_);
   checkFilter(*p, world_);
   sampling.nearest = p->magnificationFilter == "NEAREST_PIXEL";
   if (sampling.bordered()) {
@@ -66,6 +67,7 @@ Textures::Sampling Textures::samplingOf(bool repeatS, bool repeatT,
 void Textures::setSampling(const Sampling& sampling, bool data) {
   rtTexParameteri(RT_TEXTURE_WRAP_S, int(sampling.wrapS));
   rtTexParameteri(RT_TEXTURE_WRAP_T, int(sampling.wrapT));
+  rtTexParameteri(RT_TEXTURE_WRAP_R, int(sampling.wrapR));
   rtTexParameteri(RT_TEXTURE_MAG_FILTER, sampling.nearest ? RT_NEAREST : RT_LINEAR);
   if (!sampling.bordered()) return;
   const auto& [r, g, b, alpha] = sampling.border;

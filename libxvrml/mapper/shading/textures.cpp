@@ -21,6 +21,7 @@ bool usable(const Image& image) {
 }
 
 bool usable(const RadianceImage& image) { return image.width > 0 && image.height > 0; }
+bool usable(const Volume& volume) { return !volume.pixels.empty(); }
 
 // The picture of a node that owns its pixels; `image` is null if it has none at present.
 struct OwnImage {
@@ -83,6 +84,12 @@ void Textures::drop(RTid texture) {
   --count_;
 }
 
+RTid Textures::add(const Volume& volume, const Repeats& repeats, const NodeRef& properties) {
+  Sampling sampling = samplingOf(repeats.s, repeats.t, properties);
+  if (!properties) sampling.wrapR = repeats.r ? RT_REPEAT : RT_CLAMP_TO_EDGE;
+  return make(volume, sampling);
+}
+
 ImageRoom Textures::roomForPicture() const {
   return {world_.options.limits, room(), share_.budget().get()};
 }
@@ -116,6 +123,12 @@ RTid Textures::makeNode(Node& node, bool data, bool face) {
                             node.type().name +
                                 ": a cube map is drawn as the texture of an Appearance with a "
                                 "Material, or as diffuseTexture of that; here it is left out");
+  } else if (node.type().is("texture3D")) {
+    world_.diagnostics.warn(node.source,
+                            node.type().name +
+                                ": a volume is drawn as the texture of an Appearance without a "
+                                "material or with a Material, or as diffuseTexture of that; here "
+                                "it is left out");
   } else {
     world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
   }
@@ -250,6 +263,13 @@ void Textures::upload(RTid texture, const Image& image) {
 void Textures::upload(RTid texture, const RadianceImage& image) {
   take(texture, image.rgb.size() * sizeof(float));
   rtTexImage2D(3, image.width, image.height, RT_FLOAT, image.rgb.data());
+  ++loaded_;
+}
+
+void Textures::upload(RTid texture, const Volume& volume) {
+  take(texture, volume.pixels.size());
+  rtTexImage3D(volume.components, volume.width, volume.height, volume.depth, RT_UNSIGNED_BYTE,
+               volume.pixels.data());
   ++loaded_;
 }
 

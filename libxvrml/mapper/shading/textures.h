@@ -12,6 +12,7 @@
 
 #include "base/budget.h"
 #include "image/image.h"
+#include "image/volume.h"
 #include "mapper/rt.h"
 #include "xvrml/radiance.h"
 #include "xvrml/world.h"
@@ -41,6 +42,11 @@ class Textures {
   RTid add(const Image& image) { return make(image, samplingOf(false, false)); }
   RTid add(const RadianceImage& image) { return make(image, samplingOf(false, false)); }
   void drop(RTid texture);
+  // Does the same for a volume, with the repetition and TextureProperties (or null) of its node.
+  struct Repeats {
+    bool s, t, r;
+  };
+  RTid add(const Volume& volume, const Repeats& repeats, const NodeRef& properties);
   // Returns the memory that another picture from a file may take.
   ImageRoom roomForPicture() const;
   // Returns a black texel, used for an environment whose picture cannot be loaded.
@@ -56,10 +62,13 @@ class Textures {
  private:
   // How a picture goes on beyond its edges, and how it is enlarged.
   struct Sampling {
-    RTenum wrapS = RT_REPEAT, wrapT = RT_REPEAT;
+    RTenum wrapS = RT_REPEAT, wrapT = RT_REPEAT, wrapR = RT_REPEAT;
     bool nearest = false;
     std::array<float, 4> border{}; // as the world has it; zeros where no edge leads to the border
-    bool bordered() const { return wrapS == RT_CLAMP_TO_BORDER || wrapT == RT_CLAMP_TO_BORDER; }
+    bool bordered() const {
+      return wrapS == RT_CLAMP_TO_BORDER || wrapT == RT_CLAMP_TO_BORDER ||
+             wrapR == RT_CLAMP_TO_BORDER;
+    }
     auto operator<=>(const Sampling&) const = default;
   };
   static Sampling samplingOf(bool repeatS, bool repeatT);
@@ -76,6 +85,7 @@ class Textures {
   void dropUnused(RTid texture); // deletes a bordered picture of a file that no node shows any more
   void upload(RTid texture, const Image& image);
   void upload(RTid texture, const RadianceImage& image); // values are used unchanged
+  void upload(RTid texture, const Volume& volume);
   void take(RTid texture, uint64_t bytes);
   void remove(RTid texture);
   uint64_t room() const; // bytes that still images may still take

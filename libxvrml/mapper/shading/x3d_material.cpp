@@ -2,6 +2,7 @@
 // TwoSidedMaterial (ISO/IEC 19775-1 12.4.6) and Appearance.backMaterial as parameters.
 #include "mapper/shading/x3d_material.h"
 
+#include <algorithm>
 #include <string>
 
 #include "mapper/shading/layers.h"
@@ -102,10 +103,21 @@ bool isUnfilled(const nodes::Appearance* appearance) {
   return fill && !fill->filled;
 }
 
+bool showsVolume(const AppearanceParts& parts) {
+  if (parts.shader || isPhysical(parts.material)) return false;
+  Node* texture = renderedNode(colorTexture(parts));
+  const auto* multi = nodeCast<nodes::MultiTexture>(texture);
+  if (!multi) return isVolume(texture);
+  return std::any_of(multi->texture.begin(), multi->texture.end(),
+                     [](const NodeRef& layer) { return isVolume(layer.get()); });
+}
+
 bool needsX3dMaterial(const AppearanceParts& parts) {
   if (isUnfilled(parts.plain)) return true;
   if (isPhysical(parts.material)) return false;
-  if (nodeCast<nodes::MultiTexture>(parts.texture) || isCubeMap(parts.texture)) return true;
+  if (nodeCast<nodes::MultiTexture>(parts.texture) || isCubeMap(parts.texture) ||
+      isVolume(parts.texture))
+    return true;
   if (nodeCast<nodes::TwoSidedMaterial>(parts.material)) return true;
   const auto* m = nodeCast<nodes::Material>(parts.material);
   if (!m) return false;
@@ -116,6 +128,7 @@ bool needsX3dMaterial(const AppearanceParts& parts) {
 void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse use,
                     const X3dPictures& pictures, World& world, bool linear) {
   Textures& textures = pictures.textures;
+  shader.integer("inSpace", use.placed || showsVolume(parts) ? 1 : 0);
   shader.integer("filled", isUnfilled(parts.plain) ? 0 : 1);
   shader.integer("lit", parts.material ? 1 : 0);
   shader.integer("alphaMode", alphaModeOf(parts.plain, world));
@@ -147,7 +160,7 @@ void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse us
   shader.integer("twoSided", twoSided ? 1 : 0);
   if (setCubeLayer(shader, texture, pictures.cubes, use.byNormal)) texture = nullptr;
   setLayers(shader, texture, parts.textureTransform, materialValues(parts.material).mapping,
-            use.multiplies, textures, world, linear);
+            use.multiplies, {textures, pictures.volumes}, world, linear);
 }
 
 } // namespace xvrml::mapper

@@ -5,6 +5,7 @@
 #include "mapper/rt.h"
 #include "mapper/shading/cube_maps.h"
 #include "mapper/shading/textures.h"
+#include "mapper/shading/volumes.h"
 #include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
@@ -15,15 +16,19 @@ namespace xvrml::mapper {
 struct X3dUse {
   bool multiplies = false; // a texture multiplies diffuseColor
   bool byNormal = false;   // a cube map is looked up by the normal
+  bool placed = false;     // the geometry has texture coordinates in space
 };
 struct X3dPictures {
   Textures& textures;
   CubeMaps& cubes;
+  Volumes& volumes;
 };
 
-// Returns whether a surface has a MultiTexture, a cube map, a back of its own, pictures in its
-// Material, an alphaMode, or is not filled.
+// Returns whether a surface has a MultiTexture, a cube map, a volume, a back of its own, pictures
+// in its Material, an alphaMode, or is not filled.
 bool needsX3dMaterial(const AppearanceParts& parts);
+// Returns whether a surface shows a volume, alone or in a MultiTexture.
+bool showsVolume(const AppearanceParts& parts);
 // Returns whether faces are to be left out (FillProperties).
 bool isUnfilled(const nodes::Appearance* appearance);
 // Sets all parameters of a shader of the class X3DMaterial.

@@ -5,8 +5,9 @@
 
 #include <memory>
 
-#include "script/remote/channel.h"
-#include "script/remote/child.h"
+#include "process/channel.h"
+#include "process/child.h"
+#include "script/remote/wire.h"
 
 namespace xvrml {
 

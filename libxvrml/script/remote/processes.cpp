@@ -11,7 +11,8 @@ ScriptProcesses::~ScriptProcesses() {
 }
 
 bool ScriptProcesses::start(const ProcessSettings& settings) {
-  if (program_.empty() && whyNoProgram_.empty()) program_ = findScriptHostProgram(whyNoProgram_);
+  if (program_.empty() && whyNoProgram_.empty())
+    program_ = findHelper(scriptHostProgram, whyNoProgram_);
   if (program_.empty()) return false;
   all_.push_back(std::make_shared<ScriptProcess>(program_, settings, host_));
   return true;

@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "process/message.h"
 #include "xvrml/xscript.h"
 
 namespace xvrml::wire {
 
 constexpr uint32_t version = 3;
-constexpr uint32_t maximumMessage = 256u << 20; // bytes per message
 
 enum class Op : uint16_t {
   // To the helper: setup first, then calls of an engine's functions, one at a time.
@@ -41,15 +41,6 @@ enum Flags : uint16_t {
   // In create: continue with initialize if create succeeds, and send a `done` for each.
   thenInitialize = 2,
 };
-
-struct Header {
-  uint32_t bytes; // size of the message after the header
-  uint16_t op, flags;
-  uint32_t script; // number of the interpreter in its process
-  int32_t result;  // XsResult of done and answer
-  double time;     // to the helper: the timestamp
-};
-static_assert(sizeof(Header) == 24);
 
 // The element layout of each type. bytes: size of one element; 0 for texts and images.
 enum class Kind : uint8_t { unknown, plain, texts, images };
@@ -88,12 +79,6 @@ class Writer {
   std::vector<char> bytes_;
   uint32_t count_ = 0;
   bool tooLong_ = false;
-};
-
-// A received message.
-struct Message {
-  Header header{};
-  std::vector<char> bytes; // aligned for any element
 };
 
 // Parses a message. Its results point into the message and into the reader.

@@ -6,7 +6,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "script/remote/channel.h"
+#include "process/channel.h"
 #include "script/remote/host_functions.h"
 
 namespace xvrml {

@@ -11,9 +11,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cage.h"
 #include "forward.h"
 #include "script/library.h"
+#include "tools/cage/cage.h"
 
 namespace xvrml {
 namespace {

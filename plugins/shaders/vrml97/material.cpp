@@ -95,7 +95,7 @@ const RtsParam surfaceParams[] = {
 const uint32_t surfaceParamCount = sizeof(surfaceParams) / sizeof(surfaceParams[0]);
 
 bool isTransparent(const RtsHost* host, const SurfaceParams& p) {
-  return (p.lit && p.transparency > 0.0f) || p.vertexAlpha ||
+  return p.transparency > 0.0f || p.vertexAlpha ||
          (p.texture != 0 && hasAlpha(host->components(host, p.texture)));
 }
 
@@ -141,7 +141,7 @@ template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint
   }
   fill(t.ambient[0], p.ambientIntensity);
   fill(t.exponent, 128.0f * p.shininess);
-  fill(t.alpha, lit ? 1.0f - p.transparency : 1.0f);
+  fill(t.alpha, 1.0f - p.transparency);
   summary.lit |= lit;
   summary.textured |= p.texture != 0;
 }
@@ -260,7 +260,7 @@ void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
     const SurfaceParams& p = paramsOf(hits, i);
     const bool ownAlpha = p.vertexAlpha && (hits->flags[i] & RTS_HIT_COLOR) != 0;
     const float own = ownAlpha ? opacityOf(hits, i) : 1.0f;
-    const float untextured = ownAlpha ? 1.0f - own : p.lit ? p.transparency : 0.0f;
+    const float untextured = ownAlpha ? 1.0f - own : p.transparency;
     const float through =
         textured && hasAlpha(texels.components[i]) ? 1.0f - own * texels.rgba[3][i] : untextured;
     for (int c = 0; c < 3; c++) transmission[c][i] = through;

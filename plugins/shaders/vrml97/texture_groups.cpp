@@ -25,6 +25,14 @@ uint32_t sortedKeys(const TexturePlaces& places, uint64_t* keys) {
   return n;
 }
 
+void sampleOne(const RtsHost* host, RtsBatch* batch, RtsTexture texture, uint32_t n,
+               const float* const at[3], float* const rgba[4]) {
+  if (at[2])
+    host->sampleVolume(batch, texture, n, at, rgba);
+  else
+    host->sample(batch, texture, n, at, rgba);
+}
+
 } // namespace
 
 void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places,
@@ -32,31 +40,29 @@ void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& pla
   if (places.count == 0) return;
   if (sameEverywhere(places.texture, places.count)) {
     if (places.texture[0] == 0) return;
-    host->sample(batch, places.texture[0], places.count, places.uv, rgba);
+    sampleOne(host, batch, places.texture[0], places.count, places.at, rgba);
     std::fill_n(components, places.count, host->components(host, places.texture[0]));
     return;
   }
   auto* keys = reinterpret_cast<uint64_t*>(host->scratch(batch, 2 * wholeLanes(places.count)));
   const uint32_t n = sortedKeys(places, keys);
-  float* packed[6];
-  for (float*& p : packed) p = host->scratch(batch, wholeLanes(places.count));
-  const float* const uv[2] = {packed[0], packed[1]};
+  const int coordinates = places.at[2] ? 3 : 2;
+  float *color[4], *packed[3] = {};
+  for (float*& c : color) c = host->scratch(batch, wholeLanes(places.count));
+  for (int k = 0; k < coordinates; k++) packed[k] = host->scratch(batch, wholeLanes(places.count));
   for (uint32_t begin = 0, end; begin < n; begin = end) {
     const auto texture = static_cast<RtsTexture>(keys[begin] >> 32);
-    for (end = begin; end < n && keys[end] >> 32 == texture; end++) {
-      packed[0][end - begin] = places.uv[0][uint32_t(keys[end])];
-      packed[1][end - begin] = places.uv[1][uint32_t(keys[end])];
-    }
+    for (end = begin; end < n && keys[end] >> 32 == texture; end++)
+      for (int k = 0; k < coordinates; k++)
+        packed[k][end - begin] = places.at[k][uint32_t(keys[end])];
     const uint32_t size = end - begin;
-    for (uint32_t k = size; k < wholeLanes(size); k++) { // the padding repeats the last lane
-      packed[0][k] = packed[0][size - 1];
-      packed[1][k] = packed[1][size - 1];
-    }
-    host->sample(batch, texture, size, uv, packed + 2);
+    for (int k = 0; k < coordinates; k++) // the padding repeats the last lane
+      std::fill(packed[k] + size, packed[k] + wholeLanes(size), packed[k][size - 1]);
+    sampleOne(host, batch, texture, size, packed, color);
     const uint32_t parts = host->components(host, texture);
     for (uint32_t k = 0; k < size; k++) {
       const auto lane = uint32_t(keys[begin + k]);
-      for (int c = 0; c < 4; c++) rgba[c][lane] = packed[2 + c][k];
+      for (int c = 0; c < 4; c++) rgba[c][lane] = color[c][k];
       components[lane] = parts;
     }
   }

@@ -9,10 +9,11 @@
 namespace vrml97 {
 
 // The texture and texture coordinates of each of `count` lanes; lanes with texture 0 are skipped.
+// If there is a third coordinate, textures may be volumes.
 struct TexturePlaces {
   uint32_t count;
   const RtsTexture* texture;
-  const float* uv[2];
+  const float* at[3]; // s, t, and r or null
 };
 
 // Writes rgba and the number of components for the lanes that have a texture. Other lanes keep

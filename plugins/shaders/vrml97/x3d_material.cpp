@@ -71,8 +71,8 @@ Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
   return summary;
 }
 
-// Samples one picture of each lane. choose(lane) returns its texture, place(lane, m) writes the six
-// numbers that lead to the places. Returns false, without texels, if no lane has a picture.
+// Samples one picture of each lane. choose(lane) returns its texture. Returns false, without
+// texels, if no lane has a picture.
 class Pictures {
  public:
   Pictures(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t lanes)
@@ -80,7 +80,8 @@ class Pictures {
     for (float*& c : rgba) c = host->scratch(batch, lanes);
     components = reinterpret_cast<uint32_t*>(host->scratch(batch, lanes));
     texture_ = reinterpret_cast<RtsTexture*>(host->scratch(batch, lanes));
-    for (float*& c : uv_) c = host->scratch(batch, lanes);
+    for (float*& c : at_) c = host->scratch(batch, lanes);
+    for (uint32_t i = 0; i < hits->count; i++) inSpace_ |= isInSpace(x3dParamsOf(hits, i));
   }
   // cubeNormal: unless null, lanes whose layer is a cube map are looked up with this normal.
   template <class Choose>
@@ -89,44 +90,58 @@ class Pictures {
     for (uint32_t i = 0; i < lanes_; i++) {
       const Lane lane = laneOf(hits_, i);
       any |= texture_[i] = lane.line ? 0 : choose(lane);
-      float m[numbersPerPlace];
-      place(lane.p, layer, m);
-      const float u = hits_->uv[0][lane.from], v = hits_->uv[1][lane.from];
-      uv_[0][i] = m[0] * u + m[2] * v + m[4];
-      uv_[1][i] = m[1] * u + m[3] * v + m[5];
+      if (isInSpace(lane.p))
+        placeInSpace(lane, matrixOf(lane.p, layer), i);
+      else
+        placeOnPicture(lane, matrixOf(lane.p, layer), i);
     }
     if (cubeNormal) {
-      placeInCubes(host_, batch_, hits_, cubeNormal, texture_, uv_);
+      placeInCubes(host_, batch_, hits_, cubeNormal, texture_, at_);
       for (uint32_t i = 0; i < hits_->count; i++) any |= texture_[i];
       for (uint32_t i = hits_->count; i < lanes_; i++) { // the padding repeats the last lane
         texture_[i] = texture_[hits_->count - 1];
-        for (float* c : uv_) c[i] = c[hits_->count - 1];
+        for (float* c : at_) c[i] = c[hits_->count - 1];
       }
     }
     if (any == 0) return false;
     std::fill_n(components, lanes_, 0u);
-    sampleGroups(host_, batch_, {hits_->count, texture_, {uv_[0], uv_[1]}}, rgba, components);
+    sampleGroups(host_, batch_,
+                 {hits_->count, texture_, {at_[0], at_[1], inSpace_ ? at_[2] : nullptr}}, rgba,
+                 components);
     return true;
   }
   float* rgba[4];
   uint32_t* components; // 0 where a lane has no picture
 
  private:
-  static void place(const X3dParams& p, uint32_t layer, float (&m)[numbersPerPlace]) {
-    if (layer > 0 && p.layerTransforms.count >= numbersPerPlace * layer) {
-      std::copy_n(p.layerTransforms.data + numbersPerPlace * (layer - 1), numbersPerPlace, m);
-      return;
-    }
-    const float* t = p.front.textureTransform;
-    const float first[numbersPerPlace] = {t[0], t[1], t[4], t[5], t[12], t[13]};
-    std::copy_n(first, numbersPerPlace, m);
+  static bool isInSpace(const X3dParams& p) { return p.inSpace != 0 && p.texturePlace[3] != 0; }
+  static const float* matrixOf(const X3dParams& p, uint32_t layer) {
+    return layer > 0 && p.layerTransforms.count >= numbersPerMatrix * layer
+               ? p.layerTransforms.data + numbersPerMatrix * (layer - 1)
+               : p.front.textureTransform;
+  }
+  // The geometry's pair is (s, t, 0, 1), which an affine matrix transforms.
+  void placeOnPicture(const Lane& lane, const float* m, uint32_t i) {
+    const float u = hits_->uv[0][lane.from], v = hits_->uv[1][lane.from];
+    at_[0][i] = m[0] * u + m[4] * v + m[12];
+    at_[1][i] = m[1] * u + m[5] * v + m[13];
+    at_[2][i] = m[2] * u + m[6] * v + m[14];
+  }
+  // Coordinates are homogeneous. A point at infinity has no place; textures take it for 0.
+  void placeInSpace(const Lane& lane, const float* m, uint32_t i) {
+    const float* p = lane.p.texturePlace;
+    float place[4];
+    for (int k = 0; k < 4; k++)
+      place[k] = m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k] * p[3];
+    for (int k = 0; k < 3; k++) at_[k][i] = place[k] / place[3];
   }
   const RtsHost* host_;
   RtsBatch* batch_;
   const RtsHits* hits_;
   uint32_t lanes_;
+  bool inSpace_ = false; // any lane has three coordinates
   RtsTexture* texture_;
-  float* uv_[2];
+  float* at_[3];
 };
 
 bool hasOwnPicture(const Lane& lane) { return lane.side == 1 && lane.p.backPicture != 0; }
@@ -403,6 +418,7 @@ RtsClass makeX3dMaterialClass() {
   c.paramSize = sizeof(X3dParams);
   c.paramCount = params.count;
   c.params = params.data;
+  c.frequency = params.frequency;
   c.traits = traits;
   c.shade = shade;
   c.transmit = transmitX3d;

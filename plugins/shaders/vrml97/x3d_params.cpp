@@ -77,9 +77,9 @@ const RtsParam added[] = {
      {},
      0,
      0,
-     "six numbers a b c d e f for each layer after the first: its places are (a s + c t + e, b s + "
-     "d t "
-     "+ f); without them textureTransform"},
+     "a matrix of sixteen numbers, as textureTransform, for each layer after the first; without "
+     "them "
+     "textureTransform"},
     {"factor", RTS_VEC4, AT(factor), {1, 1, 1, 1}, 0, 1, "colour and alpha of the source FACTOR"},
     {"twoSided",
      RTS_INT,
@@ -218,6 +218,20 @@ const RtsParam added[] = {
      0,
      1,
      "1: a perfect mirror whose reflectance is the diffuse term (unlit: the colour)"},
+    {"inSpace",
+     RTS_INT,
+     AT(inSpace),
+     {0},
+     0,
+     1,
+     "1: all pictures, which may be volumes, are placed by texturePlace"},
+    {"texturePlace",
+     RTS_VEC4,
+     AT(texturePlace),
+     {},
+     0,
+     0,
+     "texture coordinates s t r q of vertices; with q 0 the geometry's own s and t count"},
 };
 
 #undef AT
@@ -231,7 +245,12 @@ ParamList x3dParams() {
     list.insert(list.end(), std::begin(added), std::end(added));
     return list;
   }();
-  return {all.data(), uint32_t(all.size())};
+  static const auto frequency = [] {
+    std::vector<uint8_t> list(all.size(), uint8_t(RTS_PER_SHADER));
+    list.back() = RTS_PER_VERTEX;
+    return list;
+  }();
+  return {all.data(), frequency.data(), uint32_t(all.size())};
 }
 
 } // namespace vrml97

@@ -11,9 +11,9 @@ struct TermPictures {
   RtsTexture ambient, emissive, specular, shininess, normal;
 };
 
-inline constexpr uint32_t maxLayers = 8;       // `texture` and the following pictures
-inline constexpr uint32_t numbersPerLayer = 4; // in `layers`
-inline constexpr uint32_t numbersPerPlace = 6; // in `layerTransforms`
+inline constexpr uint32_t maxLayers = 8;         // `texture` and the following pictures
+inline constexpr uint32_t numbersPerLayer = 4;   // in `layers`
+inline constexpr uint32_t numbersPerMatrix = 16; // in `layerTransforms`
 
 // The values of cubeLookup: by which direction the first layer is looked up in a cube map.
 enum CubeLookup : int32_t { noCube, byReflection, byNormal };
@@ -40,10 +40,13 @@ struct X3dParams {
   int32_t cubeLookup;
   RtsTexture cube[cubeFaces], cubeMap;
   int32_t mirror;
+  int32_t inSpace;       // textures are placed by texturePlace where its q is not 0
+  float texturePlace[4]; // (s, t, r, q) of a vertex
 };
 
 struct ParamList {
   const RtsParam* data;
+  const uint8_t* frequency;
   uint32_t count;
 };
 // Returns the declarations of all parameters.

@@ -1,7 +1,7 @@
 // audio.cpp: AudioClip and Sound: clauses 6.4, 6.42 and 4.6.9.
 #include <cmath>
 
-#include "behaviour/wav.h"
+#include "behaviour/sound_file.h"
 #include "conformance/events/media_files.h"
 #include "xvrml/media.h"
 
@@ -139,19 +139,24 @@ TEST(Wav, ReadsEightSixteenTwentyFourAndThirtyTwoBitsAndFloats) {
   folder.write(
       "f.wav",
       make(3, 32, std::string(reinterpret_cast<const char*>(&half), 4) + little(0xbf000000, 4)));
+  const Limits limits;
   for (const char* name : {"8.wav", "16.wav", "24.wav", "32.wav", "f.wav"}) {
-    EXPECT_EQ(readWav(folder / name).samples, (std::vector<float>{0.5f, -0.5f})) << name;
-    EXPECT_EQ(readWavInfo(folder / name).duration, 0.25) << name;
+    EXPECT_EQ(readSound(folder / name, {limits}).samples, (std::vector<float>{0.5f, -0.5f}))
+        << name;
+    EXPECT_EQ(soundLength(folder / name, {limits}), 0.25) << name;
   }
 }
 
 TEST(Wav, WhatIsCutOffOrDamagedIsRefusedOrReadAsFarAsItGoes) {
   const Folder folder;
+  const Limits limits;
+  Budget budget(1 << 24);
+  const ImageRoom room{limits, ~uint64_t(0), &budget};
   const std::string whole = wav({1, 2, 3, 4}, 1, 4);
   for (size_t n = 0; n < whole.size(); ++n) {
     folder.write("cut.wav", whole.substr(0, n));
     try {
-      EXPECT_LE(readWav(folder / "cut.wav").frames(), 4u);
+      EXPECT_LE(readSound(folder / "cut.wav", room).frames(), 4u);
     } catch (const std::runtime_error& error) { EXPECT_NE(std::string(error.what()), ""); }
   }
   for (size_t i = 0; i < whole.size(); ++i) {
@@ -160,7 +165,7 @@ TEST(Wav, WhatIsCutOffOrDamagedIsRefusedOrReadAsFarAsItGoes) {
       bad[i] = c;
       folder.write("bad.wav", bad);
       try {
-        EXPECT_LE(readWav(folder / "bad.wav").frames(), 8u);
+        EXPECT_LE(readSound(folder / "bad.wav", room).frames(), 8u);
       } catch (const std::runtime_error&) {}
     }
   }

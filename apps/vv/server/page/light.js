@@ -146,6 +146,8 @@ export class Light {
       const item = known.get(probe.number) ?? this.item(probe);
       item.firstChild.replaceChildren(...readingOf(probe));
       item.firstChild.title = probe.seen ?? "";
+      const name = item.querySelector("input");
+      if (document.activeElement !== name) name.value = probe.name ?? "";
       item.classList.toggle("uncertain", "change" in probe && !probe.significant);
       return item;
     });
@@ -156,9 +158,17 @@ export class Light {
   }
 
   item(probe) {
-    const item = make("li", { value: probe.number }, make("span"));
+    const name = this.nameField(probe.number);
+    const item = make("li", { value: probe.number }, make("span"), " ", name);
     if (!probe.area) item.append(" ", this.keepButton(probe.number));
     return item;
+  }
+
+  nameField(probe) {
+    const one = make("input", { label: `Name of probe ${probe}`, maxLength: 60 });
+    one.placeholder = "name";
+    one.addEventListener("change", () => this.edit("name_probe", { probe, name: one.value }));
+    return one;
   }
 
   keepButton(probe) {

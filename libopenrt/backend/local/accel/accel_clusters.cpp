@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "backend/local/accel/accel_build.h"
+#include "backend/local/line_stippler.h"
 
 namespace openrt {
 namespace {
@@ -189,11 +190,19 @@ void AccelBuilder::placeThin(uint32_t c) {
   auto lines = std::make_unique<Part>(), points = std::make_unique<Part>();
   for (uint32_t i = 0; i < part.items.size(); i++) {
     const auto& geometries = input_->scene.objects.at(part.items[i].object).geometries;
-    for (uint32_t k = 0; k < geometries.size(); k++)
-      if (info.drawn[info.firstEntry[i] + k] == DrawnAs::thin)
-        addThin(geometries[k].primitive == edit::Primitive::Lines ? *lines : *points, geometries[k],
-                toKernel * part.items[i].matrix * geometries[k].matrix,
-                placed.firstRecord + info.firstEntry[i] + k, input_->footprint, accel_->scale_);
+    for (uint32_t k = 0; k < geometries.size(); k++) {
+      if (info.drawn[info.firstEntry[i] + k] != DrawnAs::thin) continue;
+      const Geometry& g = geometries[k];
+      const uint32_t record = placed.firstRecord + info.firstEntry[i] + k;
+      const uint32_t traits = input_->shaders[accel_->records[record].shader].traits;
+      const ThinGeometry thin{g, toKernel * part.items[i].matrix * g.matrix, record,
+                              (traits & RTS_TRANSPARENT) != 0};
+      addThin(g.primitive == edit::Primitive::Lines ? *lines : *points, thin, input_->footprint,
+              accel_->scale_);
+      if (!isStippled(g)) continue;
+      lines->stippled.push_back(stippledLines(thin, input_->footprint, accel_->scale_));
+      accel_->records[record].stippled = lines->stippled.back().data();
+    }
   }
   const auto put = [&](std::unique_ptr<Part> made, uint32_t slot, RTCGeometryType type) {
     if (made->vertices.empty())

@@ -65,8 +65,12 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.primitive = g.primitive;
   r.primitives = uint32_t(g.primitives());
   r.shader = input_->shaders.slotOf(path.shader ? path.shader : g.shader);
-  // The back faces of a body with a medium are needed, even if the geometry asks for culling.
-  r.cull = g.cull && !input_->shaders[r.shader].shaderClass->medium;
+  const ShaderSlot& shader = input_->shaders[r.shader];
+  // The back faces of a body with a medium are needed, even if the geometry asks for culling. A
+  // line or point that rays pass is met once, where a ray enters it.
+  r.cull = isThin(g.primitive) ? (shader.traits & RTS_TRANSPARENT) || isStippled(g)
+                               : g.cull && !shader.shaderClass->medium;
+  r.pattern = g.stipple.pattern;
   r.bucket = bucketOf(r.shader, path);
   r.name = g.name ? g.name : path.name;
   r.instance = path.instance;
@@ -75,6 +79,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
   r.normals = g.normals ? g.normals->as<float>() : nullptr;
   r.texCoords = g.texCoords ? g.texCoords->as<float>() : nullptr;
   r.colors = g.colors ? g.colors->as<float>() : nullptr;
+  r.fogCoords = g.fogCoords ? g.fogCoords->as<float>() : nullptr;
   r.texGen = g.texGen;
   if (carriesParameters(g, r.shader)) {
     r.parameters = g.parameters.data();

@@ -93,8 +93,16 @@ void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
       *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
-    const Record& r = self.accel->records[primitiveOfHit(a, i).record];
+    const PrimitiveId hit = primitiveOfHit(a, i);
+    const Record& r = self.accel->records[hit.record];
     if (!r.cull) continue;
+    if (r.stippled &&
+        r.isGap(hit.primitive,
+                placeOnLine(*self.level->scene, RTCHitN_geomID(a->hit, a->N, i),
+                            RTCHitN_primID(a->hit, a->N, i), RTCHitN_u(a->hit, a->N, i)))) {
+      a->valid[i] = 0;
+      continue;
+    }
     const float along = RTCHitN_Ng_x(a->hit, a->N, i) * RTCRayN_dir_x(a->ray, a->N, i) +
                         RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
                         RTCHitN_Ng_z(a->hit, a->N, i) * RTCRayN_dir_z(a->ray, a->N, i);

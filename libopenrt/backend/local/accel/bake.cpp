@@ -86,7 +86,8 @@ bool consistent(const Geometry& g) {
   const size_t n = g.points->count<float>() / 3;
   if ((g.normals && g.normals->count<float>() < 3 * n) ||
       (g.texCoords && g.texCoords->count<float>() < 2 * n) ||
-      (g.colors && g.colors->count<float>() < 4 * n))
+      (g.colors && g.colors->count<float>() < 4 * n) ||
+      (g.fogCoords && g.fogCoords->count<float>() < n))
     return false;
   const uint32_t* index = g.indices->as<uint32_t>();
   const size_t count = g.indices->count<uint32_t>();

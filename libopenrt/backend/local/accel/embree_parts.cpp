@@ -130,6 +130,9 @@ void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part
   if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
                                part->indices.data(), 0, 4, part->indices.size());
+  if (!part->joints.empty())
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_FLAGS, 0, RTC_FORMAT_UCHAR,
+                               part->joints.data(), 0, 1, part->joints.size());
   attach(to, geometry, {std::move(part)}, mask, slot);
 }
 

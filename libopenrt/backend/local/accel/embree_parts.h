@@ -16,6 +16,7 @@
 #include "scene/analytic.h"
 #include "scene/commit.h"
 #include "scene/matrix.h"
+#include "scene/stipple.h"
 
 namespace openrt {
 
@@ -39,6 +40,10 @@ struct Part {
     float from, to;
   };
   std::vector<Span> spans;
+  // For lines: RTC_CURVE_FLAG_* of each primitive, where it is joined to its neighbours; empty if
+  // none is.
+  std::vector<uint8_t> joints;
+  std::vector<std::vector<StippledLine>> stippled; // the lines of each geometry with a pattern
   // For slivers. A primitive is a piece of a triangle; the indices of all pieces are those of the
   // triangle.
   std::vector<uint8_t> openEdges; // bits of the open edges of the piece's triangle (sliver_edges.h)

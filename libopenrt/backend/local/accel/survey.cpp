@@ -59,8 +59,7 @@ void Survey::measure(const Scene& scene, uint32_t id) {
     info.sizes.push_back(halfDiagonal(box));
     info.bounds.add(box, Matrix4d());
     if (g.primitive == edit::Primitive::Triangles) info.triangles += g.primitives();
-    if (g.primitive == edit::Primitive::Lines || g.primitive == edit::Primitive::Points)
-      info.bakeOnly = true;
+    if (isThin(g.primitive)) info.bakeOnly = true;
     if (g.primitive == edit::Primitive::Sphere && !similarity(g.matrix)) info.bakeOnly = true;
   }
   for (const double size : info.sizes)

@@ -1,0 +1,27 @@
+// csv_field.h: Writes a text as a field of a table (CSV, RFC 4180). [any thread]
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "printable.h"
+
+namespace vv {
+
+// Returns a text between quotes. One that a spreadsheet would take for a formula gets an apostrophe
+// before it.
+inline std::string csvField(std::string_view text) {
+  const auto isNumber = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  const bool isFormula =
+      !text.empty() &&
+      (text[0] == '=' || text[0] == '@' ||
+       ((text[0] == '+' || text[0] == '-') && !(text.size() > 1 && isNumber(text[1]))));
+  std::string out = isFormula ? "\"'" : "\"";
+  for (const char c : printable(text)) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+} // namespace vv
