@@ -176,9 +176,6 @@ bool prepareProgram(Interpreter& self) noexcept {
   } catch (const std::bad_alloc&) { return false; }
 }
 
-// A function of its own, so that no temporary lies in one that calls setjmp.
-[[gnu::noinline]] void forgetProgram(Interpreter& self) { self.program = {}; }
-
 duk_ret_t runProgram(duk_context* ctx, void* data) {
   Interpreter& self = *static_cast<Interpreter*>(data);
   const XsString text = self.info->text;
@@ -273,7 +270,7 @@ Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsR
     result = XS_FAILED;
   }
   if (result == XS_OK) result = enter(*self, runProgram, self, "running the program", true);
-  forgetProgram(*self);
+  self->program = {};
   if (result == XS_OK) return self;
   destroyInterpreter(self);
   return nullptr;
