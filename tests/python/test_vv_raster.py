@@ -1,9 +1,9 @@
 """Tests pictures of the z-buffer: vv --preview-raster, World.render(raster=True), live views."""
-import numpy as np
 import pytest
 from conftest import HEADER, ROOT
 
-import xvrml
+np = pytest.importorskip("numpy")
+xvrml = pytest.importorskip("xvrml")
 from live_view_tools import steps  # noqa: E402
 
 SIZE = ("--size", "48x36")

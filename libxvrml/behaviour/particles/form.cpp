@@ -86,8 +86,8 @@ ParticleRamps::ParticleRamps(const nodes::ParticleSystem& system)
     : colors_(colorValues(system.colorRamp)), corners_(textureCoordinates(system.texCoordRamp)) {
   colorKeys_ =
       std::span(system.colorKey).first(std::min(system.colorKey.size(), colors_.rgb.size()));
-  cornerKeys_ =
-      std::span(system.texCoordKey).first(std::min(system.texCoordKey.size(), corners_.size() / 4));
+  cornerKeys_ = std::span(system.texCoordKey)
+                    .first(std::min(system.texCoordKey.size(), corners_.points.size() / 4));
 }
 
 Color4 ParticleRamps::color(const LivingParticle& particle) const {
@@ -105,7 +105,7 @@ std::span<const Vec2f> ParticleRamps::corners(const LivingParticle& particle) co
   if (cornerKeys_.empty()) return wholeTexture;
   const size_t left =
       locate(cornerKeys_.data(), cornerKeys_.size(), argument(cornerKeys_, particle)).left;
-  return corners_.subspan(4 * left, 4);
+  return corners_.points.subspan(4 * left, 4);
 }
 
 } // namespace xvrml

@@ -42,7 +42,7 @@ class ParticleRamps {
  private:
   ColorValues colors_;
   std::span<const float> colorKeys_, cornerKeys_;
-  std::span<const Vec2f> corners_;
+  TexCoordValues corners_;
 };
 
 } // namespace xvrml

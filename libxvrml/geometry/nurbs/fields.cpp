@@ -202,7 +202,8 @@ std::optional<RationalSurface> makeTexturePatch(const Node& node, Faults& faults
   const auto* patch =
       nodeCast<nodes::NurbsTextureCoordinate>(firstTextureCoordinate(node.texCoord));
   if (patch) return makeSurface(netOf(*patch), false, false, faults);
-  const std::span<const Vec2f> given = textureCoordinates(node.texCoord);
+  const TexCoordValues values = textureCoordinates(node.texCoord);
+  const std::span<const Vec2f> given = values.points;
   if (given.empty()) return {};
   Net net = netOf(node);
   net.weights = {};
