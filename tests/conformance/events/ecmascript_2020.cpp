@@ -214,6 +214,34 @@ TEST_F(EcmaNew, ALoopWithoutCallsIsStoppedInThisProcess) {
   }
 }
 
+// What can be collected does not end a program that keeps most of its memory.
+TEST_F(EcmaNew, CirclesNearTheLimitAreCollected) {
+  BrowserOptions options;
+  options.scriptMemory = 16 << 20;
+  options.scriptSeconds = 60;
+  EcmaWorld r(EcmaWorld::script("",
+                                "const kept = []; for (let i = 0; i < 60000; i++) kept.push([i]);"
+                                "for (let i = 0; i < 200000; i++) { const o = {}; o.o = [o] }"
+                                "print(kept.length)"),
+              options);
+  EXPECT_EQ(r.takeOutput(), "60000");
+}
+
+// A program cannot go on with what its compiler had no memory for.
+TEST_F(EcmaNew, MissingMemoryEndsAProgram) {
+  BrowserOptions options;
+  options.scriptMemory = 4 << 20;
+  EcmaWorld r(EcmaWorld::script(
+                  "eventIn SFBool go",
+                  "function go() { const kept = []; for (;;) try { kept.push(eval('(function() { "
+                  "return ' + JSON.stringify('x'.repeat(kept.length % 999)) + ' })')) } catch (e) "
+                  "{ print(e) } }"),
+              options);
+  r.set("S", "go", true);
+  r.set("S", "go", true);
+  EXPECT_EQ(r.takeOutput(), "2: Script S: out of memory; the Script ends");
+}
+
 // Nodes that only a circle of the program's objects refers to are released.
 TEST_F(EcmaNew, CirclesWithNodesAreCollected) {
   BrowserOptions options;
