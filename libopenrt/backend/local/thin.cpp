@@ -83,11 +83,11 @@ class ThinWriter {
   void addPiece(uint32_t line, const Vec3f& start, const Vec3f& end, const Part::Span& span,
                 bool follows) {
     const size_t pieces = part_.indices.size();
-    const bool joined = follows && thin_.transparent;
+    const bool joined = follows && thin_.joins;
     append(part_.spans, pieces, {0, 1}, span, span.from == 0 && span.to == 1);
     if (joined) part_.joints.back() |= RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
     append(part_.joints, pieces, uint8_t(0), uint8_t(joined ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0),
-           !thin_.transparent);
+           !thin_.joins);
     if (!joined) addVertex(start);
     part_.indices.push_back(uint32_t(part_.vertices.size() / 4 - 1));
     part_.primitives.add(thin_.record, line);
