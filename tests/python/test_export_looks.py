@@ -81,3 +81,12 @@ def test_what_is_read_again_looks_the_same(vv, name):
     ours = picture(vv, "in.wrl")
     assert sum(ours) > 20000  # something is to be seen
     assert difference(ours, picture(vv, "out.glb")) < 1
+
+
+def test_lines_keep_their_transparency(vv):
+    export(vv, VIEW + """Shape { appearance Appearance { material Material { emissiveColor 1 0 0 transparency 0.25 } }
+  geometry IndexedLineSet { coord Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }""")
+    data = (vv.folder / "out.glb").read_bytes()
+    material = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["materials"][0]
+    assert material["alphaMode"] == "BLEND"
+    assert material["pbrMetallicRoughness"]["baseColorFactor"] == [1, 0, 0, 0.75]
