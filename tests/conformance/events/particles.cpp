@@ -327,6 +327,22 @@ TEST(ParticleEvents, EnabledBeginsAnewAndCreateParticlesEndsBirths) {
   EXPECT_EQ(r.at(20).points.size(), 0u);
 }
 
+TEST(ParticleEvents, WhatIsBelowASystemMovesItsParticlesAtOnce) {
+  Particles r(
+      one("emitter DEF E PointEmitter { speed 1 variation 0 mass 1 } physics DEF F "
+          "ForcePhysicsModel { force 0 0 0 } colorKey 0 colorRamp DEF C Color { color 1 0 0 }"));
+  expectNear(r.at(1).points[0], {0, 1, 0});
+  r.set("E", "direction", Vec3f{1, 0, 0});
+  expectNear(r.now().points[0], {1, 0, 0});
+  r.set("F", "force", Vec3f{0, 0, 2});
+  expectNear(r.now().points[0], {1, 0, 1});
+  r.set("C", "color", MFColor{{0, 1, 0}});
+  EXPECT_EQ(r.now().colors[0], (Color{0, 1, 0}));
+  r.browser.takeChanges();
+  r.browser.tick(1);
+  EXPECT_TRUE(r.browser.takeChanges().empty()) << "time stands, and nothing has changed";
+}
+
 TEST(ParticleEvents, WithoutAnEmitterItIsNeverActive) {
   Particles r("DEF P ParticleSystem { }");
   EXPECT_EQ(r.get("P", "isActive"), "FALSE");
