@@ -10,6 +10,7 @@
 #include "behaviour/particles/life.h"
 #include "conformance/events/support.h"
 #include "xvrml/build.h"
+#include "xvrml/set_field.h"
 
 namespace xvrml {
 namespace {
@@ -341,6 +342,18 @@ TEST(ParticleEvents, WhatIsBelowASystemMovesItsParticlesAtOnce) {
   r.browser.takeChanges();
   r.browser.tick(1);
   EXPECT_TRUE(r.browser.takeChanges().empty()) << "time stands, and nothing has changed";
+}
+
+TEST(ParticleEvents, AWorldThatDoesNotRunShowsTheBeginning) {
+  const auto world = loadWorldFromMemory(
+      "#X3D V4.0 utf8\n" + system("maxParticles 3 particleLifetime 3 emitter DEF E PointEmitter { "
+                                  "position 1 0 0 speed 1 variation 0 }"),
+      "test.x3dv");
+  const auto points = [&] { return geometryArrays(*placedShapes(*world)[0].geometry, 0).points; };
+  ASSERT_EQ(points().size(), 3u);
+  expectNear(points()[1], {1, 2, 0});
+  ASSERT_TRUE(setField(*world, *world->scope.names.at("E"), "position", Vec3f{5, 0, 0}));
+  expectNear(points()[1], {5, 2, 0});
 }
 
 TEST(ParticleEvents, WithoutAnEmitterItIsNeverActive) {
