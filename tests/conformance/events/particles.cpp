@@ -10,6 +10,7 @@
 #include "behaviour/particles/life.h"
 #include "conformance/events/support.h"
 #include "xvrml/build.h"
+#include "xvrml/set_field.h"
 
 namespace xvrml {
 namespace {
@@ -325,6 +326,34 @@ TEST(ParticleEvents, EnabledBeginsAnewAndCreateParticlesEndsBirths) {
   r.set("E", "on", false);
   r.at(9);
   EXPECT_EQ(r.at(20).points.size(), 0u);
+}
+
+TEST(ParticleEvents, WhatIsBelowASystemMovesItsParticlesAtOnce) {
+  Particles r(
+      one("emitter DEF E PointEmitter { speed 1 variation 0 mass 1 } physics DEF F "
+          "ForcePhysicsModel { force 0 0 0 } colorKey 0 colorRamp DEF C Color { color 1 0 0 }"));
+  expectNear(r.at(1).points[0], {0, 1, 0});
+  r.set("E", "direction", Vec3f{1, 0, 0});
+  expectNear(r.now().points[0], {1, 0, 0});
+  r.set("F", "force", Vec3f{0, 0, 2});
+  expectNear(r.now().points[0], {1, 0, 1});
+  r.set("C", "color", MFColor{{0, 1, 0}});
+  EXPECT_EQ(r.now().colors[0], (Color{0, 1, 0}));
+  r.browser.takeChanges();
+  r.browser.tick(1);
+  EXPECT_TRUE(r.browser.takeChanges().empty()) << "time stands, and nothing has changed";
+}
+
+TEST(ParticleEvents, AWorldThatDoesNotRunShowsTheBeginning) {
+  const auto world = loadWorldFromMemory(
+      "#X3D V4.0 utf8\n" + system("maxParticles 3 particleLifetime 3 emitter DEF E PointEmitter { "
+                                  "position 1 0 0 speed 1 variation 0 }"),
+      "test.x3dv");
+  const auto points = [&] { return geometryArrays(*placedShapes(*world)[0].geometry, 0).points; };
+  ASSERT_EQ(points().size(), 3u);
+  expectNear(points()[1], {1, 2, 0});
+  ASSERT_TRUE(setField(*world, *world->scope.names.at("E"), "position", Vec3f{5, 0, 0}));
+  expectNear(points()[1], {5, 2, 0});
 }
 
 TEST(ParticleEvents, WithoutAnEmitterItIsNeverActive) {
