@@ -1,5 +1,7 @@
 """Worlds that glTF can say as they are, without highlights, backgrounds and headlights: exported by vv --write
 and read again by vv, they look as before."""
+import json
+
 import pytest
 from conftest import HEADER
 from exports import export
