@@ -36,12 +36,13 @@ ViewTransform curveFor(const std::array<float, 3>& backdrop) {
   return {std::round(low * 64) / 64, ViewCurve::filmic};
 }
 
-} // namespace
+bool isFromModeller(const xvrml::World& world) {
+  return world.head.version.encoding == xvrml::Encoding::gltf;
+}
 
-Look lookOf(const xvrml::World& world, bool shadersGiven) {
-  // Modellers write the camera of their window into glTF files. It does not say what is around, nor
-  // does the shader that glass of such a file gets.
-  const bool isModel = world.head.version.encoding == xvrml::Encoding::gltf;
+// Modellers write the camera of their window into glTF files. It does not say what is around, nor
+// does the shader that glass of such a file gets. isModel: the world is taken for such a file.
+Look lookOf(const xvrml::World& world, bool isModel, bool shadersGiven) {
   bool bare = true, metal = false;
   const auto visit = [&](const xvrml::Node& node) {
     const std::string_view type = node.type().name;
@@ -57,12 +58,21 @@ Look lookOf(const xvrml::World& world, bool shadersGiven) {
   return metal || shadersGiven ? Look::studio : Look::backdrop;
 }
 
+} // namespace
+
+Look lookOf(const xvrml::World& world, bool shadersGiven) {
+  return lookOf(world, isFromModeller(world), shadersGiven);
+}
+
+bool losesLook(const xvrml::World& world) {
+  return isFromModeller(world) && lookOf(world, true, false) != lookOf(world, false, false);
+}
+
 bool mayLeaveCameraOut(const xvrml::World& world, const View& view) {
   if (view.viewpoint || view.lookAt || view.fit || view.side || view.viewer || view.pinhole ||
       view.intrinsics || view.shader)
     return false;
-  if (world.head.version.encoding != xvrml::Encoding::gltf || lookOf(world, true) == Look::own)
-    return false;
+  if (!isFromModeller(world) || lookOf(world, true) == Look::own) return false;
   size_t cameras = 0;
   const auto count = [&](const xvrml::Node& node) {
     cameras += node.type().name.ends_with("Viewpoint") ? 1 : 0;

@@ -19,6 +19,10 @@ enum class Look : unsigned char {
 // (shader_rules.h). They are ORTAppearances, which say nothing about the look then.
 Look lookOf(const xvrml::World& world, bool shadersGiven);
 
+// Returns whether a world would have another look as a file of X3D or VRML97: a model of glTF with
+// a camera or a shader would be a world there, and have its own.
+bool losesLook(const xvrml::World& world);
+
 // Returns whether the first Viewpoint may be left out of a view that names no camera: that of a
 // glTF file with a model alone. Modellers write the camera of their window into such files. A file
 // with several cameras, or one that moves, shows what its author wanted to be seen.

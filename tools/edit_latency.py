@@ -5,7 +5,8 @@
 
 prints for each number of nodes (1,000, 100,000 and 1,000,000 if none is given) the seconds until vv shows
 the world, from then until the editor shows its first rows, and until a search has found a name (a DEF name
-of one node, and the type of half of them); then the median milliseconds from a message of the page to the sheet that
+of one node, and the type of half of them), with the seconds of processor time of the main thread in brackets;
+then the median milliseconds from a message of the page to the sheet that
 shows it: a selection, a value that is dragged, and undo; beside it the processor time of vv for each
 message of a drag. The last number is that from a node of the outline that is opened or closed to its
 rows. Half of the nodes are roots, each with a Group. Needs pytest and Pillow.
@@ -37,9 +38,10 @@ class Editor:
         begin = time.monotonic()
         self.server = page_client.Served(folder, ["world.wrl", "--port", 0, "--edit", "--spp", 1])
         self.server.join().still()
-        shown = time.monotonic()
+        shown, cpu = time.monotonic(), self.server.cpu(True)
         self.page = self.server.join_editor()
         self.load_seconds, self.open_seconds = shown - begin, time.monotonic() - shown
+        self.open_cpu = self.server.cpu(True) - cpu
         self.page.still()
         rows = self.page.of("rows")[-1]["rows"]
         self.nodes = {row["label"].split()[0]: row["node"] for row in rows}
@@ -65,10 +67,13 @@ class Editor:
         return self.time(shows, "open", "rows", node=self.nodes[name], open=is_open)
 
     def search(self, text, part):
-        """Returns the seconds until the first row of what is found has this part in its label."""
+        """Returns the seconds until the first row of what is found has this part in its label, and those of the
+        processor time of the main thread."""
+        cpu = self.server.cpu(True)
         found = self.time(lambda t: t["rows"] and part in t["rows"][0]["label"], "search", "rows", text=text)
+        cpu = self.server.cpu(True) - cpu
         self.time(lambda t: any(r["label"].startswith("LAMP ") for r in t["rows"]), "search", "rows", text="")
-        return found
+        return f"{found:.2f} s ({cpu:.2f})"
 
     def select(self, name):
         return self.time(lambda t: t["title"].startswith(name), "select", node=self.nodes[name])
@@ -103,8 +108,8 @@ def measure(nodes, times):
         rows = [editor.rows(f"T{i // 2}", i % 2 == 0) for i in range(times // 2 * 2)]
         editor.server.kill()
     text = [f"{1000 * statistics.median(one):.0f}" for one in (selects, drags, [undo], rows)]
-    print(f"{nodes} nodes: load {editor.load_seconds:.2f} s, open {editor.open_seconds:.2f} s, search "
-          f"{searches[0]:.2f} and {searches[1]:.2f} s; select {text[0]} ms, drag {text[1]} ms "
+    print(f"{nodes} nodes: load {editor.load_seconds:.2f} s, open {editor.open_seconds:.2f} s ({editor.open_cpu:.2f}), search "
+          f"{searches[0]} and {searches[1]}; select {text[0]} ms, drag {text[1]} ms "
           f"({1000 * cpu:.0f} ms of processor time), undo {text[2]} ms, open or close a node {text[3]} ms", flush=True)
 
 

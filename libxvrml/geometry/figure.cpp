@@ -262,7 +262,7 @@ std::vector<Node*> skinOf(const Node& node) {
   };
   if (const auto* figure = nodeCast<nodes::HAnimHumanoid>(&node)) {
     add(Coordinates(figure->skinCoord).node());
-    add(normalOf(*figure));
+    if (!parts.empty()) add(normalOf(*figure)); // without vertices nothing moves
   } else if (const auto* segment = nodeCast<nodes::HAnimSegment>(&node)) {
     if (!segment->displacers.empty()) add(Coordinates(segment->coord).node());
   }

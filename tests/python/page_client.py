@@ -83,9 +83,10 @@ class Served:
         page.told("rows")
         return page
 
-    def cpu(self):
+    def cpu(self, of_main_thread=False):
         """Returns the seconds of processor time so far."""
-        with open(f"/proc/{self.program.pid}/stat") as file:
+        thread = f"task/{self.program.pid}/" if of_main_thread else ""
+        with open(f"/proc/{self.program.pid}/{thread}stat") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

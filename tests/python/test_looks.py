@@ -297,6 +297,16 @@ def test_a_view_that_is_named_is_taken(vv, options):
     assert done.returncode == 0 and "camera" not in done.talk, done.talk
 
 
+@pytest.mark.parametrize("cameras, told", [({"places": [4]}, True), ({"places": []}, False),
+                                           ({"places": [4], "light": True}, False)])  # yapf: disable
+def test_writing_a_model_says_whether_its_look_changes(vv, cameras, told):
+    vv.write("model.gltf", model_with_cameras(*cameras.pop("places"), **cameras))
+    before = corner(shown(vv, "model.gltf"))
+    for name in ("model.x3dv", "model.wrl"):
+        assert ("the backdrop of vv" in vv("model.gltf", "--write", name).talk) == told
+        assert (corner(shown(vv, name)) != before) == told
+
+
 def test_a_camera_is_left_out_in_all_pictures_of_a_run(vv):
     vv.write("model.gltf", model_with_cameras(4))
     assert vv("model.gltf", "--turntable", "3", "-o", "turn.ppm", "--size", "60x60", "--spp", "1").talk.count(NOTE) == 1

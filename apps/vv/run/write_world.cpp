@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/bare_model.h"
 #include "process/messages.h"
 #include "run/outputs.h"
 #include "run/picture_files.h"
@@ -30,10 +31,14 @@ void writeWorld(const Options& options, xvrml::Browser& browser) {
     if (options.time) WorldClock(browser, options.fps).advance(*options.time);
     return exportWorld(options, browser.world());
   }
-  if (!options.quiet)
+  if (!options.quiet) {
     for (const std::string& change :
          xvrml::changesByWriting(browser.world(), options.writeEncoding))
       sayWarning("--write: " + change);
+    if (picture::losesLook(browser.world()))
+      sayWarning("--write: outside of glTF a model with a camera or a shader is a world: it is "
+                 "shown before black, and no longer before the backdrop of vv");
+  }
   // Relative URLs of a text for standard output stay as they are.
   writeText(options.write,
             xvrml::writeWorld(browser.world(), options.write == "-" ? "" : options.write,
