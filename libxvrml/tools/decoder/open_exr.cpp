@@ -25,13 +25,13 @@ namespace {
 using Bytes = std::span<const uint8_t>;
 using Imath::Box2i;
 
-constexpr const char* fileName = "the file";
+constexpr const char* nameInMessages = "the file";
 constexpr int largestSide = 65536, largestTile = 16384;
 constexpr int64_t pixelsAtOnce = 1 << 20;
 
 class FileInMemory : public Imf::IStream {
  public:
-  explicit FileInMemory(Bytes bytes) : IStream(fileName), bytes_(bytes) {}
+  explicit FileInMemory(Bytes bytes) : IStream(nameInMessages), bytes_(bytes) {}
   bool read(char to[], int count) override {
     if (count < 0 || uint64_t(count) > bytes_.size() - at_)
       throw Iex::InputExc("the file ends too early");
@@ -152,7 +152,7 @@ void decode(Bytes bytes, Answer& answer) {
 void decodeOpenExr(Bytes bytes, Answer& answer) try {
   decode(bytes, answer);
 } catch (const Iex::BaseExc& error) {
-  const std::string why = error.what(), opening = fmt::format("\"{}\". ", fileName);
+  const std::string why = error.what(), opening = fmt::format("\"{}\". ", nameInMessages);
   const size_t at = why.find(opening);
   throw std::runtime_error(at == why.npos ? why : why.substr(at + opening.size()));
 }
