@@ -1,6 +1,8 @@
 // particle_system.cpp: the time of a ParticleSystem (ISO/IEC 19775-1 40.4.5): when particles are
 // born, and isActive. An event counts from its own time, so that pictures do not depend on when
 // others were made.
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "base/budget.h"
@@ -9,6 +11,7 @@
 #include "behaviour/named_fields.h"
 #include "behaviour/particles/drawn.h"
 #include "behaviour/particles/form.h"
+#include "behaviour/particles/life.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 
@@ -23,6 +26,7 @@ struct State : NodeState {
   bool sent = false;     // the last isActive
   bool emits = false;    // particles are being born
   uint64_t emission = 0; // number of the last one
+  bool warned = false;   // it has been said that there are fewer than maxParticles
   Share share;           // memory that the particles take of the world's budget
 };
 
@@ -42,7 +46,7 @@ bool emits(const nodes::ParticleSystem& system) {
   return isActive(system) && system.createParticles && isOn(renderedNode(system.emitter.get()));
 }
 
-// Reserves memory for the particles, and says if there are fewer than maxParticles.
+// Reserves memory for the particles, and says once if there are fewer than maxParticles.
 void reserve(Events& events, TimedParticleSystem& system, State& state) {
   ParticleRoom room = roomOf(system);
   state.share.clear();
@@ -51,10 +55,10 @@ void reserve(Events& events, TimedParticleSystem& system, State& state) {
     room.limit = state.share.budget()->name();
   }
   system.clock.most = room.count;
-  if (!room.limit.empty())
-    events.diagnostics().warn(
-        system.source, fmt::format("ParticleSystem: maxParticles is {}, and {} are drawn: {}",
-                                   system.maxParticles, room.count, room.limit));
+  if (room.limit.empty() || std::exchange(state.warned, true)) return;
+  events.diagnostics().warn(system.source,
+                            fmt::format("ParticleSystem: maxParticles is {}, and {} are drawn: {}",
+                                        system.maxParticles, room.count, room.limit));
 }
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {
@@ -91,8 +95,10 @@ void followEvents(TimedParticleSystem& system, State& state, double now) {
     emissions.back().until = now;
     return;
   }
+  const double phase =
+      emissions.empty() ? 0 : phaseAfter(emissions.back(), system.particleLifetime);
   if (emissions.size() == mostEmissions) emissions.erase(emissions.begin());
-  emissions.push_back({now, std::numeric_limits<double>::infinity(), ++state.emission});
+  emissions.push_back({now, std::numeric_limits<double>::infinity(), ++state.emission, phase});
 }
 
 // Turns SPRITEs to the viewer. One at several places is turned as at the first of them. Returns
