@@ -123,7 +123,7 @@ class ThinWriter {
   const ThinGeometry& thin_;
   const PixelFootprint& footprint_;
   float scale_;
-  float mostPieces_; // of a part
+  float mostPieces_; // that a part becomes
 };
 
 } // namespace
