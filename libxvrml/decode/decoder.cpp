@@ -148,9 +148,12 @@ wire::Message& Decoder::receive() {
 void Decoder::receiveNumbers(const Contents& contents,
                              const std::function<void(std::span<const char>)>& more) {
   uint64_t left = contents.columns * contents.rows * contents.components * contents.componentBytes;
+  // Only the last part of each step of a decoder is not full. Many small ones would take very long.
+  uint64_t parts = 64 + 4 * (left / partBytes);
   for (;;) {
     const wire::Message& message = receive();
     if (message.header.op != uint16_t(Op::bytes)) return;
+    if (parts-- == 0) lost("sends too small parts");
     const auto part = contentOf(message);
     if (!part || part->empty() || part->size() > left) lost("broke the protocol");
     left -= part->size();
