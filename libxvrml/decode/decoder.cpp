@@ -139,7 +139,8 @@ wire::Message& Decoder::receive() {
     if (got == Channel::Received::closed) lost({});
     if (got == Channel::Received::bad) lost("broke the protocol");
     if (process.used() > process.limit)
-      lost(fmt::format("took more than {:.0f} s of processor time", process.limit));
+      lost(fmt::format("took more than {:.0f} s of processor time, or {:.0f} s on the clock",
+                       process.limit, process.limit * waitFactor));
     if (got == Channel::Received::message) return process.message;
     if (!process.child.computes() && ++process.idle > mostIdle) lost("does not answer");
   }
