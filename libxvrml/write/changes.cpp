@@ -20,9 +20,10 @@ bool isWhite(const Color& c) { return c.r == 1 && c.g == 1 && c.b == 1; }
 // otherwise (4.14.3; ISO/IEC 19775-1 17.2.2.3).
 bool mixesTexture(const Node& node) {
   const auto* look = nodeCast<nodes::Appearance>(&node);
-  if (!look || !look->texture) return false;
+  if (!look) return false;
   const auto* material = nodeCast<nodes::Material>(renderedNode(look->material.get()));
-  return material && !isWhite(material->diffuseColor);
+  return material && (look->texture || material->diffuseTexture) &&
+         !isWhite(material->diffuseColor);
 }
 
 float intensityOf(const Node& node) {
