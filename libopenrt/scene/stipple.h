@@ -20,12 +20,12 @@ struct StippledLine {
   float from = 0, to = 0; // the part that has the pattern; the rest is solid
   float begin = 0;        // cells of the pattern that come before that part
   float cells = 0;        // cells over that part
-  float nearness = 1;     // size of a pixel at its end by that at its beginning
+  float recession = 1;    // size of a pixel at its beginning by that at its end
 
   // Returns whether nothing is drawn at a place.
   bool isGap(uint16_t pattern, float u) const {
     if (!(u >= from && u <= to && from < to)) return false;
-    const float part = (u - from) / (to - from), seen = part / (nearness * (1 - part) + part);
+    const float part = (u - from) / (to - from), seen = part / (recession * (1 - part) + part);
     const float cell = begin + seen * cells;
     return cell >= 0 && !(pattern >> (uint32_t(cell) % Stipple::cells) & 1);
   }

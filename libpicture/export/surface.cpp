@@ -180,9 +180,12 @@ Surface Surfaces::make(const AppearanceParts& parts, VertexColors colors, bool l
   surface.name = nameOf(parts);
   if (lines) {
     surface.lit = false;
-    surface.color = linearOf(xvrml::materialValues(parts.material).lineColor);
+    const MaterialValues values = xvrml::materialValues(parts.material);
+    surface.color = linearOf(values.lineColor);
+    surface.opacity = 1 - between0And1(values.transparency);
+    setAlpha(parts.plain, surface.opacity < 1, surface);
     if (parts.plain && (parts.plain->lineProperties || parts.plain->pointProperties))
-      remarks_.change("widths of lines and sizes of points are left out");
+      remarks_.change("widths and dashes of lines and sizes of points are left out");
   } else {
     setMaterial(parts, surface);
     if (parts.shader) setShader(parts, surface);

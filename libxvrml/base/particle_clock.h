@@ -17,6 +17,7 @@ struct Emission {
   double from = -std::numeric_limits<double>::infinity();
   double until = std::numeric_limits<double>::infinity();
   uint64_t number = 0; // counts the emissions of a system
+  double phase = 0;    // in [0,1): part of the places before the one that is filled first
 };
 
 // Times are seconds since the system became part of the world. One that is not part of a running

@@ -19,6 +19,7 @@ namespace {
 
 constexpr auto slice = std::chrono::milliseconds(50); // between two looks at the process
 constexpr int mostIdle = 200;                         // slices in which it does not compute
+constexpr double waitFactor = 4; // seconds on the clock for a second of processor time at most
 constexpr auto startTime = std::chrono::seconds(20);
 constexpr auto patience = std::chrono::seconds(30); // for a process that reads nothing
 constexpr uint64_t leastRate = 4 << 20;             // bytes a second that it must read
@@ -31,15 +32,22 @@ uint64_t add(uint64_t a, uint64_t b) { return a + std::min(b, ~uint64_t(0) - a);
 
 struct Decoder::Process {
   Child child;
-  std::unique_ptr<Channel> channel; // closed before the process is waited for
-  pid_t owner = getpid();           // a copy made by fork() must not use the channel
-  uint64_t base = 0;                // bytes of address space when it was ready
-  double began = 0;                 // processor time when it was given the current file
-  double limit = 0;                 // processor time that the file may take
-  uint64_t memory = 0;              // bytes of address space that it may use
+  std::unique_ptr<Channel> channel;       // closed before the process is waited for
+  pid_t owner = getpid();                 // a copy made by fork() must not use the channel
+  uint64_t base = 0;                      // bytes of address space when it was ready
+  double began = 0;                       // processor time when it was given the current file
+  double limit = 0;                       // processor time that the file may take
+  Clock::time_point given = Clock::now(); // when it was given the current file
+  uint64_t memory = 0;                    // bytes of address space that it may use
   int idle = 0;
   wire::Message message;
 
+  // Returns the processor time of the current file, or a part of the time on the clock if that is
+  // more.
+  double used() const {
+    const std::chrono::duration<double> clock = Clock::now() - given;
+    return std::max(child.processorSeconds() - began, clock.count() / waitFactor);
+  }
   // Lets the process use so many bytes for a file. The limit only grows, because the process may
   // keep some memory of earlier files.
   void allow(uint64_t bytes) {
@@ -62,9 +70,9 @@ long Decoder::processNumber() const {
 
 // Adds the processor time of the current file to that of the world.
 void Decoder::charge() {
-  const double now = process_->child.processorSeconds();
-  used_ += std::max(0.0, now - process_->began);
-  process_->began = now;
+  used_ += process_->used();
+  process_->given = Clock::now();
+  process_->began = process_->child.processorSeconds();
 }
 
 void Decoder::lost(std::string why) {
@@ -121,15 +129,16 @@ void Decoder::send(const File& file) {
   }
 }
 
-// Returns the next message of the process. Its processor time counts, not the time on the clock;
-// but one that neither computes nor answers is ended.
+// Returns the next message of the process. Its processor time counts, and a fourth of the time on
+// the clock, so that one that answers byte by byte is ended as well. One that neither computes nor
+// answers is ended sooner.
 wire::Message& Decoder::receive() {
   Process& process = *process_;
   for (;;) {
     const auto got = process.channel->receive(process.message, Clock::now() + slice);
     if (got == Channel::Received::closed) lost({});
     if (got == Channel::Received::bad) lost("broke the protocol");
-    if (process.child.processorSeconds() - process.began > process.limit)
+    if (process.used() > process.limit)
       lost(fmt::format("took more than {:.0f} s of processor time", process.limit));
     if (got == Channel::Received::message) return process.message;
     if (!process.child.computes() && ++process.idle > mostIdle) lost("does not answer");
@@ -139,9 +148,12 @@ wire::Message& Decoder::receive() {
 void Decoder::receiveNumbers(const Contents& contents,
                              const std::function<void(std::span<const char>)>& more) {
   uint64_t left = contents.columns * contents.rows * contents.components * contents.componentBytes;
+  // Only the last part of each step of a decoder is not full. Many small ones would take very long.
+  uint64_t parts = 64 + 4 * (left / partBytes);
   for (;;) {
     const wire::Message& message = receive();
     if (message.header.op != uint16_t(Op::bytes)) return;
+    if (parts-- == 0) lost("sends too small parts");
     const auto part = contentOf(message);
     if (!part || part->empty() || part->size() > left) lost("broke the protocol");
     left -= part->size();
@@ -154,6 +166,7 @@ void Decoder::decode(const File& file, const std::function<bool(const Contents&)
   const std::lock_guard lock(mutex_);
   start();
   process_->idle = 0;
+  process_->given = Clock::now();
   process_->began = process_->child.processorSeconds();
   process_->limit = std::min(secondsPerFile, secondsPerWorld - used_);
   process_->allow(add(file.bytes.size(), add(file.mostBytes, file.mostBytes)));

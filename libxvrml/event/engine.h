@@ -129,6 +129,8 @@ class Engine final : public Events {
   uint64_t cascade() const { return cascade_; }
   // Announces a Script that must be started before the next event.
   void requestScriptStart() { scriptsToStart_ = true; }
+  // Figures and particles are moved again when the cascade has settled.
+  void outdateFigures() { figuresOutdated_ = true; }
   // Calls all active look() functions within the present cascade.
   void lookNow() { callAll(looking_, &Behaviour::look); }
 

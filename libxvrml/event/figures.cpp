@@ -1,6 +1,7 @@
-// figures.cpp: keeps the skins of figures where their joints are, in a running world. Any change
-// may concern them, so all are moved again after the cascade; the renderer sees those that are
-// drawn in another way. Vertices that are taken out of a figure go back to rest.
+// figures.cpp: keeps the skins of figures where their joints are, and particles where their
+// emitters and forces lead them, in a running world. Any change may concern them, so all are moved
+// again after the cascade; the renderer sees those that are drawn in another way. Vertices that are
+// taken out of a figure go back to rest.
 #include <utility>
 
 #include "event/engine.h"
@@ -9,9 +10,15 @@
 
 namespace xvrml {
 
-// Remembers the figures among nodes that have become part of the world. Nobody draws them yet.
+static bool isParticles(const Node& node) {
+  return node.type().index == nodes::ParticleSystem::typeIndex;
+}
+
+// Remembers the figures and particles among nodes that have become part of the world. Nobody draws
+// them yet.
 void Engine::addFigures(const std::vector<NodeRef>& nodes) {
   for (const NodeRef& node : nodes) {
+    if (isParticles(*node)) deforming_[liveOf(*node)->order] = node.get();
     if (!deforms(node->type())) continue;
     deforming_[liveOf(*node)->order] = node.get();
     deform(*node, &diagnostics_);
@@ -27,6 +34,10 @@ void Engine::moveFigures() {
   if (!figuresOutdated_) return;
   const auto before = std::exchange(skins_, {});
   for (const auto& [order, node] : deforming_) {
+    if (isParticles(*node)) {
+      renewExpansion(*node);
+      continue;
+    }
     for (Node* moved : deform(*node, nullptr)) changed(*moved, vectorsOf(*moved));
     noteSkin(*node);
   }

@@ -79,8 +79,9 @@ std::span<const Vec3f> normalVectors(const NodeRef& node);
 ColorValues colorValues(const NodeRef& node);
 TexCoordValues textureCoordinates(const NodeRef& node);
 
-// Returns the fog coordinate of each of so many points; empty without a FogCoordinate.
-std::vector<float> fogCoordinates(const NodeRef& node, size_t points, Faults& faults);
+// Returns the fog coordinate of each of so many points; empty without a FogCoordinate. The last
+// depth holds for all further points.
+std::vector<float> fogCoordinates(const NodeRef& node, size_t points);
 
 inline uint64_t triangleLimit(const MeshOptions& options) {
   return options.limits ? options.limits->triangles : Limits().triangles;

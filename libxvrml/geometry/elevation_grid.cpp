@@ -89,7 +89,7 @@ Mesh buildGrid(const Grid& node, const MeshOptions& options, Faults& faults, con
   bind(set.texCoords, set.texCoords.values, true, set.points.size(), faces, Fault::texCoordMissing,
        faults);
   if constexpr (requires { node.fogCoord; })
-    set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
+    set.fogCoords = fogCoordinates(node.fogCoord, set.points.size());
   if (options.needTexCoords &&
       set.texCoords.values.empty()) { // the whole texture, S along x and T along z
     set.texCoords.own.reserve(set.points.size());

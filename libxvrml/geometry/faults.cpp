@@ -17,7 +17,6 @@ static constexpr const char* faultTexts[] = {
     "without a colour, drawn white",
     "without a usable normal, drawn with the face's own",
     "without texture coordinates",
-    "without a fog coordinate, drawn without fog",
 };
 static_assert(std::size(faultTexts) == size_t(Fault::count));
 

@@ -25,7 +25,6 @@ enum class Fault : uint8_t {
   colorMissing,    // no colour for a face or vertex: white is used
   normalMissing,   // no usable normal: the face normal is used
   texCoordMissing, // no texture coordinates: 0 0 is used
-  fogCoordMissing, // no fog coordinate: 0 is used
   count
 };
 

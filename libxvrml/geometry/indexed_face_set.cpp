@@ -173,7 +173,7 @@ Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& o
   set.normals.values = normalVectors(node.normal);
   TexCoordValues texCoords = textureCoordinates(node.texCoord);
   set.takeTexCoords(texCoords.points, std::move(texCoords.own), std::move(texCoords.places));
-  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
+  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size());
   Mesh mesh;
   if (set.ownPoints.empty() && buildInPlace(node, set, options, mesh)) return mesh;
 

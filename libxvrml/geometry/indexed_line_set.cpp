@@ -25,7 +25,7 @@ class LineReader {
   LineReader(const Lines& node, Faults& faults)
       : node_(node), faults_(faults), given_(coordinates(node.coord)), points_(given_.points),
         values_(colorValues(node.color)), colors_(values_.rgb),
-        fogCoords_(fogCoordinates(node.fogCoord, points_.size(), faults)) {
+        fogCoords_(fogCoordinates(node.fogCoord, points_.size())) {
     // Colours that match the points one to one need no extra vertices.
     ownVertices_ = !given_.own.empty() || !allFinite(points_) || !allFinite(colors_) ||
                    !values_.alphas.empty() || !fogCoords_.empty() ||

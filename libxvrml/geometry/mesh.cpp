@@ -60,14 +60,14 @@ ColorValues colorValues(const NodeRef& node) {
   return values;
 }
 
-std::vector<float> fogCoordinates(const NodeRef& node, size_t points, Faults& faults) {
+std::vector<float> fogCoordinates(const NodeRef& node, size_t points) {
   auto* given = nodeCast<nodes::FogCoordinate>(renderedNode(node.get()));
   if (!given || given->depth.empty()) return {};
-  const size_t count = std::min<size_t>(points, given->depth.size());
   std::vector<float> shares(points);
-  for (size_t i = 0; i < count; i++)
-    if (std::isfinite(given->depth[i])) shares[i] = given->depth[i];
-  for (size_t i = count; i < points; i++) faults.add(Fault::fogCoordMissing, i);
+  for (size_t i = 0; i < points; i++) {
+    const float depth = given->depth[std::min<size_t>(i, given->depth.size() - 1)];
+    shares[i] = std::isfinite(depth) ? depth : 0;
+  }
   return shares;
 }
 

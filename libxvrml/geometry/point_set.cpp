@@ -13,7 +13,7 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
   ColorValues values = colorValues(node.color);
   const std::span<const Color> colors = values.rgb;
   if (points.empty() || points.size() >= UINT32_MAX) return mesh;
-  std::vector<float> fogCoords = fogCoordinates(node.fogCoord, points.size(), faults);
+  std::vector<float> fogCoords = fogCoordinates(node.fogCoord, points.size());
   for (uint32_t i = 0; i < points.size(); i++) {
     if (isFinite(points[i]))
       mesh.ownIndices.push_back(i);

@@ -27,4 +27,11 @@ Mesh sphereFacets(float radius, uint32_t rows) {
   return mesh;
 }
 
+void facetSphere(Mesh& mesh, uint32_t rows) {
+  if (mesh.kind != Mesh::Kind::sphere) return;
+  const bool solid = mesh.solid;
+  mesh = sphereFacets(mesh.radius, rows);
+  mesh.solid = solid;
+}
+
 } // namespace xvrml

@@ -36,13 +36,6 @@ bool isPlacedOnPicture(Node& geometry) {
   return nodeCast<nodes::NurbsTextureCoordinate>(given) != nullptr;
 }
 
-// Makes the sphere of the ray tracer triangles.
-void facet(Mesh& mesh) {
-  const bool solid = mesh.solid;
-  mesh = sphereFacets(mesh.radius, sphereRows);
-  mesh.solid = solid;
-}
-
 Vec4f inBox(const Vec3f& p, const Box3& box) {
   const auto part = [](double from, double v, double to) {
     return to != from ? number((v - from) / (to - from)) : 0.0f;
@@ -77,7 +70,7 @@ bool hasTexPlaces(Node& geometry) {
 
 void placeInVolume(Node& geometry, const MeshOptions& options, Mesh& mesh) {
   if (!options.needTexPlaces) return;
-  if (mesh.kind == Mesh::Kind::sphere) facet(mesh);
+  facetSphere(mesh, sphereRows);
   if (mesh.kind != Mesh::Kind::triangles) return;
   mesh.exact.clear();
   if (!mesh.texPlaces.empty()) return;

@@ -125,7 +125,7 @@ template <class T> void bind(Attribute<T>& attribute, uint32_t used, Fault fault
 constexpr float smoothAll = 4; // more than any angle between faces
 
 // Returns a set with the values of a node and no faces.
-template <class Node> FaceSet valuesOf(const Node& node, Faults& faults) {
+template <class Node> FaceSet valuesOf(const Node& node) {
   FaceSet set;
   Coordinates given = coordinates(node.coord);
   set.takePoints(given.points, std::move(given.own));
@@ -136,7 +136,7 @@ template <class Node> FaceSet valuesOf(const Node& node, Faults& faults) {
   set.normals.values = normalVectors(node.normal);
   TexCoordValues texCoords = textureCoordinates(node.texCoord);
   set.takeTexCoords(texCoords.points, std::move(texCoords.own), std::move(texCoords.places));
-  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size(), faults);
+  set.fogCoords = fogCoordinates(node.fogCoord, set.points.size());
   return set;
 }
 
@@ -145,7 +145,7 @@ template <class Node> FaceSet valuesOf(const Node& node, Faults& faults) {
 template <class Node, class Read> Mesh build(const Node& node, Pattern pattern, bool smooth,
                                              const MeshOptions& options, Faults& faults,
                                              Corners corners, const Read& read) {
-  FaceSet set = valuesOf(node, faults);
+  FaceSet set = valuesOf(node);
   if (set.points.size() >= noValue / 2 || corners.index.size() >= noValue / 2) {
     faults.note("too many points or indices");
     return {};
@@ -174,8 +174,7 @@ constexpr auto byIndex = [](SetReader& reader, uint32_t) { reader.runsByIndex();
 
 Mesh buildIndexedTriangleSet(const nodes::IndexedTriangleSet& node, const MeshOptions& options,
                              Faults& faults) {
-  Faults unused; // build() finds them again
-  const FaceSet set = valuesOf(node, unused);
+  const FaceSet set = valuesOf(node);
   Mesh mesh;
   if (set.ownPoints.empty() && set.points.size() < noValue / 2 && node.index.size() < noValue / 2 &&
       buildPlain({node.index, false, node.normalPerVertex ? smoothAll : 0, node.solid, node.ccw},

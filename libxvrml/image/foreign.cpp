@@ -64,6 +64,8 @@ void decodePixels(Format format, const char* name, Bytes bytes, const ImageRoom&
             std::memcpy(numbers.data() + at, part.data(), part.size());
           });
   if (numbers.size() * sizeof(Number) != wanted) throw std::runtime_error("pixels are missing");
+} catch (const TooManyPixels&) {
+  throw; // callers tell it from damage
 } catch (const std::runtime_error& error) {
   const std::string_view why = error.what();
   if (why.starts_with(name)) throw; // it names the format already

@@ -150,7 +150,7 @@ Header readHeader(std::string_view text) {
   return header;
 }
 
-// Unpacks the bytes that the numbers take.
+// Unpacks the bytes that the numbers take. They may be packed in several members (RFC 1952, 2.2).
 std::vector<uint8_t> unpacked(Bytes packed, uint64_t wanted) {
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 32) != Z_OK) refuse("no memory to unpack it");
@@ -163,7 +163,8 @@ std::vector<uint8_t> unpacked(Bytes packed, uint64_t wanted) {
   stream.next_in = const_cast<uint8_t*>(packed.data());
   stream.avail_in = uInt(std::min<size_t>(packed.size(), 1u << 30));
   for (int status = Z_OK; bytes.size() < wanted;) {
-    if (status == Z_STREAM_END) refuse("it ends too early");
+    if (status == Z_STREAM_END && (stream.avail_in == 0 || inflateReset(&stream) != Z_OK))
+      refuse("it ends too early");
     stream.next_out = part.data();
     stream.avail_out = uInt(part.size());
     status = inflate(&stream, Z_NO_FLUSH);

@@ -54,7 +54,7 @@ Volume decodeVolume(std::span<const uint8_t> bytes, const ImageRoom& room) {
   if (looksLikeNrrd(bytes)) return decodeNrrd(bytes, room);
   if (looksLikeDds(bytes)) return decodeDdsVolume(bytes, room);
   if (mediaTypeOf(bytes).empty())
-    throw std::runtime_error("not an NRRD or DDS file, nor a PNG, JPEG or GIF picture");
+    throw std::runtime_error("not an NRRD or DDS file, nor a picture of a known format");
   Image slice = decodeImage(bytes.data(), bytes.size(), room);
   return {slice.width, slice.height, 1, slice.components, std::move(slice.pixels)};
 }

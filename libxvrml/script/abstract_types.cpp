@@ -30,6 +30,9 @@ constexpr Row rows[] = {{"appearance", "X3DAppearanceNode"},
                         {"textureCoordinate", "X3DTextureCoordinateNode"},
                         {"audio", "X3DSoundSourceNode"},
                         {"displacer", "X3DGeometricPropertyNode"},
+                        {"particleEmitter", "X3DParticleEmitterNode"},
+                        {"particlePhysics", "X3DParticlePhysicsModelNode"},
+                        {"fogCoordinate", "X3DGeometricPropertyNode"},
                         {"layer", "X3DLayerNode"},
                         {"layoutNode", "X3DLayoutNode"},
                         {"viewport", "X3DViewportNode"},
@@ -68,7 +71,7 @@ MFString abstractTypesOf(const NodeType& type) {
     if (type.is(row.role)) types.emplace_back(row.type);
   if (type.index == ScriptNode::typeIndex || type.name == "Script")
     types.push_back("X3DScriptNode");
-  if (type.name == "Shape") types.push_back("X3DShapeNode");
+  if (type.name == "Shape" || type.name == "ParticleSystem") types.push_back("X3DShapeNode");
   if (type.name == "TouchSensor") types.push_back("X3DTouchSensorNode");
   return types;
 }

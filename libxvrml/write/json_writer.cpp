@@ -194,7 +194,7 @@ class JsonWriter : public Writer {
     }
     attribute("name", field.info->name);
     if (field.value && holdsNodes(*field.info))
-      writeNodes("children", field, false);
+      writeNodes("children", field, true); // a program may count the places
     else if (field.value)
       attribute("value", field.info->type, field.value);
     close('}');

@@ -230,7 +230,7 @@ class XmlWriter : public Writer {
     text_ += '>';
     const size_t before = text_.size();
     indent_ += 2;
-    if (nodes) writeNodes(field, "", false);
+    if (nodes) writeNodes(field, "", true); // a program may count the places
     indent_ -= 2;
     if (text_.size() == before) {
       text_.back() = '/';
@@ -253,7 +253,7 @@ class XmlWriter : public Writer {
         text_ += "<Group/>";
     };
     if (field.info->type == FieldType::SFNode) {
-      write(static_cast<const NodeRef*>(field.value)->get());
+      if (Node* child = static_cast<const NodeRef*>(field.value)->get()) write(child);
     } else {
       for (const NodeRef& child : *static_cast<const MFNode*>(field.value)) write(child.get());
     }

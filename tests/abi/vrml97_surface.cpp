@@ -231,7 +231,8 @@ TEST(Vrml97Surface, EveryRowOfTheTextureTables) { // V9
     SCOPED_TRACE(testing::Message() << row.components << " components, coloured " << row.coloured
                                     << ", lit " << row.lit);
     ParamBlock p(surface());
-    p.set("transparency", {transparency});
+    // Transparency is the material's; without one nothing is lit.
+    p.set("transparency", {row.lit ? transparency : 0});
     p.setInt("lit", row.lit ? 1 : 0);
     FakeHost host;
     if (row.components <= 2)

@@ -164,7 +164,8 @@ TEST_F(Surface, V9EveryRowOfTheTextureTables) {
     SCOPED_TRACE(testing::Message() << row.components << " components, colours " << row.coloured
                                     << ", lit " << row.lit);
     Shader s("VRML97");
-    s.set("transparency", {1 - opaque})
+    // Transparency is the material's; without one nothing is lit.
+    s.set("transparency", {row.lit ? 1 - opaque : 0})
         .setInt("lit", row.lit ? 1 : 0)
         .setTexture("texture", textures[row.components]);
     const RTid instance = place(square(s, 10, row.coloured ? &red : nullptr));

@@ -1,5 +1,7 @@
 """Worlds that glTF can say as they are, without highlights, backgrounds and headlights: exported by vv --write
 and read again by vv, they look as before."""
+import json
+
 import pytest
 from conftest import HEADER
 from exports import export
@@ -81,3 +83,12 @@ def test_what_is_read_again_looks_the_same(vv, name):
     ours = picture(vv, "in.wrl")
     assert sum(ours) > 20000  # something is to be seen
     assert difference(ours, picture(vv, "out.glb")) < 1
+
+
+def test_lines_keep_their_transparency(vv):
+    export(vv, VIEW + """Shape { appearance Appearance { material Material { emissiveColor 1 0 0 transparency 0.25 } }
+  geometry IndexedLineSet { coord Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }""")
+    data = (vv.folder / "out.glb").read_bytes()
+    material = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["materials"][0]
+    assert material["alphaMode"] == "BLEND"
+    assert material["pbrMetallicRoughness"]["baseColorFactor"] == [1, 0, 0, 0.75]

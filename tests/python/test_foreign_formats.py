@@ -76,7 +76,7 @@ def test_a_bad_file_costs_itself_only(vv):
     for i in range(6):
         vv.write(f"{i}.webp", good if i % 2 == 0 else good[:len(good) // 2])
     vv.write("many.wrl", world(*(f"{i}.webp" for i in range(6))))
-    done = vv("many.wrl", "-o", "a.png", "--size", "64x16", "--spp", "1")
+    done = vv("many.wrl", "-o", "a.png", "--size", "64x16", "--spp", "1", "-v")
     assert done.returncode == 0, done.talk
     assert done.talk.count("WebP picture: it is damaged, or ends too early") == 3
 

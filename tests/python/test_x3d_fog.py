@@ -191,10 +191,11 @@ def test_without_fog_it_has_no_effect_and_without_depths_the_distance_counts():
         near(found, hidden(x))
 
 
-def test_points_without_a_depth_are_clear_and_told_of():
-    world = xvrml.loads(HEAD + strip("QuadSet", "1 1"), "a.x3dv")
-    assert colors(world)[1][0] < 1
-    assert any("without a fog coordinate" in str(w) for w in world.warnings)
+def test_the_last_depth_holds_for_all_further_points():
+    world = xvrml.loads(HEAD + strip("QuadSet", ".25"), "a.x3dv")
+    for found in colors(world):
+        near(found, (.75, 0, .25))
+    assert not world.warnings
 
 
 def test_depths_change_as_if_they_had_stood_so_in_the_file():

@@ -97,3 +97,18 @@ def test_threads_and_cameras_make_no_difference():
     world.render(size=(30, 60), spp=1)
     again = np.asarray(world.render(size=(90, 60), spp=4, threads=3))
     assert (one == again).all() and one.any()
+
+
+@pytest.mark.parametrize("points", [((-3, 1, 3), (5, 1, -10)), ((-4, 1, 0), (4, 1.3, 0))])
+@pytest.mark.parametrize("width, scale", [(3, 1), (1, 3)])
+def test_a_transparent_line_in_perspective_covers_what_is_behind_it_once(points, width, scale):
+    world = xvrml.loads(f"""{HEAD}
+Viewpoint {{ position 0 0 10 }}
+Shape {{ appearance Appearance {{ material Material {{ emissiveColor 1 1 1 transparency .5 }}
+    lineProperties LineProperties {{ linewidthScaleFactor {width} }} }}
+  geometry LineSet {{ vertexCount 2 coord Coordinate {{ point [
+    {", ".join("%r %r %r" % p for p in points)} ] }} }} }}""", "a.x3dv")
+    picture = np.asarray(world.render(size=(320 * scale, 240 * scale), spp=1, colour="vrml97"))
+    red = picture[..., 0]
+    assert (red > 0).sum() > 200
+    assert set(np.unique(red.round(3)).tolist()) == {0, 0.5}

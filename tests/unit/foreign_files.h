@@ -29,6 +29,9 @@ Bytes makeChroma(int width, int height, float red, float green, float blue);
 
 // Returns a component of the other pictures.
 inline uint8_t byteAt(int x, int y, int c) { return uint8_t(x * 7 + y * 31 + c * 85); }
+// Returns the alpha of WebP and BMP pictures. It is neither 0, where colours are not kept, nor 255,
+// because a picture may not keep an alpha that is 255 everywhere.
+inline uint8_t alphaAt(int x, int y) { return uint8_t((byteAt(x, y, 3) & 0x7e) | 1); }
 
 Bytes makeWebp(int width, int height, int components); // without loss
 Bytes makeBmp(int width, int height, int components);  // 3 or 4

@@ -55,9 +55,8 @@ TEST_F(MapVertexAlpha, ColoursChangeAtRunTime) {
 // The transparency of a material reaches lines while the world runs.
 TEST_F(MapVertexAlpha, TheTransparencyOfLinesChangesAtRunTime) {
   loadX3d("NavigationInfo { headlight FALSE }\nBackground { skyColor 0 0 1 }\nShape { appearance "
-          "Appearance { material DEF M Material { emissiveColor 1 0 0 } lineProperties "
-          "LineProperties { linewidthScaleFactor 900 } } geometry LineSet { vertexCount 3 coord "
-          "Coordinate { point [ -50 0 0, 0 0 0, 50 0 0 ] } } }\n");
+          "Appearance { material DEF M Material { emissiveColor 1 0 0 } } geometry LineSet { "
+          "vertexCount 3 coord Coordinate { point [ -50 0 0, 0 0 0, 50 0 0 ] } } }\n");
   expectColor(1, 0, 0);
   for (const float transparency : {.75f, 1.0f, 0.0f, .5f}) {
     send("M", "set_transparency", transparency);

@@ -255,6 +255,16 @@ TEST_F(MapVolumes, EventsChangePixelsPlacesAndTransforms) {
   silent();
 }
 
+TEST_F(MapVolumes, EventsChangeWhatIsBeyondTheLastSlice) {
+  loadX3d(square("texture " + cube("textureProperties DEF P TextureProperties { boundaryModeR "
+                                   "\"CLAMP_TO_EDGE\" }"),
+                 at(".25 .25 1.25")));
+  expectSeen({0, 0, 1}, "the last slice");
+  send("P", "set_boundaryModeR", std::string("REPEAT"));
+  expectSeen({0, 0, 0}, "the first slice again");
+  silent();
+}
+
 TEST_F(MapVolumes, EventsPutAVolumeInPlaceOfAPicture) {
   loadX3d(
       "Switch { children Shape { appearance Appearance { texture " + cube() +

@@ -269,13 +269,13 @@ TEST_F(Replay, AnExportCountsTheValuesOfTextures) {
   std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
   EXPECT_NE(
       json.find(
-          "\"components\":1,\"depth\":3,\"float\":false,\"srgb\":false,\"texels\":{\"offset\":0,"
+          "\"depth\":3,\"components\":1,\"float\":false,\"srgb\":false,\"texels\":{\"offset\":0,"
           "\"count\":15}"),
       std::string::npos)
       << json;
   EXPECT_NE(
       json.find(
-          "\"components\":3,\"depth\":1,\"float\":true,\"srgb\":false,\"texels\":{\"offset\":16,"
+          "\"depth\":1,\"components\":3,\"float\":true,\"srgb\":false,\"texels\":{\"offset\":16,"
           "\"count\":3}"),
       std::string::npos)
       << json;

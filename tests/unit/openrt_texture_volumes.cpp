@@ -1,5 +1,6 @@
 // openrt_texture_volumes.cpp: Tests lookups in textures with depth against values worked out by
 // hand, and the calls of the API that make them.
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -137,8 +137,8 @@ Bytes makeWebp(int width, int height, int components) {
   Bytes pixels;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      for (int c = 0; c < components; ++c) // colours below alpha 0 are not kept
-        pixels.push_back(c == 3 ? uint8_t(byteAt(x, y, c) | 1) : byteAt(x, y, c));
+      for (int c = 0; c < components; ++c)
+        pixels.push_back(c == 3 ? alphaAt(x, y) : byteAt(x, y, c));
   uint8_t* made = nullptr;
   const auto encode = components == 4 ? WebPEncodeLosslessRGBA : WebPEncodeLosslessRGB;
   const size_t size = encode(pixels.data(), width, height, width * components, &made);
@@ -164,7 +164,7 @@ Bytes makeBmp(int width, int height, int components) {
   for (int y = height - 1; y >= 0; --y) {
     for (int x = 0; x < width; ++x)
       for (const int c : {2, 1, 0, 3})
-        if (c < components) file.push_back(c == 3 ? uint8_t(byteAt(x, y, c) | 1) : byteAt(x, y, c));
+        if (c < components) file.push_back(c == 3 ? alphaAt(x, y) : byteAt(x, y, c));
     for (uint32_t i = uint32_t(width * components); i < row; ++i) file.push_back(0);
   }
   return file;

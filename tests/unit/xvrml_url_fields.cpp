@@ -26,7 +26,7 @@ TEST(UrlFields, AreThoseOfTheStandard) {
                 "Background.frontUrl", "Background.leftUrl", "Background.rightUrl",
                 "Background.topUrl", "GeoLOD.child1Url", "GeoLOD.child2Url", "GeoLOD.child3Url",
                 "GeoLOD.child4Url", "GeoLOD.rootUrl", "ImageCubeMapTexture.url", "ImageTexture.url",
-                "Inline.url", "MovieTexture.url", "Script.url"}));
+                "ImageTexture3D.url", "Inline.url", "MovieTexture.url", "Script.url"}));
 }
 
 // Prototypes in the folder lib/, used by worlds/w.wrl.

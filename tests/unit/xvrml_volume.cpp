@@ -78,6 +78,20 @@ TEST(Volume, NrrdOfBytesIsKeptAsItIs) {
   EXPECT_EQ(rgb.depth, 2);
 }
 
+// gzip files that are appended to each other are one (RFC 1952, 2.2).
+TEST(Volume, NrrdOfSeveralPackedMembers) {
+  const Bytes data = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  Bytes members;
+  for (const auto& [from, to] : {std::pair{0, 5}, {5, 5}, {5, 12}})
+    for (const uint8_t byte : packed({data.begin() + from, data.begin() + to}))
+      members.push_back(byte);
+  const std::string head = header("uchar", "2 3 2", "gzip");
+  EXPECT_EQ(decode(nrrd(head, members)).pixels, data);
+  Bytes damaged = packed({1, 2, 3});
+  damaged.resize(damaged.size() + 20, 1);
+  expectRefused(nrrd(head, damaged), "damaged");
+}
+
 // -100 to 300 is the range.
 TEST(Volume, OtherNumbersAreScaledByTheirRange) {
   const Bytes little = {0x9c, 0xff, 0x2c, 0x01, 0x64, 0x00}, // -100 300 100

@@ -248,6 +248,7 @@ TEST(WriteX3d, PrototypesHaveAnInterfaceABodyAndConnections) {
       <fieldValue name='at' value='1 2 3'/>
       <fieldValue name='c'>
         <Group/>
+        <Group/>
       </fieldValue>
     </ProtoInstance>
     <ExternProtoDeclare name='E' url='"e.wrl"'>
@@ -259,8 +260,13 @@ TEST(WriteX3d, PrototypesHaveAnInterfaceABodyAndConnections) {
 TEST(WriteX3d, AnEmptyGroupTakesThePlaceOfNull) {
   const char* const text = "Switch { whichChoice 1 choice [ NULL Shape { } NULL ] }\n"
                            "Group { children [ NULL Shape { } ] }";
+  const char* const script = "Script { field MFNode n [ NULL Shape { } ] field SFNode o NULL }";
   EXPECT_EQ(scene(text), "\n    <Switch whichChoice='1'>\n      <Group/>\n      <Shape/>\n      "
                          "<Group/>\n    </Switch>\n    <Group>\n      <Shape/>\n    </Group>");
+  EXPECT_EQ(scene(script),
+            "\n    <Script>\n      <field accessType='initializeOnly' type='MFNode' name='n'>\n"
+            "        <Group/>\n        <Shape/>\n      </field>\n"
+            "      <field accessType='initializeOnly' type='SFNode' name='o'/>\n    </Script>");
   const auto again = loadWorldFromMemory(
       written(std::string("#VRML V2.0 utf8\n") + text, Encoding::x3dJson), "w.x3dj");
   const auto& choice = nodeCast<nodes::Switch>(again->scope.roots.at(0))->choice;

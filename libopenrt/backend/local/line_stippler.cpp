@@ -67,7 +67,7 @@ StippledLine stippled(const Seen& a, const Seen& b, uint16_t factor, double& pha
   const double begin = phase;
   phase = std::fmod(phase + cells, double(Stipple::cells));
   return {float(range->from), float(range->to), float(begin), float(cells),
-          float(last.pixel / first.pixel)};
+          float(first.pixel / last.pixel)};
 }
 
 } // namespace

@@ -68,14 +68,39 @@ void append(std::vector<T>& array, size_t before, const T& usual, const T& value
 class ThinWriter {
  public:
   ThinWriter(Part& part, const ThinGeometry& thin, const PixelFootprint& footprint, float scale)
-      : part_(part), thin_(thin), footprint_(footprint), scale_(scale) {}
+      : part_(part), thin_(thin), footprint_(footprint), scale_(scale),
+        mostPieces_(std::clamp(0x1p22f / float(thin.geometry.primitives() + 1), 1.0f, 1024.0f)) {}
 
   // Adds a vertex with the radius that half of the width in pixels has there.
   void addVertex(const Vec3f& p) {
+    part_.vertices.insert(part_.vertices.end(), {p.x, p.y, p.z, radiusAt(p)});
+  }
+
+  // Adds a part of a line. A ray that passes begins where it has entered, and Embree finds a place
+  // on a cone the less exactly the longer it is. So transparent lines become pieces of `longest`
+  // radii, that the ray does not enter twice.
+  void addPart(uint32_t line, const Vec3f& start, const Vec3f& end, const Part::Span& span,
+               bool follows) {
+    const float size = std::max(std::min(radiusAt(start), radiusAt(end)) * longest, 1e-30f);
+    const float count = thin_.joins ? std::ceil(length(end - start) / size) : 1;
+    const int pieces = count > 1 ? int(std::min(count, mostPieces_)) : 1;
+    Vec3f from = start;
+    for (int i = 1; i <= pieces; i++) {
+      const auto place = [&](int k) { return float(k) / float(pieces); };
+      const Vec3f to = i < pieces ? start + (end - start) * place(i) : end;
+      const auto spanAt = [&](int k) { return span.from + (span.to - span.from) * place(k); };
+      addPiece(line, from, to, {spanAt(i - 1), spanAt(i)}, follows || i > 1);
+      from = to;
+    }
+  }
+
+ private:
+  static constexpr float longest = 16;
+
+  float radiusAt(const Vec3f& p) const {
     const float depth = dot(p / scale_ - footprint_.eye, footprint_.axis);
     const float pixel = footprint_.constant + footprint_.slope * std::fabs(depth);
-    part_.vertices.insert(part_.vertices.end(),
-                          {p.x, p.y, p.z, 0.5f * thin_.geometry.width * pixel * scale_});
+    return 0.5f * thin_.geometry.width * pixel * scale_;
   }
 
   // Adds a piece of a line. span: which part of the line it is. follows: it begins where the piece
@@ -83,22 +108,22 @@ class ThinWriter {
   void addPiece(uint32_t line, const Vec3f& start, const Vec3f& end, const Part::Span& span,
                 bool follows) {
     const size_t pieces = part_.indices.size();
-    const bool joined = follows && thin_.transparent;
+    const bool joined = follows && thin_.joins;
     append(part_.spans, pieces, {0, 1}, span, span.from == 0 && span.to == 1);
     if (joined) part_.joints.back() |= RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
     append(part_.joints, pieces, uint8_t(0), uint8_t(joined ? RTC_CURVE_FLAG_NEIGHBOR_LEFT : 0),
-           !thin_.transparent);
+           !thin_.joins);
     if (!joined) addVertex(start);
     part_.indices.push_back(uint32_t(part_.vertices.size() / 4 - 1));
     part_.primitives.add(thin_.record, line);
     addVertex(end);
   }
 
- private:
   Part& part_;
   const ThinGeometry& thin_;
   const PixelFootprint& footprint_;
   float scale_;
+  float mostPieces_; // that a part becomes
 };
 
 } // namespace
@@ -124,12 +149,12 @@ void addThin(Part& part, const ThinGeometry& thin, const PixelFootprint& footpri
     double from = 0;
     for (const double cut : splitter.cuts(Vec3d(a), Vec3d(b))) {
       const Vec3f end(Vec3d(a) + (Vec3d(b) - Vec3d(a)) * cut);
-      writer.addPiece(i, start, end, {float(from), float(cut)}, follows);
+      writer.addPart(i, start, end, {float(from), float(cut)}, follows);
       follows = true;
       start = end;
       from = cut;
     }
-    writer.addPiece(i, start, b, {float(from), 1}, follows);
+    writer.addPart(i, start, b, {float(from), 1}, follows);
   }
 }
 

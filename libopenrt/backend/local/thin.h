@@ -21,12 +21,12 @@ struct ThinGeometry {
   const Geometry& geometry;
   Matrix4d toKernel; // to the top level's frame
   uint32_t record = 0;
-  bool transparent = false; // rays go on behind it
+  bool joins = false; // rays go on behind it or in its gaps, so lines have no ends within others
 };
 
 // Adds lines or points to a part of their kind. `scale` converts render space to the top level's
-// frame. Transparent lines that follow each other in the list and share a vertex are joined, so
-// that a ray enters them once.
+// frame. If asked, lines that follow each other in the list and share a vertex are joined, so that
+// a ray enters them once.
 void addThin(Part& part, const ThinGeometry& thin, const PixelFootprint& footprint, float scale);
 
 } // namespace openrt

@@ -128,7 +128,8 @@ void computeThin(const Record& r, const Rays& rays, const RayHits& hits, uint32_
   const Vec3f origin = load(rays.org, lane), direction = load(rays.dir, lane),
               step = hits.t[lane] * direction;
   store(origin + step, block.position, to);
-  store(gammaOf(8) * (abs(origin) + abs(step)), block.bound, to);
+  // Culled ones let rays pass, which must not enter again. Embree is less exact for cones.
+  store(gammaOf(r.cull ? 128 : 8) * (abs(origin) + abs(step)), block.bound, to);
   store(-direction, block.ng, to);
   for (auto& coordinate : block.uv) coordinate[to] = 0;
   for (auto& color : block.color) color[to] = 1;

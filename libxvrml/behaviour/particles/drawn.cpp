@@ -23,6 +23,8 @@ constexpr double farthest = 1e20;
 struct Arrays {
   MFVec3f points, normals;
   MFVec2f texCoords;
+  MFVec4f texPlaces;
+  MFFloat fogCoords;
   MFColorRGBA colors;
   MFInt32 indices;
 
@@ -32,6 +34,8 @@ struct Arrays {
     for (const V3d& point : form.points)
       points.push_back(toVec3f(motion.place + (form.isAlong ? along * point.z : point)));
     normals.insert(normals.end(), form.normals.begin(), form.normals.end());
+    texPlaces.insert(texPlaces.end(), form.texPlaces.begin(), form.texPlaces.end());
+    fogCoords.insert(fogCoords.end(), form.fogCoords.begin(), form.fogCoords.end());
     for (const uint32_t index : form.indices) indices.push_back(first + int32_t(index));
   }
 };
@@ -52,14 +56,22 @@ void setColor(NodeRef& place, const Arrays& arrays, const ParticleRamps& ramps) 
   for (const ColorRGBA& color : arrays.colors) colors.push_back({color.r, color.g, color.b});
 }
 
+void setFogCoord(NodeRef& place, const Arrays& arrays) {
+  if (!arrays.fogCoords.empty()) made<nodes::FogCoordinate>(place).depth = arrays.fogCoords;
+}
+
 NodeRef faces(const ParticleForm& form, const Arrays& arrays, const ParticleRamps& ramps) {
   NodeRef geometry;
   auto& set = made<nodes::IndexedTriangleSet>(geometry);
   made<nodes::Coordinate>(set.coord).point = arrays.points;
   if (!form.normals.empty()) made<nodes::Normal>(set.normal).vector = arrays.normals;
-  if (!form.texCoords.empty())
+  set.normalPerVertex = !form.normals.empty();
+  if (!form.texPlaces.empty())
+    made<nodes::TextureCoordinate4D>(set.texCoord).point = arrays.texPlaces;
+  else if (!form.texCoords.empty())
     made<nodes::TextureCoordinate>(set.texCoord).point = arrays.texCoords;
   setColor(set.color, arrays, ramps);
+  setFogCoord(set.fogCoord, arrays);
   set.index = arrays.indices;
   set.solid = form.solid;
   set.ccw = form.ccw;
@@ -71,6 +83,7 @@ NodeRef lines(const Arrays& arrays, const ParticleRamps& ramps) {
   auto& set = made<nodes::IndexedLineSet>(geometry);
   made<nodes::Coordinate>(set.coord).point = arrays.points;
   setColor(set.color, arrays, ramps);
+  setFogCoord(set.fogCoord, arrays);
   for (size_t i = 0; i + 1 < arrays.indices.size(); i += 2)
     set.coordIndex.insert(set.coordIndex.end(), {arrays.indices[i], arrays.indices[i + 1], -1});
   return geometry;
@@ -81,6 +94,7 @@ NodeRef points(const Arrays& arrays, const ParticleRamps& ramps) {
   auto& set = made<nodes::PointSet>(geometry);
   made<nodes::Coordinate>(set.coord).point = arrays.points;
   setColor(set.color, arrays, ramps);
+  setFogCoord(set.fogCoord, arrays);
   return geometry;
 }
 

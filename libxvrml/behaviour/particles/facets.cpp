@@ -16,7 +16,8 @@ Mesh meshOf(Node& geometry) {
   MeshOptions options;
   options.limits = &limits;
   Mesh mesh = buildMesh(geometry, options);
-  return mesh.kind == Mesh::Kind::sphere ? sphereFacets(mesh.radius, sphereRows) : std::move(mesh);
+  facetSphere(mesh, sphereRows);
+  return mesh;
 }
 
 } // namespace

@@ -36,12 +36,14 @@ ParticleForm formOfGeometry(Node* geometry) {
   options.limits = &limits;
   options.needTexCoords = true;
   Mesh mesh = buildMesh(*geometry, options);
-  if (mesh.kind == Mesh::Kind::sphere) mesh = sphereFacets(mesh.radius, sphereRows);
+  facetSphere(mesh, sphereRows);
   if (mesh.kind == Mesh::Kind::empty) return form;
   form.kind = mesh.kind;
   for (const Vec3f& point : mesh.points) form.points.push_back(toV3d(point));
   form.normals.assign(mesh.normals.begin(), mesh.normals.end());
   form.texCoords.assign(mesh.texCoords.begin(), mesh.texCoords.end());
+  form.texPlaces.assign(mesh.texPlaces.begin(), mesh.texPlaces.end());
+  form.fogCoords.assign(mesh.fogCoords.begin(), mesh.fogCoords.end());
   form.indices.assign(mesh.indices.begin(), mesh.indices.end());
   form.solid = mesh.solid;
   form.ccw = mesh.ccw;

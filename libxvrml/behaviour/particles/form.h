@@ -16,8 +16,10 @@ namespace xvrml {
 struct ParticleForm {
   Mesh::Kind kind = Mesh::Kind::triangles; // or lines, or points
   std::vector<V3d> points;
-  std::vector<Vec3f> normals;
+  std::vector<Vec3f> normals; // empty: flat
   std::vector<Vec2f> texCoords;
+  std::vector<Vec4f> texPlaces; // as those of a Mesh
+  std::vector<float> fogCoords;
   std::vector<uint32_t> indices; // as those of a Mesh
   bool solid = false, ccw = true;
   bool isQuad = false;  // its corners take those of texCoordRamp

@@ -9,6 +9,8 @@
 namespace xvrml {
 namespace {
 
+constexpr double never = std::numeric_limits<double>::infinity();
+
 // The births at one place during one emission.
 struct Births {
   double first;
@@ -19,15 +21,26 @@ Births birthsOf(const Emission& emission, uint32_t place, double free, double no
                 const LifeOfParticles& life) {
   const bool always = std::isinf(emission.from);
   // The first ones follow each other evenly, so that all places are filled after a mean life.
-  const double delay = life.explodes ? 0 : double(place) / life.most * life.seconds;
+  const double part = double(place) / life.most - emission.phase;
+  const double delay = life.explodes ? 0 : (part < 0 ? part + 1 : part) * life.seconds;
   const double from = !always         ? emission.from
                       : life.explodes ? 0
                                       : -life.seconds * (1 + life.variation);
-  const double first = std::max(from + delay, free);
+  const bool misses = life.explodes && free > from; // the place is taken at the time of the bang
+  const double first = misses ? never : std::max(from + delay, free);
   return {first, life.explodes ? first : std::min(now, emission.until)};
 }
 
 } // namespace
+
+double phaseAfter(const Emission& last, double seconds) {
+  if (!(seconds > 0) || !std::isfinite(last.until)) return 0;
+  // One without a beginning counts from time 0: birthsOf has it begin a life earlier.
+  const double from = std::isinf(last.from) ? 0 : last.from;
+  const double rounds = last.phase + (last.until - from) / seconds;
+  const double phase = rounds - std::floor(rounds);
+  return phase < 1 ? phase : 0; // not a number, or rounded up
+}
 
 std::vector<LivingParticle> livingParticles(const LifeOfParticles& life,
                                             const ParticleClock& clock) {

@@ -13,7 +13,7 @@ struct LifeOfParticles {
   uint32_t most = 0;     // particles at a time
   double seconds = 0;    // mean length of a life
   double variation = 0;  // part by which lives differ, in [0,1]
-  bool explodes = false; // all of an emission are born at once
+  bool explodes = false; // those of an emission are born at once, where places are free
   uint64_t seed = 0;
 };
 
@@ -22,6 +22,10 @@ struct LivingParticle {
   double age;   // in seconds
   double life;  // its length in seconds
 };
+
+// Returns the phase of an emission that goes on where `last` has ended, for a mean life of this
+// length.
+double phaseAfter(const Emission& last, double seconds);
 
 // Returns the particles at the clock's time, in the order of their places.
 std::vector<LivingParticle> livingParticles(const LifeOfParticles& life,

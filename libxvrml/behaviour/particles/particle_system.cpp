@@ -1,6 +1,8 @@
 // particle_system.cpp: the time of a ParticleSystem (ISO/IEC 19775-1 40.4.5): when particles are
 // born, and isActive. An event counts from its own time, so that pictures do not depend on when
 // others were made.
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "base/budget.h"
@@ -9,6 +11,7 @@
 #include "behaviour/named_fields.h"
 #include "behaviour/particles/drawn.h"
 #include "behaviour/particles/form.h"
+#include "behaviour/particles/life.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 
@@ -23,6 +26,7 @@ struct State : NodeState {
   bool sent = false;     // the last isActive
   bool emits = false;    // particles are being born
   uint64_t emission = 0; // number of the last one
+  bool warned = false;   // it has been said that there are fewer than maxParticles
   Share share;           // memory that the particles take of the world's budget
 };
 
@@ -42,7 +46,7 @@ bool emits(const nodes::ParticleSystem& system) {
   return isActive(system) && system.createParticles && isOn(renderedNode(system.emitter.get()));
 }
 
-// Reserves memory for the particles, and says if there are fewer than maxParticles.
+// Reserves memory for the particles, and says once if there are fewer than maxParticles.
 void reserve(Events& events, TimedParticleSystem& system, State& state) {
   ParticleRoom room = roomOf(system);
   state.share.clear();
@@ -51,10 +55,10 @@ void reserve(Events& events, TimedParticleSystem& system, State& state) {
     room.limit = state.share.budget()->name();
   }
   system.clock.most = room.count;
-  if (!room.limit.empty())
-    events.diagnostics().warn(
-        system.source, fmt::format("ParticleSystem: maxParticles is {}, and {} are drawn: {}",
-                                   system.maxParticles, room.count, room.limit));
+  if (room.limit.empty() || std::exchange(state.warned, true)) return;
+  events.diagnostics().warn(system.source,
+                            fmt::format("ParticleSystem: maxParticles is {}, and {} are drawn: {}",
+                                        system.maxParticles, room.count, room.limit));
 }
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {
@@ -72,8 +76,9 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
                                  "SPRITE, TRIANGLE, LINE, POINT or GEOMETRY; QUAD is used",
                                  system->geometryType));
   reserve(events, *system, *state);
+  events.wantTicks(node, true);
   events.wantLooks(node, true);
-  events.changed(node, *fieldNamed<"isActive">(node)); // it has been expanded without its clock
+  Engine::of(events).outdateFigures(); // it has been expanded without its clock
   return state;
 }
 
@@ -90,32 +95,32 @@ void followEvents(TimedParticleSystem& system, State& state, double now) {
     emissions.back().until = now;
     return;
   }
+  const double phase =
+      emissions.empty() ? 0 : phaseAfter(emissions.back(), system.particleLifetime);
   if (emissions.size() == mostEmissions) emissions.erase(emissions.begin());
-  emissions.push_back({now, std::numeric_limits<double>::infinity(), ++state.emission});
+  emissions.push_back({now, std::numeric_limits<double>::infinity(), ++state.emission, phase});
 }
 
-// Turns SPRITEs to the viewer. One at several places is turned as at the first of them.
-void faceViewer(Events& events, TimedParticleSystem& system) {
+// Turns SPRITEs to the viewer. One at several places is turned as at the first of them. Returns
+// whether they stand in another way than before.
+bool faceViewer(Events& events, TimedParticleSystem& system) {
   const std::vector<Path> paths = pathsTo(system, 1);
   const Matrix view = interactionOf(events).viewer.view();
   Matrix toLocal;
-  if (paths.empty() || !invert(Picker::toWorld(paths[0], view), toLocal)) return;
+  if (paths.empty() || !invert(Picker::toWorld(paths[0], view), toLocal)) return false;
   const Matrix local = rigid(compose(toLocal, view));
   const auto axis = [&](int i) {
     return Vec3f{float(local.x[i][0]), float(local.x[i][1]), float(local.x[i][2])};
   };
+  const auto before = std::pair(system.clock.right, system.clock.up);
   system.clock.right = axis(0);
   system.clock.up = axis(1);
+  return before != std::pair(system.clock.right, system.clock.up);
 }
 
-// Brings the clock to the present, and the particles with it.
-void update(Events& events, TimedParticleSystem& system) {
+void sendActivity(Events& events, TimedParticleSystem& system) {
   State& state = stateOf(events, system);
-  const double now = events.now() - state.began;
-  followEvents(system, state, now);
-  system.clock.now = now;
   const FieldInfo& out = *fieldNamed<"isActive">(system);
-  events.changed(system, out); // so that it is expanded again
   const bool active = isActive(system);
   if (state.sent == active || events.hasSent(system, out)) return;
   state.sent = active;
@@ -125,23 +130,38 @@ void update(Events& events, TimedParticleSystem& system) {
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
   if (!events.state(node)) return;
   auto& system = static_cast<TimedParticleSystem&>(node);
+  State& state = stateOf(events, node);
   if (isField<"maxParticles">(node, in) || isField<"geometry">(node, in))
-    reserve(events, system, stateOf(events, node));
-  update(events, system);
+    reserve(events, system, state);
+  followEvents(system, state, events.now() - state.began);
+  sendActivity(events, system);
+}
+
+// Brings the clock to the present. The engine moves the particles when the cascade has settled.
+void tick(Events& events, Node& node) {
+  if (!events.state(node)) return;
+  auto& system = static_cast<TimedParticleSystem&>(node);
+  const double now = events.now() - stateOf(events, node).began;
+  if (std::exchange(system.clock.now, now) != now) Engine::of(events).outdateFigures();
+  sendActivity(events, system);
 }
 
 // Called after the events of each tick, so that those of the emitter have arrived.
 void look(Events& events, Node& node) {
   if (!events.state(node)) return;
   auto& system = static_cast<TimedParticleSystem&>(node);
-  if (system.geometryType == "SPRITE") faceViewer(events, system);
-  update(events, system);
+  State& state = stateOf(events, node);
+  const bool emitted = state.emits;
+  followEvents(system, state, events.now() - state.began);
+  const bool turned = system.geometryType == "SPRITE" && faceViewer(events, system);
+  if (turned || state.emits != emitted) Engine::of(events).outdateFigures();
 }
 
 } // namespace
 
 void addParticleBehaviours(const AddBehaviour& add) {
-  add(nodes::ParticleSystem::nodeType(), {.begin = begin, .receive = receive, .look = look});
+  add(nodes::ParticleSystem::nodeType(),
+      {.begin = begin, .receive = receive, .tick = tick, .look = look});
 }
 
 } // namespace xvrml

@@ -170,6 +170,7 @@ Surface Surfaces::makeLines(const Entry& entry) {
   if (parts.material) {
     const MaterialValues values = materialValues(parts.material);
     surface.lineColor = convert(values.lineColor, linear_);
+    surface.transparency = values.transparency;
     shader.number("transparency", values.transparency, 0, 1);
   }
   surface.style = lineStyle(parts.plain);
@@ -345,9 +346,11 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
             .number("transparency", values.transparency, 0, 1);
       const LineStyle style = lineStyle(parts.plain);
       Surface& surface = it->second.surface;
-      effect.colored |= !(color == surface.lineColor) || !(style == surface.style);
+      effect.colored |= !(color == surface.lineColor) || !(style == surface.style) ||
+                        values.transparency != surface.transparency;
       surface.lineColor = color;
       surface.style = style;
+      surface.transparency = values.transparency;
     }
   }
   return effect;

@@ -30,6 +30,7 @@ struct Surface {
   bool lines = false;       // it is for lines or points
   bool takesPlaces = false; // its class has the parameter texturePlace of vertices
   Color lineColor{1, 1, 1}; // for lines and points without colours of their own
+  float transparency = 0;   // that of lines and points
   LineStyle style;
 };
 
@@ -60,7 +61,7 @@ class Surfaces {
   // use it.
   struct Effect {
     bool other = false;    // they need another shader
-    bool colored = false;  // lines need another colour or style
+    bool colored = false;  // lines look another way
     bool textured = false; // they now need texture coordinates that they did not need before
   };
   // Returns the surface of meshes whose texture coordinates in space shaders of instances use.

@@ -25,12 +25,13 @@ namespace {
 using Bytes = std::span<const uint8_t>;
 using Imath::Box2i;
 
+constexpr const char* nameInMessages = "the file";
 constexpr int largestSide = 65536, largestTile = 16384;
 constexpr int64_t pixelsAtOnce = 1 << 20;
 
 class FileInMemory : public Imf::IStream {
  public:
-  explicit FileInMemory(Bytes bytes) : IStream("the file"), bytes_(bytes) {}
+  explicit FileInMemory(Bytes bytes) : IStream(nameInMessages), bytes_(bytes) {}
   bool read(char to[], int count) override {
     if (count < 0 || uint64_t(count) > bytes_.size() - at_)
       throw Iex::InputExc("the file ends too early");
@@ -125,9 +126,7 @@ class Rows {
   std::vector<float> rows_;
 };
 
-} // namespace
-
-void decodeOpenExr(Bytes bytes, Answer& answer) {
+void decode(Bytes bytes, Answer& answer) {
   Imf::Header::setMaxImageSize(largestSide, largestSide);
   Imf::Header::setMaxTileSize(largestTile, largestTile);
   FileInMemory stream(bytes);
@@ -144,6 +143,18 @@ void decodeOpenExr(Bytes bytes, Answer& answer) {
     const std::vector<float>& read = rows.read(y, std::min(most, rows.height() - y));
     answer.add(read.data(), read.size() * sizeof(float));
   }
+}
+
+} // namespace
+
+// The library begins its messages with what it could not do, and with the name of the file, which
+// the message of the world has as well.
+void decodeOpenExr(Bytes bytes, Answer& answer) try {
+  decode(bytes, answer);
+} catch (const Iex::BaseExc& error) {
+  const std::string why = error.what(), opening = fmt::format("\"{}\". ", nameInMessages);
+  const size_t at = why.find(opening);
+  throw std::runtime_error(at == why.npos ? why : why.substr(at + opening.size()));
 }
 
 } // namespace xvrml::decoding

@@ -203,6 +203,18 @@ void putConstant(duk_context* ctx, const char* name, bool value) {
   duk_put_global_string(ctx, name);
 }
 
+// Makes the object of other environments that most programs of today write messages with.
+void putConsole(duk_context* ctx) {
+  static constexpr Method methods[] = {{"log", print, DUK_VARARGS},
+                                       {"info", print, DUK_VARARGS},
+                                       {"debug", print, DUK_VARARGS},
+                                       {"warn", print, DUK_VARARGS},
+                                       {"error", print, DUK_VARARGS}};
+  duk_push_object(ctx);
+  putMethods(ctx, methods, std::size(methods));
+  duk_put_global_string(ctx, "console");
+}
+
 } // namespace
 
 void registerBrowser(duk_context* ctx, Interpreter& self) {
@@ -234,6 +246,7 @@ void registerBrowser(duk_context* ctx, Interpreter& self) {
   putMethods(ctx, methods, std::size(methods));
   putX3d(ctx, self);
   duk_put_global_string(ctx, "Browser");
+  putConsole(ctx);
   duk_push_global_object(ctx);
   putMethods(ctx, globals, std::size(globals));
   duk_pop(ctx);

@@ -110,8 +110,7 @@ bool guarded(Interpreter& self, duk_safe_call_function function, void* data, con
 
 XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, const char* during,
                bool flush) {
-  if (self.dead) return XS_FAILED;
-  if (self.stopped) return XS_OK; // the program is stopped; not even shutdown runs
+  if (self.dead || self.stopped) return XS_OK; // the program has ended; not even shutdown runs
   ++self.call;
   self.texts.clear();
   if (setjmp(self.fatal)) {

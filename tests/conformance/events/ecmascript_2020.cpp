@@ -1,4 +1,4 @@
-// ecmascript_2020.cpp: what programs of ECMAScript 2020 do with the objects of Annex C. Skipped
+// ecmascript_2020.cpp: programs of ECMAScript 2020 and later with the objects of Annex C. Skipped
 // where the engine runs ECMAScript 5.1 only.
 #include "conformance/events/ecmascript_world.h"
 
@@ -212,6 +212,34 @@ TEST_F(EcmaNew, ALoopWithoutCallsIsStoppedInThisProcess) {
     r.set("S", "go", true);
     EXPECT_EQ(r.messages().size(), 1u) << loop;
   }
+}
+
+// What can be collected does not end a program that keeps most of its memory.
+TEST_F(EcmaNew, CirclesNearTheLimitAreCollected) {
+  BrowserOptions options;
+  options.scriptMemory = 16 << 20;
+  options.scriptSeconds = 60;
+  EcmaWorld r(EcmaWorld::script("",
+                                "const kept = []; for (let i = 0; i < 60000; i++) kept.push([i]);"
+                                "for (let i = 0; i < 200000; i++) { const o = {}; o.o = [o] }"
+                                "print(kept.length)"),
+              options);
+  EXPECT_EQ(r.takeOutput(), "60000");
+}
+
+// A program cannot go on with what its compiler had no memory for.
+TEST_F(EcmaNew, MissingMemoryEndsAProgram) {
+  BrowserOptions options;
+  options.scriptMemory = 4 << 20;
+  EcmaWorld r(EcmaWorld::script(
+                  "eventIn SFBool go",
+                  "function go() { const kept = []; for (;;) try { kept.push(eval('(function() { "
+                  "return ' + JSON.stringify('x'.repeat(kept.length % 999)) + ' })')) } catch (e) "
+                  "{ print(e) } }"),
+              options);
+  r.set("S", "go", true);
+  r.set("S", "go", true);
+  EXPECT_EQ(r.takeOutput(), "2: Script S: out of memory; the Script ends");
 }
 
 // Nodes that only a circle of the program's objects refers to are released.

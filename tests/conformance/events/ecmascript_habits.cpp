@@ -25,6 +25,12 @@ function declared(n) { if (n == 0) return 0
             "a\tbAquotedit's\nconstants\n6\nx1.5true 12 1500 3.142 true a%20b\ntwo\n2\n0,1,1");
 }
 
+TEST_F(EcmaScript, ConsolesPrint) {
+  EcmaWorld r(EcmaWorld::script("field SFVec3f at 1 2 3",
+                                "console.log('at', at); console.warn(1); console.error()"));
+  EXPECT_EQ(r.takeOutput(), "at 1 2 3\n1\n");
+}
+
 TEST_F(EcmaScript, LinesEndInAnyWay) {
   for (const char* end : {"\n", "\r\n", "\r"}) {
     const std::string e = end;

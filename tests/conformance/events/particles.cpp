@@ -9,7 +9,9 @@
 #include "behaviour/particles/drawn.h"
 #include "behaviour/particles/life.h"
 #include "conformance/events/support.h"
+#include "geometry/mesh.h"
 #include "xvrml/build.h"
+#include "xvrml/set_field.h"
 
 namespace xvrml {
 namespace {
@@ -51,6 +53,23 @@ TEST(ParticleLife, AnExplosionHappensOnce) {
   EXPECT_EQ(countAt(4.9, {{}}, true), 10u);
   EXPECT_EQ(countAt(5.1, {{}}, true), 0u);
   EXPECT_EQ(countAt(7, {{}, {6, never, 1}}, true), 10u);
+}
+
+TEST(ParticleLife, AnExplosionHasOnlyThePlacesThatAreFree) {
+  const std::vector<Emission> early{{0, 1, 1}, {2, 2.5, 2}};
+  EXPECT_EQ(countAt(4.9, early, true), 10u);
+  EXPECT_EQ(countAt(5.1, early, true), 0u) << "it does not burst later";
+  EXPECT_EQ(countAt(6, {{0, 1, 1}, {2, 2.5, 2}, {5.5, never, 3}}, true), 10u);
+}
+
+TEST(ParticleLife, BirthsThatGoOnBeginWhereTheyHaveEnded) {
+  EXPECT_DOUBLE_EQ(phaseAfter({1, 2, 1, 0.5}, 4), 0.75);
+  EXPECT_DOUBLE_EQ(phaseAfter({1, 6, 1, 0.5}, 4), 0.75);
+  EXPECT_DOUBLE_EQ(phaseAfter({-never, 1, 0}, 4), 0.25);
+  for (const double seconds : {0.0, -1.0, never, 1e-320, std::nan("")}) {
+    const double phase = phaseAfter({1, 2, 1, 0.5}, seconds);
+    EXPECT_TRUE(phase >= 0 && phase < 1) << seconds;
+  }
 }
 
 TEST(ParticleLife, LivesDifferByTheVariation) {
@@ -203,6 +222,19 @@ TEST(ParticleStart, LinesSurfacesAndVolumes) {
     EXPECT_NEAR(std::max({std::abs(p.x - 2), std::abs(p.y - 2), std::abs(p.z - 2)}), 1, 1e-5);
 }
 
+TEST(ParticleStart, ParticlesLeaveBothSidesOfASphereThatIsNotSolid) {
+  const auto outwards = [](const std::string& solid) {
+    Particles r(system("maxParticles 200 emitter SurfaceEmitter { speed 0.1 variation 0 surface "
+                       "Sphere { solid " +
+                       solid + " } }"));
+    size_t count = 0;
+    for (const Vec3f& p : r.now().points) count += std::hypot(p.x, p.y, p.z) > 0.99;
+    return count;
+  };
+  EXPECT_EQ(outwards("TRUE"), 200u);
+  EXPECT_NEAR(double(outwards("FALSE")), 100, 30);
+}
+
 TEST(ParticleStart, ParticlesOfASurfaceLeaveItAlongItsNormals) {
   const auto shares = [](const std::string& solid) {
     Particles r(system("maxParticles 200 emitter SurfaceEmitter { speed 1 variation 0 surface "
@@ -258,6 +290,51 @@ TEST(ParticleForm, GeometryIsDrawnForEachParticle) {
   EXPECT_EQ(corners, 5u * 36);
   r.set("P", "geometry", NodeRef());
   EXPECT_EQ(r.at(1).points.size(), 0u);
+}
+
+// Some arrays of the mesh that a system draws.
+struct DrawnArrays {
+  std::vector<Vec3f> normals;
+  std::vector<Vec4f> texPlaces;
+  std::vector<float> fogCoords;
+};
+
+// Returns those of a system with two particles of this GEOMETRY.
+DrawnArrays drawn(const std::string& geometry) {
+  Particles r("ParticleSystem { geometryType \"GEOMETRY\" maxParticles 2 emitter PointEmitter { } "
+              "geometry " +
+              geometry + " }");
+  const std::vector<PlacedShape> shapes = placedShapes(r.browser.world());
+  if (shapes.empty()) return {};
+  const Mesh mesh = buildMesh(*shapes[0].geometry, {});
+  return {{mesh.normals.begin(), mesh.normals.end()},
+          {mesh.texPlaces.begin(), mesh.texPlaces.end()},
+          {mesh.fogCoords.begin(), mesh.fogCoords.end()}};
+}
+
+const std::string twoTriangles =
+    "coordIndex [ 0 1 2 -1 0 3 1 -1 ] coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0, 0 0 1 ] } ";
+
+TEST(ParticleForm, AFlatGeometryStaysFlat) {
+  const std::string flat = "IndexedFaceSet { " + twoTriangles;
+  EXPECT_TRUE(drawn(flat + "}").normals.empty());
+  EXPECT_FALSE(drawn(flat + "creaseAngle 3 }").normals.empty());
+}
+
+TEST(ParticleForm, AGeometryKeepsFogCoordinatesAndTextureCoordinatesInSpace) {
+  const std::string fog = "fogCoord FogCoordinate { depth 0.5 } ";
+  const DrawnArrays faces =
+      drawn("IndexedFaceSet { " + twoTriangles + fog +
+            "texCoord TextureCoordinate3D { point [ 1 2 3, 1 2 3, 1 2 3, 1 2 3 ] } "
+            "}");
+  ASSERT_FALSE(faces.texPlaces.empty());
+  for (const Vec4f& place : faces.texPlaces) EXPECT_EQ(place, (Vec4f{1, 2, 3, 1}));
+  ASSERT_FALSE(faces.fogCoords.empty());
+  for (const float depth : faces.fogCoords) EXPECT_EQ(depth, 0.5f);
+  const std::string coord = "coord Coordinate { point [ 0 0 0, 1 0 0 ] } ";
+  EXPECT_EQ(drawn("PointSet { " + coord + fog + "}").fogCoords, std::vector<float>(4, 0.5f));
+  EXPECT_EQ(drawn("IndexedLineSet { coordIndex [ 0 1 -1 ] " + coord + fog + "}").fogCoords,
+            std::vector<float>(4, 0.5f));
 }
 
 TEST(ParticleRamp, ColoursGoWithTheAge) {
@@ -327,6 +404,46 @@ TEST(ParticleEvents, EnabledBeginsAnewAndCreateParticlesEndsBirths) {
   EXPECT_EQ(r.at(20).points.size(), 0u);
 }
 
+TEST(ParticleEvents, WhatIsBelowASystemMovesItsParticlesAtOnce) {
+  Particles r(
+      one("emitter DEF E PointEmitter { speed 1 variation 0 mass 1 } physics DEF F "
+          "ForcePhysicsModel { force 0 0 0 } colorKey 0 colorRamp DEF C Color { color 1 0 0 }"));
+  expectNear(r.at(1).points[0], {0, 1, 0});
+  r.set("E", "direction", Vec3f{1, 0, 0});
+  expectNear(r.now().points[0], {1, 0, 0});
+  r.set("F", "force", Vec3f{0, 0, 2});
+  expectNear(r.now().points[0], {1, 0, 1});
+  r.set("C", "color", MFColor{{0, 1, 0}});
+  EXPECT_EQ(r.now().colors[0], (Color{0, 1, 0}));
+  r.browser.takeChanges();
+  r.browser.tick(1);
+  EXPECT_TRUE(r.browser.takeChanges().empty()) << "time stands, and nothing has changed";
+}
+
+TEST(ParticleEvents, AWorldThatDoesNotRunShowsTheBeginning) {
+  const auto world = loadWorldFromMemory(
+      "#X3D V4.0 utf8\n" + system("maxParticles 3 particleLifetime 3 emitter DEF E PointEmitter { "
+                                  "position 1 0 0 speed 1 variation 0 }"),
+      "test.x3dv");
+  const auto points = [&] { return geometryArrays(*placedShapes(*world)[0].geometry, 0).points; };
+  ASSERT_EQ(points().size(), 3u);
+  expectNear(points()[1], {1, 2, 0});
+  ASSERT_TRUE(setField(*world, *world->scope.names.at("E"), "position", Vec3f{5, 0, 0}));
+  expectNear(points()[1], {5, 2, 0});
+}
+
+TEST(ParticleEvents, PulsesOfBirthsLoseNone) {
+  Particles r(system("createParticles FALSE maxParticles 40 particleLifetime 2 emitter "
+                     "PointEmitter { }"));
+  for (int k = 1; k <= 6; ++k) { // 10 births in each half of a second
+    r.browser.tick(k);
+    r.set("P", "createParticles", true);
+    r.browser.tick(k + 0.5);
+    r.set("P", "createParticles", false);
+    EXPECT_NEAR(double(r.at(k + 0.6).points.size()), k == 1 ? 10 : 20, 1) << k;
+  }
+}
+
 TEST(ParticleEvents, WithoutAnEmitterItIsNeverActive) {
   Particles r("DEF P ParticleSystem { }");
   EXPECT_EQ(r.get("P", "isActive"), "FALSE");
@@ -337,6 +454,7 @@ TEST(ParticleEvents, WithoutAnEmitterItIsNeverActive) {
 TEST(ParticleHostile, AHugeNumberIsBoundedWithAMessage) {
   Particles r(system("maxParticles 2000000000 particleLifetime 1e30 emitter PointEmitter { }"));
   EXPECT_EQ(r.now().points.size(), 1'000'000u);
+  r.set("P", "maxParticles", 1'900'000'000); // is not said again
   EXPECT_EQ(
       r.messages(),
       Messages{"ParticleSystem: maxParticles is 2000000000, and 1000000 are drawn: a system has "

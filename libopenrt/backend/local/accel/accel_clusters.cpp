@@ -194,9 +194,8 @@ void AccelBuilder::placeThin(uint32_t c) {
       if (info.drawn[info.firstEntry[i] + k] != DrawnAs::thin) continue;
       const Geometry& g = geometries[k];
       const uint32_t record = placed.firstRecord + info.firstEntry[i] + k;
-      const uint32_t traits = input_->shaders[accel_->records[record].shader].traits;
       const ThinGeometry thin{g, toKernel * part.items[i].matrix * g.matrix, record,
-                              (traits & RTS_TRANSPARENT) != 0};
+                              accel_->records[record].cull};
       addThin(g.primitive == edit::Primitive::Lines ? *lines : *points, thin, input_->footprint,
               accel_->scale_);
       if (!isStippled(g)) continue;

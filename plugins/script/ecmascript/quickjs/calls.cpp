@@ -192,10 +192,7 @@ void duk_call_prop(duk_context* ctx, duk_idx_t object, duk_idx_t arguments) {
 int duk_safe_call(duk_context* ctx, duk_safe_call_function function, void* udata,
                   duk_idx_t arguments, duk_idx_t results) {
   const bool outermost = ctx->frame == &ctx->bottom;
-  if (outermost) {
-    JS_UpdateStackTop(ctx->runtime);
-    closeReserve(ctx);
-  }
+  if (outermost) JS_UpdateStackTop(ctx->runtime);
   const size_t level = ctx->top - size_t(arguments);
   SafeCall safe{function, udata};
   Frame frame;

@@ -14,22 +14,19 @@ ScriptStack* owner(const JSMallocState* state) { return static_cast<ScriptStack*
 
 Interpreter& of(const ScriptStack* s) { return *static_cast<Interpreter*>(s->memory.udata); }
 
-constexpr uint64_t reserveBytes = 16 << 10;
-
-// Notes what is used. Where `bytes` found no memory, lends some for the error about it.
+// Notes what is used. If there was no memory, the Script ends: QuickJS does not survive it in all
+// places, such as its compiler.
 void* counted(JSMallocState* state, void* block, size_t bytes) {
   ScriptStack* s = owner(state);
   state->malloc_size = of(s).used;
   if (block || bytes == 0) return block;
-  if (!s->created) s->fatal(s->memory.udata, "no memory for an interpreter");
-  if (!s->reserveOpen && of(s).most > 0) {
-    of(s).most += reserveBytes;
-    s->reserveOpen = true;
-  }
-  return nullptr;
+  s->fatal(s->memory.udata, "out of memory; the Script ends");
+  return nullptr; // never reached
 }
+// A new block that is larger than all memory is an error of the program, as of `new Uint8Array`.
 void* allocate(JSMallocState* state, size_t bytes) {
   const duk_memory_functions& memory = owner(state)->memory;
+  if (const uint64_t most = of(owner(state)).most; most > 0 && bytes > most) return nullptr;
   return counted(state, memory.alloc_func(memory.udata, bytes), bytes);
 }
 void release(JSMallocState* state, void* block) {
@@ -50,6 +47,12 @@ const JSMallocFunctions allocator = {allocate, release, reallocate, unknownSize}
 int interrupt(JSRuntime*, void* data) {
   auto* s = static_cast<ScriptStack*>(data);
   constexpr uint32_t steps = 10'000; // calls and backward jumps between two questions
+  const uint64_t used = of(s).used, most = of(s).most;
+  // QuickJS collects when memory has grown by half, which may be beyond the limit
+  if (most > 0 && used > most / 4 * 3 && used > s->collected + most / 16) {
+    JS_RunGC(s->runtime);
+    s->collected = of(s).used;
+  }
   s->stopped = mustStop(of(s), steps);
   return s->stopped;
 }
@@ -110,17 +113,10 @@ bool create(ScriptStack* s) {
   addLanguage(s->js);
   JS_SetInterruptHandler(s->runtime, interrupt, s);
   watchJobs(s);
-  s->created = prepare(s) && reserve(s);
-  return s->created;
+  return prepare(s) && reserve(s);
 }
 
 } // namespace
-
-void ecma::closeReserve(ScriptStack* s) {
-  if (!s->reserveOpen || of(s).used + reserveBytes > of(s).most) return;
-  of(s).most -= reserveBytes;
-  s->reserveOpen = false;
-}
 
 duk_context* duk_create_heap(void* (*allocate)(void*, duk_size_t),
                              void* (*reallocate)(void*, void*, duk_size_t),
@@ -132,13 +128,7 @@ duk_context* duk_create_heap(void* (*allocate)(void*, duk_size_t),
   s->fatal = fatal;
   s->frame = &s->bottom;
   s->bottom.self = JS_UNDEFINED;
-  // QuickJS does not survive missing memory here, so the limit holds afterwards
-  Interpreter& self = of(s);
-  const uint64_t most = self.most;
-  self.most = 0;
-  const bool made = create(s);
-  self.most = most;
-  return made && (most == 0 || self.used < most) ? s : nullptr;
+  return create(s) ? s : nullptr;
 }
 
 void duk_destroy_heap(duk_context*) {}

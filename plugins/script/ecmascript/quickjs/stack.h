@@ -76,9 +76,8 @@ struct ScriptStack {
   JSValue lexical;  // functions that read what `let` and its like declare, by name
   JSValue rejected; // an Array of promises that were rejected, and reasons
   JSClassID objectClass, listClass, functionClass, proxyClass, arrayClasses[ecma::typedArrays];
-  bool stopped;     // by the host; the program's jobs do not run any more
-  bool created;     // QuickJS survives missing memory from here on
-  bool reserveOpen; // the limit of memory is higher, so that the error about it finds some
+  bool stopped;       // by the host; the program's jobs do not run any more
+  uint64_t collected; // memory in use after a collection near the limit
 };
 
 namespace ecma {
@@ -89,10 +88,6 @@ namespace ecma {
 inline void check(ScriptStack* s, int result) {
   if (result < 0) fail(s);
 }
-
-// --- heap.cpp ---
-// Takes back the memory that was lent for an error about missing memory, once it is free again.
-void closeReserve(ScriptStack* s);
 
 // --- stack.cpp ---
 bool reserve(ScriptStack* s); // makes room for more entries
