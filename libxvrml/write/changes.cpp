@@ -11,7 +11,7 @@ namespace {
 
 // Nodes of the world's own file that mean something else in the written one.
 struct Counts {
-  size_t textured = 0, inlines = 0, limited = 0, bright = 0, lights = 0, matt = 0;
+  size_t textured = 0, coloured = 0, inlines = 0, limited = 0, bright = 0, lights = 0, matt = 0;
 };
 
 bool isWhite(const Color& c) { return c.r == 1 && c.g == 1 && c.b == 1; }
@@ -20,9 +20,22 @@ bool isWhite(const Color& c) { return c.r == 1 && c.g == 1 && c.b == 1; }
 // otherwise (4.14.3; ISO/IEC 19775-1 17.2.2.3).
 bool mixesTexture(const Node& node) {
   const auto* look = nodeCast<nodes::Appearance>(&node);
-  if (!look || !look->texture) return false;
+  if (!look) return false;
   const auto* material = nodeCast<nodes::Material>(renderedNode(look->material.get()));
-  return material && !isWhite(material->diffuseColor);
+  return material && (look->texture || material->diffuseTexture) &&
+         !isWhite(material->diffuseColor);
+}
+
+// Returns whether a texture and the colours of a geometry meet, likewise.
+bool mixesColours(const Node& node) {
+  const auto* shape = nodeCast<nodes::Shape>(&node);
+  if (!shape) return false;
+  const auto* look = nodeCast<nodes::Appearance>(renderedNode(shape->appearance.get()));
+  const Node* const geometry = renderedNode(shape->geometry.get());
+  if (!look || !look->texture || !geometry) return false;
+  const FieldInfo* const field = geometry->type().find("color");
+  return field && field->type == FieldType::SFNode &&
+         *static_cast<const NodeRef*>(geometry->storage(*field));
 }
 
 float intensityOf(const Node& node) {
@@ -39,7 +52,10 @@ Counts countOf(const World& world, const FileVersion& to) {
   for (const ProtoPtr& prototype : world.scope.prototypes) appendRoots(prototype->body, open);
   walk(std::move(open), [&](const Node& node, std::vector<const Node*>& next) {
     const FileVersion& from = versionOf(node);
-    counts.textured += from.texturesMultiply() != to.texturesMultiply() && mixesTexture(node);
+    if (from.texturesMultiply() != to.texturesMultiply()) {
+      counts.textured += mixesTexture(node);
+      counts.coloured += mixesColours(node);
+    }
     counts.lights += node.type().is("light");
     counts.matt += from.encoding == Encoding::gltf && nodeCast<nodes::Material>(&node);
     counts.bright += from.major >= 4 && to.major < 4 && intensityOf(node) > 1;
@@ -68,6 +84,12 @@ std::vector<std::string> changesByWriting(const World& world, Encoding encoding)
                                   to.texturesMultiply() ? "multiply" : "replace",
                                   to.isX3d() ? "X3D" : "VRML97",
                                   several(counts.textured, "textured appearance")));
+  if (counts.coloured > 0)
+    changes.push_back(fmt::format("colour textures {} the colours of vertices and faces in {}: the "
+                                  "look of {} changes",
+                                  to.texturesMultiply() ? "multiply" : "replace",
+                                  to.isX3d() ? "X3D" : "VRML97",
+                                  several(counts.coloured, "textured shape")));
   for (const FileHead::Unit& unit : world.head.units)
     if (!to.isX3d() && unit.category == "length" && unit.factor != 1 && counts.inlines > 0)
       changes.push_back(fmt::format("VRML97 has no UNIT: the unit of lengths ({}) is lost, and "

@@ -276,6 +276,33 @@ TEST(WriteX3d, AnEmptyGroupTakesThePlaceOfNull) {
   EXPECT_EQ(nodeCast<nodes::Group>(again->scope.roots.at(1))->children.size(), 1u);
 }
 
+// VRML97 lets a texture replace the diffuseColor, wherever it stands.
+TEST(WriteX3d, TexturesOfMaterialsAreToldAsWell) {
+  const auto changes = [](const std::string& colour) {
+    const auto world = loadWorldFromMemory(
+        "#X3D V4.0 utf8\nShape { appearance Appearance { material Material { " + colour +
+            " diffuseTexture PixelTexture { image 1 1 3 0xff0000 } } } }",
+        "w.x3dv");
+    return changesByWriting(*world, Encoding::vrml97).size();
+  };
+  EXPECT_EQ(changes(""), 1u);
+  EXPECT_EQ(changes("diffuseColor 1 1 1"), 0u);
+}
+
+TEST(WriteX3d, ColoursBelowTexturesAreToldAsWell) {
+  const auto changes = [](const std::string& geometry) {
+    const auto world = loadWorldFromMemory(
+        "#X3D V3.3 utf8\nShape { appearance Appearance { texture PixelTexture { image 1 1 3 "
+        "0xff0000 } } geometry " +
+            geometry + " }",
+        "w.x3dv");
+    return changesByWriting(*world, Encoding::vrml97).size();
+  };
+  EXPECT_EQ(changes("IndexedFaceSet { color Color { color 0 1 1 } }"), 1u);
+  EXPECT_EQ(changes("IndexedFaceSet { }"), 0u);
+  EXPECT_EQ(changes("Box { }"), 0u);
+}
+
 TEST(WriteX3d, RoutesAreElements) {
   EXPECT_EQ(
       scene("DEF T TimeSensor { }\nDEF S Switch { }\nROUTE T.isActive TO S.set_whichChoice\n"),
