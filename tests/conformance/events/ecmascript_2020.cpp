@@ -182,6 +182,14 @@ TEST_F(EcmaNew, HiddenPropertiesStayHidden) {
             "TypeError 0\nundefined\nTypeError\nundefined undefined undefined undefined undefined");
 }
 
+// Two lists that inherit from each other's type ask each other for ever.
+TEST_F(EcmaNew, CirclesOfProxiesAreAnError) {
+  EcmaWorld r(EcmaWorld::script("", "const m = new MFVec3f(); Object.setPrototypeOf(m, {});"
+                                    "Object.setPrototypeOf(MFVec3f.prototype, m);"
+                                    "try { m.nothing } catch (e) { print(e.message) }"));
+  EXPECT_EQ(r.takeOutput(), "stack overflow");
+}
+
 // Setters of the program's do not see what the engine keeps in arrays of its own.
 TEST_F(EcmaNew, PrototypesOfTheProgramDoNotReachTheBrowser) {
   EcmaWorld r(EcmaWorld::script(

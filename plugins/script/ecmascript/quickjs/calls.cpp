@@ -40,6 +40,9 @@ void leaveFrame(ScriptStack* s, const Frame& frame, size_t top) {
 
 namespace {
 
+// Returns the address of the caller's frame; the stack grows downwards.
+inline uintptr_t stackNow() { return reinterpret_cast<uintptr_t>(__builtin_frame_address(0)); }
+
 struct Invocation {
   Native native;
   int count;
@@ -75,6 +78,8 @@ JSValue callNative(JSContext* js, JSValueConst function, JSValueConst self, int 
                    JSValueConst* arguments, int flags) {
   auto* s = static_cast<ScriptStack*>(JS_GetContextOpaque(js));
   const bool constructs = flags & JS_CALL_FLAG_CONSTRUCTOR;
+  // QuickJS looks at the stack only in functions of programs, and proxies may call each other
+  if (s->stackTop - stackNow() > stackBytes) return JS_ThrowInternalError(js, "stack overflow");
   Invocation call{*nativeAt(s, function), count, arguments};
   Frame frame;
   enterFrame(s, frame, constructs ? JS_UNDEFINED : self, call.native.magic);
@@ -192,7 +197,10 @@ void duk_call_prop(duk_context* ctx, duk_idx_t object, duk_idx_t arguments) {
 int duk_safe_call(duk_context* ctx, duk_safe_call_function function, void* udata,
                   duk_idx_t arguments, duk_idx_t results) {
   const bool outermost = ctx->frame == &ctx->bottom;
-  if (outermost) JS_UpdateStackTop(ctx->runtime);
+  if (outermost) {
+    JS_UpdateStackTop(ctx->runtime);
+    ctx->stackTop = stackNow();
+  }
   const size_t level = ctx->top - size_t(arguments);
   SafeCall safe{function, udata};
   Frame frame;

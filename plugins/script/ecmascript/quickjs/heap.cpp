@@ -57,9 +57,6 @@ int interrupt(JSRuntime*, void* data) {
   return s->stopped;
 }
 
-// A program may use so much of the thread's stack, the same on every machine.
-constexpr size_t stackBytes = 1 << 20;
-
 // --- The language ---
 
 bool prepare(ScriptStack* s) {

@@ -52,6 +52,8 @@ struct Frame {
 };
 
 enum Trap : uint8_t { trapGet, trapSet, trapHas, trapDelete, trapCount };
+// A program may use so much of the thread's stack, the same on every machine.
+constexpr size_t stackBytes = 1 << 20;
 constexpr size_t mostNames = 16, typedArrays = 9;
 
 } // namespace ecma
@@ -77,6 +79,7 @@ struct ScriptStack {
   JSValue rejected; // an Array of promises that were rejected, and reasons
   JSClassID objectClass, listClass, functionClass, proxyClass, arrayClasses[ecma::typedArrays];
   bool stopped;       // by the host; the program's jobs do not run any more
+  uintptr_t stackTop; // address where the call of the host began
   uint64_t collected; // memory in use after a collection near the limit
 };
 
