@@ -1,5 +1,6 @@
 """Worlds of many small parts: what each further part takes, in bytes of the process."""
 import json
+import os
 import pathlib
 import sys
 
@@ -20,6 +21,8 @@ def peak(vv, parts, kind):
     return json.loads(done.text)["memory"]["peak_rss"]
 
 
+@pytest.mark.skipif(bool({"ASAN_OPTIONS", "TSAN_OPTIONS"} & os.environ.keys()),
+                    reason="a sanitizer multiplies memory")
 @pytest.mark.parametrize("kind, most", [("different", 4800), ("separate", 3550), ("used", 2050)])
 def test_a_further_part_takes_few_bytes(vv, kind, most):
     each = (peak(vv, MANY, kind) - peak(vv, FEW, kind)) / (MANY - FEW)
