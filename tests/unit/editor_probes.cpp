@@ -1,6 +1,7 @@
 // editor_probes.cpp: Tests what probes read from pictures, and when a change counts.
 #include <algorithm>
 
+#include "edit/csv_field.h"
 #include "edit/probes.h"
 #include "unit/editor_support.h"
 
@@ -281,6 +282,13 @@ TEST_F(ProbesOfAWall, AReadingOfAProbeThatHasGoneIsNotThatOfTheNextOne) {
   probes.addSensor(picture::sensorAt(other, normal, seen));
   probes.take({reading});
   EXPECT_EQ(probes.all()[0].state, Probe::State::waiting);
+}
+
+TEST(CsvField, FormulasGetAnApostropheAndNumbersDoNot) {
+  for (const char* formula : {"=1+1", "@a", "-2+3+cmd|' /C calc'!A0", "+a", "-"})
+    EXPECT_EQ(csvField(formula), "\"'" + std::string(formula) + "\"");
+  for (const char* text : {"-1 0 2e-3", "+4", "Lens", "a=b", ""})
+    EXPECT_EQ(csvField(text), "\"" + std::string(text) + "\"");
 }
 
 } // namespace

@@ -9,13 +9,12 @@
 namespace vv {
 
 // Returns a text between quotes. One that a spreadsheet would take for a formula gets an apostrophe
-// before it.
+// before it, and numbers do not.
 inline std::string csvField(std::string_view text) {
-  const auto isNumber = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  const bool isNumbers = text.find_first_not_of("0123456789.eE+-, ") == text.npos;
   const bool isFormula =
-      !text.empty() &&
-      (text[0] == '=' || text[0] == '@' ||
-       ((text[0] == '+' || text[0] == '-') && !(text.size() > 1 && isNumber(text[1]))));
+      !text.empty() && (text[0] == '=' || text[0] == '@' ||
+                        ((text[0] == '+' || text[0] == '-') && !(isNumbers && text.size() > 1)));
   std::string out = isFormula ? "\"'" : "\"";
   for (const char c : printable(text)) {
     if (c == '"') out += '"';

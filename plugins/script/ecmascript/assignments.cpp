@@ -68,7 +68,7 @@ struct Rewriter {
   bool endsExpression(size_t i) const {
     if (i >= tokens.size()) return true;
     const std::string_view next = word(i);
-    if (next == ";" || next == "," || next == ")" || next == "}" || next == "]") return true;
+    if (next == ";" || next == "," || next == ")" || next[0] == '}' || next == "]") return true;
     const bool beginsStatement =
         tokens[i].kind == Token::Kind::name ||
         (tokens[i].kind == Token::Kind::keyword && next != "in" && next != "instanceof");

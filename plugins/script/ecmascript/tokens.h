@@ -91,8 +91,9 @@ class Tokens {
     }
     if (c == '`' || (c == '}' && !templates_.empty() && templates_.back() == 0)) {
       if (c == '}') templates_.pop_back();
-      templateText();
-      return Token::Kind::literal;
+      if (templateText()) return Token::Kind::literal;
+      at_ = start + 1; // it is no template: it may stand in a regular expression
+      return Token::Kind::sign;
     }
     if (!templates_.empty() && (c == '{' || c == '}')) templates_.back() += c == '{' ? 1 : -1;
     if (c == '/' && patternMayStand()) {
@@ -117,15 +118,22 @@ class Tokens {
     at_ = std::min(at_ + 1, text_.size());
   }
 
-  // Takes the text of a template up to its end, or to the next ${.
-  void templateText() {
-    for (++at_; at_ < text_.size() && peek() != '`'; ++at_) {
-      if (peek() == '\\') ++at_;
-      if (!begins("${")) continue;
-      at_ += 2;
-      return templates_.push_back(0);
+  // Takes the text of a template up to its end, or to the next ${. Returns false if there is
+  // neither.
+  bool templateText() {
+    for (++at_; at_ < text_.size(); ++at_) {
+      if (peek() == '\\') {
+        ++at_;
+      } else if (peek() == '`') {
+        ++at_;
+        return true;
+      } else if (begins("${")) {
+        at_ += 2;
+        templates_.push_back(0);
+        return true;
+      }
     }
-    at_ = std::min(at_ + 1, text_.size());
+    return false;
   }
 
   // Returns whether a / begins a regular expression: this holds if no value precedes it.
@@ -136,7 +144,7 @@ class Tokens {
       return text_.substr(last.start, last.end - last.start) != "this";
     if (last.kind != Token::Kind::sign) return false;
     const char c = text_[last.start];
-    return c != ')' && c != ']' && c != '}';
+    return c != ')' && c != ']' && c != '}' && c != '`';
   }
   void pattern() {
     bool set = false;

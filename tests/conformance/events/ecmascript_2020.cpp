@@ -204,6 +204,19 @@ TEST_F(EcmaNew, PrototypesOfTheProgramDoNotReachTheBrowser) {
   EXPECT_EQ(r.take(), Log{"0 S.out [a, b, c]"});
 }
 
+// C.6.2 holds behind a template with an escaped ${ and within one that is none.
+TEST_F(EcmaNew, AssignmentsInTemplatesCopy) {
+  EcmaWorld r(EcmaWorld::script("field MFFloat f [ 1 2 ]",
+                                "var t = `cost \\${`; var w = f; f[0] = 9; print(w[0], t);\n"
+                                "var v; `${ v = f }`; f[0] = 5; print(v[0], `\\${a = p}`);"));
+  EXPECT_EQ(r.takeOutput(), "1 cost ${\n9 ${a = p}");
+}
+
+TEST_F(EcmaNew, AnArrayPrototypeWithElementsDoesNoHarm) {
+  EcmaWorld r(EcmaWorld::script("", "Array.prototype[0] = {}; print('fine');"));
+  EXPECT_EQ(r.takeOutput(), "fine");
+}
+
 TEST_F(EcmaNew, ALoopWithoutCallsIsStoppedInThisProcess) {
   for (const char* loop :
        {"for (;;);", "while (1) { try { for (;;); } catch (e) {} }",

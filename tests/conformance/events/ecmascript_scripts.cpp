@@ -213,6 +213,8 @@ constexpr EcmaRow assignments[] = {
      "1 2 3 5 5 5"},
     {"in_texts", "", "var s = 'a = f; b = m[0]', p = /= f;/; print(s, p.test(s)) // = f;",
      "a = f; b = m[0] true"},
+    {"backquote_in_a_pattern", "", "if (n) /`/.test(n); var w = n; w[0] = 7; print(n, w)",
+     "[5, 6] [7, 6]"},
     {"divided", "", "var a = n[0] / 2, b = n[0]/n[1]/1; print(a, b.toFixed(2))", "2.5 0.83"},
     {"compared", "", "print(n[0] == n[0], f === f, n[1] >= n[0])", "true false true"},
     {"called", "", "var v = f\n.add(f), c = m[0].add(f); print(v, c)", "2 4 6 2 3 4"},

@@ -82,7 +82,9 @@ bool prepare(ScriptStack* s) {
   s->stash = JS_NewObjectProtoClass(s->js, JS_NULL, s->objectClass);
   s->lexical = JS_NewObjectProto(s->js, JS_NULL);
   s->rejected = JS_NewArray(s->js);
-  return JS_IsObject(s->stash) && JS_IsObject(s->lexical) && JS_IsObject(s->rejected);
+  // A program may change Array.prototype, and that must not show here.
+  return JS_IsObject(s->stash) && JS_IsObject(s->lexical) && JS_IsObject(s->rejected) &&
+         JS_SetPrototype(s->js, s->rejected, JS_NULL) >= 0;
 }
 
 // Adds what ECMAScript 2020 has; weak references, which show the collector, are newer.
