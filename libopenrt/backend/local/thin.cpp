@@ -85,12 +85,14 @@ class ThinWriter {
     const float count = thin_.joins ? std::ceil(length(end - start) / size) : 1;
     const int pieces = count > 1 ? int(std::min(count, mostPieces_)) : 1;
     Vec3f from = start;
+    float begun = span.from;
     for (int i = 1; i <= pieces; i++) {
-      const auto place = [&](int k) { return float(k) / float(pieces); };
-      const Vec3f to = i < pieces ? start + (end - start) * place(i) : end;
-      const auto spanAt = [&](int k) { return span.from + (span.to - span.from) * place(k); };
-      addPiece(line, from, to, {spanAt(i - 1), spanAt(i)}, follows || i > 1);
+      const float place = float(i) / float(pieces);
+      const Vec3f to = i < pieces ? start + (end - start) * place : end;
+      const float until = i < pieces ? span.from + (span.to - span.from) * place : span.to;
+      addPiece(line, from, to, {begun, until}, follows || i > 1);
       from = to;
+      begun = until;
     }
   }
 

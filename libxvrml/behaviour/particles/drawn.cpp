@@ -56,22 +56,23 @@ void setColor(NodeRef& place, const Arrays& arrays, const ParticleRamps& ramps) 
   for (const ColorRGBA& color : arrays.colors) colors.push_back({color.r, color.g, color.b});
 }
 
-void setFogCoord(NodeRef& place, const Arrays& arrays) {
-  if (!arrays.fogCoords.empty()) made<nodes::FogCoordinate>(place).depth = arrays.fogCoords;
+// Sets what faces, lines and points have at each vertex.
+template <class Set> void setVertices(Set& set, const Arrays& arrays, const ParticleRamps& ramps) {
+  made<nodes::Coordinate>(set.coord).point = arrays.points;
+  setColor(set.color, arrays, ramps);
+  if (!arrays.fogCoords.empty()) made<nodes::FogCoordinate>(set.fogCoord).depth = arrays.fogCoords;
 }
 
 NodeRef faces(const ParticleForm& form, const Arrays& arrays, const ParticleRamps& ramps) {
   NodeRef geometry;
   auto& set = made<nodes::IndexedTriangleSet>(geometry);
-  made<nodes::Coordinate>(set.coord).point = arrays.points;
+  setVertices(set, arrays, ramps);
   if (!form.normals.empty()) made<nodes::Normal>(set.normal).vector = arrays.normals;
   set.normalPerVertex = !form.normals.empty();
   if (!form.texPlaces.empty())
     made<nodes::TextureCoordinate4D>(set.texCoord).point = arrays.texPlaces;
   else if (!form.texCoords.empty())
     made<nodes::TextureCoordinate>(set.texCoord).point = arrays.texCoords;
-  setColor(set.color, arrays, ramps);
-  setFogCoord(set.fogCoord, arrays);
   set.index = arrays.indices;
   set.solid = form.solid;
   set.ccw = form.ccw;
@@ -81,9 +82,7 @@ NodeRef faces(const ParticleForm& form, const Arrays& arrays, const ParticleRamp
 NodeRef lines(const Arrays& arrays, const ParticleRamps& ramps) {
   NodeRef geometry;
   auto& set = made<nodes::IndexedLineSet>(geometry);
-  made<nodes::Coordinate>(set.coord).point = arrays.points;
-  setColor(set.color, arrays, ramps);
-  setFogCoord(set.fogCoord, arrays);
+  setVertices(set, arrays, ramps);
   for (size_t i = 0; i + 1 < arrays.indices.size(); i += 2)
     set.coordIndex.insert(set.coordIndex.end(), {arrays.indices[i], arrays.indices[i + 1], -1});
   return geometry;
@@ -92,9 +91,7 @@ NodeRef lines(const Arrays& arrays, const ParticleRamps& ramps) {
 NodeRef points(const Arrays& arrays, const ParticleRamps& ramps) {
   NodeRef geometry;
   auto& set = made<nodes::PointSet>(geometry);
-  made<nodes::Coordinate>(set.coord).point = arrays.points;
-  setColor(set.color, arrays, ramps);
-  setFogCoord(set.fogCoord, arrays);
+  setVertices(set, arrays, ramps);
   return geometry;
 }
 

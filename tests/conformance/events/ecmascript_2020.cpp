@@ -235,7 +235,7 @@ TEST_F(EcmaNew, ALoopWithoutCallsIsStoppedInThisProcess) {
   }
 }
 
-// What can be collected does not end a program that keeps most of its memory.
+// A program that keeps most of its memory goes on while something can be collected.
 TEST_F(EcmaNew, CirclesNearTheLimitAreCollected) {
   BrowserOptions options;
   options.scriptMemory = 16 << 20;
