@@ -24,15 +24,11 @@ struct ShapeCollector : Renderer {
   }
 };
 
-GeometryArrays copyOf(const Mesh& mesh, int sphereSteps) {
-  if (mesh.kind == Mesh::Kind::sphere && sphereSteps > 1) {
-    Mesh facets = sphereFacets(mesh.radius, uint32_t(sphereSteps));
-    facets.solid = mesh.solid;
-    GeometryArrays arrays = copyOf(facets, 0);
-    arrays.radius = mesh.radius;
-    return arrays;
-  }
+// Copies a mesh. A sphere becomes triangles first, if they are wanted.
+GeometryArrays copyOf(Mesh& mesh, int sphereSteps) {
   GeometryArrays arrays;
+  arrays.radius = mesh.radius;
+  if (sphereSteps > 1) facetSphere(mesh, uint32_t(sphereSteps));
   arrays.kind = GeometryArrays::Kind(mesh.kind);
   static_assert(int(GeometryArrays::Kind::sphere) == int(Mesh::Kind::sphere));
   arrays.points.assign(mesh.points.begin(), mesh.points.end());
@@ -43,7 +39,6 @@ GeometryArrays copyOf(const Mesh& mesh, int sphereSteps) {
   arrays.alphas.assign(mesh.alphas.begin(), mesh.alphas.end());
   arrays.solid = mesh.solid;
   arrays.ccw = mesh.ccw;
-  arrays.radius = mesh.radius;
   return arrays;
 }
 
@@ -62,7 +57,7 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
 
 GeometryArrays arraysOf(Node& geometry, std::span<const std::array<double, 4>> kept,
                         int sphereSteps, const Limits& limits) {
-  const Mesh whole =
+  Mesh whole =
       buildMesh(geometry, {.needTexCoords = true, .limits = &limits, .diagnostics = nullptr});
   if (kept.empty()) return copyOf(whole, sphereSteps);
   HalfSpaces halfSpaces;
