@@ -240,8 +240,10 @@ void EditModel::readSheet(WorldEditor& editor) {
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
   const Stale stale = std::exchange(stale_, Stale::nothing);
-  if (stale == Stale::rows)
+  if (stale == Stale::rows) {
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
+    found_ = search_;
+  }
   if (stale >= Stale::sheet) {
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
   } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {

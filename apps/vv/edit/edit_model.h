@@ -94,8 +94,11 @@ class EditModel {
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
   void setActive(bool active);
+  bool isActive() const { return isActive_; }
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
+  // Tells whether the rows are still those of an earlier search.
+  bool isSearching() const { return found_ != search_; }
   // Hide nodes for now, or show them again. This is no edit.
   void hideSelected();
   void isolateSelected();
@@ -149,7 +152,8 @@ class EditModel {
   TextureThumbnails thumbnails_;
   ProblemList problems_;
   xvrml::MFNode selection_;
-  std::string undoName_, redoName_, readOnly_, unwritable_, message_, search_;
+  std::string undoName_, redoName_, readOnly_, unwritable_, message_;
+  std::string search_, found_; // what is searched for, and what the rows were found for
   std::vector<Line> frames_;
   std::vector<Look> looks_;
   Hiding hiding_;
