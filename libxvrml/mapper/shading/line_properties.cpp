@@ -7,6 +7,8 @@
 #include <iterator>
 #include <string>
 
+#include "mapper/shading/fill_properties.h"
+
 namespace xvrml::mapper {
 namespace {
 
@@ -100,9 +102,7 @@ void warnOfLines(const nodes::Appearance* appearance, World& world) {
 
 void warnOfFaces(const nodes::Appearance* appearance, World& world) {
   if (!appearance) return;
-  if (const auto* fill = propertyOf<nodes::FillProperties>(appearance->fillProperties);
-      fill && fill->hatched)
-    world.diagnostics.warn(fill->source, "FillProperties: the hatching is not drawn");
+  warnOfHatching(appearance, world);
   Node* back = renderedNode(appearance->backMaterial.get());
   Node* front = renderedNode(appearance->material.get());
   if (back && !(nodeCast<nodes::Material>(back) && nodeCast<nodes::Material>(front)))
