@@ -419,50 +419,6 @@ TEST_F(MapX3dMaterials, UnfilledFacesAreNotDrawn) {
   silent();
 }
 
-// Hatching of style 2 covers the left one of four pixels. The picture of 4 pixels looks at the
-// square, whose own colour is seen between the lines.
-TEST_F(MapX3dMaterials, HatchingIsDrawnInPixels) {
-  const auto row = [&] {
-    mapper_->update(engine_->takeChanges());
-    mapper_->map(mapper_->viewpointCamera(0));
-    rtFrameBuffer(4, 4, RT_RGBA);
-    rtQuality(RT_SAMPLES_PER_PIXEL, 1);
-    rtRender();
-    std::vector<float> rgba(64);
-    rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
-    std::string text;
-    for (size_t x = 0; x < 4; x++) {
-      const float* c = &rgba[4 * (4 + x)]; // the second row
-      text += c[0] > .9f ? 'R' : c[1] > .9f ? 'G' : c[2] > .9f ? 'B' : '.';
-    }
-    return text;
-  };
-  const auto fill = [](const std::string& fields) {
-    return "fillProperties DEF F FillProperties { hatchStyle 2 hatchColor 1 0 0 " + fields + " }";
-  };
-  for (const char* material :
-       {"material Material { emissiveColor 0 1 0 }",
-        "material UnlitMaterial { emissiveColor 0 1 0 }",
-        "material PhysicalMaterial { baseColor 0 0 0 emissiveColor 0 1 0 }"}) {
-    loadX3d(dark + square(std::string(material) + fill("")) + "Background { skyColor 0 0 1 }");
-    EXPECT_EQ(row(), "RGGG") << material;
-    send("F", "filled", false);
-    EXPECT_EQ(row(), "RBBB") << material << ", not filled";
-    send("F", "hatched", false);
-    EXPECT_EQ(row(), "BBBB") << material << ", neither";
-    send("F", "filled", true);
-    EXPECT_EQ(row(), "GGGG") << material << ", filled again";
-    send("F", "hatched", true);
-    send("F", "hatchStyle", SFInt32(4)); // two of eight pixels
-    EXPECT_NE(row(), "GGGG") << material << ", another style";
-    silent();
-  }
-  loadX3d(dark + square("material Material { emissiveColor 0 1 0 } fillProperties "
-                        "FillProperties { hatchStyle 20 hatchColor 1 0 0 }"));
-  row();
-  EXPECT_EQ(messages(), 1u);
-}
-
 TEST_F(MapX3dMaterials, LinesHaveAWidth) {
   const auto world = [](const std::string& properties) {
     return dark +

@@ -49,7 +49,7 @@ MotionChannel channelOf(std::string_view name) {
 // Collects what is wrong with the channels.
 struct ChannelFaults {
   size_t unknown = 0, miscounted = 0;
-  std::string_view first; // of the unknown ones
+  std::string_view first; // unknown name
 
   void note(std::string_view name) {
     if (unknown++ == 0) first = name;
