@@ -35,7 +35,7 @@ struct Vertices {
 };
 
 struct Joint {
-  const nodes::HAnimJoint* node;
+  nodes::HAnimJoint* node;
   Matrix toFigure;
 };
 
@@ -74,8 +74,7 @@ std::vector<Joint> jointsOf(const nodes::HAnimHumanoid& figure) {
     const Matrix toFigure =
         hasMatrix(*next.node) ? compose(next.above, matrixOf(*next.node)) : next.above;
     if (!finite(toFigure)) continue;
-    if (const auto* joint = nodeCast<nodes::HAnimJoint>(next.node))
-      joints.push_back({joint, toFigure});
+    if (auto* joint = nodeCast<nodes::HAnimJoint>(next.node)) joints.push_back({joint, toFigure});
     add(*below, toFigure);
   }
   return joints;
@@ -277,6 +276,12 @@ std::span<const Vec3f> drawnNormals(const nodes::Normal& node) {
 bool deforms(const NodeType& type) {
   return type.index == nodes::HAnimHumanoid::typeIndex ||
          type.index == nodes::HAnimSegment::typeIndex;
+}
+
+std::vector<nodes::HAnimJoint*> jointsOfSkeleton(const nodes::HAnimHumanoid& figure) {
+  std::vector<nodes::HAnimJoint*> joints;
+  for (const Joint& joint : jointsOf(figure)) joints.push_back(joint.node);
+  return joints;
 }
 
 std::vector<Node*> skinOf(const Node& node) {

@@ -22,6 +22,10 @@ struct CameraConnections {
 // Projects n hits through the camera. lens: points of the unit square, by hit of the batch.
 CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, uint32_t n,
                                   const float* const lens[2]);
+// Writes where the camera sees n points of render space through the middle of its lens
+// (RtsHost.pixels). The arrays of xy are whole vectors of lanes. Returns false if it cannot tell.
+bool pixelsOf(const RtsBatch& batch, uint32_t n, const float* const position[3],
+              float* const xy[2]);
 // Returns the pixels that a unit of area covers at n hits, as seen from the middle of the lens.
 const float* coveredPixels(const RtsBatch& batch, const uint32_t* hit, uint32_t n);
 // Returns the factor from areas in the camera's space to areas in render space.

@@ -4,6 +4,7 @@
 
 #include "geometry/node_matrix.h"
 #include "mapper/shading/cube_maps.h"
+#include "mapper/shading/fill_properties.h"
 
 namespace xvrml::mapper {
 namespace {
@@ -32,6 +33,7 @@ namespace {
 template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
                                          const AppearanceParts& parts, Textures& textures,
                                          World& world, bool linear) {
+  setHatching(shader, parts.plain, linear);
   shader.color("emissiveColor", convert(m.emissiveColor, linear));
   shader.texture("normalTexture", textures.ofData(m.normalTexture.get()));
   shader.number("normalScale", m.normalScale, 0, 100);
