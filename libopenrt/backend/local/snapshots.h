@@ -97,7 +97,7 @@ class Snapshots {
   std::shared_ptr<Accel> accel_;
   Flattened flat_;
   PixelFootprint footprint_;
-  LightSlots lightSlots_;                          // of the snapshot
+  LightSlots lightSlots_;                          // those of the snapshot
   uint32_t cameraShader_ = 0;                      // that of the snapshot
   bool scopedLights_ = false, recordsRest_ = true; // scopedLights_: some light has a scope
   bool freedMuch_ = false; // a commit of many things, since the last snapshot
