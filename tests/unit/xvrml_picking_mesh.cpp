@@ -1,4 +1,4 @@
-// xvrml_picking_mesh.cpp: the hierarchy of a large mesh is built where rays go. What a ray hits
+// xvrml_picking_mesh.cpp: the hierarchy of a large mesh is built where rays go. The hit of a ray
 // depends neither on the rays before it nor on the hierarchy.
 #include <algorithm>
 #include <array>
