@@ -5,8 +5,8 @@ import re
 import pytest
 
 from conftest import HEADER
-from editor_window import needs_the_editor, press, saved, text  # noqa: F401
-from window_driver import framebuffer, red, screen, window  # noqa: F401
+from editor_window import needs_the_editor, press, saved, text, until_sheet  # noqa: F401
+from window_driver import red, screen, window  # noqa: F401
 
 WORLD = HEADER + """
 Viewpoint { position 0 0 10 fieldOfView 0.785398 }
@@ -39,17 +39,6 @@ class Panels:
     def click(self, x, y, button=1):
         press(self.window, x, y, button)
 
-    def until_sheet(self):
-        """Waits until the right panel shows a node."""
-        place = self.window.tool("getwindowgeometry", "--shell", self.window.id)
-        left, top = [int(re.search(rf"{n}=(-?\d+)", place)[1]) for n in ("X", "Y")]
-
-        def shown():
-            rows = framebuffer(self.screen[1])[top + 50:top + 75]
-            return any(min(p) > 150 for row in rows for p in row[left + WIDTH - 160:left + WIDTH])
-
-        self.window.wait(shown, "the fields of a node")
-
     def saved(self, change):
         return saved(self.window, self.vv, change)
 
@@ -62,7 +51,7 @@ def panels(window, vv, screen):
 def test_a_look_is_chosen_for_a_shape(panels):
     w = panels.window
     w.click(0, 0)  # selects the box
-    panels.until_sheet()
+    until_sheet(w, panels.screen, WIDTH)
     panels.click(WIDTH - 160, 61)  # its look
     w.tool("type", "PhysicalM")
     w.key("Return")
