@@ -92,7 +92,7 @@ TEST_F(FogOfPaths, AFurnaceHasItsRadianceBehindTheFog) {
   expectGrey(render(), .25);
 }
 
-// What a mirror shows has the fog of the whole path.
+// Mirror images have the fog of the whole path.
 TEST_F(FogOfPaths, AMirrorShowsTheFogOfTheWholePath) {
   placeAt(0, square(Shader("Mirror"), 2));
   placeAt(3, square(matt(0, 1), 20), true);

@@ -82,7 +82,7 @@ class Trial {
   const std::atomic<bool>& stop_;
   PixelWeights weights_;
   std::vector<Block> blocks_;
-  double rays_ = 0; // of a camera path
+  double rays_ = 0; // a camera path has so many
   std::vector<PixelSums> sums_[2];
 };
 

@@ -244,7 +244,7 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
       pdf = select(lost, zero, pdf);
       flags = hn::Or(flags, bitsWhere(lost, PathFlags::passedUnsampledBit));
     }
-    // What a mirror shows has the fog of the whole path, so mirror images are not attenuated here.
+    // Mirror images have the fog of the whole path when they are found.
     const Lanes through = specular ? one : loadOrOne(paths.throughFog, i);
     valid = hn::And(valid, through > zero);
     const LaneVec weight = weightAt(sample, i) * through;
