@@ -65,9 +65,9 @@ TEST_F(FogOfPaths, ItDimsLightByTheDistanceFromTheEye) {
 TEST_F(FogOfPaths, ItDimsTheLightOfGuidedRays) {
   lampOverMirror(.01);
   rtQuality(RT_MAX_DEPTH, 2);
-  const double clear = mean(picture(4, 1024));
+  const double clear = Scene::mean(picture(4, 1024));
   fog(2.5);
-  const double dim = mean(picture(4, 1024));
+  const double dim = Scene::mean(picture(4, 1024));
   EXPECT_NE(std::string(stats().transport.reason).find("guided"), std::string::npos);
   EXPECT_NEAR(dim, .6 * clear, .01 * clear);
 }
