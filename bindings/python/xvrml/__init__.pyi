@@ -1165,6 +1165,7 @@ def load(
     *,
     limits: Optional[Mapping[str, int]] = ...,
     allow_absolute: bool = ...,
+    step_error: float = ...,
 ) -> World:
     ...
 
