@@ -141,6 +141,9 @@ struct LoadOptions {
   Limits limits;
   bool allowAbsolute = false; // allows absolute paths and file: URLs inside a world
   bool loadInlines = true;
+  // STEP models: millimetres between a triangle and the surface that it stands for, at most. 0: a
+  // thousandth of the size of each part.
+  double stepError = 0;
 };
 
 // The target of a URL inside a world: a file to read, or the reason why it is refused.
