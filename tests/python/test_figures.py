@@ -194,13 +194,11 @@ def test_textures_of_a_plotter():
     plotter.add_mesh(pyvista.Plane(), texture=pyvista.Texture(QUARTERS))
     plotter.add_mesh(pyvista.Plane(center=(2, 0, 0)), texture=pyvista.Texture(QUARTERS),
                      color=(1.0, 1.0, 0.5), pbr=True)
-    first, second = xvrml.to_world(plotter).meshes()
+    world = xvrml.to_world(plotter)
+    first, second = world.meshes()
     assert np.array_equal(first.node.appearance.texture.image, QUARTERS)
     assert np.allclose(second.node.appearance.texture.image, QUARTERS * (1, 1, 0.5), atol=1)
     assert tuple(second.node.appearance.material.baseColor) == (1, 1, 1)
-    world = xvrml.World()
-    world.add(first.node)
-    world.add(xvrml.NavigationInfo(headlight=False))
     first.node.appearance.material = None  # unlit, so the colours are those of the texture
     image = world.render(size=(40, 40), spp=1, camera=((0, 0, 3), (0, 0, 0)), fov=15).display
     for (row, column), color in {(10, 10): 0, (10, 30): 2, (30, 10): 1}.items():
