@@ -111,7 +111,8 @@ TEST(Distribution, workersThatDoNotShareGetAllFromTheMaster) {
 }
 
 TEST(Distribution, mediumArraysGoToAFewWorkersAtOnce) {
-  for (const auto& [bytes, first] : {std::pair(size_t(5000), 4u), {100000, 2u}, {200000, 1u}}) {
+  const std::vector<std::pair<size_t, size_t>> cases{{5000, 4}, {100000, 2}, {200000, 1}};
+  for (const auto& [bytes, first] : cases) {
     Farm farm;
     farm.join(1, 100);
     const OfferPtr offer = offerOf(1, bytes);
