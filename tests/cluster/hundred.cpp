@@ -1,10 +1,10 @@
 // hundred.cpp: a hundred worker processes on one machine. They pass a large array on to each other,
 // so that the master sends it few times, and the picture has the same bytes as with one thread.
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <random>
-#include <sstream>
 
 #include <unistd.h>
 

@@ -1,6 +1,7 @@
 #include "backend/cluster/worker/exchange.h"
 
 #include <atomic>
+#include <chrono>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -41,7 +42,8 @@ struct Exchange::Impl {
   };
 
   Impl(const ExchangeOptions& o, ArrayFolder& f, WorkerCounts& c)
-      : options(o), folder(f), counts(c), wire(wireOptions(o)) {
+      : options(o), folder(f), counts(c), wire(wireOptions(o)),
+        port(Address::parse(wire.address()).port) {
     thread = std::thread([this] { run(); });
   }
   ~Impl() {
@@ -62,11 +64,16 @@ struct Exchange::Impl {
 
   void run() {
     while (!stopping) {
-      takeOrders();
-      sendQuestions();
-      const double wait = sendPieces();
-      take(wire.receive(wait));
-      checkSources(steadySeconds());
+      try {
+        takeOrders();
+        sendQuestions();
+        take(wire.receive(sendPieces()));
+        checkSources(steadySeconds());
+      } catch (const std::exception&) { // no memory, perhaps for a while
+        sending.clear();
+        while (!sources.empty()) drop(sources.begin()->first);
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
     }
   }
 
@@ -135,8 +142,7 @@ struct Exchange::Impl {
     std::erase_if(unsent, [](const auto& entry) { return entry.second.empty(); });
   }
 
-  // Forgets a worker that was asked. The arrays that it has not sent must come from
-  // somebody else.
+  // Forgets a worker that was asked. Arrays that it has not sent must come from somebody else.
   void drop(Peer peer) {
     unsent.erase(peer);
     const auto found = sources.find(peer);
@@ -280,6 +286,7 @@ struct Exchange::Impl {
   std::map<Peer, std::deque<Frames>> unsent; // questions
   std::map<Peer, std::deque<Sending>> sending;
   Wire wire;
+  const uint16_t port; // at which it listens
   std::thread thread;
 };
 
@@ -287,7 +294,7 @@ Exchange::Exchange(const ExchangeOptions& options, ArrayFolder& folder, WorkerCo
     : impl_(std::make_unique<Impl>(options, folder, counts)) {}
 Exchange::~Exchange() = default;
 
-uint16_t Exchange::port() const { return Address::parse(impl_->wire.address()).port; }
+uint16_t Exchange::port() const { return impl_->port; }
 
 void Exchange::fetch(const std::string& address, std::vector<message::ArrayName> arrays) {
   {

@@ -114,6 +114,7 @@ void Worker::fetched(const Hash& hash, ArrayPtr array) {
   const auto stream = streams_.find(hash);
   if (stream == streams_.end()) return; // it came from the master, or a former one wanted it
   if (array && stream->second.bytes() != array->size()) array = nullptr;
+  if (!array && stream->second.begun()) return; // the master sends it
   sayGot({hash}, !array, array && isKept(hash, *array));
   if (!array) return;
   counts_.sentByWorkers.add(array->size());
@@ -146,7 +147,7 @@ void Worker::piece(const message::Piece& m) {
   begun_--;
   if (array) {
     counts_.sentByMaster.add(array->size());
-    sayGot({m.hash}, false, isKept(m.hash, *array));
+    if (array->size() >= limits::keptArrayBytes) sayGot({m.hash}, false, isKept(m.hash, *array));
   } else {
     bad(why); // scenes that use it cannot be made
   }
