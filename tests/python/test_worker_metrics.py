@@ -88,8 +88,10 @@ def test_other_requests_are_refused_and_slow_ones_hold_up_nobody(tmp_path):
                     endless.sendall(b"x" * 1000)
                     time.sleep(0.001)
         assert metrics(port)["openrt_worker_serving"] == 0
-        held[0].sendall(b"rics HTTP/1.0\r\n\r\n")
-        assert held[0].recv(4096).startswith(b"HTTP/1.1 200 OK\r\n")
+        with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) as slow:
+            slow.sendall(b"GET /met")
+            slow.sendall(b"rics HTTP/1.0\r\n\r\n")
+            assert slow.recv(4096).startswith(b"HTTP/1.1 200 OK\r\n")
         for one in held:
             one.close()
 
