@@ -75,8 +75,11 @@ void Distribution::failed(WorkerId worker, const std::vector<Hash>& arrays) {
       member->second.failedWith.insert(sender->first);
       known.holders.erase(sender->first);
     }
-    if (const OfferPtr offer = known.offer.lock()) direct_.push_back({worker, master, offer});
     release(hash, known, worker);
+    if (const OfferPtr offer = known.offer.lock()) {
+      direct_.push_back({worker, master, offer});
+      known.underway[worker] = master; // others wait for it
+    }
   }
 }
 
