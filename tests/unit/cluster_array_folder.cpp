@@ -2,8 +2,12 @@
 // hostile files do not, and the size has a limit.
 #include "backend/cluster/worker/array_folder.h"
 
+#include <algorithm>
+#include <atomic>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include <sys/stat.h>

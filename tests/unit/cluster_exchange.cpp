@@ -2,11 +2,14 @@
 // without keys, and with sources that are absent, damaged or hostile.
 #include "backend/cluster/worker/exchange.h"
 
+#include <atomic>
+#include <chrono>
 #include <condition_variable>
-#include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <thread>
 
 #include "backend/cluster/worker/array_cache.h"
 #include "unit/cluster_wires.h"
