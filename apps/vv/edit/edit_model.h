@@ -94,11 +94,11 @@ class EditModel {
   void drag(const xvrml::NodeRef& node, const xvrml::FieldInfo& field, xvrml::Value value);
   // Tells whether a widget is active: the user drags it or types. The sheet is not read then.
   void setActive(bool active);
-  bool isActive() const { return isActive_; }
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
-  // Tells whether the rows are still those of an earlier search.
-  bool isSearching() const { return found_ != search_; }
+  // Tells whether the rows are not yet those of what the user has searched for. What he does next is
+  // meant for these, unless he still types.
+  bool isSearching() const { return found_ != search_ && !isActive_; }
   // Hide nodes for now, or show them again. This is no edit.
   void hideSelected();
   void isolateSelected();
@@ -116,6 +116,7 @@ class EditModel {
   struct Dragged {
     xvrml::NodeRef node;
     std::string field;
+    std::string name() const; // "Text.string"
     bool operator==(const Dragged&) const = default;
   };
 
@@ -133,7 +134,6 @@ class EditModel {
   };
 
   void requestValue(Command command) { requests_.push_back({std::move(command), Stale::values}); }
-  static std::string nameOf(const Dragged& dragged); // "Text.string"
   void note(Stale stale) { stale_ = std::max(stale_, stale); }
   Stale anyChange() const;
   void begin(const Dragged& dragged);
