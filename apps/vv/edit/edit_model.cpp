@@ -96,8 +96,7 @@ void EditModel::setField(WorldEditor& editor, const Dragged& dragged, const Chan
   const FieldInfo& info = *node.type().find(dragged.field);
   const Value now = node.get(info);
   const bool isOwn = set_ == std::pair(dragged, now);
-  editor.editor().set(*dragged.node, dragged.field,
-                      mergedList(change, now, isOwn, dragged.name()));
+  editor.editor().set(*dragged.node, dragged.field, mergedList(change, now, isOwn, dragged.name()));
   set_ = {dragged, node.get(info)};
 }
 

@@ -96,8 +96,8 @@ class EditModel {
   void setActive(bool active);
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
-  // Tells whether the rows are not yet those of what the user has searched for. What he does next is
-  // meant for these, unless he still types.
+  // Tells whether the rows are still those of an earlier search. Keys that follow are meant for the
+  // rows that will be found, unless the user still types.
   bool isSearching() const { return found_ != search_ && !isActive_; }
   // Hide nodes for now, or show them again. This is no edit.
   void hideSelected();
