@@ -66,7 +66,7 @@ class FirstFailure : public Message_Printer {
 
 std::string nameOf(const TDF_Label& label) {
   Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  if (label.IsNull() || !label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
   return TCollection_AsciiString(name->Get()).ToCString(); // UTF-8
 }
 
@@ -110,7 +110,7 @@ class Tree {
     node.translation = {move.X(), move.Y(), move.Z()};
     node.rotation = {turn.X(), turn.Y(), turn.Z(), turn.W()};
     node.scale = place.ScaleFactor();
-    if (!from.IsAssembly) node.mesh = meshOf(from, part);
+    if (!from.IsAssembly && !from.RefLabel.IsNull()) node.mesh = meshOf(from, part);
     return node;
   }
 
