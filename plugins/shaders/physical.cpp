@@ -200,6 +200,13 @@ struct Physical : rts::Surface<Physical> {
       "textureTransform",
       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
       "matrix from texture coordinates (s, t, 0, 1) to places in the pictures"};
+  rts::Param<int32_t> inSpace{
+      "inSpace", 0, "1: all pictures, which may be volumes, are placed by texturePlace", 0, 1};
+  rts::Param<rts::Vec4> texturePlace{
+      "texturePlace",
+      {0, 0, 0, 0},
+      "texture coordinates s t r q of vertices; with q 0 the geometry's own s and t count",
+      rts::PerVertex};
 
   uint32_t needs() const {
     const bool polished = roughness * roughness <= microfacet::minAlpha;
@@ -283,7 +290,19 @@ struct Physical : rts::Surface<Physical> {
     return {m[0] * hit.uv.x + m[4] * hit.uv.y + m[12], m[1] * hit.uv.x + m[5] * hit.uv.y + m[13]};
   }
   rts::Vec4 texel(const rts::Hit& hit, rts::Texture from) const {
-    return from.id && !hit.line() ? hit.sample(from, place(hit)) : rts::Vec4{1, 1, 1, 1};
+    if (!from.id || hit.line()) return {1, 1, 1, 1};
+    if (inSpace && texturePlace->w != 0) return hit.sampleVolume(from, placeInSpace());
+    return hit.sample(from, place(hit));
+  }
+  // Coordinates are homogeneous. A point at infinity has no place; textures take it for 0.
+  rts::Vec3 placeInSpace() const {
+    const float* m = textureTransform->m;
+    const rts::Vec4 p = *texturePlace;
+    const auto row = [&](int i) {
+      return m[i] * p.x + m[4 + i] * p.y + m[8 + i] * p.z + m[12 + i] * p.w;
+    };
+    const float q = row(3);
+    return {row(0) / q, row(1) / q, row(2) / q};
   }
   // The colours of a geometry stand in place of the material's (ISO/IEC 19775-1:2023 11.4.2).
   static rts::Color ownColor(const rts::Hit& hit, rts::Color ofMaterial) {

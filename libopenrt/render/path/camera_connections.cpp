@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/lights/environment.h"
 #include "render/lights/shadows.h"
 #include "render/path/light_path_ratios.h"
 #include "render/surface/adjoint.h"
@@ -140,6 +141,10 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const f
 }
 
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]) {
+  ArenaScope scope(batch.arena);
+  const Fog fog = fogBeforeEye(batch);
+  for (uint32_t i = 0; fog.transmittance && i < to.count; i++)
+    store(load(colour, i) * fog.transmittance[to.hit[i]], colour, i);
   ShadowRays rays = allocateShadowRays(batch.scene, to.count, batch.arena);
   rays.toCamera = true;
   uint32_t n = 0;

@@ -36,7 +36,7 @@ double cameraArea(const RenderScene& scene);
 // tells the share of light paths; null: it is 1.
 void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const float* ratio,
                      float* const scattered[3]);
-// Multiplies colours by the transmittance between the hits and the camera.
+// Multiplies colours by the transmittance between the hits and the camera, with that of the fog.
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]);
 
 } // namespace openrt

@@ -98,11 +98,13 @@ bool isTransparentMode(const nodes::Appearance* appearance) {
 } // namespace
 
 bool showsVolume(const AppearanceParts& parts) {
-  if (parts.shader || isPhysical(parts.material)) return false;
+  if (parts.shader) return false;
   Node* texture = renderedNode(colorTexture(parts));
   const auto* multi = nodeCast<nodes::MultiTexture>(texture);
   if (!multi) return isVolume(texture);
-  return std::any_of(multi->texture.begin(), multi->texture.end(),
+  // Only the class X3DMaterial has layers.
+  return !isPhysical(parts.material) &&
+         std::any_of(multi->texture.begin(), multi->texture.end(),
                      [](const NodeRef& layer) { return isVolume(layer.get()); });
 }
 
