@@ -1171,6 +1171,7 @@ def load(
     *,
     limits: Optional[Mapping[str, int]] = ...,
     allow_absolute: bool = ...,
+    step_error: float = ...,
 ) -> World:
     ...
 
