@@ -57,13 +57,6 @@ void lookAlong(double x) {
   rtPopMatrix();
 }
 
-void lookAlong(double x) {
-  rtPushMatrix();
-  rtLookAt(x, .4, 6, x, 0, 0, 0, 1, 0);
-  rtPerspective(40);
-  rtPopMatrix();
-}
-
 std::array<double, 16> placedAt(double x, double y, double z) {
   return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1};
 }
