@@ -34,7 +34,9 @@ TEST(WorkerCounts, areTextForPrometheus) {
   for (std::string line; std::getline(lines, line);) {
     std::smatch parts;
     if (std::regex_match(line, parts, comment)) {
-      if (parts[1] == "TYPE") EXPECT_TRUE(typed.insert(parts[2]).second) << line;
+      if (parts[1] == "TYPE") {
+        EXPECT_TRUE(typed.insert(parts[2]).second) << line;
+      }
       continue;
     }
     ASSERT_TRUE(std::regex_match(line, parts, sample)) << line;

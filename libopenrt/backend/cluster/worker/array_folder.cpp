@@ -194,7 +194,10 @@ ArrayFolder::Writer::Writer(ArrayFolder& folder, const Hash& hash, uint64_t stor
   Hash random;
   try {
     os::fillRandomly(reinterpret_cast<unsigned char*>(&random), sizeof random);
-  } catch (const std::system_error& e) { return fail(e.code().value()); }
+  } catch (const std::system_error& e) {
+    fail(e.code().value());
+    return;
+  }
   name_ = hex(random) + std::string(unfinished);
   file_ =
       FileHandle(::openat(folder.folder_.get(), name_.c_str(),
