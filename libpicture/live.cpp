@@ -50,6 +50,9 @@ constexpr size_t maxOverlapping = 2;
 // Worlds with more triangles are shown by the z-buffer before they are prepared for rays, which
 // takes longer (docs/benchmarks.md, "The fast view").
 constexpr uint64_t fewTriangles = 200'000;
+// Seconds that a preview waits while structures are built, before it shows the world without the
+// last changes. Most changes take less.
+constexpr double previewPatience = 0.02;
 // Poll interval for ended frames while another frame may still be started. The render thread cannot
 // block on a frame then.
 constexpr std::chrono::milliseconds patience(1);
@@ -368,6 +371,7 @@ void LiveRenderer::Impl::map(FrameRequest frame) {
   if (stage.mapper()->stats().instancesMoved != moved) steps.change();
   stage.setUpFrame();
   rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
+  rtQualityf(RT_PATIENCE, frame.facts.purpose == Purpose::still ? 0 : previewPatience);
 }
 
 std::vector<Measurement> LiveRenderer::Impl::read(MeasureRequest request) {
@@ -375,6 +379,7 @@ std::vector<Measurement> LiveRenderer::Impl::read(MeasureRequest request) {
   try {
     apply(std::move(request.worldChanges));
     stage.prepareSensors(request.what.view);
+    rtQualityf(RT_PATIENCE, 0);
     steps.beginAnew(); // RT_MOTION of the next frame begins here
     if (sensors.empty()) sensors = stage.placeSensors();
   } catch (const SensorError&) {
@@ -402,6 +407,7 @@ std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
     lastStill = nullptr;
   }
   stage.describe(flight.settings, result->result);
+  if (result->result.stats.outdated) steps.change(); // the next frame shows more of the world
   result->picture.names = std::move(flight.names);
   stage.readChannels(flight.settings, result->picture);
   result->result.map = flight.map;
@@ -587,6 +593,7 @@ bool LiveRenderer::Impl::look(LivePicture& out) {
   show(finished->picture, facts, finished->whole, finished->seconds, out);
   out.alone = finished->alone;
   out.ended = true;
+  out.outdated = finished->result.stats.outdated != 0;
   out.rebuilding = finished->rebuilding;
   out.showing = finished->showing;
   out.denoisedBy = finished->denoisedBy;

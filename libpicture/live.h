@@ -72,6 +72,9 @@ struct LivePicture {
   bool raster = false;
   // Finished or cancelled; no more updates follow. overhead, map and stats are valid.
   bool ended = false;
+  // Shows the world before its last changes, from the present camera: what these need is still
+  // being built. Holds for previews that have ended. Another preview should follow.
+  bool outdated = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;
   double scaleEnd = 0;    // the luminance at the end of the scale of false colours; 0: own colours

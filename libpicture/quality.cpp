@@ -69,7 +69,7 @@ QualityValues::QualityValues() {
 
 void applyQuality(const QualityValues& values) {
   for (const RTqualityInfo& info : qualityTable()) {
-    if (info.quality == RT_FRAMES_IN_FLIGHT) continue;
+    if (info.quality == RT_FRAMES_IN_FLIGHT || info.quality == RT_PATIENCE) continue;
     if (info.isReal)
       rtQualityf(info.quality, values[info.quality]);
     else

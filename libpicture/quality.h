@@ -47,8 +47,8 @@ class QualityValues {
   std::map<RTenum, double> values_;
 };
 
-// Sets all quality settings of the frames that follow, except RT_FRAMES_IN_FLIGHT, which belongs to
-// the context. [context-thread]
+// Sets all quality settings of the frames that follow, except RT_FRAMES_IN_FLIGHT and RT_PATIENCE,
+// which belong to the context. [context-thread]
 void applyQuality(const QualityValues& values);
 
 } // namespace picture

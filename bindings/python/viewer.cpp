@@ -120,11 +120,12 @@ bool Viewer::isOutdated() {
   if (!viewers_) return false;
   const auto lock = world_->tryLock();
   if (!lock) return wasOutdated_;
-  return wasOutdated_ =
-             !begun_ || !live() || // the renderer of World.render() has taken the changes
-             browser().hasChanges() || frameChanges_ != viewers_->changes ||
-             viewers_->generation != browser().generation() || knownCamera() != frameCamera_ ||
-             (!moving_ && (frame_.width != width_ || frame_.height != height_));
+  return wasOutdated_ = !begun_ ||
+                        !live() || // the renderer of World.render() has taken the changes
+                        browser().hasChanges() || frameChanges_ != viewers_->changes ||
+                        viewers_->generation != browser().generation() ||
+                        knownCamera() != frameCamera_ || (moving_ && isBehind_) ||
+                        (!moving_ && (frame_.width != width_ || frame_.height != height_));
 }
 
 void Viewer::makeRenderer() {
@@ -195,6 +196,7 @@ py::object Viewer::look() {
   if (!failure.empty()) throw picture::RenderError(failure);
   if (!found) return py::none();
   if (picture->finished) {
+    isBehind_ = picture->outdated;
     pacing_.took({picture->width, picture->height, 1, picture->lightStride}, picture->seconds,
                  picture->alone, picture->overhead, picture->samples, picture->rebuilding,
                  picture->showing);

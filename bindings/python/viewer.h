@@ -89,6 +89,8 @@ class Viewer {
   picture::Pacing::Light light_ = picture::Pacing::Light::sparse; // until the first picture tells
   // The last frame that began.
   bool begun_ = false, moving_ = false, wasOutdated_ = true;
+  bool isBehind_ =
+      false; // the last preview lacks changes that are being built (LivePicture::outdated)
   picture::FrameSize frame_;
   uint64_t frameChanges_ = 0;
   std::optional<xvrml::CameraSettings> frameCamera_;

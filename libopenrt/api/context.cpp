@@ -180,6 +180,7 @@ bool Context::takeCancelRequest() {
 // Commits and starts a frame. A cancel() during the commit or the build is meant for this frame,
 // which the backend does not know yet, so it is repeated after the start.
 void Context::begin() {
+  backend_->setPatience(patience);
   commit();
   start();
   if (takeCancelRequest()) backend_->cancel();

@@ -110,7 +110,8 @@ class Context {
   bool everCommitted() const { return everCommitted_; }
   uint64_t finishedFrameNumber() const { return finishedFrameNumber_; }
   uint32_t framesInFlight =
-      1; // frames that swapBuffers() leaves in flight if the backend pipelines
+      1;               // frames that swapBuffers() leaves in flight if the backend pipelines
+  double patience = 0; // RT_PATIENCE
   uint64_t degenerate = 0;
   RTid perspectiveCamera = 0, orthographicCamera = 0;
 

@@ -64,8 +64,9 @@ void setQuality(Context& c, RTenum name, double value, bool real) {
   if (!setting || (setting->info.isReal != 0) != real)
     fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   if (!setting->allows(value)) fail(RT_INVALID_VALUE, qualityFault(setting->info, value));
-  if (name == RT_FRAMES_IN_FLIGHT) { // affects how frames are started, not their content
-    c.framesInFlight = static_cast<uint32_t>(value);
+  if (!setting->set) { // affects how frames are started
+    if (name == RT_FRAMES_IN_FLIGHT) c.framesInFlight = static_cast<uint32_t>(value);
+    if (name == RT_PATIENCE) c.patience = value;
     return;
   }
   // Frames hold 32 bits. A positive number stays one: 0 means none, or no limit.

@@ -69,6 +69,9 @@ class Backend {
   // Applies the edits of a commit; they take effect with the next start(). If !pipelines(), never
   // called while a frame is in flight.
   virtual void apply(std::shared_ptr<const Commit> commit) = 0;
+  // Says for how many seconds start() waits while structures are built for the scene; 0: until they
+  // are. After that the frame shows an earlier scene (RT_PATIENCE). A backend may always wait.
+  virtual void setPatience(double) {}
   // Says whether the sums of the frames that are started from now on are kept, and with what the
   // next one begins. start() then throws std::runtime_error if it cannot begin with that. Returns
   // false if this backend keeps no sums.

@@ -15,6 +15,7 @@ class ForwardingBackend : public Backend {
   explicit ForwardingBackend(std::unique_ptr<Backend> to) : to_(std::move(to)) {}
   bool pipelines() const override { return to_->pipelines(); }
   void apply(std::shared_ptr<const Commit> commit) override { to_->apply(std::move(commit)); }
+  void setPatience(double seconds) override { to_->setPatience(seconds); }
   bool keepSums(const SumsRequest& request) override { return to_->keepSums(request); }
   std::shared_ptr<FrameSums> sums() const override { return to_->sums(); }
   void start() override { to_->start(); }

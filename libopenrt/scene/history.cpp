@@ -73,9 +73,8 @@ void SceneHistory::addInstance(uint32_t id) {
   forEachWatching([&](ViewHistory& view) { view.addInstance(id); });
 }
 
-void SceneHistory::changeObject(uint32_t id, Object& before) {
-  const auto taken = std::make_shared<const std::vector<Geometry>>(std::move(before.geometries));
-  forEachWatching([&](ViewHistory& view) { view.changeObject(id, taken); });
+void SceneHistory::changeObject(uint32_t id, const FormerGeometries& before) {
+  forEachWatching([&](ViewHistory& view) { view.changeObject(id, before); });
 }
 
 void SceneHistory::addObject(uint32_t id) {

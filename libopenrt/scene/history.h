@@ -25,9 +25,12 @@ class SceneHistory {
   bool records() const { return records_; }
   void changeInstance(uint32_t id, const Instance& before);
   void addInstance(uint32_t id);
-  void changeObject(uint32_t id, Object& before); // takes its geometries
+  void changeObject(uint32_t id, const FormerGeometries& before);
   void addObject(uint32_t id);
   void finish(const Scene& scene, const Commit& commit);
+  // Notes that no frame has shown the last commit, although one was to follow it. Its changes then
+  // count for the frame of the next commit.
+  void skipFrame() { framed_ = false; }
 
   // Returns the number of the current frame; it grows with each frame.
   uint64_t number() const { return number_; }

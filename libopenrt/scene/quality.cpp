@@ -106,6 +106,10 @@ constexpr QualitySetting table[] = {
       RT_DEPTH_ALONG_AXIS, 0, "axis ray", "what depth is measured along"},
      get<&Frame::depthAlong>,
      set<&Frame::depthAlong>},
+    {{size, RT_PATIENCE, "patience", 1, 0, 3600, 0, 0, nullptr,
+      "seconds that a frame waits while acceleration structures are built; 0: until they are"},
+     nullptr,
+     nullptr},
 };
 
 } // namespace

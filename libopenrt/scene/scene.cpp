@@ -12,14 +12,14 @@ bool isBefore(const std::pair<ArrayId, std::weak_ptr<const Array>>& entry, Array
   return entry.first < id;
 }
 
+} // namespace
+
 Matrix4d toMatrix(const edit::Matrix* matrix) {
   Matrix4d result;
   if (matrix)
     for (int i = 0; i < 16; i++) result.m[i] = matrix->m()->Get(i);
   return result;
 }
-
-} // namespace
 
 void SceneChanges::add(const SceneChanges& more) {
   structure |= more.structure;
@@ -89,8 +89,10 @@ void Scene::noteArrays(const Commit& commit) {
     std::inplace_merge(arrays_.begin(), arrays_.begin() + known, arrays_.end(), byNumber);
 }
 
-SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
+SceneChanges Scene::apply(const Commit& commit, SceneHistory* history,
+                          std::vector<FormerGeometries>* former) {
   if (history) history->begin(commit);
+  former_ = former;
   history_ = history && history->records() ? history : nullptr;
   noteArrays(commit);
   commit_ = &commit;
@@ -100,6 +102,7 @@ SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
   sortChildren();
   commit_ = nullptr;
   history_ = nullptr;
+  former_ = nullptr;
   if (history) history->finish(*this, commit);
   return changes;
 }
@@ -236,13 +239,23 @@ void Scene::dropChildren(uint32_t object) {
   children_.erase(list);
 }
 
+// Takes the geometries of an object that is about to change, for those who want them. Returns null
+// if nobody does.
+FormerGeometries Scene::takeGeometries(Object& object) {
+  if (!history_ && !former_) return nullptr;
+  auto taken = std::make_shared<const std::vector<Geometry>>(std::move(object.geometries));
+  if (former_ && !taken->empty()) former_->push_back(taken);
+  return taken;
+}
+
 void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
   const auto children = children_.find(object.id);
   const bool leaf = children == children_.end() || children->second.empty();
   const auto [found, fresh] = objects.try_emplace(object.id);
   Object& target = found->second;
   if (history_ && fresh) history_->addObject(object.id);
-  if (history_ && !fresh) history_->changeObject(object.id, target);
+  if (const FormerGeometries taken = fresh ? nullptr : takeGeometries(target); taken && history_)
+    history_->changeObject(object.id, taken);
   if (!fresh && leaf && target.dynamic && object.dynamic)
     changes.redefined.push_back(object.id);
   else
@@ -280,7 +293,11 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
 
 // Its instances were deleted before; any that is left draws nothing.
 void Scene::deleteObject(uint32_t id) {
-  objects.erase(id);
+  const auto found = objects.find(id);
+  if (found != objects.end()) {
+    if (former_) takeGeometries(found->second);
+    objects.erase(found);
+  }
   dropChildren(id);
 }
 

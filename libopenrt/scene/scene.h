@@ -48,11 +48,18 @@ struct Geometry {
   size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };
 
+// The geometries of an object that has been defined again or deleted. Records of it may still be
+// in use, and point into these.
+using FormerGeometries = std::shared_ptr<const std::vector<Geometry>>;
+
 struct Object {
   uint64_t version = 0; // a new number whenever an object is defined
   bool dynamic = false;
   std::vector<Geometry> geometries;
 };
+
+// Returns the matrix of an edit; without one the identity.
+Matrix4d toMatrix(const edit::Matrix* matrix);
 
 // Returns whether primitives of this kind have a width in pixels.
 inline bool isThin(edit::Primitive primitive) {
@@ -125,8 +132,10 @@ struct SceneChanges {
 class Scene {
  public:
   // Applies a commit. Edits that name unknown ids are ignored; the front end and the reader of
-  // recordings check them before. history: gets what the commit changes; may be null.
-  SceneChanges apply(const Commit& commit, SceneHistory* history = nullptr);
+  // recordings check them before. history: gets what the commit changes; may be null. former: gets
+  // the geometries of objects that are defined again or deleted; may be null.
+  SceneChanges apply(const Commit& commit, SceneHistory* history = nullptr,
+                     std::vector<FormerGeometries>* former = nullptr);
 
   std::map<uint32_t, TextureImage> textures;
   std::map<uint32_t, ShaderClassName> classes;
@@ -148,6 +157,7 @@ class Scene {
   void noteArrays(const Commit& commit);
   void applyEdit(const edit::AnyUnion& any, SceneChanges& changes);
   void replaceObject(const edit::ObjectT& object, SceneChanges& changes);
+  FormerGeometries takeGeometries(Object& object);
   void placeInstance(const edit::InstanceT& edit, SceneChanges& changes);
   void deleteInstance(uint32_t id);
   void deleteObject(uint32_t id);
@@ -160,6 +170,7 @@ class Scene {
   uint64_t version_ = 0;
   const Commit* commit_ = nullptr;  // the commit being applied
   SceneHistory* history_ = nullptr; // set while a commit is applied that is to be watched
+  std::vector<FormerGeometries>* former_ = nullptr; // set while a commit is applied
   std::map<uint32_t, std::vector<uint32_t>> children_;
   std::vector<uint32_t> unsorted_; // objects whose child lists are out of date
 };

@@ -66,7 +66,7 @@ void ViewHistory::addInstance(uint32_t id) {
   if (!beginning_) newInstances_.insert(id);
 }
 
-void ViewHistory::changeObject(uint32_t id, const Geometries& before) {
+void ViewHistory::changeObject(uint32_t id, const FormerGeometries& before) {
   if (!beginning_ && !newObjects_.contains(id)) objects_.try_emplace(id, Past{before, {}});
 }
 

@@ -15,15 +15,13 @@ namespace openrt {
 
 class ViewHistory {
  public:
-  using Geometries = std::shared_ptr<const std::vector<Geometry>>;
-
   // The view has had a frame: changes are those since then.
   void beginAnew();
   // Drops what has been noted.
   void forget();
   void changeInstance(uint32_t id, const Instance& before);
   void addInstance(uint32_t id);
-  void changeObject(uint32_t id, const Geometries& before);
+  void changeObject(uint32_t id, const FormerGeometries& before);
   void addObject(uint32_t id);
   // Finds the new instances and geometries that take the places of earlier ones. All changes of the
   // view's next frame have been noted.
@@ -50,7 +48,7 @@ class ViewHistory {
 
  private:
   struct Past { // an object that was defined again
-    Geometries geometries;
+    FormerGeometries geometries;
     std::vector<const Geometry*> matches; // by geometry of the new definition
   };
   void matchInstances(const Scene& scene);

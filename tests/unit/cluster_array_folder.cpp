@@ -10,6 +10,7 @@
 #include <iterator>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -432,6 +432,7 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtQuality, RT_FOLLOW_IMAGES, 2),
     WRONG(ENUM, Outside, rtQualityf, RT_SEED, 0),
     WRONG(VALUE, Outside, rtQualityf, RT_TARGET_ERROR, 1.5),
+    WRONG(VALUE, Outside, rtQualityf, RT_PATIENCE, -1),
     WRONG(VALUE, Outside, rtQualityf, RT_TIME_LIMIT, -1),
     WRONG(VALUE, Outside, rtQualityf, RT_ENERGY_CUT, double(nan)),
     WRONG(VALUE, Outside, rtQualityf, RT_CLAMP, double(inf)),

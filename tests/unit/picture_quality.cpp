@@ -51,7 +51,8 @@ TEST(Quality, AllValuesAreAppliedButThoseOfTheContext) {
   applyQuality(values);
   EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR));
   for (const RTqualityInfo& info : qualityTable()) {
-    if (info.quality == RT_FRAMES_IN_FLIGHT || info.quality == RT_SEED) continue;
+    if (info.quality == RT_FRAMES_IN_FLIGHT || info.quality == RT_PATIENCE) continue;
+    if (info.quality == RT_SEED) continue;
     QualityValues wrong;
     wrong.set(info.quality, -1);
     applyQuality(wrong);

@@ -84,10 +84,11 @@ const Wording wordings[] = {
      }},
 };
 
-// vv chooses RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT and RT_VIEW itself and leaves the others to the
-// engine.
+// vv chooses RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT, RT_VIEW and RT_PATIENCE itself and leaves the
+// others to the engine.
 constexpr RTenum withoutOption[] = {RT_REPLICATES, RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT,
-                                    RT_TILE_SIZE,  RT_VIEW,        RT_MEASURE};
+                                    RT_TILE_SIZE,  RT_VIEW,        RT_MEASURE,
+                                    RT_PATIENCE};
 
 // Keeps a text until the program ends.
 const char* keep(std::string text) {

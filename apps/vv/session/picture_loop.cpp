@@ -31,8 +31,9 @@ void PictureLoop::resize(int width, int height) {
 
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || pilot.camera() != camera_ ||
-         shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
-         pilot.exposure() != exposure_ || pilot.falseColour() != falseColour_ ||
+         (isBehind_ && !isRefining()) || shared_.isOutdated(world_) ||
+         pilot.headlight() != headlight_ || pilot.exposure() != exposure_ ||
+         pilot.falseColour() != falseColour_ ||
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
@@ -290,6 +291,7 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
     still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
+    isBehind_ = picture.outdated;
     pacing_.took({picture.width, picture.height, 1, picture.lightStride}, picture.seconds,
                  picture.alone, picture.overhead, picture.samples, picture.rebuilding,
                  picture.showing);

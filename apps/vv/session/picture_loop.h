@@ -145,6 +145,7 @@ class PictureLoop {
   Progress still_ = Progress::none;
   bool isStillLost_ = false; // the renderer has another still frame, of a program
   bool cancelled_ = false;   // the last frame was cancelled for a newer one
+  bool isBehind_ = false;    // the last preview lacks changes of the world that are being built
   // The last frame: its number, the state of the world, the cancellations before it, the camera,
   // headlight and size.
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;

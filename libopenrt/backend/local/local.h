@@ -5,12 +5,12 @@
 
 #include <atomic>
 #include <memory>
+#include <string>
 
 #include "backend/backend.h"
-#include "backend/local/accel/accel_build.h"
 #include "backend/local/local_queries.h"
+#include "backend/local/snapshots.h"
 #include "render/frame/renderer.h"
-#include "scene/history.h"
 
 namespace openrt {
 
@@ -19,6 +19,7 @@ class LocalBackend final : public Backend {
   explicit LocalBackend(const BackendOptions& options);
   ~LocalBackend() override;
   void apply(std::shared_ptr<const Commit> commit) override;
+  void setPatience(double seconds) override;
   bool keepSums(const SumsRequest& request) override;
   std::shared_ptr<FrameSums> sums() const override;
   void start() override;
@@ -35,44 +36,24 @@ class LocalBackend final : public Backend {
   std::shared_ptr<const RenderScene> prepared();
 
  private:
-  // Makes a new snapshot of the committed scene if anything changed since the last. It has what ray
-  // queries need: geometry, shaders, camera.
-  void prepareGeometry();
   // Adds what a frame needs: the transport, and the tables by which it samples light. A frame whose
   // channels show no light has no tables.
   void prepareLight();
   void sampleLight(RenderScene& next, const RenderScene* before);
   // Adds the photons that guide the paths of a frame. cancel() ends that early.
   void prepareFrame();
-  void updateAccel(RenderScene& next);
-  void updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all);
-  void makeShaders(RenderScene& next) const;
-  void makeLights(RenderScene& next, const Flattened& flat, const Vec3d& origin) const;
-  void makeCamera(RenderScene& next, const Vec3d& origin) const;
-  PixelFootprint footprint(const RenderScene& next) const;
-  Vec3d eye() const;
 
   BackendOptions options_;
   uint32_t threads_;
   std::shared_ptr<EmbreeDevice> device_;
-  AccelBuilder builder_;
-  Scene scene_;
-  SceneHistory history_;       // what has changed since the last frame of each view
-  uint64_t snapshotFrame_ = 0; // number of the history at the last prepareGeometry()
-  SceneChanges changes_;       // since then
-  std::shared_ptr<RenderScene> snapshot_;
+  LocalQueries queries_;
+  Snapshots snapshots_;
+  std::shared_ptr<RenderScene> snapshot_; // the one of the last frame
   // The last snapshots that prepareLight() has completed, and that have tables for light.
   std::shared_ptr<RenderScene> ready_, lit_;
   bool guided_ = false;            // it has the photons that it needs
   std::atomic<bool> stop_ = false; // cancel() was called since prepareFrame()
-  std::shared_ptr<Accel> accel_;
-  LocalQueries queries_;
-  Flattened flat_;
-  PixelFootprint footprint_;
-  // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in
-  // lit_.
-  bool scopedLights_ = false, recordsUnmoved_ = true;
-  std::string transportReason_; // why the snapshot's transport was chosen
+  std::string transportReason_;    // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
   bool warnedOfNearLamp_ = false, warnedOfAnalyticLamp_ = false;
   SumsRequest keep_;
@@ -80,8 +61,8 @@ class LocalBackend final : public Backend {
   // last.
   mutable std::mutex mutex_;
   std::shared_ptr<Frame> frame_, finished_;
-  bool freedMuch_ = false; // a commit of many things, since the last prepareGeometry()
-  double commitSeconds_ = 0, buildSeconds_ = 0;
+  // Whether the frame in flight, and the finished one, show an earlier scene.
+  bool isOutdated_ = false, wasOutdated_ = false;
 };
 
 } // namespace openrt

@@ -126,7 +126,17 @@ enum {
    * photometric sensor instead of a part of a picture. */
   RT_MEASURE = 18,
   /* Says what RT_DEPTH measures: one of RT_DEPTH_ALONG_*, default RT_DEPTH_ALONG_AXIS. */
-  RT_DEPTH_ALONG = 19
+  RT_DEPTH_ALONG = 19,
+  /* rtQualityf: seconds, 0 .. 3600, that a frame waits while acceleration structures are built; 0
+   * (default): until they are. After that time building goes on beside the frame, which shows the
+   * scene of an earlier commit, with the settings, the camera and the places of lights of its own
+   * commit; RTstats.outdated says so. Once they are built, the next frame shows them; the edits of
+   * later commits follow in the frame after it. Moved instances never wait: only new geometry does,
+   * geometry that is defined again, and instances that come or go. A frame waits all the same if
+   * there is no earlier scene, if its camera has another shader, and after rtKeepSums; so do ray
+   * queries. It takes effect at once, and is no part of frames and recordings. With
+   * backend=cluster frames wait. */
+  RT_PATIENCE = 20
 };
 
 /* Values of RT_DEPTH_ALONG: what RT_DEPTH is, in units of the world. */
@@ -391,6 +401,8 @@ typedef struct RTstats {
   RTerrorStats error;
   RTleftOutStats leftOut;
   RTclusterStats cluster;
+  uint32_t outdated; /* 1 if the last frame did not wait for its scene and shows an earlier one, of
+                        which the statistics then are (RT_PATIENCE); else 0 */
 } RTstats;
 /* Writes the statistics of the last commit and of the last finished frame. [context-thread] */
 RT_API void rtGetStats(RTstats* stats);

@@ -97,7 +97,7 @@ void Picker::changed(Node& first) {
   }
 }
 
-const PickMesh* Picker::meshOf(Node& node) {
+PickMesh* Picker::meshOf(Node& node) {
   const auto& shape = static_cast<nodes::Shape&>(node);
   Node* geometry = renderedNode(shape.geometry.get());
   if (!geometry) return nullptr;
@@ -220,7 +220,7 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     if (!moved.intersects(boundsOf(*visit.node))) continue;
     if (visit.node->type().index == nodes::Shape::typeIndex) {
       MeshHit meshHit;
-      const PickMesh* mesh = meshOf(*visit.node);
+      PickMesh* const mesh = meshOf(*visit.node);
       if (!mesh || !mesh->intersect(moved, rules.bothSides, meshHit) ||
           (found && meshHit.t >= best.t))
         continue;

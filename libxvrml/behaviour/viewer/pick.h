@@ -52,7 +52,7 @@ class Picker {
   };
   const PickBox& boundsOf(Node& node);
   PickBox boundsFromParts(Node& node, const std::vector<Node*>& parts);
-  const PickMesh* meshOf(Node& shape);
+  PickMesh* meshOf(Node& shape);
 
   const Engine& engine_;
   std::unordered_map<const Node*, Entry> entries_;

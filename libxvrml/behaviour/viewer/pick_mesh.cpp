@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace xvrml {
 
@@ -90,7 +91,11 @@ PickMesh::PickMesh(Node& geometry, const Limits* limits)
       const Vector p = vector(mesh_.points[i]);
       if (std::isfinite(p.x + p.y + p.z)) bounds_.extend(p);
     }
-    if (mesh_.kind == Mesh::Kind::triangles && mesh_.indices.size() / 3 > 64) split();
+    if (mesh_.kind == Mesh::Kind::triangles && mesh_.indices.size() / 3 > 64) {
+      order_.resize(mesh_.indices.size() / 3);
+      std::iota(order_.begin(), order_.end(), 0u);
+      bvh_.push_back({.first = 0, .count = uint32_t(order_.size())});
+    }
   }
   bounds_.pad();
 }
@@ -99,38 +104,41 @@ Vector PickMesh::corner(uint32_t triangle, int k) const {
   return vector(mesh_.points[mesh_.indices[size_t(triangle) * 3 + size_t(k)]]);
 }
 
-// Builds the hierarchy: it splits equal halves along the longest side, so the depth is the
-// logarithm of the number of triangles.
-void PickMesh::split() {
-  order_.resize(mesh_.indices.size() / 3);
-  std::iota(order_.begin(), order_.end(), 0u);
-  bvh_.push_back({{}, 0, uint32_t(order_.size()), 0});
-  for (size_t k = 0; k < bvh_.size(); ++k) {
-    BvhNode bvhNode = bvh_[k];
-    PickBox middles;
-    for (uint32_t i = bvhNode.first; i < bvhNode.first + bvhNode.count; ++i) {
-      for (int c = 0; c < 3; ++c) bvhNode.box.extend(corner(order_[i], c));
-      middles.extend(corner(order_[i], 0) + corner(order_[i], 1) + corner(order_[i], 2));
-    }
-    bvhNode.box.pad();
-    const Vector size = middles.empty() ? Vector(0) : middles.high - middles.low;
-    if (bvhNode.count > 8 && !middles.empty()) {
-      const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      const auto begin = order_.begin() + bvhNode.first;
-      const uint32_t half = bvhNode.count / 2;
-      const auto key = [&](uint32_t t) {
-        const double v = corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis];
-        return std::isfinite(v) ? v : 0;
-      };
-      std::nth_element(begin, begin + half, begin + bvhNode.count,
-                       [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-      bvhNode.next = uint32_t(bvh_.size());
-      bvh_.push_back({{}, bvhNode.first, half, 0});
-      bvh_.push_back({{}, bvhNode.first + half, bvhNode.count - half, 0});
-      bvhNode.count = 0;
-    }
-    bvh_[k] = bvhNode;
+// Finds the box of a node, and whether it is worth splitting.
+void PickMesh::measure(BvhNode& bvhNode) const {
+  PickBox middles;
+  for (uint32_t i = bvhNode.first; i < bvhNode.first + bvhNode.count; ++i) {
+    const Vector a = corner(order_[i], 0), b = corner(order_[i], 1), c = corner(order_[i], 2);
+    for (const Vector& p : {a, b, c}) bvhNode.box.extend(p);
+    middles.extend(a + b + c);
   }
+  bvhNode.box.pad();
+  const bool splits = bvhNode.count > 8 && !middles.empty();
+  const Vector size = splits ? middles.high - middles.low : Vector(0);
+  bvhNode.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  bvhNode.state = splits ? BvhNode::State::splits : BvhNode::State::remains;
+}
+
+// Splits a node into equal halves along the longest side, so the depth is the logarithm of the
+// number of triangles.
+void PickMesh::split(uint32_t number) {
+  const BvhNode whole = bvh_[number];
+  std::vector<std::pair<double, uint32_t>> sorted(whole.count); // triangles with their middles
+  for (uint32_t i = 0; i < whole.count; ++i) {
+    const uint32_t t = order_[whole.first + i];
+    const double v = corner(t, 0)[whole.axis] + corner(t, 1)[whole.axis] + corner(t, 2)[whole.axis];
+    sorted[i] = {std::isfinite(v) ? v : 0, t};
+  }
+  const uint32_t half = whole.count / 2;
+  std::nth_element(sorted.begin(), sorted.begin() + half, sorted.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (uint32_t i = 0; i < whole.count; ++i) order_[whole.first + i] = sorted[i].second;
+  const auto next = uint32_t(bvh_.size());
+  bvh_.push_back({.first = whole.first, .count = half});
+  bvh_.push_back({.first = whole.first + half, .count = whole.count - half});
+  bvh_[number].next = next;
+  bvh_[number].count = 0;
+  bvh_[number].state = BvhNode::State::hasHalves;
 }
 
 // Textures wrap counterclockwise, seen from above, from the back of the sphere (clause 6.43).
@@ -191,7 +199,7 @@ bool PickMesh::triangle(uint32_t index, PickRay& ray, bool bothSides, MeshHit& h
   return true;
 }
 
-bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) const {
+bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) {
   if (mesh_.kind == Mesh::Kind::sphere) return sphere(whole, bothSides, hit);
   if (mesh_.kind != Mesh::Kind::triangles) return false;
   PickRay ray = whole;
@@ -201,12 +209,16 @@ bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) con
       found |= triangle(i, ray, bothSides, hit);
     return found;
   }
+  using State = BvhNode::State;
   std::vector<uint32_t> open{0};
   while (!open.empty()) {
-    const BvhNode& bvhNode = bvh_[open.back()];
+    const uint32_t number = open.back();
     open.pop_back();
-    if (!ray.intersects(bvhNode.box)) continue;
-    if (bvhNode.count == 0) {
+    if (bvh_[number].state == State::fresh) measure(bvh_[number]);
+    if (!ray.intersects(bvh_[number].box)) continue;
+    if (bvh_[number].state == State::splits) split(number);
+    const BvhNode& bvhNode = bvh_[number];
+    if (bvhNode.state == State::hasHalves) {
       open.push_back(bvhNode.next + 1);
       open.push_back(bvhNode.next);
     }

@@ -1,5 +1,7 @@
 // pick_mesh.h: intersects a ray with one geometry node, in the node's own coordinate system. Large
-// meshes have a bounding volume hierarchy. Used by the picker. [the browser's thread]
+// meshes have a bounding volume hierarchy, which is built where rays go: so the first ray waits for
+// one path of it alone, and hits do not depend on the rays before. Used by the picker. [the
+// browser's thread]
 #pragma once
 
 #include <limits>
@@ -45,14 +47,24 @@ class PickMesh {
   const PickBox& bounds() const { return bounds_; }
   // Finds the nearest hit. Back faces of solid geometry are ignored unless bothSides. Returns false
   // if nothing is hit.
-  bool intersect(const PickRay& ray, bool bothSides, MeshHit& hit) const;
+  bool intersect(const PickRay& ray, bool bothSides, MeshHit& hit);
 
  private:
-  struct BvhNode { // a box with two children at `next` and `next + 1`, or a leaf with triangles
-    PickBox box;
-    uint32_t first = 0, count = 0, next = 0; // count 0: an inner node
+  // A box with two children at `next` and `next + 1`, or with triangles.
+  struct BvhNode {
+    enum class State : uint8_t {
+      fresh,    // no ray has come: the box is not known
+      splits,   // it has triangles, and is to be split once a ray meets the box
+      remains,  // it has triangles
+      hasHalves // it has children
+    };
+    uint32_t first = 0, count = 0, next = 0;
+    uint8_t axis = 0; // along which it is split
+    State state = State::fresh;
+    PickBox box{};
   };
-  void split();
+  void measure(BvhNode& bvhNode) const;
+  void split(uint32_t number);
   bool sphere(const PickRay& ray, bool bothSides, MeshHit& hit) const;
   bool triangle(uint32_t index, PickRay& ray, bool bothSides, MeshHit& hit) const;
   Vector corner(uint32_t triangle, int k) const;

@@ -57,6 +57,7 @@ template <class Stats, class F> void forEachStatistic(Stats& s, F&& f) {
   f("cluster.duplicates", s.cluster.duplicates);
   f("cluster.bytesSent", s.cluster.bytesSent);
   f("cluster.bytesReceived", s.cluster.bytesReceived);
+  f("outdated", s.outdated);
 }
 
 using StatisticsVector = flatbuffers::Vector<flatbuffers::Offset<wire::Statistic>>;

@@ -61,6 +61,30 @@ AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
   return entry.blas;
 }
 
+// Returns whether there is an Embree scene of a part, maybe an outdated one.
+bool AccelBuilder::hasBlas(uint32_t part, const BuildInput& input) const {
+  const uint32_t object = input.flat.parts[part].object;
+  const auto found = blases_.lower_bound({object, true, 0, 0});
+  return found != blases_.end() && found->first.object == object && found->first.part;
+}
+
+uint64_t AccelBuilder::trianglesToBuild(const BuildInput& input,
+                                        const std::vector<uint32_t>& clusters,
+                                        const std::vector<uint32_t>& objects) const {
+  uint64_t triangles = 0;
+  for (const uint32_t id : objects) {
+    const Object& object = input.scene.objects.at(id);
+    const bool keepsTree = isRefitted(object) && object.geometries[0].rest;
+    if (!keepsTree) triangles += survey.parts()[survey.partOf(id)].triangles;
+  }
+  for (const uint32_t c : clusters) {
+    const Cluster& cluster = input.flat.clusters[c];
+    if (cluster.visible && !hasBlas(cluster.part, input))
+      triangles += survey.parts()[cluster.part].triangles;
+  }
+  return triangles;
+}
+
 // Drops the scenes that this build did not use, except those of parts that still exist, because
 // these parts may only be hidden.
 void AccelBuilder::evictUnused() {
@@ -140,8 +164,8 @@ std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t group
     forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t entry) {
       const Matrix4d matrix = toKernel * item.matrix * g.matrix;
       const uint32_t mask = maskOf(item, g, override);
-      if (deforms)
-        builder.addDeforming(g, matrix, entry, mask, former);
+      if (deforms) // frames may still trace the former tree
+        builder.addDeforming(g, matrix, entry, mask, input_->besideFrames ? nullptr : former);
       else
         builder.add(g, matrix, entry, mask);
     });

@@ -2,7 +2,8 @@
 // hash of all their input; after an edit those with an unchanged hash are reused. Moved clusters
 // and redefined dynamic objects change the Accel in place; every other edit makes a new Accel from
 // cached scenes. The result is always the same as that of a first build. Called on the application
-// thread, between frames.
+// thread, between frames; build() also on another thread beside frames, while nothing else is
+// called.
 #pragma once
 
 #include <map>
@@ -24,6 +25,7 @@ struct BuildInput {
   double scale = 1;
   double reach = 0; // the size of the scene (Survey), in the units of the kernels
   PixelFootprint footprint;
+  bool besideFrames = false; // frames trace the structures of before meanwhile
 };
 
 class AccelBuilder {
@@ -40,6 +42,9 @@ class AccelBuilder {
   //   thin      the pixel footprint changed, so all lines and points are rebuilt
   void update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters,
               const std::vector<uint32_t>& objects, bool thin);
+  // Returns about how many triangles update() would build into new Embree scenes.
+  uint64_t trianglesToBuild(const BuildInput& input, const std::vector<uint32_t>& clusters,
+                            const std::vector<uint32_t>& objects) const;
   // Returns whether an Accel has the origin, scale and reach of an input.
   static bool hasFrame(const Accel& accel, const BuildInput& input);
 
@@ -68,6 +73,7 @@ class AccelBuilder {
   };
 
   // Embree scenes of parts and objects (accel_blas.cpp).
+  bool hasBlas(uint32_t part, const BuildInput& input) const;
   uint32_t maskOf(uint32_t shader) const; // shader: id of a surface shader
   uint32_t overrideMask(uint32_t shader) const { return shader ? maskOf(shader) : 0; }
   uint32_t maskOf(const Item& item, const Geometry& geometry, uint32_t override) const;
