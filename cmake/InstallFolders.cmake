@@ -5,6 +5,7 @@ if(OPENRT_WHEEL)
   set(OPENRT_WINDOW OFF) # SDL needs a desktop's libraries, which a wheel cannot bring
   set(OPENRT_SERVER OFF) # libwebsockets links a TLS library
   set(OPENRT_FILMS OFF) # Debian's ffmpeg links a hundred libraries
+  set(OPENRT_STEP OFF) # Open CASCADE is larger than all the rest
   set(CMAKE_INSTALL_LIBDIR lib)
   set(CMAKE_INSTALL_BINDIR bin)
   set(CMAKE_INSTALL_LIBEXECDIR libexec)

@@ -41,6 +41,10 @@ if(TARGET rtut)
 endif()
 openrt_package(libxvrml libxvrml0 libs "libopenrt0 ${same}" "VRML97 scene graph"
   "Reads, runs and writes VRML97 worlds (ISO/IEC 14772-1): all nodes, events,\nsensors, prototypes and Scripts, and draws them through OpenRT. The package\nholds the libraries, the script engines, the process that Scripts run in, and\nthe one that decodes pictures and sounds.")
+if(TARGET xvrml-step-reader)
+  openrt_package(step xvrml-step graphics "libxvrml0 ${same}" "STEP models for vv and XVRML"
+    "The process that reads STEP models (ISO 10303-21) by Open CASCADE.")
+endif()
 openrt_package(dev libopenrt-dev libdevel "libopenrt0 ${same}, libxvrml0 ${same}, libimath-dev"
   "headers and tools for OpenRT and XVRML"
   "For programs that render or use worlds, and for plug-ins: shaders, nodes,\nscript engines. CMake packages openrt and xvrml, pkg-config files, the node\ngenerator nodegen, manual pages of the C interface.")

@@ -87,7 +87,7 @@ bool mayLeaveCameraOut(const xvrml::World& world, const View& view) {
 }
 
 bool leavesLookOpen(const RenderSettings& settings) {
-  return settings.background.kind == Background::Kind::world && settings.environment.empty() &&
+  return settings.background.kind == Background::Kind::world && !settings.hasSurroundings() &&
          !settings.studio.on;
 }
 

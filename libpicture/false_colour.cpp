@@ -22,21 +22,6 @@ namespace {
 using Colour = std::array<float, 3>;
 constexpr Colour black{0, 0, 0};
 
-// Returns the colour of a value from 0 to 1: A. Mikhailov, "Turbo, An Improved Rainbow Colormap for
-// Visualization", 2019, in its polynomial form.
-Colour turbo(double at) {
-  const double x = std::clamp(at, 0.0, 1.0);
-  const auto polynomial = [x](const double(&c)[6]) {
-    double sum = 0;
-    for (int i = 5; i >= 0; i--) sum = sum * x + c[i];
-    return float(std::clamp(sum, 0.0, 1.0));
-  };
-  return {
-      polynomial({.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943}),
-      polynomial({.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604}),
-      polynomial({.10667330, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973})};
-}
-
 // The letters of numbers and of the unit, 5 x 7 dots each; a row is a number of 5 bits.
 struct Glyph {
   char letter;
@@ -197,7 +182,7 @@ void drawLuminances(const std::vector<float>& luminance, int width, int height,
   eachRow(height, [&](int y) {
     for (int x = 0; x < width; x++) {
       const size_t at = size_t(y) * size_t(width) + size_t(x);
-      canvas.set(x, y, turbo(double(luminance[at]) / scale.top));
+      canvas.set(x, y, scaleColour(double(luminance[at]) / scale.top));
       // truncated like the positive numbers that light is
       level[at] = int(std::clamp(double(smooth[at]) / scale.step, lowest, highest) + 1);
     }
@@ -218,7 +203,7 @@ void drawLegend(const LuminanceScale& scale, int x, int height, Canvas& canvas) 
   canvas.write(left, line / 2, sizes.dot, unit);
   const int length = std::max(bottom - top, 1);
   for (int y = top; y < bottom; y++)
-    canvas.fill(left, y, bar, 1, turbo(1 - double(y - top) / length));
+    canvas.fill(left, y, bar, 1, scaleColour(1 - double(y - top) / length));
   int last = height + line;
   for (int i = 0; i <= labels; i++) {
     const int y = bottom - int(std::lround(double(length) * i / labels));
@@ -230,6 +215,21 @@ void drawLegend(const LuminanceScale& scale, int x, int height, Canvas& canvas) 
 }
 
 } // namespace
+
+// This is A. Mikhailov, "Turbo, An Improved Rainbow Colormap for
+// Visualization", 2019, in its polynomial form.
+std::array<float, 3> scaleColour(double at) {
+  const double x = std::clamp(at, 0.0, 1.0);
+  const auto polynomial = [x](const double(&c)[6]) {
+    double sum = 0;
+    for (int i = 5; i >= 0; i--) sum = sum * x + c[i];
+    return float(std::clamp(sum, 0.0, 1.0));
+  };
+  return {
+      polynomial({.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943}),
+      polynomial({.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604}),
+      polynomial({.10667330, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973})};
+}
 
 LuminanceScale luminanceScale(double most) {
   const double fine = most / 10, power = std::pow(10, std::floor(std::log10(fine)));

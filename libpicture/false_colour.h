@@ -2,6 +2,7 @@
 // legend in cd/m2. Pure functions. [any thread]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -15,6 +16,9 @@ struct LuminanceScale {
 };
 // Returns a scale of 5 to 10 steps up to `most` or the next round value above it. most: above 0.
 LuminanceScale luminanceScale(double most);
+
+// Returns the display colour of a share of the scale, from 0 to 1.
+std::array<float, 3> scaleColour(double at);
 
 // Returns the luminance that 99.5 % of the pixels stay below; 1 if the picture is black.
 double mostLuminance(const Picture& picture);

@@ -9,6 +9,7 @@
 #include "libpicture/files/film.h"
 #include "libpicture/live/oidn.h"
 #include "system/process.h"
+#include "xvrml/file_head.h"
 #include "xvrml/script_engines.h"
 
 namespace picture {
@@ -70,6 +71,15 @@ void addEngines(std::string_view scriptPath, std::vector<Feature>& rows) {
       rows.push_back({engine.name, "Scripts: " + engine.text, true, "", engine.library, ""});
 }
 
+Feature stepModels() {
+  Feature row{.name = "step", .text = "models in STEP (.step, .stp)"};
+  const std::string why = xvrml::whyNotReadable(xvrml::Encoding::step);
+  row.available = why.empty();
+  row.detail = row.available ? "Open CASCADE" : why;
+  if (!row.available) row.how = "build with Open CASCADE 7.6 (Debian: libocct-data-exchange-dev)";
+  return row;
+}
+
 Feature sandbox() {
   Feature row{.name = "seccomp",
               .text = "a filter of system calls around Scripts and decoders of worlds"};
@@ -92,6 +102,7 @@ std::vector<Feature> listFeatures(std::string_view scriptPath) {
                             film(FilmKind::gif, "gif")};
   addEngines(scriptPath, rows);
   rows.push_back(sandbox());
+  rows.push_back(stepModels());
   return rows;
 }
 

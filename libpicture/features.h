@@ -19,8 +19,9 @@ struct Feature {
   std::string how;  // how to get it; "" if it is available
 };
 
-// Returns the rows of denoising, films, script engines and their sandbox. A library for denoising
-// is tried in a child process. scriptPath: folders that are searched first for script engines.
+// Returns the rows of denoising, films, script engines and their sandbox, and STEP models. A
+// library for denoising is tried in a child process. scriptPath: folders that are searched first
+// for script engines.
 std::vector<Feature> listFeatures(std::string_view scriptPath = {});
 
 } // namespace picture

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
+#include "libpicture/glare.h"
 #include "libpicture/stage.h"
 #include "libpicture/vec.h"
 #include "xvrml/nodes.h"
@@ -72,9 +74,12 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
   PlacedSensor out;
   out.name = nameOf(info, node);
   const auto refuseThis = [&](const std::string& what) { refuse(out.name, what); };
-  if (node.quantity != "ILLUMINANCE" && node.quantity != "LUMINANCE")
-    refuseThis(fmt::format("quantity is ILLUMINANCE or LUMINANCE, not \"{}\"", node.quantity));
-  out.luminance = node.quantity == "LUMINANCE";
+  const auto* const wanted =
+      std::find_if(std::begin(quantityTable), std::end(quantityTable),
+                   [&](const QuantityInfo& info) { return node.quantity == info.word; });
+  if (wanted == std::end(quantityTable))
+    refuseThis(fmt::format("quantity is ILLUMINANCE, LUMINANCE or UGR, not \"{}\"", node.quantity));
+  out.quantity = Quantity(wanted - quantityTable);
   out.columns = node.columns;
   out.rows = node.rows;
   if (out.columns < 1 || out.rows < 1 || int64_t(out.columns) * out.rows > mostPoints)
@@ -94,7 +99,8 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
   const Vec u = turned(m, a), v = turned(m, b), area = cross(v, u);
   const Vec position = turned(m, of(node.position)) + load(m + 12);
   const double mirrored = dot(area, turned(m, n)) < 0 ? -1 : 1;
-  const Vec direction = out.luminance ? turned(m, n) : area * mirrored;
+  const bool looks = out.quantity != Quantity::illuminance;
+  const Vec direction = looks ? turned(m, n) : area * mirrored;
   const double size = length(direction), extent = length(u) * length(v);
   if (!(size > 0) || !std::isfinite(size) || !(length(area) > 1e-9 * extent) ||
       !std::isfinite(length(position)))
@@ -125,6 +131,48 @@ PlacedSensor sensorAt(const double point[3], const double normal[3], const doubl
   return out;
 }
 
+// Turns the illuminances at the eyes of observers into glare ratings.
+void Stage::rate(const std::vector<Luminaire>& luminaires, Measurement& m) const {
+  std::vector<RTrayd> rays(luminaires.size());
+  std::vector<uint8_t> hidden(luminaires.size());
+  for (size_t i = 0; i < m.value.size(); i++) {
+    double point[3], up[3];
+    m.sensor.pointAt(int(i) % m.sensor.columns, int(i) / m.sensor.columns, point);
+    xvrml::upVector(up_, up);
+    const Observer observer{load(point), load(m.sensor.direction), load(up)};
+    for (size_t k = 0; k < luminaires.size(); k++) {
+      const Vec way = luminaires[k].place + observer.eye * -1;
+      rays[k] = {{point[0], point[1], point[2]}, 0, {way.x, way.y, way.z}, 1 - 1e-5};
+    }
+    rtOccludedRaysd(rays.size(), rays.data(), hidden.data());
+    GlareSources sources;
+    for (size_t k = 0; k < luminaires.size(); k++)
+      if (!hidden[k]) sources.add(observer, luminaires[k].from(observer.eye));
+    const GlareRating rating = glareRating(sources, double(m.value[i]), double(m.halfWidth[i]));
+    m.value[i] = float(rating.value);
+    m.halfWidth[i] = float(rating.halfWidth);
+    m.trusted[i] = m.trusted[i] && std::isfinite(rating.halfWidth);
+  }
+  throwOnError("finding the luminaires that an observer sees");
+}
+
+std::vector<Luminaire> Stage::luminaires() const {
+  return Luminaire::read(mapper_->lamps(), *world_);
+}
+
+// Returns the luminaires for glare ratings. Throws SensorError if one cannot be rated.
+std::vector<Luminaire> Stage::glaringLuminaires(const PlacedSensor& sensor) const {
+  std::vector<Luminaire> all = luminaires();
+  for (const Luminaire& one : all) {
+    const std::string& why = one.problem;
+    if (!why.empty() || !one.hasOpening())
+      refuse(sensor.name, fmt::format("UGR: the luminaire {}{} cannot be rated: {}", one.name,
+                                      one.file.empty() ? "" : " (" + one.file + ")",
+                                      why.empty() ? "its file has no luminous opening" : why));
+  }
+  return all;
+}
+
 // Sensors see neither the headlight nor the light that vv adds to models without light: only lamps
 // of the world count. Billboards and levels of detail are those of the view.
 void Stage::prepareSensors(const View& view) {
@@ -133,6 +181,7 @@ void Stage::prepareSensors(const View& view) {
   mapper_->setBackground(settings.background.kind == Background::Kind::world);
   mapper_->map(cameraOf(view));
   useEnvironment();
+  up_ = upOf(*mapper_, view);
   if (memoryExhausted_) throw std::bad_alloc();
 }
 
@@ -161,7 +210,11 @@ Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& giv
   Measurement out;
   out.sensor = sensor;
   double matrix[16];
-  const double lift = sensor.luminance ? 0 : liftOfRadius * mapper_->boundingSphere().radius;
+  const bool isLit = sensor.quantity == Quantity::illuminance,
+             isRated = sensor.quantity == Quantity::glare;
+  std::vector<Luminaire> lamps;
+  if (isRated) lamps = glaringLuminaires(sensor);
+  const double lift = isLit ? liftOfRadius * mapper_->boundingSphere().radius : 0;
   sensor.camera(lift, matrix);
   rtLoadMatrixd(matrix);
   rtOrtho(sensor.rows);
@@ -171,9 +224,10 @@ Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& giv
   frame.crop = {};
   frame.channels = RT_RGBA | RT_ERROR | RT_TRUST | RT_SAMPLES;
   frame.progressive = frame.preview = false;
-  frame.quality.set(RT_MEASURE, sensor.luminance ? RT_MEASURE_LUMINANCE : RT_MEASURE_ILLUMINANCE);
-  // Light paths give means over cells. Points without cells follow paths alone.
-  if (!sensor.cells && frame.quality.whole(RT_TRANSPORT) == RT_TRANSPORT_LIGHT)
+  frame.quality.set(RT_MEASURE, sensor.quantity == Quantity::luminance ? RT_MEASURE_LUMINANCE
+                                                                       : RT_MEASURE_ILLUMINANCE);
+  // Light paths give means over cells. Points without cells follow paths alone, and so do eyes.
+  if ((!sensor.cells || isRated) && frame.quality.whole(RT_TRANSPORT) == RT_TRANSPORT_LIGHT)
     frame.quality.set(RT_TRANSPORT, RT_TRANSPORT_PATH);
   setUpFrame(frame);
   rtSwapBuffers();
@@ -193,6 +247,8 @@ Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& giv
     out.trusted.push_back(trust[i] > 0);
     out.samples.push_back(uint32_t(samples[i]));
   }
+  if (isRated) rate(lamps, out);
+  if (isLit && settings.sky && settings.sky->isOvercast()) out.outdoors = settings.sky->outdoors();
   out.stats.size = sizeof out.stats;
   rtGetStats(&out.stats);
   return out;

@@ -18,6 +18,7 @@
 #include "libpicture/live/oidn.h"
 #include "libpicture/live/preview_settings.h"
 #include "libpicture/live/reconstruction.h"
+#include "libpicture/luminaires.h"
 #include "libpicture/measure.h"
 #include "libpicture/stage.h"
 #include "libpicture/sums.h"
@@ -441,6 +442,12 @@ std::vector<Measurement> Renderer::measure(const View& view) {
     impl_->apply(worldChanges);
     impl_->measure(view, out);
   });
+  return out;
+}
+
+std::vector<Luminaire> Renderer::luminaires() {
+  std::vector<Luminaire> out;
+  impl_->run([&] { out = impl_->stage.luminaires(); });
   return out;
 }
 

@@ -18,6 +18,7 @@
 #include "libpicture/doubt.h"
 #include "libpicture/files/picture.h"
 #include "libpicture/quality.h"
+#include "libpicture/sky/sky.h"
 #include "libpicture/studio.h"
 #include "openrt/openrt.h"
 #include "xvrml/browser.h"
@@ -27,6 +28,7 @@ namespace picture {
 
 class Cluster;
 class Sums;
+class Luminaire;
 struct Measurement;
 
 // Says what smooths the light of previews (live/reconstruction.h).
@@ -66,8 +68,9 @@ struct RenderSettings {
   std::string shaderPath;  // folders, separated by colons
   std::string environment; // Environment map (radiance.h) that replaces the world's Background.
   double environmentIntensity = 1;
-  Background background; // Every kind except Kind::world excludes `environment`.
-  Studio studio;         // on: replaces the world's Background; excludes the two above
+  std::optional<Sky> sky; // daylight that replaces the world's Background; excludes `environment`
+  Background background;  // Every kind except Kind::world excludes the two above.
+  Studio studio;          // on: replaces the world's Background; excludes the three above
   // Each picture is rebuilt from its samples and those of the renderer's earlier pictures
   // (live/reconstruction.h). It has only the channel rgba, it is biased, and Picture::note says so.
   // A picture that was interrupted has its samples as they are, and no note. For pictures of one
@@ -80,6 +83,8 @@ struct RenderSettings {
   Denoiser denoiser = Denoiser::own;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
+  // Returns whether an environment replaces the world's Background.
+  bool hasSurroundings() const { return !environment.empty() || sky; }
   // The size of the picture that is made.
   int madeWidth() const { return crop.width > 0 ? crop.width : width; }
   int madeHeight() const { return crop.width > 0 ? crop.height : height; }
@@ -188,6 +193,9 @@ class Renderer {
   // samples and limits are those of the settings; a time limit is shared by the sensors. The view
   // chooses billboards and levels of detail. Throws SensorError if a sensor has wrong fields.
   std::vector<Measurement> measure(const View& view);
+  // Returns the lights of the class Luminaire, in the order of the file (libpicture/luminaires.h).
+  // [after measure()]
+  std::vector<Luminaire> luminaires();
 
   // Overlapping frames, for settings with a cluster. start() returns when the world is mapped and
   // the frame is under way; the world may then change. finish() waits for the oldest frame. Each

@@ -262,7 +262,7 @@ void Stage::prepare(const View& view) {
   const bool studio = settings.studio.on;
   mapper_->setHeadlight(studio && settings.headlight == Headlight::automatic ? Headlight::off
                                                                              : settings.headlight);
-  mapper_->setModelLight(settings.environment.empty() && !studio);
+  mapper_->setModelLight(!settings.hasSurroundings() && !studio);
   mapper_->setBackground(showsBackground());
   place(view);
   mapper_->map(shown_);
@@ -309,14 +309,17 @@ void Stage::readBackground() {
   background_ = settings.background;
 }
 
-// Sets the user's environment map. The mapper replaces it with its own when the world's changes.
+// Sets the user's environment map or sky. The mapper replaces it with its own when the world's
+// changes.
 void Stage::useEnvironment() {
-  if (settings.environment.empty()) return;
+  if (!settings.hasSurroundings()) return;
   if (environment_ == 0) {
-    const xvrml::RadianceImage around = readRadiance(settings.environment);
+    const xvrml::RadianceImage around =
+        settings.sky ? pictureOf(*settings.sky) : readRadiance(settings.environment);
     environment_ =
         makeEnvironmentMap(around.width, around.height, around.rgb.data(), environmentTexture_);
-    rtParameter1f(rtParameterHandle("intensity"), float(settings.environmentIntensity));
+    rtParameter1f(rtParameterHandle("intensity"),
+                  float(settings.sky ? 1 : settings.environmentIntensity));
     rtBindShader(0);
   }
   rtLoadIdentity();

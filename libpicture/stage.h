@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "libpicture/luminaires.h"
 #include "libpicture/measure.h"
 #include "libpicture/renderer.h"
 
@@ -70,6 +71,8 @@ class Stage {
   void prepareSensors(const View& view);
   // Returns the sensors of the world. Throws SensorError. [after prepareSensors]
   std::vector<PlacedSensor> placeSensors() const;
+  // Returns the luminaires of the world. [after prepareSensors]
+  std::vector<Luminaire> luminaires() const;
   // Reads sensors, one after the other, which share the time limit. Ends early when cancelled
   // becomes true. [after prepareSensors]
   std::vector<Measurement> measure(const std::vector<PlacedSensor>& sensors, RenderSettings frame,
@@ -101,6 +104,8 @@ class Stage {
   void readBackground();
   Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame,
                       const std::atomic<bool>& cancelled);
+  void rate(const std::vector<Luminaire>& luminaires, Measurement& m) const;
+  std::vector<Luminaire> glaringLuminaires(const PlacedSensor& sensor) const;
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
 
@@ -112,6 +117,7 @@ class Stage {
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
   RTid environment_ = 0, environmentTexture_ = 0;
+  xvrml::Axis up_ = xvrml::Axis::y; // for observers of glare
   StudioSet studio_;
   BackgroundLayer backgroundLayer_{{}, true}; // drawn behind the frames, as `background_` says
   Background background_;

@@ -75,9 +75,9 @@ STAGES = [
     Stage("script-worlds", "100,000 random worlds of Scripts with ASan and UBSan (after `asan`)",
           "XVRML_RANDOM_WORLDS=1:100000 build/asan-ubsan/bin/conformance "
           "--gtest_filter='ScriptEnds.Worlds*'"),
-    Stage("decoder", "10,000 mutants of each of 18 files for the process that decodes pictures and "
-          "sounds (after `asan`)", "XVRML_DECODER_MUTANTS=10000 build/asan-ubsan/bin/unit_xvrml "
-          "--gtest_filter='Decoder.Damaged*'"),
+    Stage("decoder", "10,000 mutants of each of 18 pictures and sounds, and of two STEP models, for "
+          "the processes that decode them (after `asan`)", "XVRML_DECODER_MUTANTS=10000 build/asan-ubsan/bin/unit_xvrml "
+          "--gtest_filter='Decoder.Damaged*:StepModels.Damaged*'"),
     Stage("fuzz", f"every target of `make fuzz` {FUZZ_RUNS:,} times; executions on the same "
           "sources add up", ""),
     Stage("embree-4", "`make test-embree4`: all tests against Embree 4 in a Debian 13",

@@ -1,6 +1,7 @@
 // module.cpp: Defines the extension module xvrml._xvrml, load() and the exceptions.
 #include <cerrno>
 #include <cstring>
+#include <limits>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -69,9 +70,12 @@ template <class Load> std::unique_ptr<World> loadWith(Load load) {
   return made;
 }
 
-WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute) {
+WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute,
+              double stepError) {
+  if (!(stepError >= 0 && stepError <= std::numeric_limits<double>::max()))
+    throw py::value_error("step_error: millimetres, from 0 on, expected");
   auto made = std::make_shared<WorldObject>();
-  made->world = loadSource(source, limits, allowAbsolute);
+  made->world = loadSource(source, limits, allowAbsolute, stepError);
   return made;
 }
 
@@ -125,8 +129,9 @@ void findNumpy() {
 } // namespace
 
 std::unique_ptr<World> loadSource(const py::object& source, const py::object& limits,
-                                  bool allowAbsolute) {
+                                  bool allowAbsolute, double stepError) {
   LoadOptions options;
+  options.stepError = stepError;
   options.allowAbsolute = allowAbsolute;
   if (!limits.is_none()) {
     if (!py::isinstance<py::dict>(limits))
@@ -204,7 +209,9 @@ PYBIND11_MODULE(_xvrml, module) {
              "Loads the node plug-ins of these folders (separated by colons), of $XVRML_NODE_PATH "
              "and of the installation. Returns a message for each refused plug-in.");
   module.def("load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(),
-             py::arg("allow_absolute") = false,
+             py::arg("allow_absolute") = false, py::arg("step_error") = 0.0,
              "Loads a world from a file name, bytes or a file object. Raises ParseError or "
-             "OSError. World.warnings has the problems of single nodes.");
+             "OSError. World.warnings has the problems of single nodes. step_error: how far the "
+             "triangles of STEP models are from their surfaces at most, in millimetres; 0: a "
+             "thousandth of the size of each part.");
 }

@@ -187,7 +187,7 @@ void refuseLoops(const NodeObject& owner, const xvrml::FieldInfo& field, const x
 
 // Loads a world from a file name, bytes or a file object. Raises ParseError or OSError.
 std::unique_ptr<xvrml::World> loadSource(const py::object& source, const py::object& limits,
-                                         bool allowAbsolute);
+                                         bool allowAbsolute, double stepError = 0);
 
 // Converts a file name: str or os.PathLike.
 std::string toPath(const py::handle& path);

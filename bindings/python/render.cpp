@@ -210,24 +210,24 @@ py::array_t<double> positionsOf(const picture::Measurement& m) {
 using Place = std::array<double, 3>;
 Place placeOf(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
 
-constexpr int pickleVersion = 1;
+constexpr int pickleVersion = 2;
 
-// Returns the pickled members: version, name, luminance, cells, first, column, row, direction,
-// values, half-widths, trusted, samples, stats.
+// Returns the pickled members: version, name, quantity, cells, first, column, row, direction,
+// values, half-widths, trusted, samples, stats, outdoors.
 py::tuple pickled(const MeasurementObject& object) {
   const picture::Measurement& m = object.readings;
   const picture::PlacedSensor& s = m.sensor;
-  return py::make_tuple(pickleVersion, s.name, s.luminance, s.cells, placeOf(s.first),
+  return py::make_tuple(pickleVersion, s.name, int(s.quantity), s.cells, placeOf(s.first),
                         placeOf(s.column), placeOf(s.row), placeOf(s.direction), gridOf(m, m.value),
                         gridOf(m, m.halfWidth), gridOf(m, m.trusted), gridOf(m, m.samples),
-                        object.stats);
+                        object.stats, m.outdoors);
 }
 
 MeasurementObject unpickled(const py::tuple& state) {
   const auto refuse = [] {
     throw py::value_error("this is no pickled Measurement of this version");
   };
-  if (state.size() != 13 || !py::isinstance<py::int_>(state[0]) ||
+  if (state.size() != 14 || !py::isinstance<py::int_>(state[0]) ||
       state[0].cast<int>() != pickleVersion)
     refuse();
   MeasurementObject object;
@@ -235,7 +235,9 @@ MeasurementObject unpickled(const py::tuple& state) {
   picture::PlacedSensor& s = m.sensor;
   try {
     s.name = state[1].cast<std::string>();
-    s.luminance = state[2].cast<bool>();
+    const int quantity = state[2].cast<int>();
+    if (quantity < 0 || quantity >= int(std::size(picture::quantityTable))) refuse();
+    s.quantity = picture::Quantity(quantity);
     s.cells = state[3].cast<bool>();
     double(*const places[])[3] = {&s.first, &s.column, &s.row, &s.direction};
     for (size_t i = 0; i < 4; i++) {
@@ -244,6 +246,7 @@ MeasurementObject unpickled(const py::tuple& state) {
     }
     if (!py::isinstance<py::dict>(state[12])) refuse();
     object.stats = py::reinterpret_borrow<py::dict>(state[12]);
+    m.outdoors = state[13].cast<double>();
   } catch (const py::cast_error&) { refuse(); }
   bool first = true;
   const auto take = [&](size_t member, auto& to) {
@@ -317,10 +320,9 @@ void defineMeasurement(py::module_& module) {
                 "value lies within half_widths of the truth with a probability of 95 %.")
       .def_property_readonly("name", [](const M& m) { return m.readings.sensor.name; })
       .def_property_readonly(
-          "quantity",
-          [](const M& m) { return m.readings.sensor.luminance ? "luminance" : "illuminance"; })
+          "quantity", [](const M& m) { return picture::infoOf(m.readings.sensor.quantity).name; })
       .def_property_readonly(
-          "unit", [](const M& m) { return m.readings.sensor.luminance ? "cd/m2" : "lx"; })
+          "unit", [](const M& m) { return picture::infoOf(m.readings.sensor.quantity).unit; })
       .def_property_readonly("direction",
                              [](const M& m) {
                                const double* d = m.readings.sensor.direction;
@@ -337,6 +339,10 @@ void defineMeasurement(py::module_& module) {
       .def_property_readonly("samples",
                              [](const M& m) { return gridOf(m.readings, m.readings.samples); })
       .def_property_readonly("stats", [](const M& m) { return m.stats; })
+      .def_property_readonly(
+          "outdoors", [](const M& m) { return m.readings.outdoors; },
+          "Lux of a horizontal plane in the open, under an overcast sky; 0: there is none. Values "
+          "over it are daylight factors.")
       .def("__repr__",
            [](const M& m) {
              return fmt::format("<xvrml.Measurement {}, {} x {} points>", m.readings.sensor.name,
@@ -356,12 +362,13 @@ void defineRender(py::object worldClass) {
                     qualityParameter<double>(RT_TARGET_ERROR),
                     qualityParameter<double>(RT_TIME_LIMIT), parameter("cluster", &A::cluster),
                     parameter("progress", &A::progress), parameter("exact_shapes", &A::exactShapes),
-                    parameter("point_size", &A::pointSize), parameter("line_width", &A::lineWidth)),
+                    parameter("point_size", &A::pointSize), parameter("line_width", &A::lineWidth),
+                    parameter("sky", &A::sky)),
       "Reads the ORTSensors of the world in its current state and returns a list of "
-      "Measurement, in the order of the file: lux or cd/m2 with 95 % intervals. The "
+      "Measurement, in the order of the file: lux, cd/m2 or UGR with 95 % intervals. The "
       "options are those of vv --measure. spp: samples per point (default 4096; with "
       "error and time_limit the maximum). error: the mean relative half-width at which "
-      "sampling ends.");
+      "sampling ends. sky: daylight, as --sky.");
   defineMethod(
       world, "render", render,
       parameterList(
@@ -384,7 +391,7 @@ void defineRender(py::object worldClass) {
                     parameter("preset", &A::preset), parameter("studio", &A::studio),
                     parameter("from_", &A::from), parameter("ortho", &A::ortho),
                     parameter("raster", &A::raster), parameter("point_size", &A::pointSize),
-                    parameter("line_width", &A::lineWidth)),
+                    parameter("line_width", &A::lineWidth), parameter("sky", &A::sky)),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
       "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "
@@ -404,6 +411,7 @@ void defineRender(py::object worldClass) {
       "gives to shapes stay. studio: light of a studio before a backdrop of this colour. from_: "
       "'three-quarter', 'front', 'top' ..., as --from. A model without light, viewpoint and "
       "background is shown before a grey backdrop; studio=False or background='black' leaves it. "
+      "sky: daylight instead of the world's Background, as --sky of vv. "
       "raster: draws by a z-buffer instead of rays, for a first look at a large world, as "
       "--preview-raster of vv; the picture has the channel rgba alone. "
       "progress: True for a bar, or a function that is called with the fraction done. Ctrl-C "

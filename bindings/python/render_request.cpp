@@ -315,6 +315,19 @@ void setStudio(const char*, const Given& given, RenderRequest& request) {
   settings.studio = {true, read.colour};
 }
 
+void setSky(const char* name, const Given& given, RenderRequest& request) {
+  if (!given.sky) return;
+  Settings& settings = request.settings;
+  if (settings.background.kind != picture::Background::Kind::world || settings.studio.on)
+    throw py::value_error(fmt::format("{}: it is all around: not with background or studio", name));
+  try {
+    settings.sky = picture::readSky(*given.sky);
+  } catch (const std::exception& wrong) {
+    throw py::value_error(fmt::format("{}: {}", name, wrong.what()));
+  }
+  request.isLookOpen = false;
+}
+
 void setFrom(const char* name, const Given& given, RenderRequest& request) {
   if (!given.from) return;
   request.view.side = picture::sideNamed(*given.from);
@@ -365,6 +378,7 @@ constexpr Rule rules[] = {
     {"from_", setFrom},
     {"background", setBackground},
     {"studio", setStudio},
+    {"sky", setSky},
     {"exposure", setExposure},
 };
 

@@ -35,7 +35,7 @@ struct RenderArguments {
   std::string view = "standard";
   py::object crop = py::none();
   py::object studio = py::none(); // a colour, or False: neither a studio nor the look of models
-  std::optional<std::string> from, preset;
+  std::optional<std::string> from, preset, sky;
   std::optional<std::string> studioColour; // set by the preset; no parameter of Python
   picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
 };

@@ -106,7 +106,7 @@ void save(const WorldPtr& self, const py::object& file) {
         for (const std::string& remark : exported.remarks) world.diagnostics.warn({}, remark);
       } else {
         picture::writeFile(path, writeWorld(world, path));
-        for (const std::string& change : changesByWriting(world, writtenEncoding(path)))
+        for (const std::string& change : changesByWriting(world, path, writtenEncoding(path)))
           world.diagnostics.warn({}, change);
       }
     } catch (const std::runtime_error& error) { failure = error.what(); }
@@ -228,21 +228,24 @@ const NodeObject& add(const WorldPtr& self, const NodeObject& added,
   const auto lock = self->lock();
   if (name) setName(self, added, *name);
   if (from->loose()) from->joined = self;
-  auto& roots = self->graph().scope.roots;
-  if (Browser* browser = self->browser())
+  if (Browser* browser = self->browser()) {
     self->change([&] { browser->addRoot(added.node); });
-  else if (std::find(roots.begin(), roots.end(), added.node) == roots.end())
-    roots.push_back(added.node);
+    return added;
+  }
+  World& world = self->graph();
+  auto& roots = world.scope.roots;
+  if (std::find(roots.begin(), roots.end(), added.node) == roots.end()) roots.push_back(added.node);
+  world.edited = true;
   return added;
 }
 
 void removeNode(const WorldPtr& self, const NodeObject& removed) {
   Node& node = own(self, removed);
   const auto lock = self->lock();
-  if (Browser* browser = self->browser())
-    self->change([&] { browser->removeRoot(node); });
-  else
-    std::erase(self->graph().scope.roots, removed.node);
+  if (Browser* browser = self->browser()) return self->change([&] { browser->removeRoot(node); });
+  World& world = self->graph();
+  std::erase(world.scope.roots, removed.node);
+  world.edited = true;
 }
 
 WorldPtr emptyWorld() {

@@ -17,6 +17,7 @@
 #include <CLI/CLI.hpp>
 
 #include "backend/cluster/net/keys.h"
+#include "backend/cluster/net/metrics_server.h"
 #include "backend/cluster/worker/serve.h"
 #include "enough_stack.h"
 #include "nearest.h"
@@ -41,12 +42,14 @@ enum ExitCode {
 };
 
 constexpr const char* defaultAddress = "127.0.0.1:7447";
+constexpr const char* defaultShare = "127.0.0.1:0";
+constexpr const char* metricsPort = ":9447";
 constexpr unsigned graceSeconds = 1; // seconds from a signal to a forced exit
 
 struct Options {
-  std::string listen, connect, key, allow, newKey, shaderPath;
+  std::string listen, connect, key, allow, newKey, shaderPath, folder, share, metrics;
   uint32_t threads = 0;
-  size_t cache = 1024; // MB
+  size_t cache = 1024, folderSize = 10240; // MB
   bool once = false, quiet = false;
 };
 
@@ -70,6 +73,13 @@ int reportError(ExitCode code, const std::string& message) {
   return code;
 }
 
+// Returns the address with a port: that of the address, if it has one.
+std::string withPort(const std::string& address, const std::string& port) {
+  const size_t end = address.rfind(']'), colon = address.rfind(':');
+  const bool has = colon != address.npos && (end == address.npos || colon > end);
+  return has ? address : address + port;
+}
+
 std::string unknownArgument(const CLI::App& app, const std::string& argument) {
   if (!argument.starts_with('-')) return "\"" + argument + "\" was not expected";
   std::vector<std::string> names;
@@ -80,9 +90,8 @@ std::string unknownArgument(const CLI::App& app, const std::string& argument) {
          (near.empty() ? "; openrt-worker --help lists them" : "; did you mean " + near + "?");
 }
 
-std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
-  Options o;
-  CLI::App app("Renders parts of pictures for masters on other machines.", "openrt-worker");
+void declareOptions(CLI::App& app, Options& o) {
+  const auto megabytes = CLI::Range(size_t(0), size_t(1) << 24);
   auto* listen = app.add_option("--listen", o.listen,
                                 "wait for masters at [ADDRESS][:PORT] (default 127.0.0.1:7447; "
                                 "port 0: any that is free)")
@@ -104,7 +113,22 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
                  "folders with shader libraries, separated by colons");
   app.add_option("--cache", o.cache,
                  "megabytes of arrays to keep for the next scene (default 1024)")
-      ->check(CLI::Range(size_t(0), size_t(1) << 24));
+      ->check(megabytes);
+  auto* folder = app.add_option("--cache-folder", o.folder,
+                                "keep arrays in this folder, too; workers of one user may use one "
+                                "together, also on a shared disk");
+  app.add_option("--cache-folder-size", o.folderSize,
+                 "megabytes that the folder may have (default 10240)")
+      ->check(megabytes)
+      ->needs(folder);
+  app.add_option("--share", o.share,
+                 "pass arrays on to other workers of a master, which ask at [ADDRESS][:PORT] "
+                 "(default 127.0.0.1:0; port 0: any that is free)")
+      ->expected(0, 1)
+      ->needs(folder);
+  app.add_option("--metrics", o.metrics,
+                 "answer Prometheus at http://[ADDRESS][:PORT]/metrics (default 127.0.0.1:9447)")
+      ->expected(0, 1);
   app.add_flag("--once", o.once, "exit when the first master has left");
   app.add_flag("-q,--quiet", o.quiet, "print errors only");
   app.set_version_flag("--version", std::string("openrt-worker ") +
@@ -112,6 +136,12 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
                                         std::to_string(OPENRT_VERSION_MINOR) + "." +
                                         std::to_string(OPENRT_VERSION_PATCH));
   app.allow_extras(); // an unknown option gets a message with a suggestion
+}
+
+std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
+  Options o;
+  CLI::App app("Renders parts of pictures for masters on other machines.", "openrt-worker");
+  declareOptions(app, o);
   try {
     app.parse(optionWords(argc, argv, app));
     // An empty value, perhaps of a variable that is not set, must not mean that there is none.
@@ -119,6 +149,7 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
          {std::pair<const char*, const std::string*>{"--connect", &o.connect},
           {"--key", &o.key},
           {"--allow", &o.allow},
+          {"--cache-folder", &o.folder},
           {"--new-key", &o.newKey}})
       if (app.count(name) > 0 && value->empty())
         throw CLI::ValidationError(name, "a value was expected, not \"\"");
@@ -133,6 +164,8 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
     return std::nullopt;
   }
   if (o.connect.empty() && o.listen.empty()) o.listen = defaultAddress;
+  if (app.count("--share") > 0 && o.share.empty()) o.share = defaultShare;
+  if (app.count("--metrics") > 0) o.metrics = withPort(o.metrics, metricsPort);
   return o;
 }
 
@@ -166,11 +199,16 @@ int serve(const Options& o) {
   options.backend.threads = o.threads;
   options.backend.shaders = &shaders;
   options.cacheBytes = o.cache << 20;
+  options.folder = o.folder;
+  options.folderBytes = uint64_t(o.folderSize) << 20;
+  options.share = o.share;
   options.once = o.once;
   options.log = [quiet = o.quiet](int level, const std::string& text) {
     report(quiet, level, text);
   };
   WorkerService worker(options);
+  std::optional<MetricsServer> metrics;
+  if (!o.metrics.empty()) metrics.emplace(o.metrics, [&worker] { return worker.metrics(); });
   service = &worker;
   if (!o.quiet) {
     const char* how =
@@ -179,6 +217,7 @@ int serve(const Options& o) {
       std::printf("listening at %s (%s)\n", worker.address().c_str(), how);
     else
       std::printf("calling %s (%s)\n", o.connect.c_str(), how);
+    if (metrics) std::printf("metrics at http://%s/metrics\n", metrics->address().c_str());
     std::fflush(stdout);
   }
   worker.run();

@@ -19,6 +19,7 @@ constexpr Format table[] = {
     {"JPEG", {"jpg", "jpeg"}, false, true, true, encodeJpeg},
     {"PPM", {"ppm"}, false, true, true, encodePpm},
     {"PFM", {"pfm"}, false, false, false, encodePfm},
+    {"HDR", {"hdr"}, false, false, true, encodeHdr},
 };
 
 } // namespace

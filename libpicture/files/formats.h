@@ -35,6 +35,7 @@ std::string formatsWith(bool Format::*property);
 
 // The encoders of the table, one file each.
 std::string encodeExr(const Picture& picture);
+std::string encodeHdr(const Picture& picture);
 std::string encodeJpeg(const Picture& picture);
 std::string encodePfm(const Picture& picture);
 std::string encodePng(const Picture& picture);

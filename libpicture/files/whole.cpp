@@ -10,6 +10,8 @@
 
 #include <zlib.h>
 
+#include "xvrml/radiance.h"
+
 namespace picture {
 
 namespace {
@@ -52,6 +54,13 @@ bool isWholePixmap(std::string_view bytes, int bytesOfPixel) {
          bytes.size() == size_t(used) + 1 + size_t(width) * size_t(height) * size_t(bytesOfPixel);
 }
 
+bool isWholeHdr(std::string_view bytes) {
+  try {
+    xvrml::decodeRadiance(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+    return true;
+  } catch (const std::exception&) { return false; }
+}
+
 } // namespace
 
 bool isWholePicture(const std::string& path, const Format& format) {
@@ -65,6 +74,7 @@ bool isWholePicture(const std::string& path, const Format& format) {
   if (!file) return false;
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (format.encode == encodePng) return isWholePng(bytes);
+  if (format.encode == encodeHdr) return isWholeHdr(bytes);
   if (format.encode == encodeJpeg) return isWholeJpeg(bytes);
   return isWholePixmap(bytes, format.encode == encodePfm ? 12 : 3);
 }

@@ -32,8 +32,9 @@ class Budget {
   // Returns "limit worldBytes=4294967296", for messages.
   std::string name() const;
 
-  // The process that decodes files of the world. decoderOf() makes it; it ends with the budget.
-  std::shared_ptr<Decoder> decoder;
+  // The processes that decode files of the world: pictures and sounds, and STEP models. decoderOf()
+  // makes them; they end with the budget.
+  std::shared_ptr<Decoder> decoder, stepReader;
 
  private:
   const uint64_t limit_;

@@ -22,6 +22,7 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addAudioClipBehaviours(add);
   addMovieTextureBehaviours(add);
   addTextBehaviours(add);
+  addMotionBehaviours(add);
   addParticleBehaviours(add);
 }
 

@@ -34,6 +34,7 @@ void addTimeSensorBehaviours(const AddBehaviour& add);
 void addAudioClipBehaviours(const AddBehaviour& add);
 void addMovieTextureBehaviours(const AddBehaviour& add);
 void addTextBehaviours(const AddBehaviour& add);
+void addMotionBehaviours(const AddBehaviour& add); // HAnimMotion, HAnimHumanoid
 void addParticleBehaviours(const AddBehaviour& add); // particles/particle_system.cpp
 
 } // namespace xvrml

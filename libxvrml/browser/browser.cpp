@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "browser/state.h"
+#include "geometry/edited.h"
 #include "graph/crossing.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
@@ -18,6 +19,7 @@ Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double st
                  const RunOptions& run)
     : impl_(std::make_unique<Impl>(*this, std::move(world), options, run)) {
   impl_->time = start;
+  followEdits(*impl_->world);
   impl_->engine->beginCascade(impl_->run.epoch + start);
   impl_->engine->adoptScope(impl_->world->scope, true);
   impl_->engine->settle();

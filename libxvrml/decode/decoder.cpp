@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "printable.h"
-#include "process/child.h"
 
 namespace xvrml {
 
@@ -57,8 +56,9 @@ struct Decoder::Process {
   }
 };
 
-Decoder::Decoder() = default;
-Decoder::Decoder(int socket) : process_(std::make_unique<Process>()) {
+Decoder::Decoder(const DecoderKind& kind) : kind_(kind) {}
+Decoder::Decoder(int socket, const DecoderKind& kind)
+    : kind_(kind), process_(std::make_unique<Process>()) {
   process_->channel = std::make_unique<Channel>(socket, patience);
 }
 Decoder::~Decoder() = default;
@@ -82,7 +82,7 @@ void Decoder::lost(std::string why) {
   process_.reset();
   ++ended_;
   throw std::runtime_error(
-      fmt::format("{}, which decodes such files, {}", decoderProgram.name, why));
+      fmt::format("{}, which decodes such files, {}", kind_.program.name, why));
 }
 
 void Decoder::start() {
@@ -92,11 +92,12 @@ void Decoder::start() {
         "the files of this world have taken {} s of processor time to decode", secondsPerWorld));
   if (ended_ >= mostEnded)
     throw std::runtime_error(fmt::format(
-        "{} processes of {} have been ended by files of this world", ended_, decoderProgram.name));
+        "{} processes of {} have been ended by files of this world", ended_, kind_.program.name));
   if (process_) return;
   std::string why;
-  const std::string program = findHelper(decoderProgram, why);
-  if (program.empty()) throw std::runtime_error(fmt::format("no program decodes it: {}", why));
+  const std::string program = findHelper(kind_.program, why);
+  if (program.empty())
+    throw std::runtime_error(fmt::format("no program decodes it: {}{}", why, kind_.remedy));
   process_ = std::make_unique<Process>();
   const int socket = process_->child.start(program, why);
   if (socket < 0) {
@@ -120,7 +121,8 @@ void Decoder::send(const File& file) {
   const auto until =
       Clock::now() + 2 * patience + std::chrono::seconds(file.bytes.size() / leastRate);
   std::span<const char> left(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
-  if (!decoding::send(channel, Op::decode, Request{file.format, 0, left.size()})) lost({});
+  if (!decoding::send(channel, Op::decode, Request{file.format, 0, left.size(), file.chordError}))
+    lost({});
   while (!left.empty()) {
     const auto part = left.first(std::min(left.size(), partBytes));
     if (!decoding::send(channel, Op::bytes, part)) lost({});
@@ -169,7 +171,7 @@ void Decoder::decode(const File& file, const std::function<bool(const Contents&)
   process_->idle = 0;
   process_->given = Clock::now();
   process_->began = process_->child.processorSeconds();
-  process_->limit = std::min(secondsPerFile, secondsPerWorld - used_);
+  process_->limit = std::min(kind_.secondsPerFile, secondsPerWorld - used_);
   process_->allow(add(file.bytes.size(), add(file.mostBytes, file.mostBytes)));
   send(file);
   receive();
@@ -183,7 +185,7 @@ void Decoder::decode(const File& file, const std::function<bool(const Contents&)
       throw;
     }
     if (!decoding::send(*process_->channel, wanted ? Op::proceed : Op::stop)) lost({});
-    if (!wanted) return charge();
+    if (!wanted) return finish();
     try {
       receiveNumbers(*contents, more);
     } catch (...) {
@@ -192,20 +194,41 @@ void Decoder::decode(const File& file, const std::function<bool(const Contents&)
       throw;
     }
   }
-  charge();
   const wire::Message& last = process_->message;
   const auto text = contentOf(last);
-  if (text && last.header.op == uint16_t(Op::failed))
-    throw std::runtime_error(printable({text->data(), std::min(text->size(), mostReason)}));
+  if (text && last.header.op == uint16_t(Op::failed)) {
+    const std::string why = printable({text->data(), std::min(text->size(), mostReason)});
+    finish();
+    throw std::runtime_error(why);
+  }
   if (last.header.op != uint16_t(Op::end)) lost("broke the protocol");
+  finish();
 }
 
-std::shared_ptr<Decoder> decoderOf(Budget* budget) {
-  if (!budget) return std::make_shared<Decoder>();
+void Decoder::finish() {
+  charge();
+  if (!kind_.servesMore) process_.reset();
+}
+
+namespace {
+
+std::shared_ptr<Decoder> made(std::shared_ptr<Decoder> Budget::*place, Budget* budget,
+                              const DecoderKind& kind) {
+  if (!budget) return std::make_shared<Decoder>(kind);
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  if (!budget->decoder) budget->decoder = std::make_shared<Decoder>();
-  return budget->decoder;
+  if (!(budget->*place)) budget->*place = std::make_shared<Decoder>(kind);
+  return budget->*place;
+}
+
+} // namespace
+
+std::shared_ptr<Decoder> decoderOf(Budget* budget) {
+  return made(&Budget::decoder, budget, mediaDecoder);
+}
+
+std::shared_ptr<Decoder> stepReaderOf(Budget* budget) {
+  return made(&Budget::stepReader, budget, stepReader);
 }
 
 } // namespace xvrml

@@ -1,4 +1,5 @@
-// protocol.cpp: encodes the messages of protocol.h. Part of the library and of xvrml-decoder.
+// protocol.cpp: encodes the messages of protocol.h. Part of the library and of the programs
+// that decode files.
 #include "decode/protocol.h"
 
 #include <algorithm>

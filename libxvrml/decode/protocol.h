@@ -1,7 +1,7 @@
-// protocol.h: the messages between the library and xvrml-decoder. The library sends the bytes of a
-// file; the program answers with what the file holds, and, if the library wants it, with the
-// decoded numbers as they come. Both ends are on one machine, so numbers have its order of bytes.
-// [one thread each]
+// protocol.h: the messages between the library and the programs that decode files (xvrml-decoder,
+// xvrml-step-reader). The library sends the bytes of a file; the program answers with what the file
+// holds, and, if the library wants it, with the decoded numbers as they come. Both ends are on one
+// machine, so numbers have its order of bytes. [one thread each]
 #pragma once
 
 #include <cstring>
@@ -12,9 +12,15 @@
 
 namespace xvrml::decoding {
 
-constexpr uint32_t version = 1;
+constexpr uint32_t version = 2;
 
-enum class Format : uint32_t { exr = 1, webp, bitmap, sound }; // bitmap: BMP or TGA
+enum class Format : uint32_t {
+  exr = 1,
+  webp,
+  bitmap, // BMP or TGA
+  sound,
+  step // becomes a binary glTF file
+};
 
 enum class Op : uint16_t {
   // From the program: it is closed in.
@@ -38,13 +44,16 @@ struct Request {
   Format format;
   uint32_t reserved = 0;
   uint64_t fileBytes;
+  double chordError; // models: millimetres; 0: a part of each model's size
 };
-// Describes a picture, whose rows follow from the top, or a sound, whose columns are frames.
+// Describes a picture, whose rows follow from the top, a sound, whose columns are frames, or a
+// model, whose columns are the bytes of a glTF file.
 struct Contents {
   uint64_t columns, rows;
   uint32_t components;     // numbers of a pixel, channels of a sound
   uint32_t componentBytes; // 1: bytes; 4: floats
-  double rate;             // sounds: frames a second
+  double rate = 0;         // sounds: frames a second
+  uint64_t leftOut = 0;    // models: faces that could not be divided into triangles
 };
 
 constexpr size_t partBytes = 256 << 10; // bytes of a part at most

@@ -84,8 +84,10 @@ class RestingWorld : public LiveWorld {
   }
   void addRoot(const NodeRef& node, size_t index) override {
     insertRoot(world_.scope.roots, node, index);
+    world_.edited = true;
   }
   void removeRoot(Node& node, size_t index) override {
+    world_.edited = true;
     if (!removeOneOf(world_.scope.roots, NodeRef(&node), index))
       std::erase(world_.scope.roots, NodeRef(&node));
   }

@@ -35,7 +35,7 @@ struct Vertices {
 };
 
 struct Joint {
-  const nodes::HAnimJoint* node;
+  nodes::HAnimJoint* node;
   Matrix toFigure;
 };
 
@@ -74,8 +74,7 @@ std::vector<Joint> jointsOf(const nodes::HAnimHumanoid& figure) {
     const Matrix toFigure =
         hasMatrix(*next.node) ? compose(next.above, matrixOf(*next.node)) : next.above;
     if (!finite(toFigure)) continue;
-    if (const auto* joint = nodeCast<nodes::HAnimJoint>(next.node))
-      joints.push_back({joint, toFigure});
+    if (auto* joint = nodeCast<nodes::HAnimJoint>(next.node)) joints.push_back({joint, toFigure});
     add(*below, toFigure);
   }
   return joints;
@@ -194,6 +193,29 @@ void warnOf(const Node& node, const Vertices& vertices, Diagnostics* diagnostics
                                   node.type().name, vertices.missing, vertices.points.size()));
 }
 
+// Returns whether a figure was bound in another pose than its rest.
+bool hasBindingPose(const nodes::HAnimHumanoid& figure) {
+  const auto anyOther = [](const auto& values, const auto& rest) {
+    return std::any_of(values.begin(), values.end(),
+                       [&](const auto& value) { return !(value == rest); });
+  };
+  return (figure.skinBindingCoords && !(figure.skinBindingCoords == figure.skinCoord)) ||
+         (figure.skinBindingNormals && !(figure.skinBindingNormals == figure.skinNormal)) ||
+         anyOther(figure.jointBindingPositions, Vec3f{0, 0, 0}) ||
+         anyOther(figure.jointBindingScales, Vec3f{1, 1, 1}) ||
+         std::any_of(figure.jointBindingRotations.begin(), figure.jointBindingRotations.end(),
+                     [](const Rotation& rotation) { return rotation.angle != 0; });
+}
+
+// The skin is bent from its rest, which skinCoord has whatever the binding pose is
+// (docs/decisions/0105-skins.md).
+void warnOfBindings(const nodes::HAnimHumanoid& figure, Diagnostics* diagnostics) {
+  if (!diagnostics || !hasBindingPose(figure)) return;
+  diagnostics->warn(figure.source,
+                    "HAnimHumanoid: its binding pose (skinBindingCoords, skinBindingNormals and "
+                    "jointBinding...) has no effect: the skin is bent from skinCoord, at rest");
+}
+
 std::vector<Node*> deformSegment(const nodes::HAnimSegment& segment, Diagnostics* diagnostics) {
   const Coordinates coord(segment.coord);
   if (!coord.node() || segment.displacers.empty()) return {};
@@ -205,6 +227,7 @@ std::vector<Node*> deformSegment(const nodes::HAnimSegment& segment, Diagnostics
 }
 
 std::vector<Node*> deformSkin(const nodes::HAnimHumanoid& figure, Diagnostics* diagnostics) {
+  warnOfBindings(figure, diagnostics);
   const Coordinates coord(figure.skinCoord);
   if (!coord.node()) return {};
   DeformableNormal* const normal = normalOf(figure);
@@ -253,6 +276,12 @@ std::span<const Vec3f> drawnNormals(const nodes::Normal& node) {
 bool deforms(const NodeType& type) {
   return type.index == nodes::HAnimHumanoid::typeIndex ||
          type.index == nodes::HAnimSegment::typeIndex;
+}
+
+std::vector<nodes::HAnimJoint*> jointsOfSkeleton(const nodes::HAnimHumanoid& figure) {
+  std::vector<nodes::HAnimJoint*> joints;
+  for (const Joint& joint : jointsOf(figure)) joints.push_back(joint.node);
+  return joints;
 }
 
 std::vector<Node*> skinOf(const Node& node) {

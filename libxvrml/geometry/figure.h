@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "xvrml/diagnostics.h"
-#include "xvrml/node.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 
@@ -17,6 +17,8 @@ bool deforms(const NodeType& type);
 // parts of its skin that are drawn in another way than before. diagnostics: receives one warning of
 // what is wrong with the node; null: none is made.
 std::vector<Node*> deform(const Node& node, Diagnostics* diagnostics);
+// Returns the joints of a HAnimHumanoid's skeleton, in the order of the file.
+std::vector<nodes::HAnimJoint*> jointsOfSkeleton(const nodes::HAnimHumanoid& figure);
 // Returns the parts of its skin that such a node moves, or may move: a Coordinate or
 // CoordinateDouble, and a Normal.
 std::vector<Node*> skinOf(const Node& node);

@@ -36,8 +36,9 @@ struct ExactSurface {
 enum class TexGen : uint8_t { off, position, normal, reflection, sphereNormal, sphereReflection };
 
 // How the textures of a shape are placed: it has none, pictures, or volumes, which have three
-// coordinates (ISO/IEC 19775-1 clause 33).
-enum class TextureNeed : uint8_t { none, picture, volume };
+// coordinates (ISO/IEC 19775-1 clause 33). physicalVolume: a volume on a PhysicalMaterial or
+// UnlitMaterial.
+enum class TextureNeed : uint8_t { none, picture, volume, physicalVolume };
 
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };

@@ -184,6 +184,11 @@ std::vector<SensorInfo> OpenRTMapper::sensors() const {
   return listSensors(impl_->graph, impl_->places, impl_->world.diagnostics);
 }
 
+std::vector<SensorInfo> OpenRTMapper::lamps() const {
+  impl_->places.updateForFrame(impl_->graph, impl_->camera);
+  return listLamps(impl_->graph, impl_->places);
+}
+
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const std::vector<int32_t>& places = impl_->viewpointPlaces();
   CameraSettings camera = impl_->cameraAt(index < places.size() ? places[index] : none);

@@ -183,7 +183,7 @@ const Mesh& Meshes::get(int32_t mesh) {
                             .former = entry.topology.get(),
                             .pointSize = pointSize_,
                             .lineWidth = lineWidth_,
-                            .needTexPlaces = entry.need == TextureNeed::volume};
+                            .needTexPlaces = entry.need >= TextureNeed::volume};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
@@ -208,6 +208,8 @@ const Mesh& Meshes::get(int32_t mesh) {
 
 bool Meshes::sameContent(int32_t a, int32_t b) {
   const Mesh &m = get(a), &n = get(b);
+  // Places are given to one class of shaders.
+  if (!m.texPlaces.empty() && takesPhysicalPlaces(a) != takesPhysicalPlaces(b)) return false;
   return m.kind == n.kind && m.solid == n.solid && m.ccw == n.ccw && m.texGen == n.texGen &&
          equalBytes(m.points, n.points) && equalBytes(m.indices, n.indices) &&
          equalBytes(m.normals, n.normals) && equalBytes(m.texCoords, n.texCoords) &&

@@ -36,6 +36,11 @@ class Meshes {
   // Requires texture coordinates for these textures from now on. Returns true if an already built
   // mesh has to be rebuilt.
   bool require(int32_t mesh, TextureNeed need);
+  // Returns whether a PhysicalMaterial or UnlitMaterial shows a volume on the mesh. Its texture
+  // coordinates in space are then for shaders of their class alone.
+  bool takesPhysicalPlaces(int32_t mesh) const {
+    return entries_[size_t(mesh)].need == TextureNeed::physicalVolume;
+  }
   // Returns whether shapes need another surface, because since the mesh was built events have put a
   // ColorRGBA in place of a Color, or a Color in place of a ColorRGBA, or have changed how cube
   // maps are looked up, or whether texture coordinates are in space.

@@ -120,6 +120,7 @@ AppearanceParts appearanceOf(const Item& shape) {
 
 UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
   if (bounds.empty) return {Axis::y, "nothing is drawn"};
+  if (world.head.version.encoding == Encoding::step) return {Axis::z, "it is a STEP model"};
   const UpGuess shape = fromBounds(bounds, world.head.version.encoding == Encoding::stl);
   const auto written = [&](const Exporter& one, const char* where) {
     return UpGuess{one.up, where + (" names " + std::string(one.word)),

@@ -180,6 +180,11 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
   if (item.viaMesh) {
     const int32_t part = partOfMesh(graph_.meshes.equal(item.mesh));
+    if (graph_.meshes.takesPhysicalPlaces(item.mesh) &&
+        textureNeed(appearance) == TextureNeed::volume)
+      world_.diagnostics.warn(item.node->source,
+                              "its geometry shows a volume with a PhysicalMaterial or "
+                              "UnlitMaterial, too: here only the first slice is seen");
     const RTid instance = instantiate(part, matrix, item.number, false);
     if (instance != 0)
       rtInstanceShader(instance, surfaces_.surfaceFor(appearance, useOf(item)).shader);

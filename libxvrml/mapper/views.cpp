@@ -85,22 +85,40 @@ bool inScopedLight(const Graph& graph, const Places& places, const Place& place)
 }
 } // namespace
 
+namespace {
+SensorInfo infoOf(const Graph& graph, const Place& place) {
+  const Item& item = graph.items[place.item];
+  SensorInfo info;
+  info.name = graph.names[item.name];
+  info.node = item.node;
+  toArray(place.world, info.matrix);
+  return info;
+}
+} // namespace
+
+std::vector<SensorInfo> listLamps(const Graph& graph, const Places& places) {
+  std::vector<SensorInfo> list;
+  for (const Place& place : places.all) {
+    const Item& item = graph.items[place.item];
+    if (item.kind == Kind::localLight && item.on && place.active && finite(place.world) &&
+        nodeCast<nodes::ORTLight>(item.node.get()))
+      list.push_back(infoOf(graph, place));
+  }
+  return list;
+}
+
 std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
                                     Diagnostics& diagnostics) {
   std::vector<SensorInfo> list;
   for (const Place& place : places.all) {
     const Item& item = graph.items[place.item];
     if (item.kind != Kind::sensor || !place.active) continue;
-    SensorInfo info;
-    info.name = graph.names[item.name];
-    info.node = item.node;
-    toArray(place.world, info.matrix);
     if (inScopedLight(graph, places, place))
       diagnostics.warn(
           item.node->source,
           "ORTSensor: a light in a group that lights the shapes of that group alone is "
           "not in the reading; sensors see those at the top level");
-    list.push_back(std::move(info));
+    list.push_back(infoOf(graph, place));
   }
   return list;
 }

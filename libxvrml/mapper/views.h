@@ -35,6 +35,8 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
 // DirectionalLight, which does not reach them.
 std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
                                     Diagnostics& diagnostics);
+// Returns the ORTLights that are on at all places, in file order.
+std::vector<SensorInfo> listLamps(const Graph& graph, const Places& places);
 
 // Returns the camera of a Viewpoint; for null that of the standard's default Viewpoint. parent:
 // world matrix of what stands in the node: that of its parent, or its place on a globe.

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <optional>
 
+#include "decode/decoder.h"
 #include "lower_case.h"
 #include "parse/builder.h"
 #include "parse/classic_recorder.h"
@@ -42,6 +43,12 @@ bool isMesh(Encoding encoding) {
 std::string_view meshSuffixes(Encoding encoding) {
   const EncodingInfo* info = encodingInfo(encoding);
   return info ? info->meshSuffixes : std::string_view();
+}
+
+std::string whyNotReadable(Encoding encoding) {
+  std::string why;
+  if (encoding == Encoding::step) findHelper(stepReader.program, why);
+  return why;
 }
 
 const EncodingInfo* recogniseEncoding(std::string_view text, std::string_view path) {

@@ -33,6 +33,7 @@ void readPly(const MeshFile& file);
 void readObj(const MeshFile& file);
 void readGltf(const MeshFile& file);
 void readOff(const MeshFile& file);
+void readStep(const MeshFile& file);
 
 // Recognise a file by its content: by signatures and grammars. The suffix of the path counts only
 // where the content says too little.
@@ -44,6 +45,7 @@ bool isPly(std::string_view bytes, std::string_view path = {});
 bool isObj(std::string_view bytes, std::string_view path = {});
 bool isGltf(std::string_view bytes, std::string_view path = {}); // also binary (.glb)
 bool isOff(std::string_view bytes, std::string_view path = {});
+bool isStep(std::string_view bytes, std::string_view path = {});
 
 struct EncodingInfo {
   Encoding encoding;
@@ -68,6 +70,7 @@ inline constexpr EncodingInfo encodingTable[] = {
     {Encoding::stl, "STL", 4, 0, isBinaryStl, nullptr, readStl, ".stl", true},
     {Encoding::stl, "STL", 4, 0, isAsciiStl, nullptr, readStl, ".stl", true},
     {Encoding::off, "OFF", 4, 0, isOff, nullptr, readOff, ".off"},
+    {Encoding::step, "STEP", 4, 0, isStep, nullptr, readStep, ".step .stp .stpz"},
     {Encoding::obj, "Wavefront OBJ", 4, 0, isObj, nullptr, readObj, ".obj"},
     {Encoding::x3dXml, "X3D XML", 3, 3, isX3dXml, readX3dXml},
     {Encoding::x3dJson, "X3D JSON", 3, 3, isX3dJson, readX3dJson},

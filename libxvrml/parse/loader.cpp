@@ -171,6 +171,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     setContent(node, entry);
     return true;
   } catch (const LoadError& error) {
+    inlined_[key].reading = false;
     reason = error.diagnostic.text();
     return false;
   }

@@ -58,8 +58,6 @@ const Signature signatures[] = {
      {"a Blender file", "export it as VRML97 (.wrl) from Blender"}},
     {[](std::string_view b) { return b.starts_with("#usda") || b.starts_with("PXR-USDC"); },
      {"a USD scene", exportIt}},
-    {[](std::string_view b) { return b.starts_with("ISO-10303-21"); },
-     {"a STEP model", "export it as VRML97 (.wrl) from the CAD program, for example FreeCAD"}},
     {[](std::string_view b) { return b.starts_with("(kicad_pcb"); },
      {"a KiCad board", "export it from KiCad: File > Export > VRML, or kicad-cli pcb export vrml"}},
     {[](std::string_view b) {

@@ -8,7 +8,6 @@
 #include "parse/loader.h"
 #include "xvrml/versions.h"
 #include "xvrml/viewed.h"
-#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -29,18 +28,6 @@ void loadAgain(World& world, InlineNode& node) {
     node.share.adopt(budget, after - before);
 }
 
-// Lets the ParticleSystems be expanded again: they read what their emitters and physics models
-// hold.
-void forgetParticles(const World& world) {
-  walk(rootsOf(world.scope), [](Node& node, std::vector<Node*>& open) {
-    if (node.type().index == nodes::ParticleSystem::typeIndex)
-      if (NodeRef* const drawn = node.expansion()) *drawn = {};
-    if (const auto* instance = nodeCast<ProtoInstance>(&node)) appendRoots(instance->body, open);
-    if (const Scope* content = inlineScope(node)) appendRoots(*content, open);
-    appendChildren(node, open);
-  });
-}
-
 } // namespace
 
 bool setField(World& world, Node& node, std::string_view name, Value value) {
@@ -48,12 +35,11 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
   if (!field || value.index() != size_t(field->type)) return false;
   assignUrlBase(node, *field, value);
   if (!node.set(*field, std::move(value))) return false;
-  bool movesParticles = false;
+  world.edited = true;
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&node, field}};
   while (!open.empty()) {
     const auto [one, from] = open.back();
     open.pop_back();
-    movesParticles |= one->type().is("particleEmitter") || one->type().is("particlePhysics");
     if (auto* inlineNode = nodeCast<InlineNode>(one);
         inlineNode && (from->name == "url" || from->name == "load"))
       loadAgain(world, *inlineNode);
@@ -73,7 +59,6 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
       open.emplace_back(connection.node.get(), to);
     }
   }
-  if (movesParticles) forgetParticles(world);
   return true;
 }
 

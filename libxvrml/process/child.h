@@ -16,6 +16,7 @@ struct HelperProgram {
 };
 inline constexpr HelperProgram scriptHostProgram = {"xvrml-script-host", "XVRML_SCRIPT_HOST"};
 inline constexpr HelperProgram decoderProgram = {"xvrml-decoder", "XVRML_DECODER"};
+inline constexpr HelperProgram stepReaderProgram = {"xvrml-step-reader", "XVRML_STEP_READER"};
 
 // Returns the file that the variable names, or the program installed (or built) with the library.
 // Returns "", with the reason, if there is none.

@@ -1,5 +1,6 @@
 // message.h: the head of the messages between the library and the programs that it starts:
-// xvrml-script-host (script/remote/wire.h) and xvrml-decoder (decode/protocol.h). [one thread each]
+// xvrml-script-host (script/remote/wire.h), xvrml-decoder and xvrml-step-reader
+// (decode/protocol.h). [one thread each]
 #pragma once
 
 #include <cstdint>

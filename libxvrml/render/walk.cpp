@@ -7,6 +7,7 @@
 #include "event/hierarchy.h"
 #include "geometry/clip_planes.h"
 #include "geometry/descend.h"
+#include "geometry/edited.h"
 #include "geometry/figure.h"
 #include "nodes/registry.h"
 #include "nodes/visible.h"
@@ -152,13 +153,14 @@ void RenderWalk::addPlanes(const Matrix& toWorld) {
 uint64_t RenderWalk::usesOf(const Node& geometry) {
   if (!uses_) {
     UseCounter counter;
-    render(world_, counter, options_);
+    RenderWalk(world_, counter, options_).run(); // the world stays as it was when this walk began
     uses_ = std::move(counter.uses);
   }
   return (*uses_)[&geometry];
 }
 
 void render(const World& world, Renderer& renderer, const RenderOptions& options) {
+  followEdits(world);
   RenderWalk(world, renderer, options).run();
 }
 

@@ -1,5 +1,7 @@
 // changes.cpp: tells what a written file shows otherwise, because the versions of the standard
 // differ in what the same nodes mean (docs/versions.md). A pure function of the world.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "write/writer.h"
@@ -11,7 +13,8 @@ namespace {
 
 // Nodes of the world's own file that mean something else in the written one.
 struct Counts {
-  size_t textured = 0, coloured = 0, inlines = 0, limited = 0, bright = 0, lights = 0, matt = 0;
+  size_t textured = 0, coloured = 0, inlines = 0, limited = 0, bright = 0, lights = 0, matt = 0,
+         askers = 0;
 };
 
 bool isWhite(const Color& c) { return c.r == 1 && c.g == 1 && c.b == 1; }
@@ -45,6 +48,24 @@ float intensityOf(const Node& node) {
   return 0;
 }
 
+// Returns whether the program in a Script asks the browser for files. The relative URLs in its text
+// count from the file that holds the Script (ISO/IEC 19777-1), and are not rewritten.
+bool asksForFiles(const Node& node) {
+  const auto* script = nodeCast<ScriptNode>(&node);
+  if (!script) return false;
+  const Value url = script->get(*script->type().find("url"));
+  const auto& programs = std::get<MFString>(url);
+  return std::any_of(programs.begin(), programs.end(), [](const std::string& program) {
+    return program.find("loadURL") != program.npos || program.find("FromURL") != program.npos;
+  });
+}
+
+// Returns whether a file lies in another folder than the world's own.
+bool movesTo(const World& world, const std::string& path) {
+  if (path.empty() || world.path.empty() || world.path == "-") return false;
+  return relativeUrl(world.path, path).find('/') != std::string::npos;
+}
+
 Counts countOf(const World& world, const FileVersion& to) {
   Counts counts;
   std::vector<const Node*> open;
@@ -56,6 +77,7 @@ Counts countOf(const World& world, const FileVersion& to) {
       counts.textured += mixesTexture(node);
       counts.coloured += mixesColours(node);
     }
+    counts.askers += asksForFiles(node);
     counts.lights += node.type().is("light");
     counts.matt += from.encoding == Encoding::gltf && nodeCast<nodes::Material>(&node);
     counts.bright += from.major >= 4 && to.major < 4 && intensityOf(node) > 1;
@@ -76,6 +98,11 @@ std::string several(size_t count, const char* thing) {
 } // namespace
 
 std::vector<std::string> changesByWriting(const World& world, Encoding encoding) {
+  return changesByWriting(world, "", encoding);
+}
+
+std::vector<std::string> changesByWriting(const World& world, const std::string& path,
+                                          Encoding encoding) {
   const FileVersion to = writtenVersion(world, encoding);
   const Counts counts = countOf(world, to);
   std::vector<std::string> changes;
@@ -106,6 +133,10 @@ std::vector<std::string> changesByWriting(const World& world, Encoding encoding)
     changes.push_back(fmt::format("outside of glTF a Material is pi times as bright in a light: so "
                                   "will be {} without reflection",
                                   several(counts.matt, "surface")));
+  if (counts.askers > 0 && movesTo(world, path))
+    changes.push_back(fmt::format("relative URLs in the programs of Scripts stay as they are: {} "
+                                  "will look for its files beside the written one",
+                                  several(counts.askers, "Script")));
   return changes;
 }
 

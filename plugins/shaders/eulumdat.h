@@ -118,6 +118,23 @@ inline const char* arrangePlanes(const std::vector<float>& angles, size_t symmet
                "3 asks for";
 }
 
+// Reads the luminous opening, lines 16 to 21: length and width, where a width of 0 makes the length
+// a diameter, and four heights, in millimetres. A line without a number counts as 0, because many
+// files have none. Planes C0 and C180 are across the length.
+inline photometry::Opening readOpening(Lines& lines) {
+  const auto metres = [&lines] {
+    double value;
+    return lines.number(value) ? std::fmin(std::fmax(value, 0) / 1000, 1e3) : 0.0;
+  };
+  const double length = metres(), width = metres();
+  photometry::Opening out;
+  out.isRound = width == 0;
+  out.zero = out.isRound ? length : width;
+  out.ninety = length;
+  for (double& height : out.heights) height = metres();
+  return out;
+}
+
 // Parses a file. Returns null, or an error message; `line` is then the line of the error.
 inline const char* parse(std::string_view text, Photometry& out, int& line) {
   Lines lines(text);
@@ -137,7 +154,9 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
     return stop("the number of intensities per C-plane is out of range: 1 to 4096, 2^20 values in "
                 "all");
   double factor, tilt, flux;
-  if (!lines.skip(17) || !lines.number(factor) || !(factor > 0))
+  lines.skip(9);
+  out.opening = readOpening(lines);
+  if (!lines.skip(2) || !lines.number(factor) || !(factor > 0))
     return stop("the conversion factor for intensities is missing, not a number, or not above 0");
   if (!lines.number(tilt)) return stop("the tilt during measurement is missing or not a number");
   if (!lines.whole(1, 1000, sets))

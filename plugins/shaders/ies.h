@@ -61,6 +61,19 @@ inline const char* wrongAngles(const Photometry& p) {
   return nullptr;
 }
 
+// Returns the luminous opening: width across horizontal angle 0, length along it, height. units: 1
+// feet, 2 metres; a width below 0 is the diameter of a round opening (LM-63-2002, 5.11).
+inline photometry::Opening openingOf(double units, double width, double length, double height) {
+  const double metres = units == 1 ? .3048 : 1;
+  const auto size = [metres](double value) { return std::fmin(std::fabs(value) * metres, 1e3); };
+  photometry::Opening out;
+  out.isRound = width < 0;
+  out.zero = size(out.isRound ? width : length);
+  out.ninety = size(width);
+  for (double& h : out.heights) h = size(height);
+  return out;
+}
+
 // Parses a file. tiltAngle: degrees by which the luminaire is tilted, for TILT=INCLUDE. Returns
 // null, or an error message; `line` is then the line of the error.
 inline const char* parse(std::string_view text, Photometry& out, int& line, double tiltAngle = 0) {
@@ -102,6 +115,7 @@ inline const char* parse(std::string_view text, Photometry& out, int& line, doub
     return "the number of angles is out of range: 1 to 4096 each, 2^20 values";
   if (head[5] != 1 && head[5] != 2 && head[5] != 3)
     return "the photometric type is 1 (C), 2 (B) or 3 (A)";
+  out.opening = openingOf(head[6], head[7], head[8], head[9]);
   out.type = head[5] == 1 ? Type::C : head[5] == 2 ? Type::B : Type::A;
   const auto rows = size_t(head[3]), columns = size_t(head[4]);
   const char* message = nullptr;

@@ -20,6 +20,10 @@ struct Luminaire : rts::LightSource<Luminaire> {
                           "luminous flux of the luminaire, to which the measured intensity is "
                           "scaled; 0: as measured",
                           0, 1e12f};
+  rts::Param<float> maintenance{
+      "maintenance", 1,
+      "maintenance factor: the share of the flux that is left when lamps and surfaces have aged", 0,
+      1};
   rts::Param<float> tilt{"tilt", 0, "degrees by which the luminaire is tilted, for TILT=INCLUDE", 0,
                          180};
   rts::Param<rts::Vec3> location{"location", {0, 0, 0}, "place of the photometric centre"};
@@ -37,6 +41,7 @@ struct Luminaire : rts::LightSource<Luminaire> {
   const photometry::Photometry* photometry;
   rts::Vec3 down, zero, ninety; // orthonormal axes of the photometric angles
   float flux;
+  double factor; // multiplies all intensities
   char message[200];
 
   const char* prepare() {
@@ -65,6 +70,7 @@ struct Luminaire : rts::LightSource<Luminaire> {
                               : other - rts::dot(other, down) * down);
     ninety = rts::cross(zero, down); // up x zero
     flux = float(made->flux());
+    factor = double(*intensity) * double(*maintenance);
     return nullptr;
   }
   // Reads the profile and applies `lumen`. Returns null or a message; `line` is then its line, or
@@ -97,14 +103,14 @@ struct Luminaire : rts::LightSource<Luminaire> {
     const double d = rts::dot(way, down), x = rts::dot(way, zero), y = rts::dot(way, ninety);
     const double square = d * d + x * x + y * y;
     if (!photometry || !(square > 1e-30)) return {};
-    const double seen = double(photometry->towards(d, x, y)) * double(*intensity) / (M_PI * square);
+    const double seen = double(photometry->towards(d, x, y)) * factor / (M_PI * square);
     return {-way, *color * float(std::fmin(seen, 1e30)), {}};
   }
   rts::Extent extent() const {
     rts::Extent e;
     e.position = location;
     e.direction = down;
-    e.power = flux * *intensity * (color->r + color->g + color->b) / 3;
+    e.power = flux * float(factor) * (color->r + color->g + color->b) / 3;
     return e;
   }
 };

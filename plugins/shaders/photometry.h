@@ -25,8 +25,27 @@ enum class Type {
   A  // polar axis vertical: horizontal turns around it, vertical leads up, -90 to 90
 };
 
+// The part of a luminaire that shines, in metres: a box, or an upright cylinder, about the
+// photometric centre. A file that does not say it has zeros.
+struct Opening {
+  double zero = 0, ninety = 0; // sizes towards horizontal angles 0 and 90
+  // of the sides that face horizontal angles 0, 90, 180 and 270
+  double heights[4] = {};
+  bool isRound = false; // with the diameter `zero`
+
+  // Returns the area that is seen from a direction, a unit vector as for Photometry::towards.
+  double projected(double axis, double toZero, double toNinety) const {
+    const double along = std::hypot(toZero, toNinety), h0 = heights[toZero < 0 ? 2 : 0],
+                 h90 = heights[toNinety < 0 ? 3 : 1];
+    if (isRound) return M_PI / 4 * zero * zero * std::fabs(axis) + zero * h0 * along;
+    return zero * ninety * std::fabs(axis) + ninety * h0 * std::fabs(toZero) +
+           zero * h90 * std::fabs(toNinety);
+  }
+};
+
 class Photometry {
  public:
+  Opening opening;
   Type type = Type::C;
   // In degrees. Horizontal angles cover the part that the file contains.
   std::vector<float> vertical, horizontal;

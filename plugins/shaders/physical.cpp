@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "coat.h"
+#include "hatch.h"
 #include "microfacet.h"
 
 namespace {
@@ -182,6 +183,12 @@ struct Physical : rts::Surface<Physical> {
       "1: the color x intensity of a light with irradiance 1 is its irradiance here, as in X3D 4 "
       "and glTF; 0: pi times as much",
       0, 1};
+  rts::Param<int32_t> hatchStyle{
+      "hatchStyle", 0,
+      "lines over the surface, in pixels of the picture: a style of hatching of ISO/IEC 9973; 0: "
+      "none",
+      0, 19};
+  rts::Param<rts::Color> hatchColor{"hatchColor", {1, 1, 1}, "colour of these lines in any light"};
   rts::Param<rts::Texture> texture{"texture", "multiplies baseColor; its alpha multiplies alpha"};
   rts::Param<rts::Texture> metallicRoughnessTexture{
       "metallicRoughnessTexture", "green multiplies roughness, blue metallic; linear"};
@@ -193,6 +200,13 @@ struct Physical : rts::Surface<Physical> {
       "textureTransform",
       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
       "matrix from texture coordinates (s, t, 0, 1) to places in the pictures"};
+  rts::Param<int32_t> inSpace{
+      "inSpace", 0, "1: all pictures, which may be volumes, are placed by texturePlace", 0, 1};
+  rts::Param<rts::Vec4> texturePlace{
+      "texturePlace",
+      {0, 0, 0, 0},
+      "texture coordinates s t r q of vertices; with q 0 the geometry's own s and t count",
+      rts::PerVertex};
 
   uint32_t needs() const {
     const bool polished = roughness * roughness <= microfacet::minAlpha;
@@ -202,18 +216,22 @@ struct Physical : rts::Surface<Physical> {
     return traits;
   }
   bool emits() const {
-    return emissiveStrength > 0 &&
-           (!lit || emissiveColor->r > 0 || emissiveColor->g > 0 || emissiveColor->b > 0);
+    return hatchStyle == 0 && glows(); // light samples need what does not depend on the camera
   }
   const char* prepare() {
     AlbedoTable::get();
     return nullptr;
   }
   rts::Color transmit(const rts::Hit& hit) const {
-    const float through = alphaMode == opaque ? 0 : 1 - opacity(hit, pattern(hit));
+    const bool blocked = alphaMode == opaque || isHatched(hit);
+    const float through = blocked ? 0 : 1 - opacity(hit, pattern(hit));
     return {through, through, through};
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
+    if (isHatched(hit)) {
+      out.albedo(*hatchColor);
+      return out.emission(*hatchColor);
+    }
     const rts::Vec4 t = pattern(hit);
     const rts::Color own = ownColor(hit, *baseColor);
     const rts::Color base{unit(own.r * t.x), unit(own.g * t.y), unit(own.b * t.z)};
@@ -222,7 +240,7 @@ struct Physical : rts::Surface<Physical> {
     out.albedo(lit ? base : shine * rts::Color{t.x, t.y, t.z});
     if (shown < 1) out.transparent({1 - shown, 1 - shown, 1 - shown});
     if (!(shown > 0)) return;
-    if (emits()) {
+    if (glows()) {
       const rts::Vec4 e = texel(hit, emissiveTexture);
       out.emission(shown * *emissiveStrength * shine * rts::Color{e.x, e.y, e.z});
     }
@@ -233,6 +251,18 @@ struct Physical : rts::Surface<Physical> {
   // Returns whether nothing is reflected before the diffuse base: where the indices on both sides
   // are equal, there is no boundary. Schlick's approximation would reflect at grazing angles.
   bool isMatt() const { return ior == 1 && metallic == 0; }
+
+  bool glows() const {
+    return emissiveStrength > 0 &&
+           (!lit || emissiveColor->r > 0 || emissiveColor->g > 0 || emissiveColor->b > 0);
+  }
+  // Returns whether the hit is on a line of the hatching.
+  bool isHatched(const rts::Hit& hit) const {
+    if (hatchStyle == 0 || hit.line()) return false;
+    rts::Vec2 at;
+    const bool placed = hit.pixel(at);
+    return hatch::covers(hatchStyle, placed, at.x, at.y, true);
+  }
 
   void addLobes(const rts::Hit& hit, rts::Color base, float shown, rts::Closures& out) const {
     const rts::Vec4 factors = texel(hit, metallicRoughnessTexture);
@@ -260,7 +290,19 @@ struct Physical : rts::Surface<Physical> {
     return {m[0] * hit.uv.x + m[4] * hit.uv.y + m[12], m[1] * hit.uv.x + m[5] * hit.uv.y + m[13]};
   }
   rts::Vec4 texel(const rts::Hit& hit, rts::Texture from) const {
-    return from.id && !hit.line() ? hit.sample(from, place(hit)) : rts::Vec4{1, 1, 1, 1};
+    if (!from.id || hit.line()) return {1, 1, 1, 1};
+    if (inSpace && texturePlace->w != 0) return hit.sampleVolume(from, placeInSpace());
+    return hit.sample(from, place(hit));
+  }
+  // Coordinates are homogeneous. A point at infinity has no place; textures take it for 0.
+  rts::Vec3 placeInSpace() const {
+    const float* m = textureTransform->m;
+    const rts::Vec4 p = *texturePlace;
+    const auto row = [&](int i) {
+      return m[i] * p.x + m[4 + i] * p.y + m[8 + i] * p.z + m[12 + i] * p.w;
+    };
+    const float q = row(3);
+    return {row(0) / q, row(1) / q, row(2) / q};
   }
   // The colours of a geometry stand in place of the material's (ISO/IEC 19775-1:2023 11.4.2).
   static rts::Color ownColor(const rts::Hit& hit, rts::Color ofMaterial) {

@@ -160,6 +160,21 @@ TEST(CameraProjection, NothingOutsideThePictureOrBehind) {
   }
 }
 
+TEST(CameraProjection, PointsBesideThePictureHavePlacesThere) {
+  const RtsClass& kind = camera("PerspectiveCamera");
+  ParamBlock p(kind);
+  p.set("fovy", {90}); // 100 pixels for a unit of the plane z = -1
+  const Projected beside = project(kind, p, {3, -2, -1});
+  EXPECT_EQ(beside.weight, 0);
+  EXPECT_NEAR(beside.x, 160 + 300, 1e-3);
+  EXPECT_NEAR(beside.y, 100 + 200, 1e-3);
+  const Projected behind = project(kind, p, {3, -2, 1}); // on the same line through the eye
+  EXPECT_EQ(behind.weight, 0);
+  EXPECT_NEAR(behind.x, 160 - 300, 1e-3);
+  EXPECT_NEAR(behind.y, 100 - 200, 1e-3);
+  EXPECT_EQ(project(kind, p, {1e9, 0, -1}).x, 0) << "too far to have a place";
+}
+
 // Rays through a lens meet in the plane of focus and cover the aperture evenly.
 TEST(Lens, RaysMeetInThePlaneInFocus) {
   ParamBlock p(camera("ThinLens"));

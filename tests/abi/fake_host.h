@@ -212,6 +212,14 @@ inline FakeHost::FakeHost() : RtsHost{} {
     host.sample(b, texture, n, str, rgba);
     for (uint32_t i = 0; texture != 0 && i < n; i++) rgba[1][i] += 10 * str[2][i];
   };
+  // The picture is the plane z = 0, with y down.
+  pixels = [](RtsBatch*, uint32_t n, const float* const position[3], float* const xy[2]) {
+    for (uint32_t i = 0; i < n; i++) {
+      xy[0][i] = position[0][i];
+      xy[1][i] = -position[1][i];
+    }
+    return 1;
+  };
   RtsHost::components = [](const RtsHost* h, RtsTexture texture) {
     return texture == 0 ? 0u : static_cast<const FakeHost*>(h)->textures[texture - 1].components;
   };

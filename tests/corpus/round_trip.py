@@ -6,11 +6,12 @@ round_trip.py --vv build/release/bin/vv --corpus FOLDER --out build/round-trip  
 
 The folder is that of corpus_x3d.py. A file that vv can draw is written as .x3dv, .x3d, .json and .wrl. Each
 one has the same picture, or `vv --write` says what changes. Prints a table of counts, and writes files.tsv
-with a row for each picture that differs. Exit code 0: none differs without a message; 77: there is no such
-folder."""
+with a row for each picture that differs. `--resume` goes on where an earlier run with the same folders was
+interrupted. Exit code 0: none differs without a message; 77: there is no such folder."""
 import argparse
 import collections
 import concurrent.futures
+import json
 import pathlib
 import subprocess
 import sys
@@ -34,6 +35,7 @@ def arguments():
     parser.add_argument("--only", default="", help="files whose path holds this text")
     parser.add_argument("--every", type=int, default=1, help="only each N-th file")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--resume", action="store_true", help="keep the rows that --out has already")
     return parser.parse_args()
 
 
@@ -79,6 +81,18 @@ def travel(args, origin, path):
     return rows
 
 
+def kept(args, origin, path):
+    """Returns the rows of one file: those of an interrupted run with --resume, else new ones, which it keeps."""
+    store = args.out / "rows" / (f"{origin}/{path}".replace("/", "__") + ".json")
+    if args.resume and store.exists():
+        return json.loads(store.read_text())
+    rows = travel(args, origin, path)
+    part = store.with_suffix(".part")
+    part.write_text(json.dumps(rows))
+    part.rename(store)
+    return rows
+
+
 def table(rows):
     """Returns the counts by encoding, as Markdown."""
     lines = ["| from | to | files | " + " | ".join(STATES) + " |", "| --- " * (len(STATES) + 3) + "|"]
@@ -101,10 +115,10 @@ def main():
         return 77
     listed = [line.split("\t")[:2] for line in manifest.read_text().splitlines()[1:]]
     listed = [(origin, path) for origin, path in listed if args.only in f"{origin}/{path}"][::args.every]
-    for folder in ("pictures", "worlds"):
+    for folder in ("pictures", "worlds", "rows"):
         (args.out / folder).mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        rows = [row for found in pool.map(lambda one: travel(args, *one), listed) for row in found]
+        rows = [row for found in pool.map(lambda one: kept(args, *one), listed) for row in found]
     with open(args.out / "files.tsv", "w", encoding="utf-8") as file:
         for row in sorted(rows, key=lambda r: (STATES.index(r["state"]), -r["amount"]), reverse=True):
             if row["state"] != "same":

@@ -107,6 +107,8 @@ def cases(programs, python):
             Case(vv + ["-o", "out.ppm"], {"out.ppm": of_size(3 * pixels)}),
         "pfm":
             Case(vv + ["-o", "out.pfm"], {"out.pfm": of_size(12 * pixels)}),
+        "hdr":
+            Case(vv + ["-o", "out.hdr"], {"out.hdr": of_size(200)}),
         "new":
             Case(vv + ["-o", "out.png"], {"out.png": is_png}, fresh=True),
         "stats":

@@ -137,9 +137,18 @@ struct Game {
 
   message::Body anything(Side& side) {
     const Epoch of = in.number();
-    switch (in.below(12)) {
+    switch (in.below(13)) {
+    case 12: {
+      message::Got got;
+      for (size_t i = in.below(4); i > 0; i--)
+        got.arrays.push_back(hashOf({array->data(), array->size()}));
+      got.failed = in.flip();
+      got.kept = in.flip();
+      return got;
+    }
     case 0: {
       message::Hello hello;
+      hello.share = uint16_t(in.below(3));
       hello.library = "fuzz";
       hello.host = std::string(in.below(200), 'h');
       hello.threads = uint32_t(in.number());

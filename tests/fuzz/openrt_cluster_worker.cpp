@@ -30,18 +30,24 @@ struct Game final : JobExecutor {
   std::deque<std::pair<Epoch, LeasedJob>> jobs;
   uint64_t session = 0;
   Peer peer = 0;
+  WorkerCounts counts;
+  std::deque<Hash> fetching; // arrays asked of other workers
   Worker worker;
 
   explicit Game(std::span<const std::byte> bytes)
-      : in(bytes), worker({.self = {.library = "fuzz", .threads = 2}, .cacheBytes = 256},
-                          {[](Peer, Frames&& frames) {
-                             Message m;
-                             if (!decode(std::move(frames), m).empty())
-                               __builtin_trap(); // the worker must send only valid messages
-                           },
-                           [this](Peer, const std::string&) { peer = 0; },
-                           [](Peer, const std::string&) {}, [](double, double) {}},
-                          *this) {}
+      : in(bytes),
+        worker({.self = {.library = "fuzz", .threads = 2, .share = 1}, .cacheBytes = 256},
+               {[](Peer, Frames&& frames) {
+                  Message m;
+                  if (!decode(std::move(frames), m).empty())
+                    __builtin_trap(); // the worker must send only valid messages
+                },
+                [this](Peer, const std::string&) { peer = 0; }, [](Peer, const std::string&) {},
+                [](double, double) {},
+                [this](const std::string&, std::vector<message::ArrayName> names) {
+                  for (const auto& name : names) fetching.push_back(name.hash);
+                }},
+               *this, counts) {}
 
   void useInstructionSet(const std::string&) override {}
   void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool, bool prepare) override {
@@ -92,7 +98,15 @@ struct Game final : JobExecutor {
 
   message::Body anything() {
     const Epoch of = in.number();
-    switch (in.below(10)) {
+    switch (in.below(11)) {
+    case 10: {
+      message::Source m{.address = "somewhere:1"};
+      for (size_t i = in.below(4); i > 0; i--) {
+        const auto array = arrayOf(in.below(arrays));
+        m.arrays.push_back({0, array->size(), hashOf({array->data(), array->size()})});
+      }
+      return m;
+    }
     case 0: {
       session = in.number();
       return message::Welcome{.protocol = protocolVersion + (in.byte() > 250),
@@ -166,6 +180,14 @@ struct Game final : JobExecutor {
       break;
     case 2: worker.advance(in.below(10)); break;
     case 3: return worker.log(2, "line");
+    case 9: {
+      if (fetching.empty()) break;
+      const Hash hash = fetching.front();
+      fetching.pop_front();
+      const auto array = arrayOf(in.below(arrays));
+      const bool good = hashOf({array->data(), array->size()}) == hash;
+      return worker.fetched(hash, good ? array : nullptr);
+    }
     case 4:
     case 5:
     case 6:

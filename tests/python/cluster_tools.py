@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
+from conftest import PATIENCE
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cluster"))
 from farm import PROGRAM, addresses, farm, free_port  # noqa: E402, F401
-
-PATIENCE = 30  # seconds, for things that take a moment on an idle machine
 
 
 def needs_worker():

@@ -36,6 +36,10 @@ DEF Place Transform {
 }
 """
 
+# Seconds for things that take a moment on an idle machine. A sanitizer needs many times as long, so
+# OPENRT_TEST_PATIENCE is a factor.
+PATIENCE = 30 * float(os.environ.get("OPENRT_TEST_PATIENCE", "1"))
+
 HEADER = "#VRML V2.0 utf8\n"
 SMALL = ("--size", "32x24", "--spp", "1")
 # The instruction set that every machine of this kind has, so that bytes can be compared.

@@ -11,9 +11,7 @@ import time
 
 import pytest
 
-from conftest import HEADER, ROOT, find_vv
-
-PATIENCE = 30  # seconds, for things that take a moment on an idle machine
+from conftest import HEADER, PATIENCE, ROOT, find_vv
 
 
 def module():

@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+from window_driver import framebuffer
+
 
 def skip_without_editor(vv):
     if re.search(r"^edit +no", vv("--list-features").text, re.M):
@@ -34,6 +36,18 @@ def saved(w, vv, test):
 
     w.wait(tried, "the file")
     return text(vv)
+
+
+def until_sheet(w, screen, width):
+    """Waits until the right panel of a window of this width shows a node, before it is clicked at."""
+    place = w.tool("getwindowgeometry", "--shell", w.id)
+    left, top = [int(re.search(rf"{n}=(-?\d+)", place)[1]) for n in ("X", "Y")]
+
+    def shown():
+        rows = framebuffer(screen[1])[top + 50:top + 75]
+        return any(min(p) > 150 for row in rows for p in row[left + width - 160:left + width])
+
+    w.wait(shown, "the fields of a node")
 
 
 def press(w, x, y, button=1):

@@ -16,11 +16,9 @@ import time
 
 import pytest
 
-from conftest import find_vv
+from conftest import PATIENCE, find_vv
 
 Image = pytest.importorskip("PIL.Image")
-
-PATIENCE = 30  # seconds, for things that take a moment on an idle machine
 
 
 def wait_for(test, what, seconds=PATIENCE):

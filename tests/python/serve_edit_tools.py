@@ -73,5 +73,12 @@ def history(page, **wanted):
     return until(page, "history", lambda t: all(t[k] == v for k, v in wanted.items()))
 
 
+def save(page):
+    """Saves the world, once the page knows that something is unsaved."""
+    history(page, unsaved=True)
+    page.edit("save")
+    history(page, unsaved=False)
+
+
 def text_of(vv):
     return (vv.folder / "world.wrl").read_text()

@@ -183,6 +183,89 @@ def test_what_pyvista_holds_besides_meshes():
     assert first.colors[:, 0].max() == 0 and second.colors[:, 0].min() == 1 and third.colors is None
 
 
+QUARTERS = np.zeros((8, 8, 3), np.uint8)  # red and blue above, green and black below
+QUARTERS[:4, :4, 0] = QUARTERS[:4, 4:, 2] = QUARTERS[4:, :4, 1] = 200
+
+
+def test_textures_of_a_plotter():
+    """Rows of VTK begin at the bottom; a colour multiplies a texture."""
+    pyvista = pytest.importorskip("pyvista")
+    plotter = pyvista.Plotter(off_screen=True)
+    plotter.add_mesh(pyvista.Plane(), texture=pyvista.Texture(QUARTERS))
+    plotter.add_mesh(pyvista.Plane(center=(2, 0, 0)), texture=pyvista.Texture(QUARTERS),
+                     color=(1.0, 1.0, 0.5), pbr=True)
+    world = xvrml.to_world(plotter)
+    first, second = world.meshes()
+    assert np.array_equal(first.node.appearance.texture.image, QUARTERS)
+    assert np.allclose(second.node.appearance.texture.image, QUARTERS * (1, 1, 0.5), atol=1)
+    assert tuple(second.node.appearance.material.baseColor) == (1, 1, 1)
+    first.node.appearance.material = None  # unlit, so the colours are those of the texture
+    image = world.render(size=(40, 40), spp=1, camera=((0, 0, 3), (0, 0, 0)), fov=15).display
+    for (row, column), color in {(10, 10): 0, (10, 30): 2, (30, 10): 1}.items():
+        assert np.argmax(image[row, column]) == color and image[row, column].max() > 150
+    assert image[30, 30].max() < 10
+
+
+def _trimesh(**members):
+    """Returns what looks like an object of trimesh; the classes have these members."""
+    return types.SimpleNamespace(is_watertight=False, **members)
+
+
+def test_paths_and_clouds_of_trimesh():
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
+    line = types.SimpleNamespace(color=(255, 0, 0, 255), discrete=lambda xy, scale: xy[[0, 1]])
+    arc = types.SimpleNamespace(color=None, discrete=lambda xy, scale: xy[[1, 2, 3]])
+    text = types.SimpleNamespace(color=None, discrete=lambda xy, scale: xy[:0])
+    path = _trimesh(entities=[line, text, arc], vertices=square, scale=1.4)
+    shape = xvrml.interop.from_trimesh(path)
+    assert shape.geometry.coordIndex.tolist() == [0, 1, -1, 2, 3, 4, -1]
+    assert np.allclose(shape.geometry.color.color, [(1, 0, 0), (0.8, 0.8, 0.8)])
+    assert not shape.geometry.colorPerVertex
+    assert xvrml.interop.from_trimesh(path, color=(0, 1, 0)).geometry.color is None
+    assert xvrml.interop.from_trimesh(_trimesh(entities=[], vertices=square)) is not None
+    cloud = _trimesh(vertices=np.eye(3), colors=np.full((3, 4), 255, np.uint8))
+    scene = types.SimpleNamespace(geometry={"path": path, "cloud": cloud},
+                                  graph=_Graph(path=np.eye(4), cloud=np.eye(4)))
+    world = xvrml.to_world(scene)
+    assert sorted(mesh.kind for mesh in world.meshes()) == ["lines", "points"]
+
+
+class _Graph(dict):
+
+    @property
+    def nodes_geometry(self):
+        return list(self)
+
+    def __getitem__(self, name):
+        return super().__getitem__(name), name
+
+
+def test_textures_of_trimesh():
+    PIL = pytest.importorskip("PIL.Image")
+    square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    material = types.SimpleNamespace(baseColorTexture=PIL.fromarray(QUARTERS),
+                                     baseColorFactor=np.array([255, 255, 127, 255], np.uint8))
+    visual = types.SimpleNamespace(kind="texture", material=material, uv=square[:, :2])
+    mesh = _trimesh(vertices=square, faces=np.array([(0, 1, 2), (0, 2, 3)]), visual=visual)
+    shape = xvrml.interop.from_trimesh(mesh)
+    assert np.allclose(shape.appearance.texture.image, QUARTERS * (1, 1, 127 / 255), atol=0.5)
+    assert np.allclose(shape.geometry.texCoord.point, square[:, :2])
+    assert xvrml.interop.from_trimesh(mesh, color=(1, 0, 0)).appearance.texture is None
+    material = types.SimpleNamespace(image=None)
+    visual = types.SimpleNamespace(kind="texture", material=material, uv=None)
+    mesh = _trimesh(vertices=square, faces=np.array([(0, 1, 2)]), visual=visual)
+    assert xvrml.interop.from_trimesh(mesh).appearance.texture is None
+
+
+def test_a_real_path_of_trimesh():
+    trimesh = pytest.importorskip("trimesh")
+    path = trimesh.load_path(np.array([[[0, 0, 0], [1, 0, 0]], [[0, 2, 1], [1, 2, 1]]], float))
+    (mesh, ) = xvrml.to_world(path).meshes()
+    assert mesh.kind == "lines"
+    scene = trimesh.Scene([trimesh.creation.box(), path])
+    assert sorted(m.kind for m in xvrml.to_world(scene).meshes()) == ["lines", "triangles"]
+
+
 def test_a_window_gets_a_file_by_its_name(monkeypatch, tmp_path):
     program = tmp_path / "vv"
     program.write_text('#!/bin/sh\necho "$@" > "$0.args"\n')

@@ -275,7 +275,8 @@ def test_instruction_sets(box):
 def test_save(box, tmp_path):
     p = xvrml.load(box).render(size=(16, 12), spp=1)
     for name, start in (("a.png", b"\x89PNG"), ("a.jpg", b"\xff\xd8"),
-                        ("a.exr", b"\x76\x2f\x31\x01"), ("a.ppm", b"P6"), ("a.pfm", b"PF")):
+                        ("a.exr", b"\x76\x2f\x31\x01"), ("a.ppm", b"P6"), ("a.pfm", b"PF"),
+                        ("a.hdr", b"#?RADIANCE")):
         p.save(tmp_path / name)
         assert (tmp_path / name).read_bytes().startswith(start)
     assert p._repr_png_() == (tmp_path / "a.png").read_bytes()

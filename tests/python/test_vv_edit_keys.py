@@ -5,7 +5,7 @@ import re
 import pytest
 
 from conftest import HEADER
-from editor_window import needs_the_editor, press, saved, text  # noqa: F401
+from editor_window import changed, needs_the_editor, press, saved, text  # noqa: F401
 from window_driver import framebuffer, screen, window  # noqa: F401
 
 WIDTH, HEIGHT = 600, 400
@@ -32,8 +32,8 @@ def is_green(colour):
 class Keys:
     """The editor in a window, and what the screen shows of it."""
 
-    def __init__(self, window, vv, screen):
-        self.window, self.vv, self.screen = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}"), vv, screen
+    def __init__(self, window, vv, screen, world=WORLD):
+        self.window, self.vv, self.screen = window(world, "--size", f"{WIDTH}x{HEIGHT}"), vv, screen
         place = self.window.tool("getwindowgeometry", "--shell", self.window.id)
         self.left, self.top = [int(re.search(rf"{n}=(-?\d+)", place)[1]) for n in ("X", "Y")]
         self.window.key("e")
@@ -105,6 +105,20 @@ def test_keys_alone_select_change_and_undo(keys, vv):
     saved(w, vv, lambda t: "BOX_2" in t)
     w.key("ctrl+z", "ctrl+s")
     assert w.end() == 0
+
+
+def test_keys_wait_for_what_is_searched_for(window, vv, screen):
+    # Keys come faster than so many nodes are searched. They are meant for the rows that are found, not
+    # for the Background, which the first letters find.
+    world = WORLD.replace("Background", "DEF GREEK Background")
+    world += "Group { children [\n" + "Group { }\n" * 500_000 + "] }\n"
+    keys = Keys(window, vv, screen, world)
+    keys.find("GREEN")
+    keys.window.key("ctrl+Tab", "Down", "space", "ctrl+s")
+    now = changed(keys.window, vv, lambda t: t != world)
+    assert now == world.replace("0x00ff00 }", "0x00ff00 repeatS FALSE }")
+    keys.window.key("Escape")  # the picture has the keys again
+    assert keys.window.end() == 0
 
 
 def test_a_node_is_renamed(keys, vv):

@@ -3,7 +3,7 @@ the menu, other files, materials of the user's folder, and sensors; and the list
 import pytest
 
 from conftest import HEADER
-from editor_window import needs_the_editor, press, saved, text  # noqa: F401
+from editor_window import needs_the_editor, press, saved, text, until_sheet  # noqa: F401
 from window_driver import framebuffer, screen, window  # noqa: F401
 from xdrop import drop
 
@@ -83,12 +83,13 @@ def test_a_dropped_file_is_imported_or_opened(editor, vv, screen):
     assert w.command()[1] == str((vv.folder / "leg.wrl").resolve())
 
 
-def test_a_material_of_the_user_is_chosen(editor, vv):
+def test_a_material_of_the_user_is_chosen(editor, vv, screen):
     w = editor
     folder = vv.folder / "data/xvrml/materials"
     folder.mkdir(parents=True)
     (folder / "oak.wrl").write_text(OAK)
     w.click(0, 0)
+    until_sheet(w, screen, WIDTH)
     press(w, WIDTH - 160, 61)  # the look of the box
     w.tool("type", "oak")
     w.key("Return")

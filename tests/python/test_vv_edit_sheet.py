@@ -5,7 +5,7 @@ import re
 import pytest
 
 from conftest import HEADER
-from editor_window import needs_the_editor, press, saved, text  # noqa: F401
+from editor_window import needs_the_editor, press, saved, text, until_sheet  # noqa: F401
 from window_driver import red, screen, window  # noqa: F401
 
 WORLD = HEADER + """
@@ -24,10 +24,10 @@ WIDTH, HEIGHT = 640, 400
 class Panels:
     """The window with its panels: places are pixels of the window."""
 
-    def __init__(self, window, vv):
+    def __init__(self, window, vv, screen):
         self.state = vv.folder / "state"
         self.window = window(WORLD, "--size", f"{WIDTH}x{HEIGHT}")
-        self.vv = vv
+        self.vv, self.screen = vv, screen
         self.window.key("e")
 
     def text(self):
@@ -44,13 +44,14 @@ class Panels:
 
 
 @pytest.fixture
-def panels(window, vv):
-    return Panels(window, vv)
+def panels(window, vv, screen):
+    return Panels(window, vv, screen)
 
 
 def test_a_look_is_chosen_for_a_shape(panels):
     w = panels.window
     w.click(0, 0)  # selects the box
+    until_sheet(w, panels.screen, WIDTH)
     panels.click(WIDTH - 160, 61)  # its look
     w.tool("type", "PhysicalM")
     w.key("Return")

@@ -76,7 +76,6 @@ def test_usage(vv, arguments, word):
 
 
 @pytest.mark.parametrize("content, name", [
-    (b"ISO-10303-21;\n", "STEP model"),
     (b"(kicad_pcb (version 20221018)", "KiCad board"),
     (b"\x89PNG\r\n\x1a\n", "a picture"),
     (b"<!DOCTYPE html><title>404</title>", "web page"),

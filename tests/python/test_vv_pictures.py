@@ -11,7 +11,7 @@ from conftest import BOX, HEADER, SMALL, exr_channels, exr_header, has_tool, rea
 
 @pytest.mark.parametrize("suffix, start", [("png", b"\x89PNG\r\n\x1a\n"), ("jpg", b"\xff\xd8\xff"),
                                            ("exr", b"\x76\x2f\x31\x01"), ("ppm", b"P6\n"),
-                                           ("pfm", b"PF\n")])
+                                           ("pfm", b"PF\n"), ("hdr", b"#?RADIANCE\n")])
 def test_formats(vv, suffix, start):
     done = vv("box.wrl", "-o", f"out.{suffix}", *SMALL)
     assert done.returncode == 0, done.talk

@@ -11,7 +11,7 @@ import pytest
 from conftest import HEADER
 from page_client import Refused, serve, wait_for  # noqa: F401
 from serve_edit_tools import (
-    SIZE, WORLD, drag, field, history, newest, opened, paint, select, select_row, text_of,
+    SIZE, WORLD, drag, field, history, newest, opened, paint, save, select, select_row, text_of,
     until, value)
 from window_driver import blue, green, red
 
@@ -151,8 +151,7 @@ Shape { appearance ORTAppearance { shader DEF LOOK ORTShader { name "Diffuse" } 
     page.still(lambda p: green(*p.at(0, 0)))
     sheet = value(page, "reflectance", [0, 1, 0])
     assert field(sheet, "reflectance")["declared"]
-    page.edit("save")
-    history(page, unsaved=False)
+    save(page)
     assert "reflectance 0 1 0" in text_of(vv)
     page.edit("undo")
     page.edit("undo")
@@ -313,8 +312,7 @@ def test_a_lost_connection_ends_its_drag(serve, vv, how):
     else:
         one.close()
     history(two, undo="Set Material.shininess", unsaved=True)
-    two.edit("save")
-    history(two, unsaved=False)
+    save(two)
     assert "shininess 0.5" in text_of(vv)
 
 
@@ -412,8 +410,7 @@ def test_hostile_edits_end_the_connection_or_are_refused(serve, vv):
     assert page.until_closed() in ((1008, "maxMessagesPerSecond"), (0, ""))
     drag(good, number, "shininess", 0.5)
     value(good, "shininess", 0.5)
-    good.edit("save")
-    history(good, unsaved=False)
+    save(good)
     assert text_of(vv).count("shininess") == 1 and server.stop() == 0
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from conftest import HEADER
 from page_client import Image, serve, wait_for  # noqa: F401
-from serve_edit_tools import WORLD, history, newest, select, text_of, until
+from serve_edit_tools import WORLD, history, newest, save, select, text_of, until
 from test_vv_serve_browser import browser, errors, keep  # noqa: F401
 from test_vv_serve_edit_browser import (ESCAPE, open_editor, row, until_script, until_title)
 
@@ -38,8 +38,7 @@ def test_a_file_becomes_an_inline(serve, vv):
     assert (vv.folder / "my_ball-2.wrl").read_bytes() == content
     until(page, "sheet", lambda t: t["title"] == "my_ball-2  Inline")
     history(page, undo="Import my_ball-2", unsaved=True)
-    page.edit("save")
-    history(page, unsaved=False)
+    save(page)
     assert 'url [ "my_ball-2.wrl" ]' in text_of(vv)
 
 
@@ -122,8 +121,7 @@ def test_looks_have_balls_and_those_of_the_user_come_first(serve, vv, materials)
     assert green > 2 * red and green > 2 * blue
     page.edit("set_look", number=looks[0]["number"], only_here=True)
     page.still(lambda p: p.at(0, 0)[1] > 2 * p.at(0, 0)[0])
-    page.edit("save")
-    history(page, unsaved=False)
+    save(page)
     assert "diffuseColor 0 1 0" in text_of(vv)
 
 

@@ -1,10 +1,11 @@
 """Tests vv and shaders: --shader, --list-shaders, --transport and its messages, HDR emission."""
 import json
+import re
 import struct
 
 import pytest
 
-from conftest import HEADER, SMALL
+from conftest import HEADER, ROOT, SMALL
 
 WORLD = HEADER + """
 NavigationInfo { headlight FALSE }
@@ -267,3 +268,12 @@ def test_what_the_engine_says_is_heard(vv):
     done = vv("lamp.wrl", "-o", "x.png", *SMALL)
     assert done.returncode == 0 and "Luminaire" in done.talk and "warning" in done.talk
     assert vv("lamp.wrl", "-o", "y.png", "--strict", *SMALL).returncode == 4
+
+
+# Light paths bring the noise of the room. Those of the headlight bring its light, but not its noise.
+@pytest.mark.parametrize("name, several", [("interior", True), ("headlight", False)])
+def test_how_many_light_paths(vv, name, several):
+    world = ROOT / f"examples/scenes/{name}.wrl"
+    done = vv(world, "-o", "x.png", "--stats", "-", "--size", "48x32", "--spp", "16")
+    reason = json.loads(done.text)["transport"]["reason"]
+    assert (re.search(", x[248] light", reason) is not None) == several, reason

@@ -49,3 +49,37 @@ def test_nothing_is_said_without_a_change(case, tmp_path):
 def test_quiet_says_nothing(vv):
     vv.write("world.x3dv", CASES["texture"][0])
     assert "changes" not in vv("world.x3dv", "--write", "a.wrl", "-q").talk
+
+
+# A Script that counts how often it has begun: the text of a count of 1 would be counted on from there.
+COUNTING = HEAD3 + """DEF S Script { mustEvaluate TRUE directOutput TRUE initializeOnly SFInt32 count 0
+  initializeOnly SFNode place DEF T Transform { }
+  url "ecmascript: function initialize() { count++; place.translation = new SFVec3f(count, 0, 0); }" }
+USE T
+"""
+
+
+def test_a_text_has_the_world_before_its_scripts_begin(vv):
+    """So that a Script begins with the same fields when the text is read."""
+    vv.write("world.x3dv", COUNTING)
+    for name in ("a.x3dv", "a.wrl"):
+        assert vv("world.x3dv", "--write", name).returncode == 0
+        text = (vv.folder / name).read_text()
+        assert "count 0" in text and "translation" not in text.replace("place.translation", "")
+    # The values of -D are written, also if only a world that runs can take it.
+    assert "translation 0 7 0" in vv("world.x3dv", "-D", "T.translation=0 7 0", "--write", "x3dv:-").text
+    vv.write("event.x3dv", HEAD3 + "DEF T TouchSensor { }\nPROTO P [ inputOutput SFFloat r 1 ] "
+             "{ Shape { geometry Sphere { radius IS r } } }\nDEF Q P { }\n")
+    assert "r 5" in vv("event.x3dv", "-D", "Q.r=5", "--write", "x3dv:-").text
+
+
+def test_programs_that_name_files_are_said_where_the_folder_changes(vv, tmp_path):
+    text = HEAD3 + """Script { url "ecmascript: function initialize() {
+  Browser.loadURL(new MFString('b.wrl'), new MFString('target=x')); }" }\n"""
+    vv.write("world.x3dv", text)
+    (vv.folder / "other").mkdir()
+    assert "1 Script will look for its files" in vv("world.x3dv", "--write", "other/a.x3dv").talk
+    assert "Script will look" not in vv("world.x3dv", "--write", "a.x3dv").talk
+    world = xvrml.load(vv.folder / "world.x3dv")
+    world.save(str(tmp_path / "a.x3dv"))
+    assert "will look for its files" in str(world.warnings[-1])

@@ -61,6 +61,25 @@ def test_a_skin_follows_events():
     assert middle_of_red(browser) == near(1.5, 0)
 
 
+def test_a_skin_that_loses_its_figure_goes_back_to_rest():
+    """In a world that does not run: it is taken out of the figure, or the figure out of the world."""
+    text = (FIGURE % QUARTER).replace("HAnimHumanoid", "DEF H HAnimHumanoid").replace("Shape", "DEF S Shape")
+    for runs in (False, True):
+        world = xvrml.loads(text.encode())
+        assert middle_of_red(world) == near(1, 0.5)
+        coordinates = world["C"]
+        world["H"].skinCoord = None
+        if runs:
+            world.time = 0
+        assert middle_of_red(world) == near(1.5, 0)
+        world["H"].skinCoord = coordinates
+        assert middle_of_red(world) == near(1, 0.5)
+        skin = world["S"]
+        world.remove(world["H"])
+        world.add(skin)
+        assert middle_of_red(world) == near(1.5, 0)
+
+
 def test_exports_and_rays_meet_the_bent_skin(tmp_path):
     world = xvrml.loads((FIGURE % QUARTER).encode())
     world.save(tmp_path / "a.stl")

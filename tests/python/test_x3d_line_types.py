@@ -42,7 +42,7 @@ def test_dashes_have_their_lengths_in_pixels(linetype):
     assert list(found) == pattern(TYPES[linetype], 80)
 
 
-@pytest.mark.parametrize("linetype", (1, 6, 16, 99))
+@pytest.mark.parametrize("linetype", (1, 6, 7, 8, 14, 15, 16, 99))
 def test_other_types_are_solid_and_told_of(linetype):
     world = xvrml.loads(FLAT + lines([(-4, 0, 0), (4, 0, 0)], linetype), "a.x3dv")
     assert list(row(world)) == [1] * 80

@@ -9,7 +9,8 @@ import time
 import urllib.error
 import urllib.request
 
-PATIENCE = 30
+from conftest import PATIENCE
+
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"  # the name that the protocol gives to elements
 
 

@@ -12,13 +12,12 @@ import time
 
 import pytest
 
-from conftest import HEADER, find_vv
+from conftest import HEADER, PATIENCE, find_vv
 from xserver import display
 
 Image = pytest.importorskip("PIL.Image")
 
 SIZE = (160, 120)
-PATIENCE = 20  # seconds, for things that take a moment on an idle machine
 
 SENSORS = HEADER + """
 Viewpoint { position 0 0 10 fieldOfView 0.785398 description "front" }

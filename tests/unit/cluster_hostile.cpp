@@ -27,6 +27,7 @@ struct LoneWorker {
   std::vector<std::string> closed, badOnes;
   std::vector<double> beats;
   size_t needed = 0; // number of arrays requested
+  WorkerCounts counts;
   Worker worker;
   LoneWorker()
       : worker({.self = {.threads = 1}, .cacheBytes = 1000},
@@ -39,7 +40,7 @@ struct LoneWorker {
                 [this](Peer, const std::string& why) { closed.push_back(why); },
                 [this](Peer, const std::string& why) { badOnes.push_back(why); },
                 [this](double heartbeat, double) { beats.push_back(heartbeat); }},
-               machine) {
+               machine, counts) {
     worker.joined(1, "somewhere", 0);
     tell(usualWelcome(7));
   }

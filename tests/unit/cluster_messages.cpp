@@ -38,7 +38,9 @@ std::vector<message::Body> oneOfEach() {
                                   .threads = 16,
                                   .host = "node1",
                                   .process = 4711,
-                                  .isas = "avx2, sse2"});
+                                  .isas = "avx2, sse2",
+                                  .share = 4711,
+                                  .shareKey = "key"});
   all.emplace_back(message::Need{.epoch = 5, .arrays = {{1, 2}, {3, 4}}});
   all.emplace_back(ready);
   all.emplace_back(message::Failed{.epoch = 5, .why = "why"});
@@ -60,6 +62,9 @@ std::vector<message::Body> oneOfEach() {
   all.emplace_back(message::Drop{.epoch = 5});
   all.emplace_back(message::Beat{.sent = 1.5, .answer = true});
   all.emplace_back(message::Bye{.why = "why"});
+  all.emplace_back(message::Got{.arrays = {{1, 2}, {3, 4}}, .failed = true, .kept = true});
+  all.emplace_back(message::Source{.address = "node2:4711", .arrays = {{0, 100, {1, 2}}}});
+  all.emplace_back(message::Fetch{.arrays = {{0, 100, {1, 2}}, {0, 200, {3, 4}}}});
   return all;
 }
 

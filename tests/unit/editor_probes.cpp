@@ -1,7 +1,7 @@
 // editor_probes.cpp: Tests what probes read from pictures, and when a change counts.
 #include <algorithm>
 
-#include "edit/csv_field.h"
+#include "csv_field.h"
 #include "edit/probes.h"
 #include "unit/editor_support.h"
 

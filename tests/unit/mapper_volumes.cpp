@@ -192,7 +192,42 @@ TEST_F(MapVolumes, MaterialsAndLayers) {
                  place));
   expectSeen({1, 1, 1}, "each layer has its transform");
   silent();
-  loadX3d(square("material PhysicalMaterial { } texture " + cube(), place));
+  loadX3d(square("material Material { emissiveTexture " + cube() + " }", place));
+  expectSaid("a volume is drawn as the texture of an Appearance");
+}
+
+// A PhysicalMaterial looks as with a picture of the same colour, magenta here.
+TEST_F(MapVolumes, PhysicalAndUnlitMaterials) {
+  const std::string place = at(".75 .25 .75"), light = "DirectionalLight { direction 0 0 -1 }\n",
+                    magenta = "PixelTexture { image 1 1 3 0xFF00FF }";
+  for (const char* field : {"} texture ", "baseTexture "}) {
+    const auto look = [&](const std::string& texture) {
+      const bool own = field[0] == 'b';
+      loadX3d(light +
+              square("material PhysicalMaterial { baseColor .8 .6 .4 metallic 0 roughness .7 " +
+                         std::string(field) + texture + (own ? " }" : ""),
+                     place));
+      return seen();
+    };
+    const std::array<float, 4> expected = look(magenta);
+    EXPECT_GT(expected[0], expected[1] + .1f) << field;
+    const std::array<float, 4> rgba = look(cube());
+    for (size_t c = 0; c < 3; c++) EXPECT_NEAR(rgba[c], expected[c], 1e-3) << field << c;
+    silent();
+  }
+  loadX3d(square("material UnlitMaterial { emissiveTexture " + cube() + " }", place));
+  expectSeen({1, 0, 1}, "an UnlitMaterial");
+  loadX3d(square("material UnlitMaterial { emissiveColor .5 1 .5 } texture " + cube() +
+                     " textureTransform DEF M TextureTransform3D { }",
+                 at("1.5 .5 1.5 2", "4D")));
+  expectSeen({.5, 0, .5}, "four numbers");
+  send("M", "set_translation", SFVec3f{0, .5f, 0});
+  expectSeen({.5, 1, .5}, "another transform");
+  silent();
+  loadX3d(square("material PhysicalMaterial { normalTexture " + cube() + " }", place));
+  expectSaid("a volume is drawn as the texture of an Appearance");
+  loadX3d(
+      square("material UnlitMaterial { } texture MultiTexture { texture " + cube() + " }", place));
   expectSaid("a volume is drawn as the texture of an Appearance");
 }
 
@@ -292,18 +327,26 @@ TEST_F(MapVolumes, EventsChangeASlice) {
 // Many shapes share a mesh, which is an object of its own then; the shader of each instance has the
 // coordinates.
 TEST_F(MapVolumes, InstancesOfOneMesh) {
-  std::string shapes = "Viewpoint { position .3 .1 60 fieldOfView .002 }\n";
-  for (int i = 0; i < 40; i++)
-    shapes += "Transform { translation 0 0 " + std::to_string(-i) +
-              " children Shape { appearance "
-              "Appearance { texture " +
-              (i == 0 ? cube() : std::string("USE T")) +
-              " textureTransform TextureTransform3D { translation " + std::to_string(i) +
-              " 0 0 } } geometry " + (i == 0 ? "DEF B Sphere { radius 2 }" : "USE B") + " } }\n";
-  loadX3d(shapes);
+  const auto load = [&](const std::string& first, const std::string& others) {
+    std::string shapes = "Viewpoint { position .3 .1 60 fieldOfView .002 }\n";
+    for (int i = 0; i < 40; i++)
+      shapes += "Transform { translation 0 0 " + std::to_string(-i) +
+                " children Shape { appearance "
+                "Appearance { " +
+                (i == 0 ? first + " texture " + cube() : others + " texture USE T") +
+                " textureTransform TextureTransform3D { translation " + std::to_string(i) +
+                " 0 0 } } geometry " + (i == 0 ? "DEF B Sphere { radius 2 }" : "USE B") + " } }\n";
+    loadX3d(shapes);
+  };
   const double front = (2 - std::sqrt(4 - .1)) / 4;
-  expectSeen({ramp(2.3 / 4), ramp(2.1 / 4), ramp(front)}, "the first of 40");
-  silent();
+  for (const std::string material : {"", "material UnlitMaterial { }"}) {
+    load(material, material);
+    expectSeen({ramp(2.3 / 4), ramp(2.1 / 4), ramp(front)}, "the first of 40 " + material);
+    silent();
+  }
+  load("material UnlitMaterial { }", "");
+  expectSeen({ramp(2.3 / 4), ramp(2.1 / 4), ramp(front)}, "materials of both kinds");
+  expectSaid("here only the first slice is seen");
 }
 
 // A plane that cuts a shape keeps the coordinates of what is left.

@@ -54,7 +54,7 @@ TEST(Notes, areInTheFilesOfTheFormatsThatKeepThem) {
               !format.keepsNote);
     EXPECT_EQ(timesIn(format.encode(pictureWith("")), "preview"), 0u);
   }
-  EXPECT_EQ(formatsWith(&Format::keepsNote), "EXR, PNG, JPEG and PPM");
+  EXPECT_EQ(formatsWith(&Format::keepsNote), "EXR, PNG, JPEG, PPM and HDR");
 }
 
 TEST(Notes, areInFilms) {

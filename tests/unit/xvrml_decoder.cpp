@@ -12,13 +12,13 @@
 #include <thread>
 
 #include <sndfile.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include "behaviour/sound_file.h"
 #include "decode/decoder.h"
 #include "image/foreign.h"
 #include "unit/decoder_world.h"
+#include "unit/liar.h"
 
 namespace xvrml::test {
 namespace {
@@ -315,40 +315,12 @@ TEST(Decoder, ThreadsTakeTurns) {
   for (std::thread& thread : threads) thread.join();
 }
 
-// Answers a file with these messages.
-class Liar {
- public:
-  explicit Liar(World& world) {
-    int ends[2];
-    if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) std::abort();
-    world.budget.decoder = std::make_shared<Decoder>(ends[0]);
-    socket_ = ends[1];
-    channel_ = std::make_unique<wire::Channel>(socket_);
-  }
-  Liar& says(decoding::Op op, const decoding::Contents& contents) {
-    decoding::send(*channel_, op, contents);
-    return *this;
-  }
-  Liar& says(decoding::Op op, const std::string& text = "") {
-    decoding::send(*channel_, op, std::span<const char>(text));
-    return *this;
-  }
-  Liar& ends() {
-    ::shutdown(socket_, SHUT_WR);
-    return *this;
-  }
-
- private:
-  int socket_ = -1;
-  std::unique_ptr<wire::Channel> channel_;
-};
-
 TEST(Decoder, AProcessThatLiesIsEnded) {
   using decoding::Op;
   const decoding::Contents honest{2, 2, 3, 1, 0};
   const auto said = [&](const std::function<void(Liar&)>& lie) {
     World world;
-    Liar liar(world);
+    Liar liar(world.budget.decoder, mediaDecoder);
     lie(liar);
     liar.ends();
     return whyNot(makeBmp(2, 2, 3), world);
@@ -388,7 +360,7 @@ TEST(Decoder, AProcessThatLiesIsEnded) {
 TEST(Decoder, RatesOfSoundsAreChecked) {
   const auto length = [](double rate) {
     World world;
-    Liar liar(world);
+    Liar liar(world.budget.decoder, mediaDecoder);
     liar.says(decoding::Op::contents, decoding::Contents{1000, 1, 1, sizeof(float), rate});
     return soundLength(dataUrl({1, 2, 3}), world.room());
   };

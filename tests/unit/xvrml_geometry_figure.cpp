@@ -161,6 +161,30 @@ TEST(Figure, HostileIndicesAndWeightsMoveNothingAndAreReportedOnce) {
             std::string::npos);
 }
 
+// Vertices of the binding pose would be bent twice: skinCoord has the same skin at rest.
+TEST(Figure, ABindingPoseIsSaidToHaveNoEffect) {
+  for (const char* binding :
+       {"skinBindingCoords Coordinate { point 9 9 9 }",
+        "skinBindingNormals Normal { vector 1 0 0 }", "jointBindingPositions 0 5 0",
+        "jointBindingRotations 1 0 0 1", "jointBindingScales 2 2 2"}) {
+    const auto world = load(std::string("DEF F HAnimHumanoid { skinCoord DEF C Coordinate { point "
+                                        "2 0 0 } skeleton HAnimJoint { translation 0 1 0 "
+                                        "skinCoordIndex 0 } ") +
+                            binding + " }");
+    Diagnostics diagnostics;
+    deform(*world->scope.names.at("F"), &diagnostics);
+    expectNear(drawnPoints(named<nodes::Coordinate>(*world, "C"))[0], {2, 1, 0});
+    ASSERT_EQ(diagnostics.list().size(), 1u) << binding;
+    EXPECT_NE(diagnostics.list()[0].text().find("its binding pose"), std::string::npos);
+  }
+  const auto atRest = load("DEF F HAnimHumanoid { skinCoord DEF C Coordinate { point 2 0 0 } "
+                           "skinBindingCoords USE C jointBindingPositions 0 0 0 "
+                           "jointBindingRotations 0 0 1 0 jointBindingScales 1 1 1 }");
+  Diagnostics diagnostics;
+  deform(*atRest->scope.names.at("F"), &diagnostics);
+  EXPECT_EQ(diagnostics.list().size(), 0u);
+}
+
 // A vertex that no float can hold stays at rest.
 TEST(Figure, NumbersStayFinite) {
   const auto world = load("DEF F HAnimHumanoid { skinCoord DEF C Coordinate { point 2 0 0 } "

@@ -119,7 +119,7 @@ TEST(Meshes, TheMessageForOtherFormatsNamesThoseThatCanBeRead) {
     FAIL();
   } catch (const LoadError& error) {
     for (const char* name :
-         {"VRML97", "X3D ClassicVRML", "STL", "PLY", "Wavefront OBJ", "glTF", "OFF"})
+         {"VRML97", "X3D ClassicVRML", "STL", "PLY", "Wavefront OBJ", "glTF", "OFF", "STEP"})
       EXPECT_NE(error.diagnostic.message.find(name), std::string::npos) << name;
   }
 }

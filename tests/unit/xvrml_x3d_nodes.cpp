@@ -78,6 +78,7 @@ constexpr Interface interfaces[] = {
     {"26.3.1", "HAnimDisplacer", 0, 5, 0, 0},
     {"26.3.2", "HAnimHumanoid", 0, 28, 2, 0},
     {"26.3.3", "HAnimJoint", 2, 17, 2, 0},
+    {"26.3.4", "HAnimMotion", 2, 14, 0, 3},
     {"26.3.4", "HAnimSegment", 2, 10, 2, 0},
     {"26.3.5", "HAnimSite", 2, 10, 2, 0},
     {"27.4.1", "Contour2D", 2, 1, 0, 0},

@@ -39,7 +39,7 @@ PROGRAMS = {  # engine: trusted, program
     "Python": (True, '"python:import math\ndef initialize(): script.x = math.floor(42.5)\n"'),
 }
 # Features of `vv --list-features` that the wheel lacks (docs/packages.md).
-MISSING = {"denoise", "mp4", "webm", "python", "window", "edit", "serve"}
+MISSING = {"denoise", "mp4", "webm", "python", "step", "window", "edit", "serve"}
 
 
 def main():

@@ -96,13 +96,12 @@ void EditModel::setField(WorldEditor& editor, const Dragged& dragged, const Chan
   const FieldInfo& info = *node.type().find(dragged.field);
   const Value now = node.get(info);
   const bool isOwn = set_ == std::pair(dragged, now);
-  editor.editor().set(*dragged.node, dragged.field,
-                      mergedList(change, now, isOwn, nameOf(dragged)));
+  editor.editor().set(*dragged.node, dragged.field, mergedList(change, now, isOwn, dragged.name()));
   set_ = {dragged, node.get(info)};
 }
 
-std::string EditModel::nameOf(const Dragged& dragged) {
-  return fmt::format("{}.{}", dragged.node->type().name, dragged.field);
+std::string EditModel::Dragged::name() const {
+  return fmt::format("{}.{}", node->type().name, field);
 }
 
 void EditModel::begin(const Dragged& dragged) {
@@ -111,7 +110,7 @@ void EditModel::begin(const Dragged& dragged) {
       [this, dragged, shown = row ? row->edits : 0, isShown = row != nullptr](WorldEditor& editor) {
         isRefused_ = true;
         refuseWithinStep(editor);
-        const std::string what = nameOf(dragged);
+        const std::string what = dragged.name();
         const uint64_t edits = editor.editor().editsOf(*dragged.node, dragged.field);
         if (isShown && edits != shown && own_ != std::pair(dragged, edits))
           throw EditError(
@@ -240,8 +239,10 @@ void EditModel::readSheet(WorldEditor& editor) {
 void EditModel::read(WorldEditor& editor) {
   const World& world = editor.browser().world();
   const Stale stale = std::exchange(stale_, Stale::nothing);
-  if (stale == Stale::rows)
+  if (stale == Stale::rows) {
     rows_ = search_.empty() ? outline_.rows(world) : Outline::find(world, search_, mostFound);
+    found_ = search_;
+  }
   if (stale >= Stale::sheet) {
     if (!isActive_ || sheet_.node.get() != editor.selected()) readSheet(editor);
   } else if (sheet_.node && !isActive_ && !refresh(editor, sheet_)) {

@@ -96,6 +96,9 @@ class EditModel {
   void setActive(bool active);
   void setOpen(const xvrml::NodeRef& node, bool open);
   void search(std::string text); // "": shows the tree
+  // Tells whether the rows are still those of an earlier search. Keys that follow are meant for the
+  // rows that will be found, unless the user still types.
+  bool isSearching() const { return found_ != search_ && !isActive_; }
   // Hide nodes for now, or show them again. This is no edit.
   void hideSelected();
   void isolateSelected();
@@ -113,6 +116,7 @@ class EditModel {
   struct Dragged {
     xvrml::NodeRef node;
     std::string field;
+    std::string name() const; // "Text.string"
     bool operator==(const Dragged&) const = default;
   };
 
@@ -130,7 +134,6 @@ class EditModel {
   };
 
   void requestValue(Command command) { requests_.push_back({std::move(command), Stale::values}); }
-  static std::string nameOf(const Dragged& dragged); // "Text.string"
   void note(Stale stale) { stale_ = std::max(stale_, stale); }
   Stale anyChange() const;
   void begin(const Dragged& dragged);
@@ -149,7 +152,8 @@ class EditModel {
   TextureThumbnails thumbnails_;
   ProblemList problems_;
   xvrml::MFNode selection_;
-  std::string undoName_, redoName_, readOnly_, unwritable_, message_, search_;
+  std::string undoName_, redoName_, readOnly_, unwritable_, message_;
+  std::string search_, found_; // what is searched for, and what the rows were found for
   std::vector<Line> frames_;
   std::vector<Look> looks_;
   Hiding hiding_;

@@ -27,7 +27,7 @@ Reading readingOf(const Probe& probe, const EditView& view) {
   if (!canBeKept(probe)) throw EditError("the file has this sensor already");
   if (probe.sensor)
     return {vectorOf(probe.sensor->first), vectorOf(probe.sensor->direction),
-            probe.sensor->luminance ? "LUMINANCE" : "ILLUMINANCE"};
+            picture::infoOf(probe.sensor->quantity).word};
   double x = 0, y = 0;
   if (!projectPoint(view.camera, view.aspect, probe.point.data(), x, y))
     throw EditError(fmt::format("probe {} is behind the viewer", probe.number));
@@ -45,7 +45,7 @@ bool hasProbe(const Probes& probes, const picture::PlacedSensor& sensor) {
   return std::any_of(probes.all().begin(), probes.all().end(), [&](const Probe& probe) {
     return probe.sensor && std::equal(sensor.first, sensor.first + 3, probe.sensor->first) &&
            std::equal(sensor.direction, sensor.direction + 3, probe.sensor->direction) &&
-           sensor.luminance == probe.sensor->luminance && sensor.columns == probe.sensor->columns &&
+           sensor.quantity == probe.sensor->quantity && sensor.columns == probe.sensor->columns &&
            sensor.rows == probe.sensor->rows;
   });
 }
@@ -87,7 +87,8 @@ void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
     const std::array<double, 16>& place = placement.path.back().toWorld;
     std::copy(place.begin(), place.end(), info.matrix);
     const picture::PlacedSensor sensor = picture::placeSensor(info);
-    if (int64_t(sensor.columns) * sensor.rows > mostPoints) {
+    if (int64_t(sensor.columns) * sensor.rows > mostPoints ||
+        sensor.quantity == picture::Quantity::glare) {
       hasLarge = true;
       continue;
     }
@@ -99,7 +100,7 @@ void showSensors(WorldEditor& editor, Probes& probes, size_t most) {
   }
   if (probes.all().size() == before)
     throw EditError(hasLarge ? fmt::format("the file has no more sensors of at most {} points: vv "
-                                           "--measure reads larger ones",
+                                           "--measure reads larger ones, and glare ratings",
                                            mostPoints)
                              : "the file has no more sensors");
 }

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "edit/csv_field.h"
+#include "csv_field.h"
 #include "holm.h"
 #include "printable.h"
 
@@ -17,7 +17,9 @@ namespace {
 // How far a probe may lie off the surface that is seen there, as a part of its distance.
 constexpr double tolerance = 2e-3;
 
-bool readsIlluminance(const Probe& probe) { return probe.sensor && !probe.sensor->luminance; }
+bool readsIlluminance(const Probe& probe) {
+  return probe.sensor && probe.sensor->quantity == picture::Quantity::illuminance;
+}
 
 // Tells whether the viewer sees a point, and not something before or behind it.
 bool isSeen(xvrml::Browser& browser, const EditView& view, double x, double y,

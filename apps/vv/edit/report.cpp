@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "base64.h"
-#include "edit/csv_field.h"
-#include "printable.h"
+#include "csv_field.h"
+#include "html_page.h"
 
 namespace vv {
 
@@ -15,40 +15,7 @@ namespace {
 
 constexpr size_t mostFields = 40; // rows of the page; the table has all
 
-// The page runs no program and loads nothing, whatever the texts in it are.
-constexpr std::string_view head = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
-<style>
-@page { size: A4; margin: 15mm }
-body { font: 10pt/1.35 sans-serif; color: #111; background: #fff; max-width: 180mm; margin: 1em auto }
-h1 { font-size: 15pt; margin: 0 0 .2em } h2 { font-size: 11pt; margin: 1.1em 0 .3em }
-img { max-width: 100%; max-height: 95mm; display: block }
-table { border-collapse: collapse; width: 100% }
-th, td { text-align: left; vertical-align: top; padding: .15em .6em .15em 0; border-bottom: 1px solid #ccc }
-td.n, th.n { text-align: right; font-variant-numeric: tabular-nums }
-code { font: 8.5pt/1.3 monospace; white-space: pre-wrap; overflow-wrap: anywhere }
-figure { margin: 0 0 .6em } .row figure { display: inline-block; width: 48%; margin-right: 1% } .weak { color: #555 }
-</style>
-)";
-
-// Returns a text that a page shows as it is.
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : printable(text)) {
-    switch (c) {
-    case '&': out += "&amp;"; break;
-    case '<': out += "&lt;"; break;
-    case '>': out += "&gt;"; break;
-    case '"': out += "&quot;"; break;
-    case '\'': out += "&#39;"; break;
-    default: out += c;
-    }
-  }
-  return out;
-}
+using html::escaped;
 
 std::string interval(double value, double halfWidth, bool sign = false) {
   return sign ? fmt::format("{:+.4g} ± {:.2g}", value, halfWidth)
@@ -157,7 +124,7 @@ void addFields(const Report& report, std::string& out) {
 
 std::string reportPage(const Report& report) {
   const std::string world = escaped(report.world);
-  std::string out(head);
+  std::string out(html::head);
   out += fmt::format("<title>{} - report</title>\n</head>\n<body>\n<h1>{}</h1>\n<p "
                      "class=weak>{}. {}{}</p>\n",
                      world, world, escaped(report.program),

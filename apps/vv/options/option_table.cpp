@@ -344,10 +344,11 @@ const OptionInfo table[] = {
      "without shadows, reflections, refractions and samples. Files say so.",
      [](Options& o, const std::string&) { o.render.raster = true; },
      with(needs("-o"),
-          excludes("--spp,--error,--time-limit,--channels,--transport,--resume,--sums,--seed,"
-                   "--audit,--compare,--measure,--stats,--false-colour,--denoise,--preview,"
-                   "--record,--environment,--studio,--camera-shader,--workers,--listen-workers",
-                   "--preview-raster draws without rays: it cannot be used with {}"))},
+          excludes(
+              "--spp,--error,--time-limit,--channels,--transport,--resume,--sums,--seed,"
+              "--audit,--compare,--measure,--stats,--false-colour,--denoise,--preview,"
+              "--record,--environment,--sky,--studio,--camera-shader,--workers,--listen-workers",
+              "--preview-raster draws without rays: it cannot be used with {}"))},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint, given by DEF name, description or number from 0 (default: the "
      "first). all makes a picture from each viewpoint; its name replaces {viewpoint} in the file "
@@ -537,6 +538,10 @@ const OptionInfo table[] = {
      "and "
      "ORTAsphere never have facets.",
      [](Options& o, const std::string&) { o.render.exactShapes = true; }, with(inPresets)},
+    {"--step-error", "MM", "Change",
+     "Divide the surfaces of STEP models into triangles that are at most MM millimetres away from "
+     "them. Without it, MM is a thousandth of the size of each part.",
+     [](Options& o, const std::string& v) { o.load.stepError = readNumber(v, 0, 1e18); }},
     {"--point-size", "SIZE", "Change",
      "Draw the points of PointSets, point clouds (PLY) and the like as balls of this diameter, in "
      "the units of their Shape. They are lit in their colours and cast shadows; without it they "
@@ -602,6 +607,26 @@ const OptionInfo table[] = {
        notEmpty(o.render.environment, "a file name");
      },
      with(inPresets, Purpose::surroundings)},
+    {"--sky", "KIND[,KEY=VALUE...]", "Change",
+     "Light the world with daylight, in cd/m2, instead of its Background: cie:TYPE (a standard "
+     "sky, "
+     "1 to 15; 16 is the traditional overcast one), perez:DIRECT/DIFFUSE (W/m2) or "
+     "epw:FILE@MM-DDTHH:MM (a weather file). +y is up, -z north, +x east. Keys: "
+     "sun=ALTITUDE/AZIMUTH in degrees, or place=LATITUDE/LONGITUDE and "
+     "time=2026-06-21T12:00+02:00; lux and direct (illuminance by the sky of cie, default 10000, "
+     "and by the sun), dew, ground (reflectance, default .2), north (degrees from -z to +x). "
+     "docs/daylight.md tells more.",
+     [](Options& o, const std::string& v) {
+       try {
+         o.render.sky = picture::readSky(v);
+         o.skyText = v;
+       } catch (const std::invalid_argument& wrong) {
+         throw UsageError(wrong.what());
+       } catch (const picture::InputError& wrong) {
+         throw Failure{exitInput, fmt::format("--sky: {}", wrong.what())};
+       }
+     },
+     with(Purpose::surroundings)},
     {"--threads", "N", "Quality",
      "Number of render threads; 0 (default) is as many as the process may use. The picture does "
      "not depend on it.",
@@ -683,13 +708,15 @@ const OptionInfo table[] = {
        o.compare = v;
      }},
     {"--measure", "FILE", "Inspect",
-     "Write what the ORTSensors of the world read, in lux and cd/m2 with their 95 % intervals, as "
-     ".csv or .json; - is CSV on standard output. --spp (default here 4096), --error and "
+     "Write what the ORTSensors of the world read, in lux, cd/m2 and UGR with their 95 % "
+     "intervals, "
+     "as .csv, .json or a page .html; - is CSV on standard output. --spp (default here 4096), "
+     "--error and "
      "--time-limit say how many samples each point gets (docs/photometry.md). -o is not needed.",
      [](Options& o, const std::string& v) {
-       if (v != "-" && !v.ends_with(".csv") && !v.ends_with(".json"))
-         throw UsageError(fmt::format("a file name that ends in .csv or .json was expected, or -, "
-                                      "not \"{}\"",
+       if (v != "-" && !v.ends_with(".csv") && !v.ends_with(".json") && !v.ends_with(".html"))
+         throw UsageError(fmt::format("a file name that ends in .csv, .json or .html was expected, "
+                                      "or -, not \"{}\"",
                                       v));
        o.measure = v;
      },

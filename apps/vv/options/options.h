@@ -155,7 +155,8 @@ struct Options {
   std::string poseFile;            // the file of --pose; empty: none
   bool posed = false;              // view.lookAt is that of --pose
   bool fitExposure = false;        // render.view.exposure is chosen by the first picture
-  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
+  std::string measure; // file for the readings of the sensors, .csv, .json or .html; empty: none
+  std::string skyText; // the words of --sky; empty: none
   std::vector<const OptionInfo*> given; // options that the command line or a preset sets
   CompareOptions compared;
   // Denoised pictures are audited, and the run fails if a larger share of one is doubtful.

@@ -84,15 +84,17 @@ const Rule rules[] = {
     {[](const Options& o) { return o.view.intrinsics && (!o.makesPictures() || o.render.preview); },
      "--intrinsics needs -o without --preview"},
     {[](const Options& o) {
-       return o.render.studio.on && (!o.render.environment.empty() ||
-                                     o.render.background.kind != Background::Kind::world);
+       return o.render.studio.on &&
+              (o.render.hasSurroundings() || o.render.background.kind != Background::Kind::world);
      },
-     "--studio has a light and a backdrop of its own: it cannot be used with --environment or "
-     "with a --background other than a colour"},
+     "--studio has a light and a backdrop of its own: it cannot be used with --environment, --sky "
+     "or a --background other than a colour"},
+    {[](const Options& o) { return o.render.sky && !o.render.environment.empty(); },
+     "only one of --sky and --environment can be used"},
     {[](const Options& o) {
-       return !o.render.environment.empty() && o.render.background.kind != Background::Kind::world;
+       return o.render.hasSurroundings() && o.render.background.kind != Background::Kind::world;
      },
-     "only one of --environment, which shows all around, and --background can be used"},
+     "only one of --environment and --sky, which show all around, and --background can be used"},
     {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
     {[](const Options& o) { return o.json && inspectionsOf(o) == 0 && !o.has(Job::compare); },
      "--json needs " + joined(inspections(), "or") + ", or vv compare"},

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "csv_field.h"
 #include "describe.h"
 #include "libpicture/transport.h"
 #include "printable.h"
@@ -17,52 +18,12 @@ namespace {
 using picture::Measurement;
 using Json = nlohmann::ordered_json;
 
-const char* unitOf(const Measurement& m) { return m.sensor.luminance ? "cd/m2" : "lx"; }
-const char* quantityOf(const Measurement& m) {
-  return m.sensor.luminance ? "luminance" : "illuminance";
-}
-
-// Statistics over the finished points of a sensor.
-struct Summary {
-  size_t points = 0, trusted = 0;
-  double mean = 0, halfWidth = 0; // the points are independent, so squares of half-widths add up
-  double least = 0, most = 0;
-
-  explicit Summary(const Measurement& m) {
-    double squares = 0;
-    for (size_t i = 0; i < m.value.size(); i++) {
-      if (m.samples[i] == 0) continue;
-      const auto value = double(m.value[i]), half = double(m.halfWidth[i]);
-      least = points ? std::min(least, value) : value;
-      most = points ? std::max(most, value) : value;
-      mean += value;
-      squares += half * half;
-      trusted += m.trusted[i];
-      points++;
-    }
-    if (points == 0) return;
-    mean /= double(points);
-    halfWidth = std::sqrt(squares) / double(points);
-  }
-  // Uniformity of illuminance: the least over the mean (EN 12665).
-  double uniformity() const { return mean > 0 ? least / mean : 0; }
-};
-
-// Quotes a text for CSV. A text that a spreadsheet would take for a formula gets a quote in front.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
-    out += '\'';
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + "\"";
-}
+const char* unitOf(const Measurement& m) { return picture::infoOf(m.sensor.quantity).unit; }
+const char* quantityOf(const Measurement& m) { return picture::infoOf(m.sensor.quantity).name; }
 
 // Returns how the light of lamps without extent is found behind glass, for the end of a warning.
 std::string wayToReach(const Measurement& m) {
-  if (m.sensor.luminance) return "";
+  if (m.sensor.quantity != picture::Quantity::illuminance) return "";
   if (!m.sensor.cells) return "; give the sensor a size and use --transport light";
   // The engine has refused to follow paths from lamps, and says why.
   const std::string reason = m.stats.transport.reason;
@@ -75,7 +36,7 @@ Json numberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr);
 Json sensorsOf(const std::vector<Measurement>& sensors) {
   Json out = Json::array();
   for (const Measurement& m : sensors) {
-    const Summary all(m);
+    const MeasurementSummary all(m);
     Json points = Json::array();
     for (size_t i = 0; i < m.value.size(); i++) {
       double p[3];
@@ -96,13 +57,17 @@ Json sensorsOf(const std::vector<Measurement>& sensors) {
                    {"rows", m.sensor.rows},
                    {"mean", numberOrNull(all.mean)},
                    {"mean_half_width", numberOrNull(all.halfWidth)},
-                   {"minimum", all.least},
-                   {"maximum", all.most},
-                   {"uniformity", all.uniformity()},
+                   {"minimum", numberOrNull(all.least)},
+                   {"maximum", numberOrNull(all.most)},
+                   {"uniformity", numberOrNull(all.uniformity())},
                    {"relative_half_width", numberOrNull(m.stats.error.halfWidth)},
                    {"unreached_lamps", m.stats.transport.unreachedLights},
                    {"interrupted", m.interrupted},
                    {"points", std::move(points)}});
+    if (m.outdoors > 0) {
+      out.back()["outdoors"] = m.outdoors;
+      out.back()["daylight_factor_percent"] = numberOrNull(100 * all.mean / m.outdoors);
+    }
   }
   return out;
 }
@@ -124,20 +89,47 @@ std::string whyMissed(const Measurement& m, const Promise& promise) {
                  : "");
 }
 
+bool hasDaylightFactors(const std::vector<Measurement>& sensors) {
+  return std::any_of(sensors.begin(), sensors.end(),
+                     [](const Measurement& m) { return m.outdoors > 0; });
+}
+
 } // namespace
+
+MeasurementSummary::MeasurementSummary(const Measurement& m) {
+  double squares = 0;
+  for (size_t i = 0; i < m.value.size(); i++) {
+    if (m.samples[i] == 0) continue;
+    const auto value = double(m.value[i]), half = double(m.halfWidth[i]);
+    least = points ? std::min(least, value) : value;
+    most = points ? std::max(most, value) : value;
+    mean += value;
+    squares += half * half;
+    trusted += m.trusted[i];
+    points++;
+  }
+  if (points == 0) return;
+  mean /= double(points);
+  halfWidth = std::sqrt(squares) / double(points);
+}
 
 std::string measurementsCsv(const std::vector<Measurement>& sensors) {
   std::string out = "sensor,quantity,unit,column,row,x [m],y [m],z [m],value [unit],"
-                    "half-width of the 95 % interval [unit],trusted,samples\r\n";
+                    "half-width of the 95 % interval [unit],trusted,samples";
+  const bool hasFactors = hasDaylightFactors(sensors);
+  out += hasFactors ? ",daylight factor [%]\r\n" : "\r\n";
   for (const Measurement& m : sensors)
     for (size_t i = 0; i < m.value.size(); i++) {
       if (m.samples[i] == 0) continue;
       const int column = int(i) % m.sensor.columns, row = int(i) / m.sensor.columns;
       double p[3];
       m.sensor.pointAt(column, row, p);
-      out += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.4g},{},{}\r\n",
-                         quoted(m.sensor.name), quantityOf(m), unitOf(m), column, row, p[0], p[1],
+      out += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.4g},{},{}",
+                         csvField(m.sensor.name), quantityOf(m), unitOf(m), column, row, p[0], p[1],
                          p[2], m.value[i], m.halfWidth[i], int(m.trusted[i]), m.samples[i]);
+      if (hasFactors)
+        out += m.outdoors > 0 ? fmt::format(",{:.6g}", 100 * double(m.value[i]) / m.outdoors) : ",";
+      out += "\r\n";
     }
   return out;
 }
@@ -159,20 +151,23 @@ std::string sensorsJson(const std::vector<Measurement>& sensors) {
 }
 
 std::string measurementText(const Measurement& m) {
-  const Summary all(m);
-  const char* unit = unitOf(m);
+  const MeasurementSummary all(m);
   if (all.points == 0) return fmt::format("{}: no reading was finished", m.sensor.name);
-  std::string out = fmt::format("{}: {:.4g} {} +- {:.2g} {} (95 %)", m.sensor.name, all.mean, unit,
-                                all.halfWidth, unit);
+  const bool isRated = m.sensor.quantity == picture::Quantity::glare;
+  const std::string before = isRated ? "UGR " : "",
+                    unit = isRated ? "" : std::string(" ") + unitOf(m);
+  std::string out = fmt::format("{}: {}{:.4g}{} +- {:.2g}{} (95 %)", m.sensor.name, before,
+                                all.mean, unit, all.halfWidth, unit);
   if (all.points > 1)
-    out += fmt::format(", mean of {} points from {:.4g} to {:.4g} {}, uniformity {:.3g}",
-                       all.points, all.least, all.most, unit, all.uniformity());
+    out += fmt::format(", mean of {} points from {:.4g} to {:.4g}{}, uniformity {:.3g}", all.points,
+                       all.least, all.most, unit, all.uniformity());
+  if (m.outdoors > 0) out += fmt::format(", daylight factor {:.3g} %", 100 * all.mean / m.outdoors);
   return out;
 }
 
 std::vector<std::string> measurementWarnings(const Measurement& m, const Promise& promise) {
   std::vector<std::string> out;
-  const Summary all(m);
+  const MeasurementSummary all(m);
   if (all.points == 0) return out;
   const auto add = [&](const std::string& text) { out.push_back(m.sensor.name + ": " + text); };
   if (promise.error > 0 && m.stats.error.halfWidth > 1.001 * promise.error) {

@@ -9,6 +9,17 @@
 
 namespace vv {
 
+// Statistics over the finished points of a sensor.
+struct MeasurementSummary {
+  size_t points = 0, trusted = 0;
+  double mean = 0, halfWidth = 0; // the points are independent, so squares of half-widths add up
+  double least = 0, most = 0;
+
+  explicit MeasurementSummary(const picture::Measurement& m);
+  // Uniformity of illuminance: the least over the mean (EN 12665).
+  double uniformity() const { return mean > 0 ? least / mean : 0; }
+};
+
 // Returns the readings as CSV (RFC 4180): one line per point, after a line of names with units.
 std::string measurementsCsv(const std::vector<picture::Measurement>& sensors);
 // Returns the readings as JSON, schema 1.

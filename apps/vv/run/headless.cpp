@@ -63,7 +63,11 @@ class Headless {
       say(fmt::format("vv: {} has unsaved edits in {}: vv edit offers them", options_.input,
                       edits));
     const double before = secondsSinceStart();
-    browser_ = startWorld(std::move(read), options_, problems_);
+    WorldText text;
+    const auto keepText = [&](const xvrml::World& world) { text = textOf(options_, world); };
+    const bool writesText = !options_.write.empty() && !options_.writeFormat;
+    browser_ =
+        startWorld(std::move(read), options_, problems_, writesText ? keepText : BeforeScripts());
     const double startSeconds = secondsSinceStart() - before;
     const xvrml::World& world = browser_->world();
     if (options_.makesPictures()) {
@@ -77,7 +81,10 @@ class Headless {
                              options_.makesPictures() ? "drawn" : "done"));
       return exitProblems;
     }
-    if (!options_.write.empty()) writeWorld(options_, *browser_);
+    if (writesText)
+      writeWorld(options_, text);
+    else if (!options_.write.empty())
+      exportWorld(options_, *browser_);
     if (options_.check) return check();
     if (inspection_.ofWorld) inspect();
     if (options_.farmJobs > 0) {

@@ -61,13 +61,15 @@ std::vector<Named> inputsOf(const Options& options) {
   for (const std::string& one : options.joined) all.push_back({"a picture of vv film", one});
   for (const std::string& one : options.compared.files)
     all.push_back({"a picture of vv compare", one});
-  const std::vector<Named> named = {{"the world that is read", options.input},
-                                    {"the picture of --environment", options.render.environment},
-                                    {"the script of --input", options.inputScript},
-                                    {"the matrix of --pose", options.poseFile},
-                                    {"the picture of --compare", options.compare},
-                                    {"the file of --key", options.cluster.key},
-                                    {"the file of --allow-keys", options.cluster.allow}};
+  const std::vector<Named> named = {
+      {"the world that is read", options.input},
+      {"the picture of --environment", options.render.environment},
+      {"the weather file of --sky", picture::fileOfSky(options.skyText)},
+      {"the script of --input", options.inputScript},
+      {"the matrix of --pose", options.poseFile},
+      {"the picture of --compare", options.compare},
+      {"the file of --key", options.cluster.key},
+      {"the file of --allow-keys", options.cluster.allow}};
   all.insert(all.end(), named.begin(), named.end());
   if (options.cluster.workers.starts_with('@'))
     all.push_back({"the file of --workers", options.cluster.workers.substr(1)});

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/luminaires.h"
 #include "libpicture/measure.h"
 #include "libpicture/transport.h"
 #include "options/names.h"
@@ -386,15 +387,17 @@ int Pictures::measure() {
   const std::vector<PictureRequest> requests =
       chooseRequests(options_, view_, renderer_->viewpoints());
   std::vector<picture::Measurement> sensors;
+  std::vector<picture::Luminaire> luminaires;
   try {
     sensors = renderer_->measure(requests[0].view);
+    if (options_.measure.ends_with(".html")) luminaires = renderer_->luminaires();
   } catch (const picture::SensorError& wrong) {
     progress_.reset();
     throw Failure{exitProblems, wrong.what()};
   }
   progress_.reset();
   problems_.tell(browser_.world());
-  writeReadings(options_, commandLine_, sensors);
+  writeReadings(options_, commandLine_, sensors, std::move(luminaires));
   return interrupted() ? stopped("vv: interrupted; the readings so far are saved") : exitDone;
 }
 

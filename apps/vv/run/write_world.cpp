@@ -1,7 +1,5 @@
 #include "run/write_world.h"
 
-#include <fmt/format.h>
-
 #include "libpicture/bare_model.h"
 #include "process/messages.h"
 #include "run/outputs.h"
@@ -10,9 +8,26 @@
 
 namespace vv {
 
-namespace {
+WorldText textOf(const Options& options, const xvrml::World& world) {
+  // Relative URLs of a text for standard output stay as they are.
+  const std::string path = options.write == "-" ? "" : options.write;
+  WorldText made{xvrml::writeWorld(world, path, options.writeEncoding), {}};
+  if (options.quiet) return made;
+  made.changes = xvrml::changesByWriting(world, path, options.writeEncoding);
+  if (picture::losesLook(world))
+    made.changes.emplace_back("outside of glTF a model with a camera or a shader is a world: it is "
+                              "shown before black, and no longer before the backdrop of vv");
+  return made;
+}
 
-void exportWorld(const Options& options, const xvrml::World& world) {
+void writeWorld(const Options& options, const WorldText& world) {
+  for (const std::string& change : world.changes) sayWarning("--write: " + change);
+  writeText(options.write, world.text);
+}
+
+void exportWorld(const Options& options, xvrml::Browser& browser) {
+  if (options.time) WorldClock(browser, options.fps).advance(*options.time);
+  const xvrml::World& world = browser.world();
   const picture::Exported exported =
       options.writeFormat->make(world, {options.write, options.render.shaderPath});
   for (const picture::Exported::File& file : exported.files) protectFilesOf(world, file.path);
@@ -22,27 +37,6 @@ void exportWorld(const Options& options, const xvrml::World& world) {
     picture::writeExported(exported);
   if (options.quiet) return;
   for (const std::string& remark : exported.remarks) sayWarning("--write: " + remark);
-}
-
-} // namespace
-
-void writeWorld(const Options& options, xvrml::Browser& browser) {
-  if (options.writeFormat) {
-    if (options.time) WorldClock(browser, options.fps).advance(*options.time);
-    return exportWorld(options, browser.world());
-  }
-  if (!options.quiet) {
-    for (const std::string& change :
-         xvrml::changesByWriting(browser.world(), options.writeEncoding))
-      sayWarning("--write: " + change);
-    if (picture::losesLook(browser.world()))
-      sayWarning("--write: outside of glTF a model with a camera or a shader is a world: it is "
-                 "shown before black, and no longer before the backdrop of vv");
-  }
-  // Relative URLs of a text for standard output stay as they are.
-  writeText(options.write,
-            xvrml::writeWorld(browser.world(), options.write == "-" ? "" : options.write,
-                              options.writeEncoding));
 }
 
 } // namespace vv

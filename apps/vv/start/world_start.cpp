@@ -1,5 +1,6 @@
 #include "start/world_start.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -71,7 +72,8 @@ bool isOfCommandLine(const Options& options, const xvrml::World& world) {
 }
 
 std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
-                                           const Options& options, Problems& problems) {
+                                           const Options& options, Problems& problems,
+                                           const BeforeScripts& before) {
   problems.tell(*world);
   if (options.verbose)
     say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount,
@@ -83,9 +85,13 @@ std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
     if (!d.asEvent) d.node->set(*d.field, d.value);
   treatMissingParts(options, *world);
   if (changes) giveShaders(options, *world);
+  const bool sends = std::any_of(definitions.begin(), definitions.end(),
+                                 [](const Definition& d) { return d.asEvent; });
+  if (before && !sends) before(*world);
   std::unique_ptr<xvrml::Browser> browser = startScripts(std::move(world), options);
   for (const Definition& d : definitions)
     if (d.asEvent) browser->set(*d.node, d.field->name, d.value);
+  if (before && sends) before(browser->world());
   problems.tell(browser->world());
   return browser;
 }

@@ -2,6 +2,7 @@
 // window.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,10 +21,15 @@ xvrml::LoadOptions loadOptionsForShowing(const Options& options);
 // is. [any thread]
 bool isOfCommandLine(const Options& options, const xvrml::World& world);
 
+// Receives a world before its Scripts begin.
+using BeforeScripts = std::function<void(const xvrml::World&)>;
+
 // Starts the world at time 0 after options.epoch, with the changes of -D and --shader if
-// it is that of the command line, and reports its problems. Throws Failure and UsageError. [the
-// browser's thread]
+// it is that of the command line, and reports its problems. before: receives the world with these
+// changes; may be empty. If -D sends events, which only a world that runs can take, it receives the
+// world after them. Throws Failure and UsageError. [the browser's thread]
 std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
-                                           const Options& options, Problems& problems);
+                                           const Options& options, Problems& problems,
+                                           const BeforeScripts& before = {});
 
 } // namespace vv

@@ -52,6 +52,8 @@ class Editing {
   void leave(WorldEditor& editor, std::function<void()> go, std::function<void()> stay = {});
   // Tells whether something has been asked for that has not been done yet.
   bool isBusy() const { return (model_ && model_->hasRequests()) || (isOpen_ && !hasOffered_); }
+  // Tells whether the user waits for rows of the outline (EditModel).
+  bool isSearching() const { return isOpen_ && model_ && model_->isSearching(); }
   // Tells whether a question may follow from an event, before those behind it are taken.
   bool mayAsk(WorldEditor& editor, const InputEvent& event) const;
   // Forgets the world, because another takes its place.

@@ -36,13 +36,15 @@ void Questions::clear() {
 bool Questions::isAppearing() const { return !asked_.empty() && frames_ < framesToAppear; }
 
 void Questions::wait(double seconds, const std::function<bool(const InputEvent& event)>& mayAsk,
-                     bool isBusy, std::vector<InputEvent>& events) {
+                     const std::function<bool()>& isHeld, bool isBusy,
+                     std::vector<InputEvent>& events) {
   isPassed_ = isPassed_ && isBusy;
   if (isAppearing()) screen_.redraw();
-  if (isAppearing() || isPassed_ || (expected_ > 0 && isBusy)) return screen_.rest(seconds);
+  if (isAppearing() || isPassed_ || isHeld() || (expected_ > 0 && isBusy))
+    return screen_.rest(seconds);
   screen_.wait(seconds, events, [&] {
     isPassed_ = !events.empty() && mayAsk(events.back());
-    return isPassed_ || isAnswered_;
+    return isPassed_ || isAnswered_ || isHeld();
   });
   if (!std::exchange(isAnswered_, false)) return;
   frames_ = 0; // the next one has not been drawn

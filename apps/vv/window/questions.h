@@ -41,9 +41,10 @@ class Questions {
 
   // Waits as Screen::wait() does, and calls what an answer asks for. While a question is on its
   // way, events stay where they are. mayAsk: tells whether a question may follow from an event.
-  // isBusy: something that was asked for will be done, without anything more from the user.
-  void wait(double seconds, const std::function<bool(const InputEvent& event)>& mayAsk, bool isBusy,
-            std::vector<InputEvent>& events);
+  // isHeld: tells whether events stay for another reason. isBusy: something that was asked for will
+  // be done, without anything more from the user.
+  void wait(double seconds, const std::function<bool(const InputEvent& event)>& mayAsk,
+            const std::function<bool()>& isHeld, bool isBusy, std::vector<InputEvent>& events);
 
  private:
   bool isAppearing() const;

@@ -184,7 +184,8 @@ void Window::wait(double time) {
   const auto mayAsk = [this](const InputEvent& event) {
     return session_ && editing_.mayAsk(session_->editor(), event);
   };
-  questions_.wait(soon ? .001 : std::min(time, most), mayAsk, isBusy, events_);
+  const auto isHeld = [this] { return session_ && session_->isFree() && editing_.isSearching(); };
+  questions_.wait(soon ? .001 : std::min(time, most), mayAsk, isHeld, isBusy, events_);
 }
 
 bool Window::isTime(double time, double next, double period) const {

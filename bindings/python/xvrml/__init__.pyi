@@ -490,6 +490,10 @@ class Measurement:
     def stats(self) -> Dict[str, Any]:
         ...
 
+    @property
+    def outdoors(self) -> float:
+        ...
+
 
 class Picture:
 
@@ -850,6 +854,7 @@ class World:
         raster: bool = ...,
         point_size: float = ...,
         line_width: float = ...,
+        sky: Optional[str] = ...,
     ) -> Picture:
         ...
 
@@ -868,6 +873,7 @@ class World:
         exact_shapes: bool = ...,
         point_size: float = ...,
         line_width: float = ...,
+        sky: Optional[str] = ...,
     ) -> List[Measurement]:
         ...
 
@@ -1165,6 +1171,7 @@ def load(
     *,
     limits: Optional[Mapping[str, int]] = ...,
     allow_absolute: bool = ...,
+    step_error: float = ...,
 ) -> World:
     ...
 

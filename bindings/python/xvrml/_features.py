@@ -39,7 +39,7 @@ def look_for_pyoidn():
 
 def features() -> Dict[str, Feature]:
     """Returns what depends on libraries and packages that need not be there, by name: denoise, mp4,
-    webm, gif, script engines, seccomp, notebook, dask, ray. A library for denoising is tried in a
+    webm, gif, script engines, seccomp, step, notebook, dask, ray. A library for denoising is tried in a
     child process. `vv --list-features` also lists what only the program has."""
     rows = [Feature(*row) for row in _xvrml._features()]
     for name, package, text, how in _PACKAGES:

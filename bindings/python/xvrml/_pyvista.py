@@ -41,9 +41,11 @@ def convert(thing, scalars, cmap, clim, color):
     return _shapes(thing, colors, material)
 
 
-def _shapes(data, colors, material, crease=0):
+def _shapes(data, colors, material, crease=0, textured=None):
     """Returns a Shape, or a Group of them, of the surface, the lines and the points of a data set.
-    colors: one for each of its points, or of its cells, or None. crease: a creaseAngle."""
+    colors: one for each of its points, or of its cells, or None. crease: a creaseAngle. textured: an
+    Appearance for the faces, if they have places in a texture; None: they are of the material."""
+    places = None if textured is None else data.active_texture_coordinates
     per_point = colors is not None and len(colors) == data.n_points
     if colors is not None and not per_point and len(colors) != data.n_cells:
         colors = None
@@ -51,6 +53,8 @@ def _shapes(data, colors, material, crease=0):
     copy.clear_data()
     if colors is not None:
         (copy.point_data if per_point else copy.cell_data)["xvrml"] = colors
+    if places is not None:
+        copy.point_data["xvrml texture"] = np.asarray(places)[:, :2]
     surface = copy if hasattr(copy, "lines") else _surface(copy)
     if surface.n_strips:
         surface = surface.triangulate()
@@ -65,12 +69,38 @@ def _shapes(data, colors, material, crease=0):
             of_cells = None
             if colors is not None and not per_point:
                 of_cells = np.asarray(surface.cell_data["xvrml"])[first:first + count]
-            shapes.append(_shape(kind, surface.points, (index, starts), of_points, of_cells,
-                                 material, crease))
+            shape = _shape(kind, surface.points, (index, starts), of_points, of_cells, material,
+                           crease)
+            if kind == "faces" and places is not None:
+                shape.appearance = textured
+                shape.geometry.texCoord = xvrml.TextureCoordinate(
+                    point=np.asarray(surface.point_data["xvrml texture"], np.float32))
+            shapes.append(shape)
         first += count
     if len(shapes) == 1:
         return shapes[0]
     return xvrml.Group(children=shapes)
+
+
+def _texture(actor):
+    """Returns the texture of an actor as a PixelTexture, or None."""
+    prop = actor.prop
+    texture = actor.GetTexture() or (prop.GetTexture("albedoTex") if hasattr(prop, "GetTexture") else
+                                     None)
+    if texture is None:
+        return None
+    texture.Update()
+    image = texture.GetInput()
+    scalars = None if image is None else image.GetPointData().GetScalars()
+    if scalars is None:
+        return None
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    width, height, _ = image.GetDimensions()
+    pixels = vtk_to_numpy(scalars).reshape(height, width, -1)[::-1]  # VTK begins at the bottom
+    if pixels.dtype != np.uint8 or pixels.shape[2] > 4:
+        return None  # numbers that a table of colours would map
+    repeat = bool(texture.GetRepeat())
+    return xvrml.PixelTexture(image=np.ascontiguousarray(pixels), repeatS=repeat, repeatT=repeat)
 
 
 def _surface(data):
@@ -133,13 +163,15 @@ def _plotter(plotter):
             continue
         material = _material(actor.prop)
         crease = 0 if actor.prop.GetInterpolation() == 0 else np.pi  # VTK_FLAT
+        texture = _texture(actor)
+        look = None if texture is None else _shaping.textured(_material(actor.prop), texture)
         if hasattr(data, "n_blocks"):
             shape = xvrml.Group(children=[
-                _shapes(block, None, material, crease)
+                _shapes(block, None, material, crease, look)
                 for block in data.recursive_iterator(skip_none=True)
             ])
         else:
-            shape = _shapes(data, _shown_colors(mapper), material, crease)
+            shape = _shapes(data, _shown_colors(mapper), material, crease, look)
         children.append(_placing.placed(shape, _matrix(actor)))
     return xvrml.Group(children=children)
 

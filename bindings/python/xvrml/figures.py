@@ -137,7 +137,7 @@ def _node(thing, options):
         return xvrml.interop.from_pyvista(thing, **options)
     if package == "open3d":
         return xvrml.interop.from_open3d(thing, **options)
-    if hasattr(thing, "faces") or hasattr(thing, "graph"):
+    if hasattr(thing, "faces") or hasattr(thing, "graph") or hasattr(thing, "entities"):
         return xvrml.interop.from_trimesh(thing, **options)
     if type(thing).__name__ == "PointCloud" and package == "trimesh":
         colors = getattr(thing, "colors", None)

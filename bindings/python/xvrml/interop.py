@@ -15,21 +15,16 @@ __all__ = [
 
 
 def from_trimesh(mesh, color=None):
-    """Converts a trimesh.Trimesh to a Shape, or a trimesh.Scene to a Group with a Transform for
-    each of its nodes."""
+    """Converts a trimesh.Trimesh, Path3D, Path2D or PointCloud to a Shape, or a trimesh.Scene to a
+    Group with a Transform for each of its nodes. The texture of a mesh is that of its base colour.
+    color: of what has none; of a mesh, instead of its own."""
     import xvrml
     if hasattr(mesh, "graph") and hasattr(mesh, "geometry"):
-        shapes = {
-            name: from_trimesh(one, color)
-            for name, one in mesh.geometry.items()
-            if hasattr(one, "faces")
-        }
+        shapes = {name: from_trimesh(one, color) for name, one in mesh.geometry.items()}
         group = xvrml.Group()
         children = []
         for name in mesh.graph.nodes_geometry:
             matrix, geometry = mesh.graph[name]
-            if geometry not in shapes:
-                continue
             matrix = np.asarray(matrix, float)
             if np.linalg.det(matrix[:3, :3]) > 0:
                 children.append(_placing.placed(shapes[geometry], matrix))
@@ -38,6 +33,10 @@ def from_trimesh(mesh, color=None):
                     from_trimesh(mesh.geometry[geometry].copy().apply_transform(matrix), color))
         group.children = children
         return group
+    if hasattr(mesh, "entities"):
+        return _from_path(mesh, color)
+    if not hasattr(mesh, "faces"):
+        return _from_cloud(mesh, color)
     geometry = xvrml.IndexedFaceSet(
         coord=xvrml.Coordinate(point=np.asarray(mesh.vertices, np.float32)),
         coordIndex=_shaping.index(mesh.faces),
@@ -48,7 +47,50 @@ def from_trimesh(mesh, color=None):
     elif color is None and getattr(visual, "kind", None) == "face":
         geometry.color = xvrml.Color(color=np.asarray(visual.face_colors)[:, :3] / 255)
         geometry.colorPerVertex = False
-    return _shaping.faces(geometry, color)
+    shape = _shaping.faces(geometry, color)
+    image, factor = _texture(visual) if color is None else (None, None)
+    if image is None:
+        return shape
+    geometry.texCoord = xvrml.TextureCoordinate(point=np.asarray(visual.uv, np.float32))
+    shape.appearance = _shaping.textured(xvrml.Material(diffuseColor=factor), from_pil(image))
+    return shape
+
+
+def _texture(visual):
+    """Returns the picture of a trimesh visual and the colour that multiplies it, or None twice."""
+    material = getattr(visual, "material", None)
+    image = getattr(material, "baseColorTexture", None)  # PBRMaterial
+    factor = getattr(material, "baseColorFactor", None)
+    if image is None:
+        image, factor = getattr(material, "image", None), None  # SimpleMaterial
+    if image is None or getattr(visual, "uv", None) is None:
+        return None, None
+    if factor is None:
+        return image, (1, 1, 1)
+    factor = np.asarray(factor)
+    return image, tuple(factor[:3] / (255 if factor.dtype == np.uint8 else 1))
+
+
+def _from_path(path, color):
+    scale = path.scale if len(path.entities) else 1  # decides how finely arcs are divided
+    runs, colors = [], []
+    for entity in path.entities:
+        run = np.asarray(entity.discrete(path.vertices, scale=scale), float)
+        if len(run) < 2:  # a text
+            continue
+        runs.append(np.pad(run, ((0, 0), (0, 3 - run.shape[1]))))
+        colors.append((0.8, 0.8, 0.8) if entity.color is None else np.asarray(entity.color)[:3] / 255)
+    return _shaping.lines(runs, None if color is not None else colors, color)
+
+
+def _from_cloud(cloud, color):
+    import xvrml
+    geometry = xvrml.PointSet(
+        coord=xvrml.Coordinate(point=np.asarray(cloud.vertices, np.float32)))
+    colors = getattr(cloud, "colors", None)
+    if color is None and colors is not None and len(colors) == len(cloud.vertices):
+        geometry.color = xvrml.Color(color=np.asarray(colors)[:, :3] / 255)
+    return _shaping.thin(geometry, (0.8, 0.8, 0.8) if color is None else color)
 
 
 def from_open3d(geometry, color=None):

@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 1 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 2 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -233,7 +233,9 @@ typedef struct RtsExtent {
 
 /* Where points appear in the picture. */
 typedef struct RtsProjection {
-  float* xy[2]; /* pixels from the top left corner */
+  /* Pixels from the top left corner, as far as the camera has them also for points that are not in
+   * the picture (RtsHost.pixels). */
+  float* xy[2];
   /* Vector from the point to the sampled point on the lens; for parallel views a unit vector
    * towards the eye. */
   float* toEye[3];
@@ -459,6 +461,12 @@ struct RtsHost {
    * volume. */
   void (*sampleVolume)(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const str[3],
                        float* const rgba[4]);
+  /* Writes where n points (render space) are in the picture, in pixels from its top left corner:
+   * where the camera sees them through the middle of its lens, or would if nothing hid them. The
+   * place depends on the point alone, so it is the same for mirrored and shadow rays. Points beside
+   * the picture have places beside it; one that has none gets 0 0. Returns 0, and writes nothing,
+   * if the camera's class has no `project`. */
+  int (*pixels)(RtsBatch* batch, uint32_t n, const float* const position[3], float* const xy[2]);
 };
 #define RTS_MAX_LOBES 8
 

@@ -173,6 +173,9 @@ template <> struct HitOf<float> : Tracer, HitNumbers<float> {
   Vec4 sample(Texture texture, Vec2 place) const;
   // The same for a texture that may be a volume (rtTexImage3D), at (s, t, r).
   Vec4 sampleVolume(Texture texture, Vec3 place) const;
+  // Writes where the camera sees the hit's position, or would if nothing hid it, in pixels from the
+  // top left corner of the picture (RtsHost.pixels). Returns false if the camera does not tell.
+  bool pixel(Vec2& place) const;
 
   using Tracer::findHit;
   using Tracer::occluded;

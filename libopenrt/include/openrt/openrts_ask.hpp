@@ -129,6 +129,20 @@ inline Vec4 Hit::sampleVolume(Texture texture, Vec3 place) const {
   return {out[0][0], out[1][0], out[2][0], out[3][0]};
 }
 
+inline bool Hit::pixel(Vec2& place) const {
+  alignas(64) float in[3][RTS_LANES], out[2][RTS_LANES];
+  for (int i = 0; i < RTS_LANES; i++) {
+    in[0][i] = position.x;
+    in[1][i] = position.y;
+    in[2][i] = position.z;
+  }
+  const float* const at[3] = {in[0], in[1], in[2]};
+  float* const xy[2] = {out[0], out[1]};
+  if (!host->pixels(batch, 1, at, xy)) return false;
+  place = {out[0][0], out[1][0]};
+  return true;
+}
+
 inline Hit::Local Hit::local() const {
   if (!detail::askVectors(*this, &RtsHost::local, asked->local)) return {position, geometric};
   float* const* a = asked->local;

@@ -149,9 +149,9 @@ RT_API void rtBindTexture(RTid texture);
  *  - pixels: rows from the bottom (t = 0) up, tightly packed. */
 RT_API void rtTexImage2D(int components, int width, int height, RTenum type, const void* pixels);
 /* Sets the image of the bound texture to a volume: depth slices, each as rtTexImage2D has it, from
- * r = 0 on. A side has 1 to 65536 texels, and all together are at most 2^28. Surfaces of the class
- * X3DMaterial look it up at (s, t, r), the shader's function sampleVolume of openrts.h; everything
- * else sees the first slice. [context-thread] */
+ * r = 0 on. A side has 1 to 65536 texels, and all together are at most 2^28. Surfaces of the
+ * classes X3DMaterial and Physical look it up at (s, t, r), the shader's function sampleVolume of
+ * openrts.h; everything else sees the first slice. [context-thread] */
 RT_API void rtTexImage3D(int components, int width, int height, int depth, RTenum type,
                          const void* pixels);
 /* Sets a property of the bound texture. [context-thread]

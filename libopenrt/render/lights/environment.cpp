@@ -80,11 +80,14 @@ namespace {
 // Farther than any fog ends. Its square is a float.
 constexpr float endless = 1e18f;
 
-// Returns the way from the eye to hit i, in render space.
-Vec3f wayTo(const RtsBatch& batch, uint32_t i) {
+// Return the way from the eye to hit i, in render space: straight, and as a camera path has come.
+Vec3f straightWayTo(const RtsBatch& batch, uint32_t i) {
+  return load(batch.points->hits.position, i) - batch.scene.eye;
+}
+Vec3f pathTo(const RtsBatch& batch, uint32_t i) {
   const RtsHits& h = batch.points->hits;
   return batch.states->flagsOf(batch.order[i]).deflected() ? load(h.direction, i) * h.distance[i]
-                                                           : load(h.position, i) - batch.scene.eye;
+                                                           : straightWayTo(batch, i);
 }
 
 Vec3f extended(const Vec3f& way) {
@@ -92,9 +95,8 @@ Vec3f extended(const Vec3f& way) {
   return far > 0 && std::isfinite(far) ? way * (1 / far) * endless : Vec3f{0, 0, endless};
 }
 
-} // namespace
-
-Fog fogAt(const RtsBatch& batch) {
+// Evaluates the fog over the ways to the hits.
+template <class Way> Fog fogAlong(const RtsBatch& batch, const Way& wayTo) {
   const RenderScene& scene = batch.scene;
   const bool own = batch.fog != 0; // the fog of an instance has the axes of the world
   const ShaderSlot shader =
@@ -124,5 +126,16 @@ Fog fogAt(const RtsBatch& batch) {
     if (share[i] >= 0) fog.transmittance[i] = 1 - share[i] * (1 - fog.transmittance[i]);
   return fog;
 }
+
+} // namespace
+
+Fog fogAt(const RtsBatch& batch) {
+  Fog fog = fogAlong(batch, pathTo);
+  for (uint32_t i = 0; fog.transmittance && i < batch.points->hits.count; i++)
+    if (batch.states->flagsOf(batch.order[i]).scattered()) fog.transmittance[i] = 1;
+  return fog;
+}
+
+Fog fogBeforeEye(const RtsBatch& batch) { return fogAlong(batch, straightWayTo); }
 
 } // namespace openrt

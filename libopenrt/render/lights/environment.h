@@ -31,9 +31,12 @@ struct Fog {                                         // by hit
     return transmittance[i] * light + (1 - transmittance[i]) * airlight[colour][i] * (1 - seen);
   }
 };
-// Evaluates the fog in front of the hits of a batch. On mirrored and refracted paths the fog has
-// the whole path length, in the direction of the current ray. A fog coordinate of the geometry
-// replaces the length: it is the share of what an endless way takes away.
+// Evaluate the fog in front of the hits of a batch: that of camera paths, and that of hits which
+// the eye sees straight. On mirrored and refracted paths the fog has the whole path length, in the
+// direction of the current ray. A fog coordinate of the geometry replaces the length: it is the
+// share of what an endless way takes away. The fog belongs to what is seen (decision 101): there is
+// none behind the first surface that scatters a path, and none on the way of the light.
 Fog fogAt(const RtsBatch& batch);
+Fog fogBeforeEye(const RtsBatch& batch);
 
 } // namespace openrt

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/lights/environment.h"
 #include "render/lights/shadows.h"
 #include "render/path/light_path_ratios.h"
 #include "render/surface/adjoint.h"
@@ -11,6 +12,50 @@
 #include "shading/running.h"
 
 namespace openrt {
+namespace {
+
+// Calls the camera's `project` for n places of its local space.
+void callProject(const RtsBatch& batch, uint32_t n, const float* const local[3],
+                 const float* const lens[2], RtsProjection& out) {
+  const RenderScene& scene = batch.scene;
+  const ShaderSlot& camera = scene.camera.shader;
+  const float extent[2] = {float(scene.frame.width), float(scene.frame.height)};
+  RtsBatch places = batch;
+  places.points = nullptr; // the camera gets n places, not the hits
+  places.lanes.count = n;
+  const RunningShader running(*camera.shaderClass);
+  camera.shaderClass->project(&scene.host, &places, camera.params, n, local, lens, extent, &out);
+}
+
+} // namespace
+
+bool pixelsOf(const RtsBatch& batch, uint32_t n, const float* const position[3],
+              float* const xy[2]) {
+  const RoleSlot& camera = batch.scene.camera;
+  if (!camera.shader.shaderClass || !camera.shader.shaderClass->project || n == 0) return false;
+  Arena& arena = batch.arena;
+  ArenaScope scope(arena);
+  const uint32_t size = padded(n);
+  float *local[3], *lens[2];
+  RtsProjection seen{};
+  for (int k = 0; k < 3; k++) {
+    local[k] = arena.take<float>(size);
+    seen.toEye[k] = arena.takeZero<float>(size);
+  }
+  for (int k = 0; k < 2; k++) {
+    lens[k] = arena.take<float>(size);
+    std::fill_n(lens[k], size, 0.5f);
+    std::fill_n(xy[k], size, 0.0f);
+    seen.xy[k] = xy[k];
+  }
+  seen.weight = arena.takeZero<float>(size);
+  for (uint32_t i = 0; i < size; i++)
+    store(camera.toLocal.point(load(position, std::min(i, n - 1))), local, i);
+  callProject(batch, n, local, lens, seen);
+  for (uint32_t i = 0; i < n; i++)
+    if (!std::isfinite(xy[0][i]) || !std::isfinite(xy[1][i])) xy[0][i] = xy[1][i] = 0;
+  return true;
+}
 
 CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, uint32_t n,
                                   const float* const lens[2]) {
@@ -37,16 +82,7 @@ CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, ui
     store(camera.toLocal.point(load(batch.points->hits.position, h)), local, i);
     for (int k = 0; k < 2; k++) square[k][i] = lens[k][h];
   }
-  const float extent[2] = {float(scene.frame.width), float(scene.frame.height)};
-  RtsBatch places = batch;
-  places.points = nullptr; // the camera gets n places, not the hits
-  places.lanes.count = n;
-  {
-    const RtsClass& shaderClass = *camera.shader.shaderClass;
-    const RunningShader running(shaderClass);
-    shaderClass.project(&scene.host, &places, camera.shader.params, n, local, square, extent,
-                        &seen);
-  }
+  callProject(batch, n, local, square, seen);
   to.parallel = seen.parallel;
   for (uint32_t i = 0; i < n; i++) {
     const Vec3f toEye = camera.fromLocal.direction(load(seen.toEye, i));
@@ -105,6 +141,10 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const f
 }
 
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]) {
+  ArenaScope scope(batch.arena);
+  const Fog fog = fogBeforeEye(batch);
+  for (uint32_t i = 0; fog.transmittance && i < to.count; i++)
+    store(load(colour, i) * fog.transmittance[to.hit[i]], colour, i);
   ShadowRays rays = allocateShadowRays(batch.scene, to.count, batch.arena);
   rays.toCamera = true;
   uint32_t n = 0;

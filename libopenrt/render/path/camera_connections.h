@@ -22,6 +22,10 @@ struct CameraConnections {
 // Projects n hits through the camera. lens: points of the unit square, by hit of the batch.
 CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, uint32_t n,
                                   const float* const lens[2]);
+// Writes where the camera sees n points of render space through the middle of its lens
+// (RtsHost.pixels). The arrays of xy are whole vectors of lanes. Returns false if it cannot tell.
+bool pixelsOf(const RtsBatch& batch, uint32_t n, const float* const position[3],
+              float* const xy[2]);
 // Returns the pixels that a unit of area covers at n hits, as seen from the middle of the lens.
 const float* coveredPixels(const RtsBatch& batch, const uint32_t* hit, uint32_t n);
 // Returns the factor from areas in the camera's space to areas in render space.
@@ -32,7 +36,7 @@ double cameraArea(const RenderScene& scene);
 // tells the share of light paths; null: it is 1.
 void scatterToCamera(const RtsBatch& batch, const CameraConnections& to, const float* ratio,
                      float* const scattered[3]);
-// Multiplies colours by the transmittance between the hits and the camera.
+// Multiplies colours by the transmittance between the hits and the camera, with that of the fog.
 void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]);
 
 } // namespace openrt

@@ -147,6 +147,7 @@ void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
     const Vec3f direction = load(rays.direction, r);
     RayState state = (*batch.states)[batch.order[i]];
     state.throughput *= response[r].light;
+    if (batch.throughFog) state.throughput *= batch.throughFog[i];
     const float most = largest(state.throughput);
     if (!(most > 0) || !std::isfinite(most)) continue;
     state.travelled = batch.points->hits.distance[i];
@@ -191,7 +192,6 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
   if (!bucket.shaderClass->surface) return;
   RtsBatch batch(context_, points, states);
   batch.lights.set = bucket.lightSet;
-  batch.fog = bucket.fog;
   const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass);
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
@@ -253,16 +253,13 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
   auto* hit = context_.arena.take<uint32_t>(padded(count));
   const uint32_t n = listEmitting(surface.emission, count, hit);
   if (n == 0) return;
-  const Fog fog = fogAt(batch);
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t i = hit[j];
     const RayState state = (*batch.states)[batch.order[i]];
     if (!state.flags.specularSinceDiffuse() || !boundaries.visibleAt(i) ||
         !startsLightPaths(batch, i))
       continue;
-    const Vec3f emission = load(surface.emission, i);
-    const float through = fog.transmittance ? fog.transmittance[i] : 1;
-    addLight(stage, state, emission * through);
+    addLight(stage, state, load(surface.emission, i));
   }
 }
 

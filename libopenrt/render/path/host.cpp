@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/path/camera_connections.h"
 #include "render/path/illumination.h"
 #include "render/path/path_tracer.h"
 #include "render/path/requests.h"
@@ -43,6 +44,10 @@ void sampleVolume(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* 
                   float* const rgba[4]) {
   const auto& textures = *batch->scene.textures;
   textures[texture < textures.size() ? texture : 0].sampleVolume(padded(n), str, rgba);
+}
+
+int pixels(RtsBatch* batch, uint32_t n, const float* const position[3], float* const xy[2]) {
+  return pixelsOf(*batch, n, position, xy) ? 1 : 0;
 }
 
 uint32_t components(const RtsHost* host, RtsTexture texture) {
@@ -160,6 +165,7 @@ void fillHost(RtsHost& host) {
   host.error = error;
   host.backdrop = backdrop;
   host.sampleVolume = sampleVolume;
+  host.pixels = pixels;
 }
 
 } // namespace openrt

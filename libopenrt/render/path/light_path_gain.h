@@ -7,6 +7,13 @@
 
 namespace openrt {
 
+// Light that a light path has brought to a place of the picture, in pixels. radiance, square: what
+// it would add to a pixel if there were one path for each pixel, summed over the colours, and its
+// square. share: the weight of light paths there.
+struct LightPathFind {
+  double x, y, radiance, square, share;
+};
+
 // The second moments of the radiance that shared light brings to one camera path of each pixel,
 // summed over the colours: by camera paths alone, by light paths alone, and by both with their
 // weights, of which light paths have `ofLight`. They are sums over what light paths have found.

@@ -53,14 +53,13 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
                     hash(seed, glossySeed), stop));
 }
 
-LightPathGain LightTracer::tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
-                                    const PixelWeights& weights, const std::atomic<bool>& stop) {
-  LightPathGain gain;
-  gain_ = &gain;
-  weights_ = &weights;
+std::vector<LightPathFind> LightTracer::tryPaths(const LightSources& sources, uint32_t paths,
+                                                 uint32_t seed, const std::atomic<bool>& stop) {
+  std::vector<LightPathFind> finds;
+  finds_ = &finds;
   traceFrom(sources, paths, seed, stop);
-  gain_ = nullptr;
-  return gain;
+  finds_ = nullptr;
+  return finds;
 }
 
 void LightTracer::connectTo(const ConnectedSurfaces& surfaces, const PathSamples& samples) {
@@ -139,7 +138,7 @@ void LightTracer::traceWave(Wave& wave) {
   selectMet(wave);
   forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
     if (bucket.shaderClass->surface)
-      scatter(points, wave, *bucket.shaderClass);
+      scatter(points, wave, bucket);
     else if (bucket.shaderClass->transmit)
       transmitRays(points, wave.states, *bucket.shaderClass);
   });
@@ -206,10 +205,12 @@ void LightTracer::countNeverEntered(const Points& points, const Rays& rays,
   if (left) counters_.faults.add(shaderClass, Fault::neverEntered, left);
 }
 
-void LightTracer::scatter(const Points& points, const Wave& wave, const RtsClass& shaderClass) {
+void LightTracer::scatter(const Points& points, const Wave& wave, const Bucket& bucket) {
+  const RtsClass& shaderClass = *bucket.shaderClass;
   const PathStates& states = wave.states;
   const uint32_t n = points.hits.count;
   RtsBatch batch(context_, points, states);
+  batch.fog = bucket.fog;
   runSurfaceShader(batch, shaderClass);
   const Boundaries boundaries = crossBoundaries(batch, shaderClass);
   if (boundaries.crossing) countNeverEntered(points, wave.rays, boundaries, shaderClass);
@@ -408,7 +409,7 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
   random.draw(Decision::lens, arena_, lens);
   for (auto& a : scattered) a = arena_.take<float>(padded(n));
   const CameraConnections to = projectToCamera(batch, hits, n, lens);
-  if (gain_) return addGain(batch, to);
+  if (finds_) return addFinds(batch, to);
   scatterToCamera(batch, to, ratiosToCamera(batch, to), scattered);
   traceToCamera(batch, to, scattered);
   const uint32_t width = scene_.frame.width;
@@ -439,8 +440,8 @@ bool LightTracer::isInPicture(const CameraConnections& to, uint32_t i) const {
          y < float(scene_.frame.height);
 }
 
-// Adds to the gain what connections to the camera bring.
-void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
+// Adds what connections to the camera bring to the finds.
+void LightTracer::addFinds(const RtsBatch& batch, const CameraConnections& to) {
   float *whole[3], *weighted[3], *seen[3];
   for (auto* group : {whole, weighted, seen})
     for (int k = 0; k < 3; k++) group[k] = arena_.take<float>(padded(to.count));
@@ -448,20 +449,19 @@ void LightTracer::addGain(const RtsBatch& batch, const CameraConnections& to) {
   scatterToCamera(batch, to, ratiosToCamera(batch, to), weighted);
   for (int k = 0; k < 3; k++) std::copy_n(whole[k], to.count, seen[k]);
   traceToCamera(batch, to, seen);
-  const bool glossy = sources_->kind() == LightSources::Kind::glossy;
-  const double pixels = double(scene_.frame.width) * scene_.frame.height,
-               paths =
-                   glossy ? pixels / camerasPerGlossyPath : pixels * scene_.lightPathsOfCameraPath,
-               scale = scale_ * cameraArea_ * cameraArea_ / (paths * pixels);
   for (uint32_t i = 0; i < to.count; i++) {
     const Vec3f all = load(whole, i), shared = load(weighted, i);
     const double found = double(all.x + all.y + all.z);
     if (!(found > 0) || !isInPicture(to, i)) continue;
     const uint32_t h = to.hit[i], lane = batch.order[h];
     const Vec3d radiance =
-        Vec3d(load(batch.states->throughput, lane) * attenuationAt(batch, h) * load(seen, i));
-    const double weight = scale * weights_->at(double(to.xy[0][i]), double(to.xy[1][i]));
-    gain_->add(dot(radiance, radiance) * weight, double(shared.x + shared.y + shared.z) / found);
+        Vec3d(load(batch.states->throughput, lane) * attenuationAt(batch, h) * load(seen, i)) *
+        cameraArea_;
+    const double square = dot(radiance, radiance);
+    if (std::isfinite(square))
+      finds_->push_back({double(to.xy[0][i]), double(to.xy[1][i]),
+                         radiance.x + radiance.y + radiance.z, square,
+                         double(shared.x + shared.y + shared.z) / found});
   }
 }
 

@@ -24,7 +24,6 @@
 #include "render/path/camera_connections.h"
 #include "render/path/light_departures.h"
 #include "render/path/light_path_gain.h"
-#include "render/path/pixel_weights.h"
 #include "render/path/sensor_plane.h"
 #include "render/path/surface_connections.h"
 #include "render/surface/sample_arrays.h"
@@ -50,10 +49,9 @@ class LightTracer {
   // Traces a path by way of glossy surfaces for each surface of a camera path, and adds its light
   // there. samples: of the light paths.
   void connectTo(const ConnectedSurfaces& surfaces, const PathSamples& samples);
-  // Traces paths from sources and returns what they are worth that are connected to the camera, as
-  // the mean over the pixels by their weights.
-  LightPathGain tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
-                         const PixelWeights& weights, const std::atomic<bool>& stop);
+  // Traces paths from sources and returns what they bring to the picture.
+  std::vector<LightPathFind> tryPaths(const LightSources& sources, uint32_t paths, uint32_t seed,
+                                      const std::atomic<bool>& stop);
   std::vector<float>& picture() { return picture_; }
   RayCounters& counters() { return counters_; } // ray counts since the counters were last reset
 
@@ -65,7 +63,7 @@ class LightTracer {
   void traceWave(Wave& wave);
   void selectMet(Wave& wave);
   void transmitRays(const Points& points, const PathStates& states, const RtsClass& shaderClass);
-  void scatter(const Points& points, const Wave& wave, const RtsClass& shaderClass);
+  void scatter(const Points& points, const Wave& wave, const Bucket& bucket);
   void countNeverEntered(const Points& points, const Rays& rays, const Boundaries& boundaries,
                          const RtsClass& shaderClass);
   void dropLobes(const RtsBatch& batch) const;
@@ -73,7 +71,7 @@ class LightTracer {
                     uint32_t n);
   Vec3f attenuationAt(const RtsBatch& batch, uint32_t i) const;
   bool isInPicture(const CameraConnections& to, uint32_t i) const;
-  void addGain(const RtsBatch& batch, const CameraConnections& to);
+  void addFinds(const RtsBatch& batch, const CameraConnections& to);
   const float* ratiosToCamera(const RtsBatch& batch, const CameraConnections& to);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
@@ -115,8 +113,7 @@ class LightTracer {
   bool probedInside_ = false;
   uint32_t probes_ = 0;
   std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
-  LightPathGain* gain_ = nullptr;          // gets the gain; null: picture_ gets the light
-  const PixelWeights* weights_ = nullptr;  // those of the gain
+  std::vector<LightPathFind>* finds_ = nullptr; // gets the light; null: picture_ does
   const ConnectedSurfaces* surfaces_ = nullptr; // get the light; null: picture_ does
   PathSamples samples_{};                       // samples of the paths in flight
   RayQueue queue_, next_;                       // rays of the current wave, and of the next one

@@ -113,11 +113,13 @@ void PathTracer::scatter(const Points& points, const Bucket& bucket, const PathS
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
   batch.crossing = boundaries.crossing;
+  const Fog fog = fogAt(batch);
+  batch.throughFog = fog.transmittance;
   weightEmission(batch, boundaries, tile_.unsampled, surface.emission);
   const SentLight sent = sentLight(batch, surface);
   addLamps(batch, sent);
   continueFromLobes(batch, boundaries, sent);
-  addSurface(batch, surface, sent, boundaries, fogAt(batch), found);
+  addSurface(batch, surface, sent, boundaries, fog, found);
 }
 
 // Returns whether the depth limit leaves room for one more surface on the path of hit i.

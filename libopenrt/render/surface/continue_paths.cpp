@@ -244,7 +244,10 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
       pdf = select(lost, zero, pdf);
       flags = hn::Or(flags, bitsWhere(lost, PathFlags::passedUnsampledBit));
     }
-    const LaneVec weight = weightAt(sample, i);
+    // Mirror images have the fog of the whole path when they are found.
+    const Lanes through = specular ? one : loadOrOne(paths.throughFog, i);
+    valid = hn::And(valid, through > zero);
+    const LaneVec weight = weightAt(sample, i) * through;
     const LaneVec carried{weight.x * loadOrOne(sample.valueOf(0), i) / kept,
                           weight.y * loadOrOne(sample.valueOf(1), i) / kept,
                           weight.z * loadOrOne(sample.valueOf(2), i) / kept};

@@ -44,6 +44,8 @@ struct Continuation {
   const float *choice, *survival;
   float energyCut;
   const Crossing* crossing; // boundaries of media by hit; null: there are none
+  // By hit: share of the scattered light that passes the fog; null: all of it does.
+  const float* throughFog;
   // By hit: 1 if light from behind the surface counts for light samples; null: nowhere.
   const uint32_t* twoSided;
   // By hit: 1 where light samples do not pass what the surface transmits straight on, so that rays

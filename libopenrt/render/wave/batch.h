@@ -100,6 +100,8 @@ struct RtsBatch : openrt::StageContext {
   openrt::BatchLanes lanes;
   openrt::BatchLights lights;
   uint32_t fog = 0; // Bucket::fog
+  // By hit: share of the light that the fog in front of the hit lets pass; null: there is no fog.
+  const float* throughFog = nullptr;
   openrt::BatchLobes lobes;
 
   // Return the number of hits, and the index into `points` of hit i. For batches with hits.

@@ -19,7 +19,8 @@ enum class Encoding : uint8_t {
   ply,
   obj,
   gltf,
-  off
+  off,
+  step
 };
 // How many encodings there are, in the library that is loaded. [any thread]
 int encodingCount();
@@ -30,6 +31,9 @@ bool isMesh(Encoding encoding);
 // Returns the suffixes of names of meshes, separated by blanks: ".gltf .glb". Empty for an encoding
 // of worlds. [any thread]
 std::string_view meshSuffixes(Encoding encoding);
+// Returns why files of an encoding cannot be read here: STEP models need a program that may not be
+// installed. Empty if they can be read. [any thread]
+std::string whyNotReadable(Encoding encoding);
 
 // The encoding and the version of the standard that a file follows. VRML 1.0 is version 1.0, VRML97
 // is 2.0, X3D begins with 3.0.

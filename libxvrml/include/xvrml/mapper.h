@@ -22,7 +22,7 @@ struct ViewpointInfo {
   double matrix[16]; // local to world, column-major
 };
 
-// A place of an ORTSensor.
+// A place of an ORTSensor or of an ORTLight.
 struct SensorInfo {
   std::string name; // DEF name, may be empty
   NodeRef node;
@@ -113,6 +113,8 @@ class OpenRTMapper {
   // Returns the sensors in the order of the file, prototypes and Inlines expanded. A sensor that is
   // used several times has several places.
   std::vector<SensorInfo> sensors() const;
+  // Returns the places of the ORTLights that are on, likewise.
+  std::vector<SensorInfo> lamps() const;
   // Returns the camera of a viewpoint (index into viewpoints()), or the standard's default camera
   // (0 0 10) if the index is out of range.
   CameraSettings viewpointCamera(size_t index) const;

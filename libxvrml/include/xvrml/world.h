@@ -141,6 +141,9 @@ struct LoadOptions {
   Limits limits;
   bool allowAbsolute = false; // allows absolute paths and file: URLs inside a world
   bool loadInlines = true;
+  // STEP models: millimetres between a triangle and the surface that it stands for, at most. 0: a
+  // thousandth of the size of each part.
+  double stepError = 0;
 };
 
 // The target of a URL inside a world: a file to read, or the reason why it is refused.
@@ -176,6 +179,10 @@ class World {
   // Scripts and prototype instances whose fields may hold a node that they are part of.
   std::vector<NodeRef> cyclic;
   FileHead head; // the head of the world's own file
+  // Nodes have changed since the world was drawn, so figures and particles are brought up to date
+  // when it is drawn next. setField() sets it; a program that stores into nodes or roots itself
+  // sets it, too. It has no meaning for a world that runs.
+  mutable bool edited = false;
 };
 
 // Returns the version of the standard that the node's file follows; VRML97 for a node that is in no
@@ -213,6 +220,9 @@ std::string writeWorld(const World& world);
 // Returns what looks different in the file that writeWorld() writes in an encoding, because its
 // version gives another meaning to the same nodes: one phrase each, for people.
 std::vector<std::string> changesByWriting(const World& world, Encoding encoding);
+// Likewise for a file with a path, which may lie in another folder; see writeWorld().
+std::vector<std::string> changesByWriting(const World& world, const std::string& path,
+                                          Encoding encoding);
 // Returns a node of the world with its descendants as text in one of these encodings, without the
 // head of a file and without prototypes and routes. URLs stay as they are. Throws as writeWorld().
 std::string writeNode(const World& world, Node& node, Encoding encoding);

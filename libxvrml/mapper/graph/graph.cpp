@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "geometry/edited.h"
 #include "geometry/node_matrix.h"
 #include "mapper/shading/appearance.h"
 #include "nodes/visible.h"
@@ -13,6 +14,7 @@
 namespace xvrml::mapper {
 
 Graph::Graph(World& world) : meshes(world), context_{world}, quota_(world, "nodes") {
+  followEdits(world);
   items.resize(2);
   items[0].planned = true;
   names.emplace_back();

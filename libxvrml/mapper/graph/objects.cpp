@@ -150,7 +150,8 @@ void Objects::defineMesh(int32_t mesh) {
   rtLoadName(0);
   rtLoadIdentity();
   const bool placed = !graph_.meshes.get(mesh).texPlaces.empty();
-  if (draw(mesh, placed ? surfaces_.carrier() : Surface(), true))
+  const bool physical = graph_.meshes.takesPhysicalPlaces(mesh);
+  if (draw(mesh, placed ? surfaces_.carrier(physical) : Surface(), true))
     parts_[size_t(part)].reach = graph_.meshes.extent(mesh).reach;
   close();
   report(world_.diagnostics, graph_.meshes.geometry(mesh).source,

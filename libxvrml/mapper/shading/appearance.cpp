@@ -22,7 +22,8 @@ namespace xvrml::mapper {
 
 TextureNeed textureNeed(Node* appearance) {
   const AppearanceParts parts = resolveAppearance(appearance);
-  if (showsVolume(parts)) return TextureNeed::volume;
+  if (showsVolume(parts))
+    return isPhysical(parts.material) ? TextureNeed::physicalVolume : TextureNeed::volume;
   if (parts.shader || (parts.texture && !isCubeMap(parts.texture))) return TextureNeed::picture;
   if (parts.material && hasPictures(*parts.material)) return TextureNeed::picture;
   Node* back = parts.plain ? renderedNode(parts.plain->backMaterial.get()) : nullptr;
@@ -306,7 +307,9 @@ void Surfaces::makePhysical(Entry& entry) {
   const AppearanceParts parts = resolveAppearance(entry.appearance.get());
   std::optional<ShaderSetup> setup;
   if (!setUp(entry, &Entry::physical, classes_.get("Physical", "physical"), setup)) return;
-  setPhysical(*setup, parts, textures_, world_, linear_);
+  setPhysical(*setup, parts, {textures_, volumes_}, world_, linear_);
+  setup->integer("inSpace", showsVolume(parts) ? 1 : 0);
+  entry.surface.takesPlaces = showsVolume(parts);
   if (entry.use.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, parts.material->type().name);
 }
@@ -356,16 +359,20 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
   return effect;
 }
 
-Surface Surfaces::carrier() {
-  if (carrier_ == 0) carrier_ = rtNewShader(classes_.get("X3DMaterial", ""));
+Surface Surfaces::carrier(bool physical) {
+  RTid& carrier = carriers_[physical];
+  if (carrier == 0)
+    carrier = rtNewShader(physical ? classes_.get("Physical", "physical")
+                                   : classes_.get("X3DMaterial", ""));
   Surface surface;
-  surface.shader = carrier_;
+  surface.shader = carrier;
   surface.takesPlaces = true;
   return surface;
 }
 
 void Surfaces::clear() {
-  if (carrier_ != 0) rtDeleteShader(carrier_);
+  for (const RTid carrier : carriers_)
+    if (carrier != 0) rtDeleteShader(carrier);
   for (Entries& entries : entries_)
     for (auto& [node, entry] : entries) forget(entry);
 }

@@ -64,8 +64,9 @@ class Surfaces {
     bool colored = false;  // lines look another way
     bool textured = false; // they now need texture coordinates that they did not need before
   };
-  // Returns the surface of meshes whose texture coordinates in space shaders of instances use.
-  Surface carrier();
+  // Returns the surface of meshes whose texture coordinates in space shaders of instances use:
+  // those of the class Physical, or of X3DMaterial.
+  Surface carrier(bool physical);
   // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.
   Effect update(Node& appearance);
   // Deletes the shaders of appearances that no shape uses any more. uses(appearance) returns
@@ -138,8 +139,8 @@ class Surfaces {
   Volumes& volumes_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries entries_[32]; // by placeOf()
-  RTid carrier_ = 0;
+  Entries entries_[32];   // by placeOf()
+  RTid carriers_[2] = {}; // those of the classes X3DMaterial and Physical
   std::vector<Shared> shared_;
   std::vector<uint32_t> freeShared_;
   IndexTable sharedByKey_;

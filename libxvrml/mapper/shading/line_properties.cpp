@@ -7,6 +7,10 @@
 #include <iterator>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "mapper/shading/fill_properties.h"
+
 namespace xvrml::mapper {
 namespace {
 
@@ -59,6 +63,29 @@ const LineType* typeOf(int32_t number) {
   return found == std::end(lineTypes) ? nullptr : found;
 }
 
+// A type of line that is not drawn, and why (decision 112).
+struct LeftOut {
+  int32_t number;
+  const char* what;
+};
+constexpr LeftOut leftOut[] = {
+    {6, "single arrow: heads of arrows are not drawn"},
+    {7, "single dot: dots at ends are not drawn"},
+    {8, "double arrow: heads of arrows are not drawn"},
+    {14, "break line of style 1: its waves are not drawn"},
+    {15, "break line of style 2: its zigzags are not drawn"},
+    {16, "pattern of the user: no field says which"},
+};
+
+// Returns why lines of a type are solid; an empty text if they are drawn as the type says.
+std::string whySolid(int32_t number) {
+  if (number == 1 || typeOf(number)) return {};
+  for (const LeftOut& type : leftOut)
+    if (type.number == number)
+      return fmt::format("linetype is {} ({}); lines are solid", number, type.what);
+  return fmt::format("linetype is {}, expected 1 to 16; lines are solid", number);
+}
+
 // The size of a point at distance 0. Attenuation with distance is left out.
 float pointSize(const nodes::PointProperties& p) {
   const float near = p.attenuation.x > 0 ? p.pointSizeScaleFactor / std::sqrt(p.attenuation.x)
@@ -87,10 +114,9 @@ LineStyle lineStyle(const nodes::Appearance* appearance) {
 void warnOfLines(const nodes::Appearance* appearance, World& world) {
   if (!appearance) return;
   if (const auto* lines = propertyOf<nodes::LineProperties>(appearance->lineProperties);
-      lines && lines->applied && lines->linetype != 1 && !typeOf(lines->linetype))
-    world.diagnostics.warn(lines->source,
-                           "LineProperties: linetype is " + std::to_string(lines->linetype) +
-                               "; 1 to 5 and 9 to 13 are drawn, all others as 1, solid lines");
+      lines && lines->applied)
+    if (const std::string why = whySolid(lines->linetype); !why.empty())
+      world.diagnostics.warn(lines->source, "LineProperties: " + why);
   if (const auto* points = propertyOf<nodes::PointProperties>(appearance->pointProperties);
       points && (points->attenuation.y != 0 || points->attenuation.z != 0))
     world.diagnostics.warn(points->source,
@@ -100,9 +126,7 @@ void warnOfLines(const nodes::Appearance* appearance, World& world) {
 
 void warnOfFaces(const nodes::Appearance* appearance, World& world) {
   if (!appearance) return;
-  if (const auto* fill = propertyOf<nodes::FillProperties>(appearance->fillProperties);
-      fill && fill->hatched)
-    world.diagnostics.warn(fill->source, "FillProperties: the hatching is not drawn");
+  warnOfHatching(appearance, world);
   Node* back = renderedNode(appearance->backMaterial.get());
   Node* front = renderedNode(appearance->material.get());
   if (back && !(nodeCast<nodes::Material>(back) && nodeCast<nodes::Material>(front)))

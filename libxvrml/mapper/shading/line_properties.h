@@ -1,5 +1,5 @@
-// line_properties.h: LineProperties, PointProperties and FillProperties (ISO/IEC 19775-1 12.4.2,
-// 12.4.3, :2023 12.4.7) as sizes and patterns in pixels. [the mapper's thread]
+// line_properties.h: LineProperties and PointProperties (ISO/IEC 19775-1 12.4.3, :2023 12.4.7) as
+// sizes and patterns in pixels. [the mapper's thread]
 #pragma once
 
 #include "xvrml/nodes.h"
@@ -17,7 +17,7 @@ struct LineStyle {
 LineStyle lineStyle(const nodes::Appearance* appearance);
 // Warns of what is not drawn: some types of lines, and points that get smaller with their distance.
 void warnOfLines(const nodes::Appearance* appearance, World& world);
-// Warns of hatching, and of a back with another kind of material, which are not drawn.
+// Warns of an unknown hatching, and of a back with another kind of material, which is not drawn.
 void warnOfFaces(const nodes::Appearance* appearance, World& world);
 
 } // namespace xvrml::mapper

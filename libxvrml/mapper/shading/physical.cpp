@@ -4,6 +4,7 @@
 
 #include "geometry/node_matrix.h"
 #include "mapper/shading/cube_maps.h"
+#include "mapper/shading/fill_properties.h"
 
 namespace xvrml::mapper {
 namespace {
@@ -28,12 +29,12 @@ int alphaModeOf(const nodes::Appearance* appearance, World& world) {
 
 namespace {
 
-// Sets what both materials have.
+// Sets what all materials have.
 template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
                                          const AppearanceParts& parts, Textures& textures,
                                          World& world, bool linear) {
+  setHatching(shader, parts.plain, linear);
   shader.color("emissiveColor", convert(m.emissiveColor, linear));
-  shader.texture("emissiveTexture", textures.ofNode(m.emissiveTexture.get()));
   shader.texture("normalTexture", textures.ofData(m.normalTexture.get()));
   shader.number("normalScale", m.normalScale, 0, 100);
   shader.number("transparency", m.transparency, 0, 1);
@@ -45,35 +46,36 @@ template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
 constexpr float standardIndex = 1.5f; // a reflectance of 0.04
 
 void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m,
-                 const AppearanceParts& parts, Textures& textures, bool linear) {
+                 const AppearanceParts& parts, const LayerPictures& pictures, bool linear) {
   shader.integer("lit", 1);
   shader.integer("irradiance", 1); // ISO/IEC 19775-1:2023 17.2.2.4
   shader.color("baseColor", convert(m.baseColor, linear));
   shader.number("metallic", m.metallic, 0, 1);
   shader.number("roughness", m.roughness, 0, 1);
   shader.number("ior", standardIndex, 1, 5);
-  shader.texture("texture", textures.ofNode(colorTexture(parts)));
-  shader.texture("metallicRoughnessTexture", textures.ofData(m.metallicRoughnessTexture.get()));
+  shader.texture("texture", pictures.of(colorTexture(parts)));
+  shader.texture("emissiveTexture", pictures.textures.ofNode(m.emissiveTexture.get()));
+  shader.texture("metallicRoughnessTexture",
+                 pictures.textures.ofData(m.metallicRoughnessTexture.get()));
 }
 
 // A surface of glTF that does not reflect at its boundary.
 void setMaterial(ShaderSetup& shader, const nodes::Material& m, const AppearanceParts& parts,
-                 Textures& textures, bool linear) {
+                 const LayerPictures& pictures, bool linear) {
   shader.integer("lit", 1);
   shader.integer("irradiance", 1);
   shader.color("baseColor", convert(m.diffuseColor, linear));
   shader.number("metallic", 0, 0, 1);
   shader.number("roughness", 1, 0, 1);
   shader.number("ior", 1, 1, 5);
-  shader.texture("texture", textures.ofNode(colorTexture(parts)));
+  shader.texture("texture", pictures.of(colorTexture(parts)));
+  shader.texture("emissiveTexture", pictures.textures.ofNode(m.emissiveTexture.get()));
 }
 
 // The picture of an UnlitMaterial is its emissiveTexture; an appearance's texture stands for it.
-void setMaterial(ShaderSetup& shader, const nodes::UnlitMaterial& m, const AppearanceParts& parts,
-                 Textures& textures) {
+void setUnlit(ShaderSetup& shader, const AppearanceParts& parts, const LayerPictures& pictures) {
   shader.integer("lit", 0);
-  if (!renderedNode(m.emissiveTexture.get()))
-    shader.texture("emissiveTexture", textures.ofNode(parts.texture));
+  shader.texture("emissiveTexture", pictures.of(colorTexture(parts)));
 }
 
 } // namespace
@@ -108,19 +110,19 @@ bool hasPictures(Node& material) {
   return false;
 }
 
-void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, Textures& textures,
+void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, const LayerPictures& pictures,
                  World& world, bool linear) {
   if (const auto* m = nodeCast<nodes::PhysicalMaterial>(parts.material)) {
-    setCommon(shader, *m, parts, textures, world, linear);
-    setMaterial(shader, *m, parts, textures, linear);
+    setCommon(shader, *m, parts, pictures.textures, world, linear);
+    setMaterial(shader, *m, parts, pictures, linear);
     if (shader.fresh())
       warnOfMappings(*m,
                      {&m->baseTextureMapping, &m->emissiveTextureMapping,
                       &m->metallicRoughnessTextureMapping, &m->normalTextureMapping},
                      world);
   } else if (const auto* matt = nodeCast<nodes::Material>(parts.material)) {
-    setCommon(shader, *matt, parts, textures, world, linear);
-    setMaterial(shader, *matt, parts, textures, linear);
+    setCommon(shader, *matt, parts, pictures.textures, world, linear);
+    setMaterial(shader, *matt, parts, pictures, linear);
     const auto& rare = matt->rare.get();
     if (shader.fresh())
       warnOfMappings(
@@ -128,8 +130,8 @@ void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, Textures& te
           {&rare.diffuseTextureMapping, &rare.emissiveTextureMapping, &rare.normalTextureMapping},
           world);
   } else if (const auto* flat = nodeCast<nodes::UnlitMaterial>(parts.material)) {
-    setCommon(shader, *flat, parts, textures, world, linear);
-    setMaterial(shader, *flat, parts, textures);
+    setCommon(shader, *flat, parts, pictures.textures, world, linear);
+    setUnlit(shader, parts, pictures);
   }
 }
 

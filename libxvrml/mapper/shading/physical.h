@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapper/rt.h"
+#include "mapper/shading/layers.h"
 #include "mapper/shading/textures.h"
 #include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
@@ -26,7 +27,7 @@ bool hasPictures(Node& material);
 
 // Sets all parameters of a shader of the class Physical. Warns where a material asks for different
 // texture coordinates for its pictures.
-void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, Textures& textures,
+void setPhysical(ShaderSetup& shader, const AppearanceParts& parts, const LayerPictures& pictures,
                  World& world, bool linear);
 
 } // namespace xvrml::mapper

@@ -126,9 +126,8 @@ RTid Textures::makeNode(Node& node, bool data, bool face) {
   } else if (node.type().is("texture3D")) {
     world_.diagnostics.warn(node.source,
                             node.type().name +
-                                ": a volume is drawn as the texture of an Appearance without a "
-                                "material or with a Material, or as diffuseTexture of that; here "
-                                "it is left out");
+                                ": a volume is drawn as the texture of an Appearance, or as the "
+                                "texture of a material that gives its colour; here it is left out");
   } else {
     world_.diagnostics.warn(node.source, node.type().name + " is not a texture that can be drawn");
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "mapper/shading/fill_properties.h"
 #include "mapper/shading/layers.h"
 #include "mapper/shading/physical.h"
 
@@ -96,25 +97,21 @@ bool isTransparentMode(const nodes::Appearance* appearance) {
 
 } // namespace
 
-bool isUnfilled(const nodes::Appearance* appearance) {
-  if (!appearance) return false;
-  const auto* fill =
-      nodeCast<nodes::FillProperties>(renderedNode(appearance->fillProperties.get()));
-  return fill && !fill->filled;
-}
-
 bool showsVolume(const AppearanceParts& parts) {
-  if (parts.shader || isPhysical(parts.material)) return false;
+  if (parts.shader) return false;
   Node* texture = renderedNode(colorTexture(parts));
   const auto* multi = nodeCast<nodes::MultiTexture>(texture);
   if (!multi) return isVolume(texture);
-  return std::any_of(multi->texture.begin(), multi->texture.end(),
+  // Only the class X3DMaterial has layers.
+  return !isPhysical(parts.material) &&
+         std::any_of(multi->texture.begin(), multi->texture.end(),
                      [](const NodeRef& layer) { return isVolume(layer.get()); });
 }
 
 bool needsX3dMaterial(const AppearanceParts& parts) {
   if (isUnfilled(parts.plain)) return true;
   if (isPhysical(parts.material)) return false;
+  if (isHatched(parts.plain)) return true;
   if (nodeCast<nodes::MultiTexture>(parts.texture) || isCubeMap(parts.texture) ||
       isVolume(parts.texture))
     return true;
@@ -130,6 +127,7 @@ void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse us
   Textures& textures = pictures.textures;
   shader.integer("inSpace", use.placed || showsVolume(parts) ? 1 : 0);
   shader.integer("filled", isUnfilled(parts.plain) ? 0 : 1);
+  setHatching(shader, parts.plain, linear);
   shader.integer("lit", parts.material ? 1 : 0);
   shader.integer("alphaMode", alphaModeOf(parts.plain, world));
   shader.number("alphaCutoff", parts.plain ? parts.plain->rare.get().alphaCutoff : 0.5f, 0, 1);

@@ -25,12 +25,10 @@ struct X3dPictures {
 };
 
 // Returns whether a surface has a MultiTexture, a cube map, a volume, a back of its own, pictures
-// in its Material, an alphaMode, or is not filled.
+// in its Material, an alphaMode, or FillProperties that the class Physical does not draw.
 bool needsX3dMaterial(const AppearanceParts& parts);
 // Returns whether a surface shows a volume, alone or in a MultiTexture.
 bool showsVolume(const AppearanceParts& parts);
-// Returns whether faces are to be left out (FillProperties).
-bool isUnfilled(const nodes::Appearance* appearance);
 // Sets all parameters of a shader of the class X3DMaterial.
 void setX3dMaterial(ShaderSetup& shader, const AppearanceParts& parts, X3dUse use,
                     const X3dPictures& pictures, World& world, bool linear);

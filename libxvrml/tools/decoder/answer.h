@@ -1,6 +1,6 @@
-// answer.h: how the decoders of xvrml-decoder report what they have read, and the decoders
-// themselves. They may read past the end, run for ever or end the process: the library has
-// prepared for that. [one thread]
+// answer.h: how decoders in the cage report what they have read, and those of xvrml-decoder. They
+// may read past the end, run for ever or end the process: the library has prepared for that. [one
+// thread]
 #pragma once
 
 #include <cstdint>

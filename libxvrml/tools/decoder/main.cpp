@@ -1,108 +1,35 @@
-// main.cpp: xvrml-decoder: decodes the files of worlds whose formats need large libraries. The
-// library starts it with one end of a socket pair as file descriptor 3. It drops its privileges
-// before it reads the first byte of a file, and serves until the socket closes. The messages are
-// described in decode/protocol.h.
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <stdexcept>
-#include <vector>
-
+// main.cpp: xvrml-decoder: decodes the pictures and sounds of worlds whose formats need large
+// libraries, in the cage (serve.h).
 #include <ImfThreading.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include "answer.h"
-#include "tools/cage/cage.h"
+#include "serve.h"
 
 namespace xvrml::decoding {
-
-void Answer::contents(const Contents& contents) {
-  wire::Message reply;
-  if (!send(channel_, Op::contents, contents) ||
-      channel_.receive(reply, wire::never) != wire::Channel::Received::message)
-    _exit(0); // the library has gone
-  if (reply.header.op != uint16_t(Op::proceed)) throw Stopped();
-}
-
-void Answer::add(const void* numbers, size_t bytes) {
-  if (!sendParts(channel_, {static_cast<const char*>(numbers), bytes})) _exit(0);
-}
-
 namespace {
 
-constexpr int socketNumber = 3;
-
-std::vector<uint8_t> receiveFile(wire::Channel& channel, uint64_t size) {
-  std::vector<uint8_t> file;
-  file.reserve(size);
-  wire::Message message;
-  while (file.size() < size) {
-    if (channel.receive(message, wire::never) != wire::Channel::Received::message) _exit(0);
-    const auto part = contentOf(message);
-    if (!part || message.header.op != uint16_t(Op::bytes) || part->size() > size - file.size())
-      _exit(1);
-    file.insert(file.end(), part->begin(), part->end());
-  }
-  return file;
+void prepare() {
+  Imf::setGlobalThreadCount(0); // no thread may be made in the cage
 }
 
-void decode(const Request& request, wire::Channel& channel) {
-  const std::vector<uint8_t> file = receiveFile(channel, request.fileBytes);
-  Answer answer(channel);
+void decode(const Request& request, std::span<const uint8_t> file, Answer& answer) {
   switch (request.format) {
   case Format::exr: return decodeOpenExr(file, answer);
   case Format::webp: return decodeWebp(file, answer);
   case Format::bitmap: return decodeBitmap(file, answer);
   case Format::sound: return decodeSound(file, answer);
+  case Format::step: break; // another program reads it
   }
   _exit(1);
 }
 
-bool fail(wire::Channel& channel, std::string_view why) {
-  return send(channel, Op::failed, {why.data(), why.size()});
-}
-
-void serve(wire::Channel& channel) {
-  Imf::setGlobalThreadCount(0); // no thread may be made in the cage
-  const Ready ready{version, 0, addressSpace()};
-  std::string why;
-  if (!enterSandbox(why)) {
-    fail(channel, "cannot be closed in: " + why);
-    return;
-  }
-  bool connected = send(channel, Op::ready, ready);
-  wire::Message message;
-  while (connected && channel.receive(message, wire::never) == wire::Channel::Received::message) {
-    const auto request = as<Request>(message, Op::decode);
-    if (!request) _exit(1);
-    try {
-      decode(*request, channel);
-      connected = send(channel, Op::end);
-    } catch (const Stopped&) {
-    } catch (const std::bad_alloc&) {
-      connected = fail(channel, "it needs more memory than the limits of the world leave");
-    } catch (const std::exception& error) { connected = fail(channel, error.what()); }
-  }
-}
+constexpr Service service = {"xvrml-decoder decodes pictures and sounds of worlds for the XVRML "
+                             "library, which starts it.\n",
+                             prepare, decode};
 
 } // namespace
 } // namespace xvrml::decoding
 
 int main(int argc, char** argv) {
-  struct stat info {};
-  if (argc != 2 || fstat(xvrml::decoding::socketNumber, &info) != 0 || !S_ISSOCK(info.st_mode)) {
-    std::fputs("xvrml-decoder decodes pictures and sounds of worlds for the XVRML library, which "
-               "starts it.\n",
-               stderr);
-    return 2;
-  }
-  if (!xvrml::bindToParent(std::atol(argv[1]), xvrml::decoding::socketNumber)) return 0;
-  {
-    // The library may be busy for long before it reads, so the patience is unlimited. The socket
-    // and the kernel tell when the library has ended.
-    xvrml::wire::Channel channel(xvrml::decoding::socketNumber, std::chrono::hours(10000));
-    xvrml::decoding::serve(channel);
-  }
-  _exit(0);
+  return xvrml::decoding::serveFiles(argc, argv, xvrml::decoding::service);
 }

@@ -97,7 +97,7 @@ class PerspectiveProjection {
       : pixels_(static_cast<double>(size[1]) / planeHeight(params.fovy)) {}
   Projected project(const float local[3], const float*) const {
     const double x = local[0], y = local[1], depth = -static_cast<double>(local[2]);
-    const double scale = depth > 0 ? pixels_ / depth : 0;
+    const double scale = depth != 0 ? pixels_ / depth : 0;
     const double weight = scale * scale * std::sqrt(x * x + y * y + depth * depth) / depth;
     return {x * scale, y * scale, depth > 0 ? weight : 0, {-local[0], -local[1], -local[2]}};
   }

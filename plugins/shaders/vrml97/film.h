@@ -12,6 +12,9 @@ inline double planeHeight(float fovy) {
   return 2.0 * std::tan(static_cast<double>(fovy) * (3.14159265358979323846 / 360.0));
 }
 
+// Places farther from the picture than this, in pixels, are not told.
+inline constexpr float farthest = 1e6f;
+
 // A point as a camera projects it to the picture.
 struct Projected {
   double right, up; // pixels from the middle of the picture, also outside of it
@@ -20,16 +23,17 @@ struct Projected {
 };
 
 // Writes the projection of point i. Its weight is 0 if the point is outside the picture or not a
-// number.
+// number; its place is then beside the picture, or the corner if it has none.
 inline void writeProjection(RtsProjection* out, uint32_t i, const float size[2],
                             const Projected& at) {
   const float px = static_cast<float>(0.5 * static_cast<double>(size[0]) + at.right),
               py = static_cast<float>(0.5 * static_cast<double>(size[1]) - at.up),
               w = static_cast<float>(at.weight);
+  const bool placed = px > -farthest && px < farthest && py > -farthest && py < farthest;
   const bool seen =
       px >= 0 && px < size[0] && py >= 0 && py < size[1] && w > 0 && w <= 3.402823e38f;
-  out->xy[0][i] = seen ? px : 0.0f;
-  out->xy[1][i] = seen ? py : 0.0f;
+  out->xy[0][i] = placed ? px : 0.0f;
+  out->xy[1][i] = placed ? py : 0.0f;
   out->weight[i] = seen ? w : 0.0f;
   for (int k = 0; k < 3; k++) out->toEye[k][i] = at.toEye[k];
 }

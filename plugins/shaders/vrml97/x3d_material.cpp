@@ -13,6 +13,7 @@
 #include "vrml97/layers.h"
 #include "vrml97/texture_groups.h"
 #include "vrml97/x3d_cube.h"
+#include "vrml97/x3d_hatch.h"
 #include "vrml97/x3d_params.h"
 
 namespace vrml97 {
@@ -332,6 +333,7 @@ Summary makeX3dTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, 
   }
   finishAlpha(hits, lanes, t);
   findMirrors(host, batch, hits, t);
+  drawHatching(host, batch, hits, t);
   return summary;
 }
 
@@ -363,7 +365,8 @@ uint32_t traits(const RtsHost* host, const void* params) {
   return (maybeTransparent(host, p) ? uint32_t(RTS_TRANSPARENT) : 0u) |
          (lit ? 0u : uint32_t(RTS_UNLIT) | uint32_t(RTS_NO_SCATTER)) |
          (lit && shiny ? uint32_t(RTS_GLOSSY) : 0u) |
-         ((!lit && !p.mirror) || glows ? uint32_t(RTS_EMISSIVE) : 0u) |
+         // Light samples need an emission that does not depend on the camera.
+         (((!lit && !p.mirror) || glows) && p.hatchStyle == 0 ? uint32_t(RTS_EMISSIVE) : 0u) |
          (p.mirror ? uint32_t(RTS_SPECULAR) : 0u);
 }
 
@@ -403,6 +406,7 @@ void transmitX3d(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
   Pictures pictures(host, batch, hits, lanes);
   combineLayers(hits, lanes, pictures, t);
   finishAlpha(hits, lanes, t);
+  drawHatching(host, batch, hits, t);
   for (uint32_t i = 0; i < hits->count; i++)
     for (int c = 0; c < 3; c++) transmission[c][i] = 1.0f - t.alpha[i];
 }

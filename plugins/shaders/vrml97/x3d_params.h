@@ -37,6 +37,8 @@ struct X3dParams {
   int32_t alphaMode;
   float alphaCutoff;
   int32_t filled;
+  int32_t hatchStyle; // 0: no hatching (hatch.h)
+  float hatchColor[3];
   int32_t cubeLookup;
   RtsTexture cube[cubeFaces], cubeMap;
   int32_t mirror;

@@ -432,6 +432,25 @@ TEST(ParticleEvents, AWorldThatDoesNotRunShowsTheBeginning) {
   expectNear(points()[1], {5, 2, 0});
 }
 
+TEST(ParticleEvents, AWorldThatDoesNotRunFollowsAllThatIsBelowASystem) {
+  const auto world = loadWorldFromMemory(
+      "#X3D V4.0 utf8\n" +
+          system("geometryType \"GEOMETRY\" maxParticles 1 particleLifetime 3 emitter "
+                 "PointEmitter { speed 0 variation 0 } colorKey 0 colorRamp DEF R Color { color 1 "
+                 "0 0 } geometry TriangleSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 0 1 "
+                 "0 ] } }"),
+      "test.x3dv");
+  const auto arrays = [&] { return geometryArrays(*placedShapes(*world)[0].geometry, 0); };
+  const auto set = [&](const char* name, const char* field, Value value) {
+    return setField(*world, *world->scope.names.at(name), field, std::move(value));
+  };
+  EXPECT_EQ(arrays().colors[0], (Color{1, 0, 0}));
+  ASSERT_TRUE(set("R", "color", MFColor{{0, 1, 0}}));
+  EXPECT_EQ(arrays().colors[0], (Color{0, 1, 0}));
+  ASSERT_TRUE(set("C", "point", MFVec3f{{0, 0, 0}, {7, 0, 0}, {0, 7, 0}}));
+  expectNear(arrays().points[1], {7, 0, 0});
+}
+
 TEST(ParticleEvents, PulsesOfBirthsLoseNone) {
   Particles r(system("createParticles FALSE maxParticles 40 particleLifetime 2 emitter "
                      "PointEmitter { }"));

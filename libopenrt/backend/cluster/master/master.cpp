@@ -67,6 +67,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     double now;
     void operator()(message::Hello& hello) const { m.hello(remote, std::move(hello), now); }
     void operator()(message::Need& need) const { m.need(remote, need, now); }
+    void operator()(message::Got& got) const { m.got(remote, got, now); }
     void operator()(message::Ready& ready) const {
       if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO ||
           !isTransport(ready.transport))
@@ -179,6 +180,7 @@ double Master::advance(double now) {
   } else if (m.oldest() != 0) {
     next = m.fewSince + m.options.patience;
   }
+  m.sendArrays(now);
   for (Peer peer : std::set<Peer>(m.waiting)) {
     Remote& remote = m.remotes.at(peer);
     m.flush(remote);

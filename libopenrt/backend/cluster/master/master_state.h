@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "backend/cluster/master/distribution.h"
 #include "backend/cluster/master/master.h"
 #include "backend/cluster/master/outbox.h"
 #include "backend/cluster/master/scene_log.h"
@@ -81,6 +82,9 @@ struct Master::Impl {
   void flush(Remote& remote);
   bool deliver(Remote& remote, Frames&& frames);
   void need(Remote& remote, const message::Need& need, double now);
+  void got(Remote& remote, const message::Got& got, double now);
+  void sendArrays(double now);
+  void sendArray(Remote& remote, const OfferPtr& offer, double now);
   void joinLocal(double now);
   RTworker describe(const Remote& remote, bool alive) const;
   Remote* remoteOf(WorkerId id);
@@ -114,6 +118,7 @@ struct Master::Impl {
   WorkerCore* core; // the local worker; may be null
   Scheduler scheduler;
   SceneLog scenes;
+  Distribution distribution;
   std::unordered_map<Peer, Remote> remotes;
   std::unordered_map<WorkerId, Peer> peers; // accepted workers
   Remote here;

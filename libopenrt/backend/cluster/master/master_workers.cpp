@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "backend/cluster/master/master_state.h"
+#include "backend/cluster/net/addresses.h"
 #include "backend/cluster/net/greeting.h"
 
 namespace openrt::cluster {
@@ -13,6 +14,22 @@ constexpr size_t maxGone = 256;        // departed workers that are remembered
 constexpr size_t maxSaid = 1000;
 constexpr const char* reloadedWhy =
     "the master has reloaded shader libraries and now renders alone";
+
+// Returns the address at which other workers reach a worker that shares arrays: the host by which
+// the master knows it, and the port that it has named. Empty: it shares none.
+// near: the host is this machine's loopback.
+std::string shareAddress(const std::string& known, const message::Hello& hello, bool& near) {
+  constexpr size_t keyLength = 40;
+  if (hello.share == 0 || (!hello.shareKey.empty() && hello.shareKey.size() != keyLength))
+    return {};
+  try {
+    Address address = Address::parse(known);
+    if (address.ipc) return {};
+    near = address.loopback();
+    address.port = hello.share;
+    return address.shown() + (hello.shareKey.empty() ? "" : "=" + hello.shareKey);
+  } catch (const std::runtime_error&) { return {}; }
+}
 } // namespace
 
 void Master::Impl::log(int level, const std::string& text) const {
@@ -78,6 +95,9 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
              (remote.facts.threads == 1 ? " thread, " : " threads, ") + welcome.isa);
   queueMessage(remote, std::move(welcome));
   scheduler.join(remote.id, remote.facts.threads, false, now);
+  bool near = false;
+  const std::string address = shareAddress(remote.address, hello, near);
+  distribution.join(remote.id, address, near);
 }
 
 void Master::Impl::depart(Remote& remote, double now) {
@@ -91,6 +111,7 @@ void Master::Impl::depart(Remote& remote, double now) {
     if (gone.size() > maxGone) gone.erase(gone.begin());
     peers.erase(remote.id);
     scheduler.leave(remote.id, now);
+    distribution.leave(remote.id);
   }
   remote.welcome = false;
   remote.outbox.clear();
@@ -145,23 +166,52 @@ void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
     const auto found = offers.find(hash);
     if (found == offers.end())
       return strike(remote, "it needs an array that it was not offered", now);
-    const OfferPtr offer = std::move(found->second);
+    distribution.need(remote.id, found->second, now);
     offers.erase(found); // each array is sent once
-    remote.outbox.add(offer);
-    waiting.insert(remote.peer);
-    if (offer->ready || offer->packRequested) continue;
-    offer->packRequested = true;
-    const auto then = [this, offer](double) {
-      offer->ready = true;
-      for (auto& [peer, other] : remotes) // workers that wait for it
-        if (!other.outbox.empty()) waiting.insert(peer);
-    };
-    if (options.background) {
-      options.background([offer] { offer->pack(); }, then);
-    } else {
-      offer->pack();
-      then(now);
+  }
+  for (const auto& [hash, offer] : offers) distribution.has(remote.id, offer);
+  sendArrays(now);
+}
+
+void Master::Impl::got(Remote& remote, const message::Got& got, double now) {
+  if (got.failed)
+    distribution.failed(remote.id, got.arrays);
+  else
+    distribution.got(remote.id, got.arrays, got.kept, now);
+}
+
+// Begins the transfers that are due: of each worker, those from the same other worker together.
+void Master::Impl::sendArrays(double now) {
+  std::map<std::pair<WorkerId, WorkerId>, message::Source> sources;
+  for (const Distribution::Transfer& transfer : distribution.transfers(now)) {
+    Remote* remote = remoteOf(transfer.to);
+    if (!remote) continue; // it has left
+    if (transfer.from == Distribution::master) {
+      sendArray(*remote, transfer.offer, now);
+      continue;
     }
+    message::Source& source = sources[{transfer.to, transfer.from}];
+    source.address = distribution.addressOf(transfer.from);
+    source.arrays.push_back({0, transfer.offer->array->size(), transfer.offer->hash});
+  }
+  for (auto& [between, source] : sources) queueMessage(*remoteOf(between.first), std::move(source));
+}
+
+void Master::Impl::sendArray(Remote& remote, const OfferPtr& offer, double now) {
+  remote.outbox.add(offer);
+  waiting.insert(remote.peer);
+  if (offer->ready || offer->packRequested) return;
+  offer->packRequested = true;
+  const auto then = [this, offer](double) {
+    offer->ready = true;
+    for (auto& [peer, other] : remotes) // workers that wait for it
+      if (!other.outbox.empty()) waiting.insert(peer);
+  };
+  if (options.background) {
+    options.background([offer] { offer->pack(); }, then);
+  } else {
+    offer->pack();
+    then(now);
   }
 }
 

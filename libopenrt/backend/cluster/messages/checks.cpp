@@ -59,6 +59,20 @@ void check(const wire::Piece& m, const Frames& frames) {
          "a piece does not fit its array");
 }
 
+void checkSizes(const flatbuffers::Vector<const wire::ArrayName*>* arrays) {
+  demandAligned(arrays);
+  if (!arrays) return;
+  for (const wire::ArrayName* name : *arrays)
+    demand(name->bytes() <= limits::arrayBytes, "an array is too large");
+}
+
+void check(const wire::Source& m, const Frames&) { checkSizes(m.arrays()); }
+
+void check(const wire::Fetch& m, const Frames&) {
+  checkSizes(m.arrays());
+  demand(!m.arrays() || m.arrays()->size() <= limits::arraysAsked, "too many arrays are asked for");
+}
+
 void check(const wire::Jobs& m, const Frames&) {
   if (!m.jobs()) return;
   demandAligned(m.jobs());

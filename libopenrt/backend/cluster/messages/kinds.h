@@ -50,6 +50,7 @@ struct Result {
   } packed{};
 };
 using Log = wire::LogT;
+using Got = wire::GotT;
 
 // Master to worker.
 using Welcome = wire::WelcomeT;
@@ -69,6 +70,10 @@ struct Piece : wire::PieceT {
 using Prepare = wire::PrepareT;
 using Jobs = wire::JobsT;
 using Drop = wire::DropT;
+using Source = wire::SourceT;
+
+// Worker to worker, beside Piece.
+using Fetch = wire::FetchT;
 
 // Both directions. Handled inside the Wire.
 using Beat = wire::BeatT;
@@ -76,7 +81,8 @@ using Bye = wire::ByeT;
 
 } // namespace message
 
-enum class Sender : uint8_t { worker, master, both };
+// sharer: a worker that asks another one for arrays (worker/exchange.h).
+enum class Sender : uint8_t { worker, master, both, sharer };
 
 // Size class of a message: how many bulk frames it has.
 struct BulkFrames {
@@ -148,7 +154,10 @@ using Kinds = std::tuple<
     MessageKind<message::Jobs,    Sender::master, noBulk,     ByFunction>,
     MessageKind<message::Drop,    Sender::master, noBulk,     Unchecked>,
     MessageKind<message::Beat,    Sender::both,   noBulk,     Unchecked>,
-    MessageKind<message::Bye,     Sender::both,   noBulk,     Unchecked>>;
+    MessageKind<message::Bye,     Sender::both,   noBulk,     Unchecked>,
+    MessageKind<message::Got,     Sender::worker, noBulk,     Aligned<&wire::Got::arrays>>,
+    MessageKind<message::Source,  Sender::master, noBulk,     ByFunction>,
+    MessageKind<message::Fetch,   Sender::sharer, noBulk,     ByFunction>>;
 // clang-format on
 
 // Calls f with each row of the table.

@@ -18,9 +18,13 @@ inline constexpr size_t statistics = 1000; // maximum number of statistics of a 
 inline constexpr size_t jobs = 4096;       // maximum number of jobs in one message
 inline constexpr uint64_t epochs = uint64_t(1) << 40;     // maximum number of epochs in one session
 inline constexpr uint64_t arrayBytes = uint64_t(1) << 34; // maximum size of one array
+// Smaller arrays are always sent by the master, and not kept in folders.
+inline constexpr uint64_t keptArrayBytes = 4096;
 // Maximum size of all arrays of one commit.
 inline constexpr uint64_t sceneBytes = uint64_t(1) << 36;
 inline constexpr size_t arraysAtOnce = 16; // maximum number of arrays that are partly received
+// Maximum number of arrays that a worker has asked another one for and not got yet.
+inline constexpr size_t arraysAsked = size_t(1) << 16;
 // Maximum number of scenes that a worker was sent and has not applied yet.
 inline constexpr size_t scenesAtOnce = 1024;
 inline constexpr size_t scenesBytes = 2 * editBytes; // maximum size of the edits of these scenes

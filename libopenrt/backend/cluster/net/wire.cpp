@@ -31,19 +31,23 @@ void checkAddress(const Address& address, const KeyRing& keys) {
 Wire::Impl::Impl(const WireOptions& options)
     : keys(options.keys), heartbeat(options.heartbeat), silence(options.silence),
       context(makeContext()) {
-  for (const std::string& text : options.connect) {
-    Address address = Address::parse(text);
-    checkAddress(address, keys);
-    if (address.port == 0 && !address.ipc)
-      throw std::runtime_error(address.shown() +
-                               ": the port cannot be 0; it is 0 only for listening");
-    calls.emplace_back().address = std::move(address);
-  }
+  for (const std::string& text : options.connect) addCall(text);
   if (!keys.empty() && !options.listen.empty()) authenticator.emplace(context, keys);
   if (!options.listen.empty()) {
     checkAddress(Address::parse(options.listen), keys);
     listen(options.listen);
   }
+}
+
+Wire::Impl::Call& Wire::Impl::addCall(const std::string& text) {
+  Address address = Address::parse(text);
+  checkAddress(address, keys);
+  if (address.port == 0 && !address.ipc)
+    throw std::runtime_error(address.shown() +
+                             ": the port cannot be 0; it is 0 only for listening");
+  Call& call = calls.emplace_back();
+  call.address = std::move(address);
+  return call;
 }
 
 Wire::Impl::~Impl() {
@@ -150,6 +154,10 @@ bool Wire::send(Peer peer, Frames&& frames) {
   Impl::PeerState* state = impl_->find(peer);
   return state && !state->hasLeft && !frames.empty() &&
          impl_->sendTo(*state, std::move(frames), steadySeconds());
+}
+
+Peer Wire::call(const std::string& address) {
+  return impl_->addCall(address).once = ++impl_->lastPeer;
 }
 
 void Wire::close(Peer peer, const std::string& why) {

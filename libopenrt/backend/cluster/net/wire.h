@@ -62,6 +62,10 @@ class Wire {
   // Sends a message without waiting. Returns false if the peer's queue is full or it has left; the
   // frames are then unchanged.
   bool send(Peer peer, Frames&& frames);
+  // Calls an address once, besides those of the options. Returns the number of the peer to be:
+  // `joined` or, if there is no answer, `left` follows. Throws std::runtime_error as the
+  // constructor does.
+  Peer call(const std::string& address);
   // Sends Bye and closes; no `left` event follows.
   void close(Peer peer, const std::string& why);
   // Counts a message that its reader found invalid. The third one closes the peer, and `left`

@@ -31,6 +31,7 @@ void Wire::Impl::dial(Call& call, const Address& address, double now) {
 }
 
 void Wire::Impl::updateCalls(double now) {
+  std::erase_if(calls, [](const Call& call) { return call.over; });
   for (Call& call : calls) {
     if (call.lookup && call.lookup->ready()) {
       std::string why;
@@ -62,8 +63,9 @@ void Wire::Impl::readCall(Call& call, double now) {
     call.failures = 0;
     call.joined = now;
     call.lastFailure.clear();
-    PeerState& peer = peers[++lastPeer];
-    peer.id = call.peer = lastPeer;
+    call.peer = call.once ? call.once : ++lastPeer;
+    PeerState& peer = peers[call.peer];
+    peer.id = call.peer;
     peer.call = &call;
     peer.fd = call.fd;
     peer.address = call.address.shown();
@@ -99,6 +101,7 @@ void Wire::Impl::hangUp(Call& call, double delay, bool sayBye) {
   call.peer = 0;
   call.fd = -1;
   call.next = steadySeconds() + delay;
+  call.over = call.once != 0;
 }
 
 void Wire::Impl::failCall(Call& call, const std::string& why, double) {
@@ -106,6 +109,7 @@ void Wire::Impl::failCall(Call& call, const std::string& why, double) {
       std::min(longestPause, firstPause * double(uint64_t(1) << std::min(call.failures, 10u)));
   call.failures++;
   hangUp(call, pause, false);
+  if (call.once) return pushEvent(Event::Kind::left, call.once, why);
   if (call.lastFailure == why) return;
   call.lastFailure = why;
   pushEvent(Event::Kind::refused, 0, call.address.shown() + ": " + why);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <list>
 #include <map>
 #include <unordered_map>
 
@@ -17,9 +18,11 @@
 namespace openrt::cluster {
 
 struct Wire::Impl {
-  // An address that is called again after every loss.
+  // An address that is called: again after every loss, or once.
   struct Call {
     Address address;
+    Peer once = 0;     // the peer of an address that is called once; 0: called again
+    bool over = false; // called once, and ended
     std::unique_ptr<Lookup> lookup;
     std::optional<zmq::socket_t> socket;
     std::optional<Monitor> monitor; // monitors `socket` and is closed first
@@ -60,6 +63,7 @@ struct Wire::Impl {
   void refused(const std::string& text);
 
   // wire_calls.cpp
+  Call& addCall(const std::string& text);
   void startCall(Call& call, double now);
   void dial(Call& call, const Address& address, double now);
   void updateCalls(double now);
@@ -89,7 +93,7 @@ struct Wire::Impl {
   double heartbeat, silence;
   zmq::context_t context;
   std::optional<Authenticator> authenticator;
-  std::deque<Call> calls; // a deque, because addresses must stay valid
+  std::list<Call> calls; // a list, because addresses must stay valid
   std::optional<zmq::socket_t> listenSocket;
   std::optional<Monitor> listenMonitor;
   std::map<Peer, PeerState> peers;

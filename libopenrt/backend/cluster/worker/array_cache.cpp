@@ -45,6 +45,8 @@ struct ArrayStream::Impl {
   std::unique_ptr<ZSTD_DStream, Free> zstd;
   std::unique_ptr<XXH3_state_t, Free> state;
   bool ended = false;
+  ArrayFolder* folder = nullptr;
+  std::optional<ArrayFolder::Writer> writer;
 
   void begin(uint64_t allStored) {
     array = std::make_shared<Array>(bytes);
@@ -53,12 +55,15 @@ struct ArrayStream::Impl {
     if (!zstd || !state) throw std::bad_alloc();
     XXH3_128bits_reset(state.get());
     stored = allStored;
+    if (folder && bytes >= limits::keptArrayBytes) writer.emplace(*folder, hash, stored);
   }
 };
 
-ArrayStream::ArrayStream(const Hash& hash, uint64_t bytes) : impl_(std::make_unique<Impl>()) {
+ArrayStream::ArrayStream(const Hash& hash, uint64_t bytes, ArrayFolder* folder)
+    : impl_(std::make_unique<Impl>()) {
   impl_->hash = hash;
   impl_->bytes = bytes;
+  impl_->folder = folder;
 }
 ArrayStream::~ArrayStream() = default;
 ArrayStream::ArrayStream(ArrayStream&&) noexcept = default;
@@ -81,9 +86,11 @@ std::string ArrayStream::put(const message::Piece& piece) {
   XXH3_128bits_update(s.state.get(), s.array->data() + s.written, out.pos - s.written);
   s.written = out.pos;
   if (in.pos < in.size) return "an array is larger than it should be";
+  if (s.writer) s.writer->write(piece.data);
   return {};
 }
 
+uint64_t ArrayStream::bytes() const { return impl_->bytes; }
 bool ArrayStream::begun() const { return impl_->stored != 0; }
 bool ArrayStream::complete() const {
   return impl_->stored != 0 && impl_->received == impl_->stored;
@@ -93,6 +100,7 @@ ArrayPtr ArrayStream::take() {
   Impl& s = *impl_;
   const XXH128_hash_t found = XXH3_128bits_digest(s.state.get());
   if (!s.ended || s.written != s.bytes || Hash{found.low64, found.high64} != s.hash) return nullptr;
+  if (s.writer) s.writer->keep();
   return std::move(s.array);
 }
 

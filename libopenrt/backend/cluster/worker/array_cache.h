@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "backend/cluster/messages/messages.h"
+#include "backend/cluster/worker/array_folder.h"
 
 namespace openrt::cluster {
 
@@ -34,14 +35,17 @@ class ArrayCache {
 // An array that is being received; pieces are unpacked in the order in which they arrive.
 class ArrayStream {
  public:
-  ArrayStream(const Hash& hash, uint64_t bytes);
+  // folder: keeps the array when it has arrived; may be null.
+  ArrayStream(const Hash& hash, uint64_t bytes, ArrayFolder* folder = nullptr);
   ~ArrayStream();
   ArrayStream(ArrayStream&&) noexcept;
   // Adds a piece. Returns an empty string, or what is wrong with the piece.
   std::string put(const message::Piece& piece);
+  uint64_t bytes() const;
   bool begun() const; // its memory has been allocated
   bool complete() const;
-  // Call once complete. Returns null if the content does not match the hash.
+  // Call once complete. Returns null if the content does not match the hash; otherwise the array is
+  // kept in the folder, too.
   ArrayPtr take();
 
  private:

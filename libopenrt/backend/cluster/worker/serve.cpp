@@ -6,11 +6,13 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 
 #include "backend/cluster/net/greeting.h"
 #include "backend/cluster/net/sockets.h"
+#include "backend/cluster/worker/exchange.h"
 #include "backend/cluster/worker/worker.h"
 #include "backend/cluster/worker/worker_core.h"
 
@@ -47,11 +49,46 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
     w.shaders = options.backend.shaders;
     w.cacheBytes = options.cacheBytes;
     w.log = options.log;
-    worker = std::make_unique<Worker>(w, link(), *this);
+    if (!options.folder.empty()) folder.emplace(options.folder, options.folderBytes, options.log);
+    w.folder = folder ? &*folder : nullptr;
+    share(w.self);
+    self = w.self;
+    worker = std::make_unique<Worker>(w, link(), *this, counts);
   }
-  ~Impl() override { core.reset(); } // stops all callbacks first
+  ~Impl() override { // stops all callbacks first
+    exchange.reset();
+    core.reset();
+  }
+
+  // Opens the door for other workers, and tells it in Hello.
+  void share(message::Hello& hello) {
+    if (options.share.empty()) return;
+    if (!folder) throw std::runtime_error("arrays are shared from a folder, and none is given");
+    ExchangeOptions e;
+    e.listen = options.share;
+    e.keys = options.wire.keys;
+    e.done = [this](const Hash& hash, ArrayPtr array) {
+      post([=](Worker& w) { w.fetched(hash, array); });
+    };
+    exchange = std::make_unique<Exchange>(e, *folder, counts);
+    hello.share = exchange->port();
+    hello.shareKey = options.wire.keys.publicKey;
+  }
+
+  std::string metrics() const {
+    return metricsText(counts,
+                       {.threads = core->threads(),
+                        .serving = serving,
+                        .damagedFiles = folder ? folder->damaged() : 0},
+                       self);
+  }
 
   WorkerLink link() {
+    std::function<void(const std::string&, std::vector<message::ArrayName>)> fetch;
+    if (exchange)
+      fetch = [this](const std::string& address, std::vector<message::ArrayName> arrays) {
+        exchange->fetch(address, std::move(arrays));
+      };
     const auto does = [this](Peer peer, std::function<void(Wire&)> act) {
       postToWire({peer, {}, std::move(act)});
     };
@@ -71,7 +108,8 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
               const double h = heartbeat > 0 ? heartbeat : options.wire.heartbeat,
                            s = silence > 0 ? silence : options.wire.silence;
               does(0, [h, s](Wire& w) { w.pace(h, s); });
-            }};
+            },
+            std::move(fetch)};
   }
 
   // [any] Posts a task to the session.
@@ -151,8 +189,10 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
       }
       if (wireTask.act) {
         wireTask.act(wire);
-      } else if (!wire.send(wireTask.peer, std::move(wireTask.frames)) &&
-                 alive.contains(wireTask.peer)) {
+      } else if (const size_t bytes = bytesOf(wireTask.frames);
+                 wire.send(wireTask.peer, std::move(wireTask.frames))) {
+        counts.toMaster += bytes;
+      } else if (alive.contains(wireTask.peer)) {
         const std::lock_guard lock(mutex);
         wireTasks.push_front(std::move(wireTask));
         return false;
@@ -175,6 +215,7 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
     }
     case Event::Kind::message: {
       const size_t bytes = bytesOf(event.frames) + overhead;
+      counts.fromMaster += bytes - overhead;
       const auto kept = std::make_shared<Frames>(std::move(event.frames));
       return post([=](Worker& w) { w.message(peer, std::move(*kept), now); }, bytes);
     }
@@ -229,8 +270,12 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
   std::atomic<bool> stopping{false}, serving{false};
   std::set<Peer> alive; // peers that the wire reports as connected
   Wire wire;
+  WorkerCounts counts;
+  message::Hello self;
+  std::optional<ArrayFolder> folder;
   std::unique_ptr<Worker> worker;
   std::unique_ptr<WorkerCore> core;
+  std::unique_ptr<Exchange> exchange;
 };
 
 WorkerService::WorkerService(const ServeOptions& options)
@@ -241,5 +286,6 @@ std::string WorkerService::address() const { return impl_->wire.address(); }
 void WorkerService::run() { impl_->run(); }
 void WorkerService::stop() { impl_->stop(); }
 bool WorkerService::serving() const { return impl_->serving; }
+std::string WorkerService::metrics() const { return impl_->metrics(); }
 
 } // namespace openrt::cluster

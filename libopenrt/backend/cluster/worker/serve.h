@@ -16,7 +16,10 @@ struct ServeOptions {
   WireOptions wire;
   BackendOptions backend; // threads and shaders; its log is not used
   size_t cacheBytes = size_t(1) << 30;
-  bool once = false;                                           // stop after the first master
+  std::string folder;       // keeps arrays on a disk; empty: none
+  uint64_t folderBytes = 0; // about how many its files may have together
+  std::string share;        // ADDRESS[:PORT] at which other workers may ask; empty: none
+  bool once = false;        // stop after the first master
   std::function<void(int level, const std::string& text)> log; // [any thread] messages for the user
 };
 
@@ -32,6 +35,7 @@ class WorkerService {
   void run();                  // returns after stop()
   void stop();                 // [any], also from a signal handler
   bool serving() const;        // [any] returns true while a master is connected
+  std::string metrics() const; // [any] returns what it has done, as text for Prometheus
 
  private:
   struct Impl;

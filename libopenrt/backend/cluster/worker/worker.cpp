@@ -18,9 +18,10 @@ constexpr size_t maxFrames = 256;   // frames that are prepared and not dropped
 
 } // namespace
 
-Worker::Worker(const WorkerOptions& options, WorkerLink link, JobExecutor& executor)
+Worker::Worker(const WorkerOptions& options, WorkerLink link, JobExecutor& executor,
+               WorkerCounts& counts)
     : options_(options), link_(std::move(link)), executor_(executor), cache_(options.cacheBytes),
-      libraries_(options.shaders) {}
+      libraries_(options.shaders), counts_(counts) {}
 
 Worker::~Worker() = default;
 
@@ -62,6 +63,7 @@ void Worker::endSession() {
   logged_ = 0;
   pendingScenes_.clear();
   streams_.clear();
+  fetched_.clear();
   frames_.clear();
   leases_.clear();
   unanswered_.clear();
@@ -108,6 +110,7 @@ void Worker::message(Peer peer, Frames&& frames, double) {
     void operator()(message::Welcome& m) const { w.welcome(m, session); }
     void operator()(message::Scene& m) const { w.scene(std::move(m)); }
     void operator()(message::Piece& m) const { w.piece(m); }
+    void operator()(message::Source& m) const { w.source(m); }
     void operator()(message::Prepare& m) const { w.prepare(m); }
     void operator()(message::Jobs& m) const { w.jobs(m); }
     void operator()(message::Drop& m) const { w.drop(m); }
@@ -126,7 +129,7 @@ void Worker::welcome(const message::Welcome& m, uint64_t session) {
                   options_.self.isas);
   executor_.useInstructionSet(m.isa.empty() ? options_.self.isa : m.isa);
   session_ = m.session;
-  masters_++;
+  counts_.masters++;
   broken_ = "no scene has arrived yet";
   link_.pace(m.heartbeat, m.silence);
   report(1, "serving " + address_);
@@ -189,6 +192,11 @@ void Worker::failed(Epoch epoch, const std::string& why) {
 }
 
 void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
+  counts_.jobs++;
+  counts_.seconds += result.seconds;
+  counts_.cameraRays += result.counters.camera;
+  counts_.shadowRays += result.counters.shadow;
+  counts_.secondaryRays += result.counters.secondary;
   if (epoch <= base_ || !serving()) return;
   if (const auto out = leases_.find(epoch); out != leases_.end()) out->second.erase(job.lease);
   const auto frame = frames_.find(epoch);

@@ -13,6 +13,7 @@
 #include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/libraries.h"
 #include "backend/cluster/worker/array_cache.h"
+#include "backend/cluster/worker/counts.h"
 
 namespace openrt {
 class CommitValidator;
@@ -36,6 +37,7 @@ struct WorkerOptions {
   message::Hello self; // Hello of this process (greeting.h)
   const ShaderRegistry* shaders = nullptr;
   size_t cacheBytes = size_t(1) << 30;
+  ArrayFolder* folder = nullptr; // keeps arrays on a disk, too; may be null
   // Receives messages for the user; may be empty.
   std::function<void(int level, const std::string& text)> log;
 };
@@ -46,11 +48,15 @@ struct WorkerLink {
   std::function<void(Peer, const std::string& why)> close;
   std::function<void(Peer, const std::string& why)> bad;      // reports an invalid message
   std::function<void(double heartbeat, double silence)> pace; // 0 restores the value before Welcome
+  // Asks the worker at this address for arrays; fetched() follows for each. May be empty.
+  std::function<void(const std::string& address, std::vector<message::ArrayName>)> fetch{};
 };
 
 class Worker {
  public:
-  Worker(const WorkerOptions& options, WorkerLink link, JobExecutor& executor);
+  // counts: what it does is counted there.
+  Worker(const WorkerOptions& options, WorkerLink link, JobExecutor& executor,
+         WorkerCounts& counts);
   ~Worker();
 
   // Events of the wire.
@@ -63,9 +69,11 @@ class Worker {
   void failed(Epoch epoch, const std::string& why);
   void done(Epoch epoch, const LeasedJob& job, JobResult&& result);
   void log(int level, const std::string& text); // sends a log line to the master
+  // An array from another worker; null if it could not be had.
+  void fetched(const Hash& hash, ArrayPtr array);
 
   bool serving() const { return session_ != 0; }
-  uint64_t masters() const { return masters_; } // number of masters served so far
+  uint64_t masters() const { return counts_.masters; } // number of masters served so far
   const ArrayCache& cache() const { return cache_; }
 
  private:
@@ -80,6 +88,12 @@ class Worker {
   void welcome(const message::Welcome& m, uint64_t session);
   void scene(message::Scene&& m);
   void piece(const message::Piece& m);
+  void source(const message::Source& m);
+  ArrayPtr cached(const message::ArrayName& name);
+  ArrayPtr fromFolder(const message::ArrayName& name);
+  void arrived(const Hash& hash, const ArrayPtr& array);
+  void sayGot(std::vector<Hash> arrays, bool failed, bool kept);
+  bool isKept(const Hash& hash, const Array& array) const;
   void prepare(const message::Prepare& m);
   void jobs(const message::Jobs& m);
   void drop(const message::Drop& m);
@@ -101,15 +115,17 @@ class Worker {
   Peer peer_ = 0;
   std::string address_, lastReport_;
   double helloSentAt_ = 0; // when Hello was sent
-  uint64_t session_ = 0, masters_ = 0;
+  uint64_t session_ = 0;
   // The executor's epochs continue after those of the former master, so that late results of the
   // former session can be recognised.
   Epoch base_ = 0, newest_ = 0;
   // Reason why no scene can be made until a whole scene arrives.
   std::string broken_;
   std::deque<PendingScene> pendingScenes_;
-  std::map<Hash, ArrayStream> streams_;
-  size_t begun_ = 0; // streams that have begun
+  std::map<Hash, ArrayStream> streams_; // arrays that are needed
+  size_t begun_ = 0;                    // streams that have begun
+  // Arrays that came otherwise than from the master, which may be sending them nevertheless.
+  std::set<Hash> fetched_;
   // Scenes on which the executor has not reported, with the bytes of their edits.
   std::deque<std::pair<Epoch, size_t>> unanswered_;
   size_t unansweredBytes_ = 0;
@@ -117,6 +133,7 @@ class Worker {
   std::map<Epoch, edit::FrameSettingsT> frames_;
   std::map<Epoch, std::set<Lease>> leases_; // leases of outstanding jobs
   uint64_t logged_ = 0;
+  WorkerCounts& counts_;
 };
 
 } // namespace openrt::cluster

@@ -6,14 +6,12 @@
 
 #include "printable.h"
 
-namespace vv {
-
 // Returns a text between quotes. One that a spreadsheet would take for a formula gets an apostrophe
 // before it, and numbers do not.
 inline std::string csvField(std::string_view text) {
   const bool isNumbers = text.find_first_not_of("0123456789.eE+-, ") == text.npos;
   const bool isFormula =
-      !text.empty() && (text[0] == '=' || text[0] == '@' ||
+      !text.empty() && (text[0] == '=' || text[0] == '@' || text[0] == '\t' || text[0] == '\r' ||
                         ((text[0] == '+' || text[0] == '-') && !(isNumbers && text.size() > 1)));
   std::string out = isFormula ? "\"'" : "\"";
   for (const char c : printable(text)) {
@@ -22,5 +20,3 @@ inline std::string csvField(std::string_view text) {
   }
   return out + '"';
 }
-
-} // namespace vv

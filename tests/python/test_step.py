@@ -1,0 +1,150 @@
+"""Tests STEP models: areas, volumes, units, colours, names and instances against closed forms, and
+what vv says about them. Open CASCADE wrote the models."""
+import gzip
+import math
+import shutil
+
+import numpy as np
+import pytest
+from conftest import ROOT, SMALL
+
+import xvrml
+
+MODELS = ROOT / "tests/unit/models"
+pytestmark = pytest.mark.skipif(not xvrml.features()["step"].available,
+                                reason="built without Open CASCADE")
+
+
+def sizes(mesh):
+    """Returns area and volume of a mesh, in mm2 and mm3."""
+    points = np.asarray(mesh.world_vertices, dtype=float) * 1000
+    a, b, c = (points[np.asarray(mesh.faces)[:, i]] for i in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+    return area, np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def box(mesh):
+    points = np.asarray(mesh.world_vertices, dtype=float) * 1000
+    return np.concatenate([points.min(axis=0), points.max(axis=0)])
+
+
+# area and volume of the parts of round.step, in mm
+ROUND = ((2 * math.pi * 5 * 20 + 2 * math.pi * 5**2, math.pi * 5**2 * 20),
+         (math.pi * 6 * (6 + math.hypot(6, 12)), math.pi * 6**2 * 12 / 3),
+         (4 * math.pi**2 * 10 * 3, 2 * math.pi**2 * 10 * 3**2))
+
+
+@pytest.mark.parametrize("error", [.2, .02, .002])
+def test_surfaces_are_as_near_as_asked(error):
+    meshes = xvrml.load(str(MODELS / "round.step"), step_error=error).meshes()
+    assert len(meshes) == 3
+    for mesh, (area, volume) in zip(meshes, ROUND):
+        got_area, got_volume = sizes(mesh)
+        # Between the surface and its triangles lies at most its area times the error.
+        assert abs(got_volume - volume) <= area * error * 1.05
+        assert abs(got_area - area) <= .02 * area
+    _, torus = sizes(meshes[2])
+    points = np.asarray(meshes[2].world_vertices, dtype=float) * 1000
+    faces = np.asarray(meshes[2].faces)
+    middles = points[faces].mean(axis=1)
+    inside = 3 - np.hypot(np.hypot(middles[:, 0], middles[:, 1]) - 10, middles[:, 2])
+    assert -1e-3 < inside.min() and inside.max() < error * 1.5, (inside.min(), inside.max())
+
+
+def test_a_smaller_error_makes_more_triangles():
+    count = lambda error: sum(
+        len(m.faces) for m in xvrml.load(str(MODELS / "round.step"), step_error=error).meshes())
+    assert count(.2) < count(.02) < count(.002)
+    assert count(0) == count(0)
+    for wrong in (-1, math.nan, math.inf):
+        with pytest.raises(ValueError, match="step_error"):
+            xvrml.load(str(MODELS / "round.step"), step_error=wrong)
+
+
+def test_normals_are_those_of_the_surface():
+    mesh = xvrml.load(str(MODELS / "inch.step")).meshes()[0]
+    points = np.asarray(mesh.vertices, dtype=float)
+    faces = np.asarray(mesh.faces)
+    normals = np.asarray(mesh.normals, dtype=float)
+    assert len(normals) == len(points)
+    out = points / np.linalg.norm(points, axis=1)[:, None]
+    used = np.unique(faces)
+    assert np.einsum("ij,ij->i", normals, out)[used].min() > .9
+
+
+def test_inches_become_metres():
+    mesh, = xvrml.load(str(MODELS / "inch.step")).meshes()
+    np.testing.assert_allclose(box(mesh), np.repeat([-25.4, 25.4], 3), atol=.1)
+    area, volume = sizes(mesh)
+    assert abs(area - 4 * math.pi * 25.4**2) < .004 * area
+    assert abs(volume - 4 / 3 * math.pi * 25.4**3) < .007 * volume
+
+
+def test_an_assembly_keeps_places_names_colours_and_instances():
+    world = xvrml.load(str(MODELS / "machine.step"))
+    assert not world.warnings
+    text = world.to_vrml()
+    for name in ("Machine", "base", "left", "right_block", "green_pin", "plain_pin", "Block", "Pin"):
+        assert f"DEF {name} " in text, name
+    assert "USE Block" in text, "both blocks are one mesh"
+    places = sorted(np.round(box(m), 2).tolist() for m in world.meshes())
+    red, blue = [0, 0, 5, 0, 20, 35], [0, 0, 5, 10, 20, 35]
+    for expected in (red, blue, [30, 0, 5, 50, 0, 35], [30, 0, 5, 50, 10, 35]):
+        assert any(np.allclose(expected, p, atol=.02) for p in places), (expected, places)
+    pins = [p for p in places if p[1] > 40]
+    np.testing.assert_allclose(pins, [[-5, 45, 0, 5, 55, 20], [-5, 75, 0, 5, 85, 20]], atol=.05)
+    colours = {
+        tuple(round(float(c), 3) for c in m.appearance.material.diffuseColor):
+        round(float(m.appearance.material.transparency), 3)
+        for m in (mesh.node for mesh in world.meshes())
+    }
+    assert colours == {(1, 0, 0): .5, (.2, .4, .6): 0, (0, 1, 0): 0, (.8, .8, .8): 0}
+    volume = sum(sizes(m)[1] for m in world.meshes())
+    assert abs(volume - (2 * 6000 + 2 * math.pi * 25 * 20)) < .005 * volume
+
+
+def test_each_reading_gives_the_same_bytes():
+    texts = {xvrml.load(str(MODELS / "machine.step")).to_vrml() for _ in range(4)}
+    assert len(texts) == 1
+
+
+@pytest.fixture
+def models(vv):
+    for path in MODELS.iterdir():
+        shutil.copy(path, vv.folder)
+    return vv
+
+
+def test_vv_draws_describes_and_converts(models):
+    info = models("machine.step", "--info")
+    assert info.returncode == 0 and "STEP, read as X3D 4.0" in info.text, info.text
+    assert "z: it is a STEP model" in info.text
+    assert models("machine.step", "-o", "ppm:-", *SMALL).returncode == 0
+    models.write("packed.stpZ", gzip.compress((MODELS / "machine.step").read_bytes()))
+    plain = models("machine.step", "-o", "ppm:-", *SMALL).stdout
+    assert models("packed.stpZ", "-o", "ppm:-", *SMALL).stdout == plain
+    assert models("machine.step", "--write", "machine.glb").returncode == 0
+    again = xvrml.load(str(models.folder / "machine.glb"))
+    assert len(again.meshes()) == 6
+    coarse = models("round.step", "--info", "--json", "--step-error", "1").text
+    assert coarse != models("round.step", "--info", "--json", "--step-error", ".001").text
+    for wrong in ("-1", "x", "nan"):
+        assert models("round.step", "--info", "--step-error", wrong).returncode == 2
+
+
+def test_a_bad_file_is_one_message(models):
+    whole = (MODELS / "machine.step").read_bytes()
+    models.write("half.step", whole[:len(whole) // 2])
+    done = models("half.step", "-o", "half.png", *SMALL)
+    assert done.returncode == 3 and done.talk.count("\n") == 1, done.talk
+    assert "half.step: error: this STEP model cannot be read: Line " in done.talk
+    models.write("many.wrl", "#VRML V2.0 utf8\n" + 'Inline { url "half.step" }\n' * 2 +
+                 'Inline { url "machine.step" }\n')
+    done = models("many.wrl", "--check")
+    assert done.talk.count("Inline is empty: ") == 2 and "itself" not in done.talk, done.talk
+
+
+def test_without_the_program_it_says_what_is_missing(models):
+    done = models("inch.step", "-o", "x.png", *SMALL,
+                  env={"XVRML_STEP_READER": "/nonexistent/xvrml-step-reader"})
+    assert done.returncode == 3 and "libocct-data-exchange-dev" in done.talk, done.talk
