@@ -85,6 +85,7 @@ class World {
   // Defines the net, again if there is one, and places it.
   void showNet(double bulge, int cells = manyCells, RTenum hint = RT_STATIC) {
     if (net_) rtObjectHint(net_, hint);
+    rtLoadName(3);
     rtBindShader(dark_);
     net_ = net(
         [=](double u, double v) {
@@ -92,7 +93,6 @@ class World {
         },
         net_, cells);
     rtBindShader(0);
-    rtLoadName(3);
     if (!netPlace_) netPlace_ = at(0, 0, 0, net_);
   }
   void setNetVisible(bool visible) const {

@@ -15,19 +15,19 @@ const Observer observer{{0, 1.2, 0}, {0, 0, -1}, {0, 1, 0}};
 
 Vec unit(Vec v) { return v / length(v); }
 // Returns the index of a source at a distance of 1: t to the side, h above.
-double index(double t, double h) { return positionIndex(observer, unit({t, h, -1})); }
+double indexAt(double t, double h) { return positionIndex(observer, unit({t, h, -1})); }
 
 } // namespace
 
 // CIE 117:1995, table 4.1, has these for T/R and H/R.
 TEST(Glare, positionIndicesAreThoseOfTheTable) {
-  EXPECT_NEAR(index(0, 0), 1, 1e-9);
+  EXPECT_NEAR(indexAt(0, 0), 1, 1e-9);
   const std::pair<double, double> above[] = {{.1, 1.26}, {.2, 1.53}, {.3, 1.90}, {.4, 2.35},
                                              {.5, 2.86}, {.6, 3.50}, {.7, 4.20}, {.8, 5.00},
                                              {.9, 6.00}, {1, 7.00}};
-  for (const auto& [h, expected] : above) EXPECT_NEAR(index(0, h) / expected, 1, .03) << h;
-  EXPECT_NEAR(index(1, 1), index(-1, 1), 1e-12); // both sides are alike
-  EXPECT_LT(index(1, 0), index(0, 1));           // a source beside the eye disturbs more
+  for (const auto& [h, expected] : above) EXPECT_NEAR(indexAt(0, h) / expected, 1, .03) << h;
+  EXPECT_NEAR(indexAt(1, 1), indexAt(-1, 1), 1e-12); // both sides are alike
+  EXPECT_LT(indexAt(1, 0), indexAt(0, 1));           // a source beside the eye disturbs more
 }
 
 TEST(Glare, sourcesBehindAreNone) {

@@ -1,7 +1,9 @@
 // picture_hdr.cpp: Tests that Radiance pictures hold the numbers of a picture, whatever its width.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "libpicture/files/formats.h"
 #include "openrt/openrt.h"

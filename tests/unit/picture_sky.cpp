@@ -252,7 +252,8 @@ TEST(SkyPicture, hasTheIlluminancesThatAreAskedFor) {
 }
 
 TEST(SkyPicture, hasASunOfTheRightLight) {
-  for (const SunPosition sun : {SunPosition{40, 123.4}, {3, 0}, {89.5, 270}, {60, 180.05}}) {
+  const SunPosition suns[] = {{40, 123.4}, {3, 0}, {89.5, 270}, {60, 180.05}};
+  for (const SunPosition& sun : suns) {
     const Sky sky = readSky(
         fmt::format("cie:5,sun={}/{},lux=0,direct=90000,ground=0", sun.altitude, sun.azimuth));
     const xvrml::RadianceImage image = pictureOf(sky);

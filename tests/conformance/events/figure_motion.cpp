@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -76,11 +77,11 @@ TEST(MotionChannels, NumbersGoToTheJointsInTheirOrder) {
   const nodes::HAnimJoint joint;
   const float frame[] = {1, 2, 3, 90, 5, 6};
   const JointPose moved = poseOf(frames.tracks[0], frame, {}, joint);
-  EXPECT_EQ(moved.translation, Vec3f(1, 2, 3));
+  EXPECT_EQ(moved.translation, (Vec3f{1, 2, 3}));
   EXPECT_FALSE(moved.rotation || moved.scale);
-  EXPECT_EQ(poseOf(frames.tracks[3], frame, {}, joint).scale, Vec3f(1, 6, 5));
+  EXPECT_EQ(poseOf(frames.tracks[3], frame, {}, joint).scale, (Vec3f{1, 6, 5}));
   const JointPose part = poseOf(frames.tracks[0], frame, {false, true, false}, joint);
-  EXPECT_EQ(part.translation, Vec3f(0, 2, 0)) << "channels that are not enabled keep the joint's";
+  EXPECT_EQ(part.translation, (Vec3f{0, 2, 0})) << "channels that are not enabled keep the joint's";
 }
 
 TEST(MotionChannels, TheFirstRotationActsLast) {
@@ -98,12 +99,13 @@ TEST(MotionChannels, TheFirstRotationActsLast) {
 }
 
 TEST(MotionChannels, WhatDoesNotFitIsTold) {
-  for (const auto& [channels, joints] : {std::pair{"1 Wrotation", "a"},
-                                         {"2 Xrotation", "a"},
-                                         {"1 Xrotation", "a b"},
-                                         {"Xrotation", "a"},
-                                         {"1 Xrotation 1 Yrotation", "a"},
-                                         {"99999999999999999999 X", "a"}}) {
+  const std::pair<const char*, const char*> cases[] = {{"1 Wrotation", "a"},
+                                                       {"2 Xrotation", "a"},
+                                                       {"1 Xrotation", "a b"},
+                                                       {"Xrotation", "a"},
+                                                       {"1 Xrotation 1 Yrotation", "a"},
+                                                       {"99999999999999999999 X", "a"}};
+  for (const auto& [channels, joints] : cases) {
     Faults faults;
     motionFrames(channels, joints, faults);
     EXPECT_TRUE(faults.any()) << channels << " for " << joints;
