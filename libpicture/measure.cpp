@@ -29,6 +29,7 @@ Vec turned(const double m[16], Vec v) {
 }
 
 constexpr int mostPoints = 1 << 20; // the most points of one sensor
+constexpr int mostEyes = 1 << 12;   // and of one observer, which asks for rays to each luminaire
 // metres between neighbouring points; the camera that reads nearer ones would have no axes
 constexpr double leastStep = 1e-13;
 
@@ -82,10 +83,11 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
   out.quantity = Quantity(wanted - quantityTable);
   out.columns = node.columns;
   out.rows = node.rows;
-  if (out.columns < 1 || out.rows < 1 || int64_t(out.columns) * out.rows > mostPoints)
+  const int most = out.quantity == Quantity::glare ? mostEyes : mostPoints;
+  if (out.columns < 1 || out.rows < 1 || int64_t(out.columns) * out.rows > most)
     refuseThis(fmt::format("columns and rows are 1 or more, and at most {} points in all; not {} "
                            "and {}",
-                           mostPoints, node.columns, node.rows));
+                           most, node.columns, node.rows));
   const Vec given = of(node.direction);
   if (!(length(given) > 0) || !std::isfinite(length(given))) refuseThis("direction has no length");
   const double width = double(node.size.x), height = double(node.size.y);

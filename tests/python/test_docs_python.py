@@ -1,4 +1,5 @@
-"""Runs the code blocks of docs/python.md, figures.md, ray-queries.md, photometry.md and editor.md in order.
+"""Runs the code blocks of docs/python.md, figures.md, ray-queries.md, photometry.md,
+daylight.md and editor.md in order.
 Blocks marked needs=PACKAGE run if it is installed; worlds marked file=NAME are written before."""
 import importlib.util
 import os
@@ -15,7 +16,8 @@ pytest.importorskip("xvrml")
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 
 
-@pytest.mark.parametrize("page", ["python.md", "figures.md", "ray-queries.md", "photometry.md", "editor.md"])
+@pytest.mark.parametrize("page", [
+    "python.md", "figures.md", "ray-queries.md", "photometry.md", "daylight.md", "editor.md"])
 def test_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PATH", f"{find_vv().parent}{os.pathsep}{os.environ['PATH']}")

@@ -113,6 +113,7 @@ DEF Desk ORTSensor { size 2 2 columns 4 rows 4 direction 0 1 0 }
     ('quantity "LUX"', "quantity is ILLUMINANCE, LUMINANCE or UGR"),
     ("direction 0 0 0", "direction has no length"),
     ("columns 4096 rows 4096 size 1 1", "at most 1048576 points"),
+    ('quantity "UGR" columns 65 rows 64 size 1 1', "at most 4096 points"),
     ("columns 4 rows 4", "a grid of 4 x 4 points needs a size along both, not 0 x 0"),
     ("columns 4 rows 4 size 1 0", "needs a size along both, not 1 x 0"),
     ("columns 4 size 1e-20 1", "nearer together than 1e-13 m"),

@@ -127,7 +127,8 @@ void addLines(const Grid& grid, const LuminanceScale& scale, Sizes cell, std::st
     for (const Segment& line : lines)
       out += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", line[0].x * cell.x, line[0].y * cell.y,
                          line[1].x * cell.x, line[1].y * cell.y);
-    const Point at = lines[lines.size() / 2][0];
+    // in turn at a quarter, a half and three quarters, so that labels of neighbours lie apart
+    const Point at = lines[lines.size() * size_t(1 + i % 3) / 4][0];
     out += fmt::format("\"/>\n<text x=\"{:.1f}\" y=\"{:.1f}\" font-weight=\"bold\" stroke=\"#fff\" "
                        "stroke-width=\"3\" paint-order=\"stroke\">{:g}</text>\n",
                        at.x * cell.x, at.y * cell.y - 3, i * scale.step);
@@ -179,10 +180,10 @@ std::string isoluxPicture(const Measurement& m) {
       "font-family=\"sans-serif\" font-size=\"11\" text-anchor=\"middle\">\n",
       width + legend, height);
   addCells(grid, scale, cell, out);
-  addLines(grid, scale, cell, out);
   const bool hasAll = grid.columns == m.sensor.columns && grid.rows == m.sensor.rows;
   if (hasAll && grid.columns <= 20 && grid.columns * grid.rows <= mostNumbers)
     addNumbers(grid, cell, out);
+  addLines(grid, scale, cell, out);
   addLegend(scale, picture::infoOf(m.sensor.quantity).unit, height, out);
   return out + "</svg>\n";
 }

@@ -17,7 +17,7 @@ using picture::Measurement;
 constexpr size_t mostLuminaires = 200; // rows of the page
 
 std::string withUnit(double value, const char* unit) {
-  return fmt::format("{:.4g}{}{}", value, *unit ? " " : "", unit);
+  return shownReading(value) + (*unit ? " " : "") + unit;
 }
 
 void addRow(const char* name, const std::string& value, std::string& out) {
@@ -34,10 +34,10 @@ void addSensor(const Measurement& m, const Promise& promise, std::string& out) {
   }
   out += isoluxPicture(m);
   out += "<table>\n";
-  addRow(
-      all.points > 1 ? "mean, 95 % interval" : "reading, 95 % interval",
-      fmt::format("{:.4g} ± {:.2g}{}{}", all.mean, all.halfWidth, *info.unit ? " " : "", info.unit),
-      out);
+  addRow(all.points > 1 ? "mean, 95 % interval" : "reading, 95 % interval",
+         shownReading(all.mean) + " ± " + shownReading(all.halfWidth, 2) + (*info.unit ? " " : "") +
+             info.unit,
+         out);
   if (all.points > 1) {
     addRow("least", withUnit(all.least, info.unit), out);
     addRow("most", withUnit(all.most, info.unit), out);
@@ -68,12 +68,12 @@ void addLuminaires(const std::vector<Luminaire>& luminaires, std::string& out) {
     out += fmt::format("<tr><td>{}<td>{}<td class=n>{}<td class=n>{:.3g}<td class=n>{:.4g} {:.4g} "
                        "{:.4g}</tr>\n",
                        escaped(one.name), escaped(one.file),
-                       one.problem.empty() ? fmt::format("{:.4g}", one.flux) : escaped(one.problem),
+                       one.problem.empty() ? shownReading(one.flux) : escaped(one.problem),
                        one.maintenance, one.place.x, one.place.y, one.place.z);
   }
-  out += fmt::format("<tr><td>{} in all<td><td class=n>{:.4g}<td><td></tr>\n</table>\n<p "
+  out += fmt::format("<tr><td>{} in all<td><td class=n>{}<td><td></tr>\n</table>\n<p "
                      "class=weak>The flux has the maintenance factor in it.</p>\n",
-                     luminaires.size(), sum);
+                     luminaires.size(), shownReading(sum));
 }
 
 } // namespace

@@ -113,6 +113,11 @@ MeasurementSummary::MeasurementSummary(const Measurement& m) {
   halfWidth = std::sqrt(squares) / double(points);
 }
 
+std::string shownReading(double value, int digits) {
+  return value >= std::pow(10, digits) && value < 1e9 ? fmt::format("{:.0f}", value)
+                                                      : fmt::format("{:.{}g}", value, digits);
+}
+
 std::string measurementsCsv(const std::vector<Measurement>& sensors) {
   std::string out = "sensor,quantity,unit,column,row,x [m],y [m],z [m],value [unit],"
                     "half-width of the 95 % interval [unit],trusted,samples";
@@ -156,11 +161,11 @@ std::string measurementText(const Measurement& m) {
   const bool isRated = m.sensor.quantity == picture::Quantity::glare;
   const std::string before = isRated ? "UGR " : "",
                     unit = isRated ? "" : std::string(" ") + unitOf(m);
-  std::string out = fmt::format("{}: {}{:.4g}{} +- {:.2g}{} (95 %)", m.sensor.name, before,
-                                all.mean, unit, all.halfWidth, unit);
+  std::string out = fmt::format("{}: {}{}{} +- {}{} (95 %)", m.sensor.name, before,
+                                shownReading(all.mean), unit, shownReading(all.halfWidth, 2), unit);
   if (all.points > 1)
-    out += fmt::format(", mean of {} points from {:.4g} to {:.4g}{}, uniformity {:.3g}", all.points,
-                       all.least, all.most, unit, all.uniformity());
+    out += fmt::format(", mean of {} points from {} to {}{}, uniformity {:.3g}", all.points,
+                       shownReading(all.least), shownReading(all.most), unit, all.uniformity());
   if (m.outdoors > 0) out += fmt::format(", daylight factor {:.3g} %", 100 * all.mean / m.outdoors);
   return out;
 }

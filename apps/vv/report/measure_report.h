@@ -20,6 +20,9 @@ struct MeasurementSummary {
   double uniformity() const { return mean > 0 ? least / mean : 0; }
 };
 
+// Returns a reading for people: so many digits, or all before the point.
+std::string shownReading(double value, int digits = 4);
+
 // Returns the readings as CSV (RFC 4180): one line per point, after a line of names with units.
 std::string measurementsCsv(const std::vector<picture::Measurement>& sensors);
 // Returns the readings as JSON, schema 1.
