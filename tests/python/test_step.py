@@ -124,7 +124,8 @@ def test_vv_draws_describes_and_converts(models):
     assert models("packed.stpZ", "-o", "ppm:-", *SMALL).stdout == plain
     assert models("machine.step", "--write", "machine.glb").returncode == 0
     again = xvrml.load(str(models.folder / "machine.glb"))
-    assert len(again.meshes()) == 6
+    high = np.max([box(m) for m in again.meshes()], axis=0)
+    assert len(again.meshes()) == 6 and abs(high[4] - 35) < .01, "y is up in glTF"
     coarse = models("round.step", "--info", "--json", "--step-error", "1").text
     assert coarse != models("round.step", "--info", "--json", "--step-error", ".01").text
     for wrong in ("-1", "x", "nan"):

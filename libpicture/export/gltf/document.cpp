@@ -1,5 +1,7 @@
 #include "libpicture/export/gltf/document.h"
 
+#include <numbers>
+
 #include <fmt/format.h>
 
 #include "openrt/openrt.h"
@@ -45,6 +47,13 @@ size_t Document::add(Elements elements) {
   if (!elements.maximum.empty()) accessor["max"] = elements.maximum;
   accessor["bufferView"] = addBytes(std::move(elements.bytes), elements.target);
   return add("accessors", accessor);
+}
+
+void Document::turnZUp() {
+  if (roots_.empty()) return;
+  constexpr double half = std::numbers::sqrt2 / 2; // sine and cosine for a quarter turn
+  roots_ = {
+      add("nodes", {{"name", "ZUp"}, {"rotation", {-half, 0.0, 0.0, half}}, {"children", roots_}})};
 }
 
 // A list without objects may not be there (glTF 2.0, 5.17).

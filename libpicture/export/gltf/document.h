@@ -57,6 +57,8 @@ class Document {
   // Adds a buffer view of bytes that no accessor describes; returns its index.
   size_t addBytes(std::string bytes, Target target = noTarget);
   void addRoot(size_t node) { roots_.push_back(node); }
+  // Turns all roots so far, in which z is up, about x: in glTF y is up (3.4).
+  void turnZUp();
 
   uint64_t bufferBytes() const { return bufferBytes_; }
   // Moves the bytes of the buffer out, in pieces.

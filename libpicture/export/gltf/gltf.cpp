@@ -33,6 +33,7 @@ struct Made {
     scene.finish();
     meshes.finish();
     motions.write(document);
+    if (world.head.version.encoding == xvrml::Encoding::step) document.turnZUp();
   }
   Document document;
   Remarks remarks;
