@@ -94,7 +94,7 @@ TEST_F(FogOfPaths, AFurnaceHasItsRadianceBehindTheFog) {
 
 // Mirror images have the fog of the whole path.
 TEST_F(FogOfPaths, AMirrorShowsTheFogOfTheWholePath) {
-  placeAt(0, square(Shader("Mirror"), 2));
+  placeAt(0, square(Shader("Mirror").set("reflectance", {1, 1, 1}), 2));
   placeAt(3, square(matt(0, 1), 20), true);
   rtQuality(RT_SAMPLES_PER_PIXEL, 4);
   fog(10, .25);

@@ -206,24 +206,23 @@ void chooseMirrorPaths(RenderScene& scene, Trial& trial, Expectation& expected) 
   std::vector<LightPathFind> finds[2];
   for (uint32_t h = 0; h < 2; h++)
     finds[h] = trial.traceLightPaths(*scene.lightSources, 1, expected.lightRays, h);
-  LightPathGain gain[2];
+  LightPathGain halves[2];
   for (uint32_t h = 0; h < 2; h++) {
     trial.setLight(finds[1 - h], lightPaths);
-    gain[h] = trial.gainOf(finds[h], 1);
+    halves[h] = trial.gainOf(finds[h], 1);
   }
+  // The smaller result counts: a single bright path must not decide.
+  const LightPathGain& gain = halves[halves[1].light < halves[0].light];
   finds[0].insert(finds[0].end(), finds[1].begin(), finds[1].end());
   trial.setLight(std::move(finds[0]), 2 * lightPaths);
   expected.variance = trial.camera().variance;
   if (sharable)
-    scene.sharesMirrors = expected.take(gain[0].light, gain[0].both, 0);
+    scene.sharesMirrors = expected.take(gain.light, gain.both, 0);
   else
-    expected.variance += gain[0].light;
+    expected.variance += gain.light;
   if (frame.targetError > 0 || frame.timeLimit > 0) return;
-  // The smaller of two results counts: a single bright path must not decide.
-  const auto light = [&](const LightPathGain& g) {
-    return scene.sharesMirrors ? g.ofLight : g.light;
-  };
-  scene.lightPathsOfCameraPath = expected.takeLightPaths(std::min(light(gain[0]), light(gain[1])));
+  scene.lightPathsOfCameraPath =
+      expected.takeLightPaths(scene.sharesMirrors ? gain.ofLight : gain.light);
 }
 
 // Forgets what was decided.
