@@ -152,8 +152,8 @@ corpus-x3d:
 
 ## make round-trip    writes each file of that folder in every encoding, and compares the pictures, into build/round-trip (RESUME=1 goes on where it was interrupted)
 round-trip:
-	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders scripts
-	@$(PYTHON) tests/corpus/round_trip.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(RESUME),--resume)
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target xvrml_python shaders scripts
+	@PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tests/corpus/round_trip.py $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(RESUME),--resume)
 
 ## make fuzz          every fuzz target for FUZZ_SECONDS (default 60) each
 fuzz: fuzz-targets

@@ -64,8 +64,11 @@ Look lookOf(const xvrml::World& world, bool shadersGiven) {
   return lookOf(world, isFromModeller(world), shadersGiven);
 }
 
-bool losesLook(const xvrml::World& world) {
-  return isFromModeller(world) && lookOf(world, true, false) != lookOf(world, false, false);
+std::string changeOfLook(const xvrml::World& world) {
+  if (!isFromModeller(world) || lookOf(world, true, false) == lookOf(world, false, false))
+    return {};
+  return "outside of glTF a model with a camera or a shader is a world: it is shown before black, "
+         "and no longer before the backdrop of vv";
 }
 
 bool mayLeaveCameraOut(const xvrml::World& world, const View& view) {

@@ -3,6 +3,8 @@
 // ask here, so that a model has one look everywhere. [any thread that owns the nodes]
 #pragma once
 
+#include <string>
+
 #include "libpicture/renderer.h"
 #include "xvrml/world.h"
 
@@ -19,9 +21,9 @@ enum class Look : unsigned char {
 // (shader_rules.h). They are ORTAppearances, which say nothing about the look then.
 Look lookOf(const xvrml::World& world, bool shadersGiven);
 
-// Returns whether a world would have another look as a file of X3D or VRML97: a model of glTF with
-// a camera or a shader would be a world there, and have its own.
-bool losesLook(const xvrml::World& world);
+// Returns what changes in the look of a world that becomes a file of X3D or VRML97, for people;
+// empty: nothing. A model of glTF with a camera or a shader is a world there, and has its own look.
+std::string changeOfLook(const xvrml::World& world);
 
 // Returns whether the first Viewpoint may be left out of a view that names no camera: that of a
 // glTF file with a model alone. Modellers write the camera of their window into such files. A file

@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 
 #include "arrays.h"
+#include "libpicture/bare_model.h"
 #include "libpicture/export/export.h"
 #include "libpicture/files/atomic_file.h"
 #include "objects.h"
@@ -107,6 +108,8 @@ void save(const WorldPtr& self, const py::object& file) {
       } else {
         picture::writeFile(path, writeWorld(world, path));
         for (const std::string& change : changesByWriting(world, path, writtenEncoding(path)))
+          world.diagnostics.warn({}, change);
+        if (const std::string change = picture::changeOfLook(world); !change.empty())
           world.diagnostics.warn({}, change);
       }
     } catch (const std::runtime_error& error) { failure = error.what(); }

@@ -111,7 +111,7 @@ WeatherHour readWeatherHour(const std::string& path, std::string_view time) {
   std::ifstream file(path, std::ios::binary);
   std::string text(mostBytes + 1, '\0');
   if (!file.read(text.data(), std::streamsize(text.size())) && !file.eof())
-    throw InputError(path, "cannot be read");
+    throw InputError(path, "there is no such file, or it is a folder");
   text.resize(size_t(file.gcount()));
   if (text.size() > mostBytes) throw InputError(path, "is larger than any weather file");
   try {

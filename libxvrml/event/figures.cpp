@@ -1,10 +1,11 @@
 // figures.cpp: keeps the skins of figures where their joints are, and particles where their
 // emitters and forces lead them, in a running world. Any change may concern them, so all are moved
 // again after the cascade; the renderer sees those that are drawn in another way. Vertices that are
-// taken out of a figure go back to rest.
+// taken out of a figure, or whose figure is taken out of the scene, go back to rest.
 #include <utility>
 
 #include "event/engine.h"
+#include "event/hierarchy.h"
 #include "geometry/figure.h"
 #include "xvrml/nodes.h"
 
@@ -38,6 +39,7 @@ void Engine::moveFigures() {
       renewExpansion(*node);
       continue;
     }
+    if (!isInScene(*node)) continue; // its skin may be part of the scene elsewhere, at rest
     for (Node* moved : deform(*node, nullptr)) changed(*moved, vectorsOf(*moved));
     noteSkin(*node);
   }

@@ -303,6 +303,7 @@ void Engine::removeRoot(Node& node) {
 
 void Engine::rootsChanged() {
   ++structure_;
+  figuresOutdated_ = figuresOutdated_ || !deforming_.empty();
   const bool known =
       std::any_of(changes_.begin(), changes_.end(), [](const FieldChange& c) { return !c.node; });
   if (!known) changes_.push_back({NodeRef(), nullptr});

@@ -305,6 +305,9 @@ def test_writing_a_model_says_whether_its_look_changes(vv, cameras, told):
     for name in ("model.x3dv", "model.wrl"):
         assert ("the backdrop of vv" in vv("model.gltf", "--write", name).talk) == told
         assert (corner(shown(vv, name)) != before) == told
+    world = xvrml.load(vv.folder / "model.gltf")
+    world.save(vv.folder / "model.x3d")
+    assert any("the backdrop of vv" in warning.message for warning in world.warnings) == told
 
 
 def test_a_camera_is_left_out_in_all_pictures_of_a_run(vv):

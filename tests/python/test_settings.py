@@ -17,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cluster"))
 import openrt_c  # noqa: E402
 
 # Settings that vv and Python choose themselves or leave to the engine.
-HIDDEN = {"replicates", "progressive", "frames_in_flight", "tile", "view", "measure"}
+HIDDEN = {"replicates", "progressive", "frames_in_flight", "tile", "view", "measure", "patience"}
 # Settings with another name than in the table.
 RENAMED = {"samples": "spp"}
 # Settings that vv has and World.render lacks, or World.render has and Context.render lacks.

@@ -34,7 +34,7 @@ ROUND = ((2 * math.pi * 5 * 20 + 2 * math.pi * 5**2, math.pi * 5**2 * 20),
          (4 * math.pi**2 * 10 * 3, 2 * math.pi**2 * 10 * 3**2))
 
 
-@pytest.mark.parametrize("error", [.2, .02, .002])
+@pytest.mark.parametrize("error", [.2, .02, .004])
 def test_surfaces_are_as_near_as_asked(error):
     meshes = xvrml.load(str(MODELS / "round.step"), step_error=error).meshes()
     assert len(meshes) == 3
@@ -43,18 +43,17 @@ def test_surfaces_are_as_near_as_asked(error):
         # Between the surface and its triangles lies at most its area times the error.
         assert abs(got_volume - volume) <= area * error * 1.05
         assert abs(got_area - area) <= .02 * area
-    _, torus = sizes(meshes[2])
     points = np.asarray(meshes[2].world_vertices, dtype=float) * 1000
     faces = np.asarray(meshes[2].faces)
     middles = points[faces].mean(axis=1)
-    inside = 3 - np.hypot(np.hypot(middles[:, 0], middles[:, 1]) - 10, middles[:, 2])
-    assert -1e-3 < inside.min() and inside.max() < error * 1.5, (inside.min(), inside.max())
+    away = np.abs(3 - np.hypot(np.hypot(middles[:, 0], middles[:, 1]) - 10, middles[:, 2]))
+    assert away.max() < error, away.max()
 
 
 def test_a_smaller_error_makes_more_triangles():
     count = lambda error: sum(
         len(m.faces) for m in xvrml.load(str(MODELS / "round.step"), step_error=error).meshes())
-    assert count(.2) < count(.02) < count(.002)
+    assert count(.2) < count(.02) < count(.004)
     assert count(0) == count(0)
     for wrong in (-1, math.nan, math.inf):
         with pytest.raises(ValueError, match="step_error"):
@@ -127,7 +126,7 @@ def test_vv_draws_describes_and_converts(models):
     again = xvrml.load(str(models.folder / "machine.glb"))
     assert len(again.meshes()) == 6
     coarse = models("round.step", "--info", "--json", "--step-error", "1").text
-    assert coarse != models("round.step", "--info", "--json", "--step-error", ".001").text
+    assert coarse != models("round.step", "--info", "--json", "--step-error", ".01").text
     for wrong in ("-1", "x", "nan"):
         assert models("round.step", "--info", "--step-error", wrong).returncode == 2
 

@@ -110,7 +110,7 @@ DEF Desk ORTSensor { size 2 2 columns 4 rows 4 direction 0 1 0 }
 
 
 @pytest.mark.parametrize("fields, expected", [
-    ('quantity "LUX"', "quantity is ILLUMINANCE or LUMINANCE"),
+    ('quantity "LUX"', "quantity is ILLUMINANCE, LUMINANCE or UGR"),
     ("direction 0 0 0", "direction has no length"),
     ("columns 4096 rows 4096 size 1 1", "at most 1048576 points"),
     ("columns 4 rows 4", "a grid of 4 x 4 points needs a size along both, not 0 x 0"),

@@ -81,5 +81,5 @@ def test_programs_that_name_files_are_said_where_the_folder_changes(vv, tmp_path
     assert "1 Script will look for its files" in vv("world.x3dv", "--write", "other/a.x3dv").talk
     assert "Script will look" not in vv("world.x3dv", "--write", "a.x3dv").talk
     world = xvrml.load(vv.folder / "world.x3dv")
-    world.save(str(tmp_path / "a.x3dv"))
+    world.save(str(tmp_path / "other/b.x3dv"))
     assert "will look for its files" in str(world.warnings[-1])

@@ -62,11 +62,25 @@ def test_lines_are_where_the_camera_sees_the_face_at_any_distance_and_slant():
         assert np.array_equal(found[..., 0] > .5, lines(2))
 
 
-def test_crops_tiles_and_threads_have_the_same_pattern():
+def test_crops_and_threads_have_the_same_pattern():
     world = FLAT + plane(14)
     whole = picture(world, spp=4)
     assert np.array_equal(whole, picture(world, spp=4, threads=1))
     assert np.array_equal(whole, picture(world, spp=4, threads=3))
+    assert np.array_equal(whole[20:40, 5:35], picture(world, spp=4, crop=(5, 20, 30, 20)))
+
+
+def test_a_picture_does_not_depend_on_views_before_it():
+    """A hatched face that glows is no lamp for light samples, whose shares another view would set."""
+    text = HEAD + "DEF A Viewpoint { description \"A\" position 0 0 60 } DEF B Viewpoint " \
+        "{ description \"B\" position 9 3 30 }\n" + plane(4, "hatchColor 1 1 0",
+                                                       "Material { emissiveColor 0 0 .5 }") \
+        + "Transform { translation 0 0 20 children Shape { appearance Appearance { material Material { } } " \
+        "geometry Sphere { radius 6 } } }\n"
+    one, other = xvrml.loads(text, "a.x3dv"), xvrml.loads(text, "a.x3dv")
+    picture(other, viewpoint="B", transport="path")
+    assert np.array_equal(picture(one, viewpoint="A", transport="path", spp=4),
+                          picture(other, viewpoint="A", transport="path", spp=4))
 
 
 def test_a_face_that_is_not_filled_is_seen_through_and_lets_light_pass():

@@ -233,7 +233,7 @@ TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
       {"perez:600/0,sun=60/180", "no diffuse light"},
       {"perez:600/200,sun=60/180,lux=5", "lux and direct belong to cie"},
       {"epw:", "was expected"},
-      {"epw:no-such-file.epw@06-21T12:00", "file: no-such-file.epw"},
+      {"epw:no-such-file.epw@06-21T12:00", "file: cannot read no-such-file.epw"},
       {"epw:no-such-file.epw", "06-21T14:30 was expected"},
       {"moon:1", "cie:TYPE"},
   };

@@ -34,8 +34,10 @@ void addSensor(const Measurement& m, const Promise& promise, std::string& out) {
   }
   out += isoluxPicture(m);
   out += "<table>\n";
-  addRow(all.points > 1 ? "mean, 95 % interval" : "reading, 95 % interval",
-         fmt::format("{:.4g} ± {}", all.mean, withUnit(all.halfWidth, info.unit)), out);
+  addRow(
+      all.points > 1 ? "mean, 95 % interval" : "reading, 95 % interval",
+      fmt::format("{:.4g} ± {:.2g}{}{}", all.mean, all.halfWidth, *info.unit ? " " : "", info.unit),
+      out);
   if (all.points > 1) {
     addRow("least", withUnit(all.least, info.unit), out);
     addRow("most", withUnit(all.most, info.unit), out);

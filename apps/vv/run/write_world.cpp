@@ -1,5 +1,7 @@
 #include "run/write_world.h"
 
+#include <utility>
+
 #include "libpicture/bare_model.h"
 #include "process/messages.h"
 #include "run/outputs.h"
@@ -14,9 +16,8 @@ WorldText textOf(const Options& options, const xvrml::World& world) {
   WorldText made{xvrml::writeWorld(world, path, options.writeEncoding), {}};
   if (options.quiet) return made;
   made.changes = xvrml::changesByWriting(world, path, options.writeEncoding);
-  if (picture::losesLook(world))
-    made.changes.emplace_back("outside of glTF a model with a camera or a shader is a world: it is "
-                              "shown before black, and no longer before the backdrop of vv");
+  if (std::string change = picture::changeOfLook(world); !change.empty())
+    made.changes.push_back(std::move(change));
   return made;
 }
 

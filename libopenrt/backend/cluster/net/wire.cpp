@@ -157,7 +157,10 @@ bool Wire::send(Peer peer, Frames&& frames) {
 }
 
 Peer Wire::call(const std::string& address) {
-  return impl_->addCall(address).once = ++impl_->lastPeer;
+  Impl::Call& call = impl_->addCall(address);
+  const Peer peer = call.once = ++impl_->lastPeer;
+  impl_->startCall(call, steadySeconds());
+  return peer;
 }
 
 void Wire::close(Peer peer, const std::string& why) {
