@@ -1,11 +1,18 @@
 // openrt_patience.cpp: frames that do not wait for acceleration structures (RT_PATIENCE): what they
 // show meanwhile, what follows, and that nothing of it is left in later pictures.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <random>
 #include <vector>
+
+#if defined(__linux__)
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
 
 #include "drawing.h"
 
@@ -286,6 +293,88 @@ TEST(Patience, MotionIsThatSinceTheFrameBefore) {
     }
     EXPECT_GT(outdated, 6);
     EXPECT_GE(moved, 9);
+  });
+}
+
+// Views that take turns, while structures are built in between: each has its own frame before.
+TEST(Patience, MotionOfViewsThatTakeTurnsIsThatSinceTheirOwnFrame) {
+  inContext([](World& world) {
+    double z = .5;
+    std::array<float, 2> before{};
+    int outdated = 0;
+    for (int frame = 0; frame < 120; frame++) {
+      const size_t view = size_t(frame) * 3 / 7 % 2; // two or three frames of each
+      rtQuality(RT_VIEW, int32_t(view));
+      rtQualityf(RT_PATIENCE, frame < 6 ? 0 : noPatience);
+      if (frame % 20 == 10) world.showNet(.1);
+      if (frame % 20 == 17) world.dropNet();
+      world.move(z += 1e-3);
+      rtRender();
+      const float now = middleZ(RT_POSITION);
+      if (frame >= 6) {
+        ASSERT_NEAR(middleZ(RT_MOTION), now - before[view], 3e-6) << frame;
+      }
+      before[view] = now;
+      outdated += isOutdated();
+    }
+    EXPECT_GT(outdated, 6);
+  });
+}
+
+#if defined(__linux__)
+// Embree notes quietly that memory was short. In a process of its own, whose address space has room
+// for so many MB more.
+void renderWithRoom(int room) {
+  inContext([=](World& world) {
+    world.showNet(.1);
+    long pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit{rlim_t(pages) * rlim_t(::sysconf(_SC_PAGESIZE)) + (rlim_t(room) << 20),
+                 RLIM_INFINITY};
+    ::setrlimit(RLIMIT_AS, &limit);
+    bool isRight = true;
+    const auto showsNet = [] {
+      const std::vector<float> names = readChannel(RT_NAME, width, height);
+      return std::find(names.begin(), names.end(), 3.0f) != names.end();
+    };
+    for (int frame = 0; frame < 3; frame++) {
+      rtRender();
+      isRight = isRight && (rtGetError() == RT_OUT_OF_MEMORY || showsNet());
+    }
+    limit.rlim_cur = RLIM_INFINITY;
+    ::setrlimit(RLIMIT_AS, &limit);
+    rtRender();
+    ::_exit(isRight && rtGetError() == RT_NO_ERROR && showsNet() ? 0 : 1);
+  });
+}
+
+TEST(ShortMemory, EachFrameFailsOrIsRight) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (const int room : {1, 4, 10, 20, 40})
+    EXPECT_EXIT(renderWithRoom(room), testing::ExitedWithCode(0), "") << room;
+}
+#endif
+
+// A texture that is new in each frame takes memory until it is applied.
+TEST(Patience, CommitsThatWaitTakeABoundedMemory) {
+  inContext([](World& world) {
+    constexpr int side = 2048;                                // 16 MB in four bytes a texel
+    constexpr int most = (128 << 20) / (4 * side * side) + 2; // frames that stand in
+    const std::vector<uint8_t> texels(size_t(4) * side * side);
+    RTid texture = 0;
+    rtGenTextures(1, &texture);
+    rtBindTexture(texture);
+    int longest = 0, outdated = 0;
+    for (int frame = 0; frame < 2 * most; frame++) {
+      world.showNet(.01 * frame, 2 * manyCells); // structures are never ready for long
+      rtTexImage2D(4, side, side, RT_UNSIGNED_BYTE, texels.data());
+      rtQualityf(RT_PATIENCE, noPatience);
+      picture();
+      outdated = isOutdated() ? outdated + 1 : 0;
+      longest = std::max(longest, outdated);
+    }
+    EXPECT_GT(longest, 0);
+    EXPECT_LE(longest, most);
   });
 }
 

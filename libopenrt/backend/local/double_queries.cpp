@@ -52,10 +52,6 @@ const DoubleScene& LocalQueries::doubleScene() {
   if (!double_ || doubleIsFormer_) {
     const DoubleScene::Input input{at_->scene, at_->flat, at_->survey, at_->accel};
     double_ = std::make_unique<const DoubleScene>(*device_, input, double_.get());
-    if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
-      double_ = nullptr;
-      throw std::bad_alloc();
-    }
     doubleIsFormer_ = false;
   }
   return *double_;

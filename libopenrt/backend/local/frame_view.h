@@ -36,6 +36,7 @@ class FrameView {
   // Takes the view from a later commit.
   void note(const Commit& commit);
   uint32_t cameraShader() const { return camera_.shader; }
+  uint32_t number() const { return frame_.view; } // RT_VIEW
   // Returns a snapshot with the structures, shaders and lights of an earlier one, without the
   // tables for light. Lights that both have are where this view has them.
   std::shared_ptr<RenderScene> show(const RenderScene& earlier, const LightSlots& slots) const;

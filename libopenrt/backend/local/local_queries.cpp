@@ -128,10 +128,6 @@ const ExactScene& LocalQueries::exactScene() {
   prepare();
   if (!exact_ || exactIsFormer_) {
     exact_ = std::make_unique<const ExactScene>(*device_, at_->accel, exact_.get());
-    if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
-      exact_ = nullptr;
-      throw std::bad_alloc();
-    }
     exactIsFormer_ = false;
   }
   return *exact_;

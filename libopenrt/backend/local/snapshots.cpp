@@ -32,6 +32,17 @@ size_t countThings(const Commit& commit) {
   return things;
 }
 
+// Commits that wait for structures take no more memory than this, and one commit more.
+constexpr size_t mostWaiting = size_t(128) << 20;
+
+// Returns about how many bytes a commit takes.
+size_t bytesOf(const Commit& commit) {
+  constexpr size_t thing = 256;
+  size_t bytes = thing * (1 + countThings(commit));
+  for (const auto& [id, array] : commit.arrays) bytes += array ? array->size() : 0;
+  return bytes;
+}
+
 // So many triangles are built within about 20 ms on two processors.
 constexpr uint64_t fewTriangles = 30'000;
 
@@ -46,6 +57,7 @@ Snapshots::Snapshots(const BackendOptions& options, std::shared_ptr<EmbreeDevice
 void Snapshots::apply(std::shared_ptr<const Commit> commit) {
   if (!pending_ && waiting_.empty()) return applyNow(*commit);
   view_->note(*commit);
+  waitingBytes_ += bytesOf(*commit);
   waiting_.push_back(std::move(commit));
 }
 
@@ -63,8 +75,9 @@ void Snapshots::applyWaiting() {
   while (!waiting_.empty()) {
     if (!std::exchange(isShown_, false)) history_.skipFrame();
     applyNow(*waiting_.front());
-    waiting_.erase(waiting_.begin());
+    waiting_.pop_front();
   }
+  waitingBytes_ = 0;
   view_.reset();
 }
 
@@ -89,7 +102,7 @@ void Snapshots::prepareInTime() {
     if (!makeSnapshot(patience_)) standIn();
     return;
   }
-  if (!mayStandIn(*view_)) return prepare();
+  if (!mayStandIn(*view_) || waitingBytes_ > mostWaiting) return prepare();
   if (isBuilt(patience_)) completeBuild();
   if (pending_ || !waiting_.empty()) standIn();
 }
@@ -98,6 +111,7 @@ template <class Work> bool Snapshots::orRebuild(const Work& work) {
   try {
     return work();
   } catch (...) {
+    pending_.reset(); // no thread builds for it any more, or none could be started
     queries_.clear();
     accel_ = nullptr;
     throw;
@@ -183,21 +197,13 @@ BuildInput Snapshots::inputOf(const Preparation& made) {
 }
 
 std::shared_ptr<Accel> Snapshots::build(const Preparation& made) {
-  std::shared_ptr<Accel> accel = builder_.build(inputOf(made));
-  throwIfExhausted();
-  return accel;
+  return builder_.build(inputOf(made));
 }
 
 void Snapshots::update(Preparation made) {
   builder_.update(*accel_, inputOf(made), made.moved, changes_.redefined,
                   made.footprint != footprint_);
-  throwIfExhausted();
   complete(made, nullptr);
-}
-
-// Embree keeps an error for each thread.
-void Snapshots::throwIfExhausted() const {
-  if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
 }
 
 void Snapshots::complete(Preparation& made, std::shared_ptr<Accel> accel) {
@@ -223,8 +229,10 @@ void Snapshots::complete(Preparation& made, std::shared_ptr<Accel> accel) {
 
 // --- Building beside frames ---
 
+// The motions of a snapshot are those since the frame before in its own view.
 bool Snapshots::mayStandIn(const FrameView& view) const {
-  return isIntact_ && accel_ && view.cameraShader() == cameraShader_;
+  return isIntact_ && accel_ && view.cameraShader() == cameraShader_ &&
+         view.number() == snapshot_->frame.view;
 }
 
 // Builds the structures of a snapshot on a thread of its own. Returns false if they are not there
@@ -251,13 +259,7 @@ bool Snapshots::isBuilt(double patience) const {
 // Waits for the structures that are being built, and makes the snapshot that they are for.
 void Snapshots::completeBuild() {
   orRebuild([&] {
-    std::shared_ptr<Accel> accel;
-    try {
-      accel = built_.get();
-    } catch (...) {
-      pending_.reset();
-      throw;
-    }
+    std::shared_ptr<Accel> accel = built_.get();
     Preparation made = std::move(*pending_);
     pending_.reset();
     complete(made, std::move(accel));

@@ -7,6 +7,7 @@
 // newest commit (docs/decisions/0116-building-beside-frames.md).
 #pragma once
 
+#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -72,7 +73,6 @@ class Snapshots {
   BuildInput inputOf(const Preparation& made);
   std::shared_ptr<Accel> build(const Preparation& made);
   void update(Preparation made);
-  void throwIfExhausted() const;
   // Makes the snapshot. accel: its structures; null: those of before have been updated.
   void complete(Preparation& made, std::shared_ptr<Accel> accel);
   void updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all);
@@ -111,7 +111,8 @@ class Snapshots {
   // the scene and what is made of it; nothing changes these meanwhile.
   std::optional<Preparation> pending_;
   std::optional<FrameView> view_;
-  std::vector<std::shared_ptr<const Commit>> waiting_;
+  std::deque<std::shared_ptr<const Commit>> waiting_;
+  size_t waitingBytes_ = 0;
   RTstats describedScene_{};
   std::future<std::shared_ptr<Accel>> built_; // the last member: its destructor waits
 };

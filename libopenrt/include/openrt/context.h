@@ -87,7 +87,8 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *                          RTstats.machine.isa is the one in use.
  *   file=PATH              the recording to write (backend=record)
  *   record=PATH            a recording that is written while another backend renders. openrt-replay
- *                          makes the same bytes of it.
+ *                          makes the same bytes of it, except for frames that did not wait for
+ *                          their scene (RTstats.outdated).
  *   shaderpath=DIR[:DIR...]
  *                          folders of shader libraries, searched before $OPENRT_SHADER_PATH and the
  *                          installed folder

@@ -129,12 +129,14 @@ enum {
   RT_DEPTH_ALONG = 19,
   /* rtQualityf: seconds, 0 .. 3600, that a frame waits while acceleration structures are built; 0
    * (default): until they are. After that time building goes on beside the frame, which shows the
-   * scene of an earlier commit, with the settings, the camera and the places of lights of its own
-   * commit; RTstats.outdated says so. Once they are built, the next frame shows them; the edits of
-   * later commits follow in the frame after it. Moved instances never wait: only new geometry does,
-   * geometry that is defined again, and instances that come or go. A frame waits all the same if
-   * there is no earlier scene, if its camera has another shader, and after rtKeepSums; so do ray
-   * queries. It takes effect at once, and is no part of frames and recordings. With
+   * scene of an earlier commit, with the settings and the places of the camera and of lights of its
+   * own commit; the camera's parameters, as its angle of view, are those of before, too.
+   * RTstats.outdated says so. Once they are built, the next frame shows them; the edits of later
+   * commits follow in the frame after it. Alone, moved instances never wait: only new geometry
+   * does, geometry that is defined again, and instances that come or go. A frame waits all the same
+   * if there is no earlier scene, if its camera has another shader, if its RT_VIEW is another than
+   * that of the frame before, if the edits that wait take more than 128 MB, and after rtKeepSums;
+   * so do ray queries. It takes effect at once, and is no part of frames and recordings. With
    * backend=cluster frames wait. */
   RT_PATIENCE = 20
 };

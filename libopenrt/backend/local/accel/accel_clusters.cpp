@@ -31,6 +31,7 @@ void AccelBuilder::begin(Accel& accel, const BuildInput& input) {
   worldToRender_.translate(input.origin * -1.0);
   changed_ = false;
   buildNumber_++;
+  device_->forgetErrors();
 }
 
 bool AccelBuilder::hasFrame(const Accel& accel, const BuildInput& input) {
@@ -239,7 +240,7 @@ void AccelBuilder::finish() {
     if (slot.object && slot.enabled) enlargement = std::max(enlargement, slot.enlargement);
   a.topLevel_ = {&a.top_, masks, instances, largestCoordinate(enlargement)};
   if (changed_ && a.top_.scene) {
-    rtcCommitScene(a.top_.scene);
+    device_->commit(a.top_.scene);
     topLevelBuilds++;
   }
   a.measure();

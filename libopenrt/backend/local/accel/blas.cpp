@@ -54,7 +54,7 @@ std::shared_ptr<const Blas> UnitSpheres::get(uint32_t mask) {
   part->vertices = {0, 0, 0, 1};
   part->primitives.add(0, 0);
   attachRound(*blas, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  rtcCommitScene(blas->scene);
+  device_.commit(blas->scene);
   return known = std::move(blas);
 }
 
@@ -234,10 +234,10 @@ std::shared_ptr<Blas> BlasBuilder::finish() {
   for (auto& [mask, part] : analytic_)
     if (part) attachAnalytic(*blas_, device_, std::move(part), mask);
   if (triangles_ >= compactTriangles) setCompact(blas_->scene);
-  rtcCommitScene(blas_->scene);
+  device_.commit(blas_->scene);
   if (!deformed_.empty()) {
     setVertices(*blas_, 0, std::move(deformed_));
-    rtcCommitScene(blas_->scene);
+    device_.commit(blas_->scene);
   }
   for (const VertexOf& v : vertexOf_) blas_->vertices[v.entry] = v.part->vertices.data() + v.offset;
   return std::move(blas_);

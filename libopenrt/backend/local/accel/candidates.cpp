@@ -68,7 +68,12 @@ CandidateScene::CandidateScene(const EmbreeDevice& device, uint32_t count, const
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_);
+  try {
+    device.commit(scene_);
+  } catch (...) {
+    rtcReleaseScene(scene_);
+    throw;
+  }
 }
 
 void CandidateScene::visit(const FrameRay& ray, CandidateVisitor& visitor) const {

@@ -71,4 +71,13 @@ EmbreeDevice::EmbreeDevice(uint32_t threads, const std::string& wanted) {
   hasNativePackets16 = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
 }
 
+// Embree keeps the first error of each thread.
+void EmbreeDevice::commit(RTCScene scene) const {
+  rtcCommitScene(scene);
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error == RTC_ERROR_UNKNOWN)
+    throw std::runtime_error("the ray kernels (Embree) could not build a structure");
+}
+
 } // namespace openrt

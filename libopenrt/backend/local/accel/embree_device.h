@@ -17,6 +17,11 @@ struct EmbreeDevice {
   ~EmbreeDevice() { rtcReleaseDevice(device); }
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
+  // Commits a scene. Throws if it, or something attached to it on this thread, is not whole because
+  // memory is short. Embree itself only notes that, and rays then pass what is missing.
+  void commit(RTCScene scene) const;
+  // Forgets what has failed before on this thread.
+  void forgetErrors() const { rtcGetDeviceError(device); }
   RTCDevice device = nullptr;
   std::string isa; // the instruction set of the kernels
   // Embree traces packets of 16 rays natively with this instruction set

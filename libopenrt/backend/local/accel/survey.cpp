@@ -50,9 +50,9 @@ bool similarity(const Matrix4d& m) {
 
 void Survey::measure(const Scene& scene, uint32_t id) {
   const Object& object = scene.objects.at(id);
-  ObjectInfo& info = objects_[id];
-  if (info.version == object.version) return;
-  info = {};
+  ObjectInfo& known = objects_[id];
+  if (known.version == object.version) return;
+  ObjectInfo info;
   info.version = object.version;
   for (const Geometry& g : object.geometries) {
     const Box box = boundsOf(g);
@@ -64,6 +64,7 @@ void Survey::measure(const Scene& scene, uint32_t id) {
   }
   for (const double size : info.sizes)
     info.bakeOnly |= size > 0 && halfDiagonal(info.bounds) > largestToSmallest * size;
+  known = std::move(info);
 }
 
 bool Survey::isShared(uint32_t id) const {
