@@ -267,7 +267,7 @@ def move_pointer(browser, x, y):
 
 
 def test_a_lens_and_a_lamp_are_changed(browser, serve, vv):
-    open_editor(browser, serve(ROOM, "--edit", "--spp", 64))
+    open_editor(browser, serve(ROOM, "--edit", "--spp", 16))
     finished(browser)
     browser.drag(CANVAS, (0, 0))  # a click on the lens
     until_title(browser, "LENS  Shape")
