@@ -1,5 +1,6 @@
 // light_tracing.cpp: RT_TRANSPORT_LIGHT: light that arrives via mirrors and lenses, against closed
 // forms and path tracing.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -93,6 +94,34 @@ TEST_F(LightTracing, ACausticHasTheLightThatPathTracingFinds) {
         }
       EXPECT_NEAR(a, b, .03 * b + .002) << bx << " " << by;
     }
+}
+
+// A lamp far away without attenuation lights as one whose rays are parallel, at any distance. Both
+// light the floor through a ball of glass; the brightest pixels are the caustic.
+TEST_F(LightTracing, ALampFarAwayLightsAsParallelRays) {
+  placeAt(0, square(matt(.7), 2));
+  const RTid ball = rtBeginObject(0);
+  rtBindShader(Shader("Glass"));
+  rtSphere(.5);
+  rtEndObject();
+  rtBindShader(0);
+  placeAt(.8, ball);
+  cameraAt({0, -4, 1.5}, {0, 0, .3}, 50);
+  const auto caustic = [](const Shader& light) {
+    const RTid lamp = use(light);
+    const std::vector<float> rgba = picture(16, 512);
+    rtRemoveLight(lamp);
+    std::vector<double> red;
+    for (size_t i = 0; i < rgba.size(); i += 4) red.push_back(double(rgba[i]));
+    std::sort(red.begin(), red.end());
+    return red[red.size() - 1] + red[red.size() - 2] + red[red.size() - 3];
+  };
+  const Vec from{1 / 3., 2 / 3., 2 / 3.};
+  const double expected = caustic(directional({-from.x, -from.y, -from.z}));
+  for (const double distance : {3e2, 1e4, 1e6, 1e7, 1e8, 1e12}) {
+    Shader lamp = point({from.x * distance, from.y * distance, from.z * distance}, {1, 0, 0});
+    EXPECT_NEAR(caustic(lamp.set("radius", {1e30})), expected, .03 * expected) << distance;
+  }
 }
 
 TEST_F(LightTracing, ThePictureDoesNotDependOnThreads) {

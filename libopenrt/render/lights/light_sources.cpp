@@ -12,6 +12,9 @@
 namespace openrt {
 namespace {
 
+// A light is far outside of the scene beyond this multiple of the distance that contains it.
+constexpr double farLight = 100;
+
 // Samples a direction in a cone about an axis uniformly by solid angle.
 Vec3f sampleCone(const Vec3f& axis, double cosine, float u, float v) {
   const double z = 1 - (1 - cosine) * u, round = std::sqrt(std::max(0.0, 1 - z * z)),
@@ -170,6 +173,26 @@ double LightSources::coneToTargets(const Vec3f& from, Vec3f& axis) const {
   return sine < 1 ? std::sqrt(1 - sine * sine) : -1;
 }
 
+// Samples a direction in the cone about the targets for a light far away. Rounded to float, the aim
+// would miss them and hits would lie beside the surfaces. So the ray is traced from nearby, where
+// the whole scene lies in front of it, and distances are computed from the targets on: no sum
+// contains the distance of the light, and 1 - cosine is no difference.
+void LightSources::aimFromAfar(const float direction[2], LightRay& start) const {
+  const Vec3d way = Vec3d(center_) - Vec3d(start.origin);
+  const double distance = length(way), sine = double(radius_) / distance,
+               cap = sine * sine / (1 + std::sqrt(1 - sine * sine)), below = cap * direction[0],
+               z = 1 - below, round = std::sqrt(below * (2 - below)), phi = 2 * M_PI * direction[1];
+  const Vec3d axis = way / distance;
+  Vec3f s, t;
+  basisOf(Vec3f(axis), s, t);
+  const Vec3d across = std::cos(phi) * Vec3d(s) + std::sin(phi) * Vec3d(t);
+  start.skipped = distance * z - double(far_);
+  start.direction = Vec3f(round * across + z * axis);
+  start.from = Vec3f(Vec3d(center_) - (distance * round * round + far_ * z) * axis +
+                     start.skipped * round * across);
+  start.weight = 2 * M_PI * cap;
+}
+
 // Returns a point of the disc through which all light of one direction passes that reaches the
 // specular surfaces.
 Vec3f LightSources::startOfParallel(const Vec3f& towards, const float place[2]) const {
@@ -198,14 +221,19 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
     start.parallel = e.parallel != 0;
     start.endless = !std::isfinite(e.radius);
     if (!start.parallel) {
-      start.origin = vectorOf(e.position);
+      start.origin = start.from = vectorOf(e.position);
+      if (length(Vec3d(center_) - Vec3d(start.origin)) > farLight * far_) {
+        aimFromAfar(direction, start);
+        start.weight /= probability;
+        return start;
+      }
       const double cosine = coneToTargets(start.origin, axis);
       start.direction = sampleCone(axis, cosine, direction[0], direction[1]);
       start.weight = 2 * M_PI * (1 - cosine) / probability;
       return start;
     }
     start.direction = vectorOf(e.direction);
-    start.origin = startOfParallel(start.direction, place);
+    start.origin = start.from = startOfParallel(start.direction, place);
     start.weight = M_PI * radius_ * radius_ / probability;
     return start;
   }
@@ -214,7 +242,7 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
                  pdf = scene.emitters->sampleSun(rest, direction[0], direction[1], axis);
     start.sun = true;
     start.direction = -axis;
-    start.origin = startOfParallel(start.direction, place);
+    start.origin = start.from = startOfParallel(start.direction, place);
     start.weight = pdf > 0 ? M_PI * radius_ * radius_ / (probability * pdf) : 0;
     return start;
   }
@@ -239,7 +267,7 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
   // Offsets the origin off the surface, to the side that the direction leads to. The position is a
   // sum of about three products, each rounded.
   const float bound = dot(abs(normal), abs(position)) * 8 * 0x1p-24f;
-  start.origin = offsetPoint(position, towards > 0 ? normal : -normal, bound);
+  start.origin = start.from = offsetPoint(position, towards > 0 ? normal : -normal, bound);
   return start;
 }
 

@@ -27,6 +27,10 @@ class LightSources {
 
   struct LightRay {
     Vec3f origin, direction;
+    // Where the ray is traced from, and how far that is from the origin: not 0 only for a light
+    // that is far outside of the scene.
+    Vec3f from;
+    double skipped = 0;
     // For a shape and for the sun: flux over radiance. For a light: flux over (irradiance times the
     // squared distance to the hit); for a parallel light: flux over irradiance.
     double weight = 0; // 0: no ray was sampled
@@ -55,6 +59,7 @@ class LightSources {
   void measureSceneExtent(const RenderScene& scene);
   double placePdf(const RenderScene& scene, uint32_t shape) const;
   double coneToTargets(const Vec3f& from, Vec3f& axis) const;
+  void aimFromAfar(const float direction[2], LightRay& start) const;
   Vec3f startOfParallel(const Vec3f& towards, const float place[2]) const;
   Kind kind_;
   std::vector<Source> sources_;

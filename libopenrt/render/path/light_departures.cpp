@@ -33,8 +33,9 @@ void LightDepartures::start(const LightSources& sources, const PathSamples& samp
     rays_.push_back(
         sources.sampleRay(context_.scene, source[0][i] + source[1][i] * 0x1p-24, at, aim));
     const LightSources::LightRay& ray = rays_.back();
+    departures_[i].pathLength = ray.skipped;
     if (ray.weight > 0 && std::isfinite(ray.weight))
-      queue.push(ray.origin, ray.direction, RayState{.path = i, .lightPathRatio = 1});
+      queue.push(ray.from, ray.direction, RayState{.path = i, .lightPathRatio = 1});
   }
   evaluateSun();
 }
