@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "nearest.h"
+#include "parse_number.h"
 #include "xvrml/appearance.h"
 #include "xvrml/mapper.h"
 
@@ -76,12 +77,11 @@ std::vector<float> numbers(const std::string& text) {
   for (std::string_view word : split(std::string_view(text), ',')) {
     while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
     if (word.starts_with('+')) word.remove_prefix(1);
-    float value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+    const std::optional<float> value = parseNumber<float>(word);
+    if (!value)
       throw ShaderError(
           fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
-    list.push_back(value);
+    list.push_back(*value);
   }
   return list;
 }
@@ -117,11 +117,9 @@ std::string fileUrl(const std::string& path, const std::string& folder) {
 }
 
 int wholeNumber(const std::string& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw ShaderError(fmt::format("a whole number was expected, not \"{}\"", text));
-  return value;
+  const std::optional<int> value = parseNumber<int>(text);
+  if (!value) throw ShaderError(fmt::format("a whole number was expected, not \"{}\"", text));
+  return *value;
 }
 
 std::string quoted(const std::string& text) {

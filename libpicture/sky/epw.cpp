@@ -1,7 +1,6 @@
 #include "libpicture/sky/epw.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/picture.h"
+#include "parse_number.h"
 
 namespace picture {
 
@@ -37,11 +37,12 @@ std::optional<double> numberAt(std::string_view line, int field) {
     if (comma == line.npos) return {};
     line.remove_prefix(comma + 1);
   }
-  while (!line.empty() && (line[0] == ' ' || line[0] == '+')) line.remove_prefix(1);
-  double value = 0;
-  const auto read = std::from_chars(line.data(), line.data() + line.size(), value);
-  if (read.ec != std::errc() || !std::isfinite(value)) return {};
-  return value;
+  line = line.substr(0, line.find(','));
+  constexpr std::string_view blanks = " \t\r";
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  line = line.substr(0, line.find_last_not_of(blanks) + 1);
+  if (line.starts_with('+')) line.remove_prefix(1);
+  return parseNumber<double>(line);
 }
 
 // Returns a field of a line that is within a range. what: for the message.
@@ -59,12 +60,7 @@ struct Wanted {
 
 Wanted wantedOf(std::string_view time) {
   const auto two = [&](size_t at) {
-    int value = -1;
-    if (at + 2 <= time.size() && time[at] != '-')
-      if (std::from_chars(time.data() + at, time.data() + at + 2, value).ptr !=
-          time.data() + at + 2)
-        value = -1;
-    return value;
+    return at + 2 <= time.size() ? parseNumber<int>(time.substr(at, 2)).value_or(-1) : -1;
   };
   const int month = two(0), day = two(3), hours = two(6), minutes = two(9);
   if (time.size() != 11 || time[2] != '-' || time[5] != 'T' || time[8] != ':' || month < 1 ||

@@ -194,6 +194,14 @@ TEST(Weather, wrongFilesAndTimesAreRefused) {
   std::string missing = noon;
   missing.replace(missing.find(",600,"), 5, ",9999,");
   EXPECT_NE(why(epwOf(missing), "06-21T12:30").find("direct normal"), std::string::npos);
+  for (const char* wrong : {",6x00,", ",600 W,", ",,", ",600;,", ",6e2e1,", ",nan,"}) {
+    std::string damaged = noon;
+    damaged.replace(damaged.find(",600,"), 5, wrong);
+    EXPECT_NE(why(epwOf(damaged), "06-21T12:30").find("direct normal"), std::string::npos) << wrong;
+  }
+  std::string spaced = noon;
+  spaced.replace(spaced.find(",600,"), 5, ", +600 ,");
+  EXPECT_EQ(why(epwOf(spaced), "06-21T12:30"), "");
   for (size_t end = 0; end < noon.size(); end += 3) // a file that was cut off
     why(epwOf(noon.substr(0, end)), "06-21T12:30");
 }
@@ -211,6 +219,18 @@ TEST(SkyWords, saySkiesAndSuns) {
   EXPECT_GT(readSky("perez:600/200,sun=60/180").direct, 50000);
 }
 
+TEST(SkyWords, sayThatTheSunHasSet) {
+  for (const char* words : {"cie:12,sun=0/90,direct=80000", "cie:12,sun=-4/90,direct=80000",
+                            "perez:60/20,sun=-.1/60", "perez:60/20,sun=0/60"}) {
+    const Sky sky = readSky(words);
+    EXPECT_EQ(sky.direct, 0) << words;
+    EXPECT_NE(warningOf(sky).find("not above the horizon"), std::string::npos) << words;
+  }
+  for (const char* words :
+       {"cie:12,sun=0/90", "cie:12,sun=.1/90,direct=80000", "cie:1", "perez:0/20,sun=-1/60"})
+    EXPECT_EQ(warningOf(readSky(words)), "") << words;
+}
+
 TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "was expected"},
@@ -223,6 +243,8 @@ TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
       {"cie:1,sun=9", "slash"},
       {"cie:1,lux=-1", "lux: a number"},
       {"cie:1,lux=nan", "lux: a number"},
+      {"cie:1,lux=1e-40", "lux: 0, or a number from 1e-06"},
+      {"cie:1,sun=9/0,direct=1e-9", "direct: 0, or a number from 1e-06"},
       {"cie:1,luxx=1", "was expected, not \"luxx\""},
       {"cie:1,", "was expected, not \"\""},
       {"cie:1,place=50/8", "together"},

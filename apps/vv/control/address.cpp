@@ -1,10 +1,11 @@
 #include "control/address.h"
 
-#include <charconv>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "options/values.h"
+#include "parse_number.h"
 
 namespace vv::control {
 
@@ -39,10 +40,9 @@ Address Address::parse(std::string_view text) {
   for (const char c : host)
     if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
       refuse(text, "it contains blanks or invisible characters");
-  const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), address.port);
-  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-    refuse(text, "a port is a number from 0 to 65535");
+  const std::optional<uint16_t> port = parseNumber<uint16_t>(digits);
+  if (!port) refuse(text, "a port is a number from 0 to 65535");
+  address.port = *port;
   address.host = host.empty() ? "127.0.0.1" : host;
   return address;
 }

@@ -1,12 +1,12 @@
 #include "habits.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
 #include "libpicture/files/film.h"
 #include "libpicture/files/formats.h"
+#include "parse_number.h"
 
 namespace vv {
 
@@ -51,8 +51,8 @@ constexpr ForeignOption habits[] = {
 };
 
 bool isNumber(std::string_view text, int& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value > 0;
+  value = parseNumber<int>(text).value_or(0);
+  return value > 0;
 }
 
 } // namespace

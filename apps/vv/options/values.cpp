@@ -2,26 +2,28 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "habits.h"
 #include "lower_case.h"
+#include "parse_number.h"
 #include "picture_size.h"
 
 namespace vv {
 
 namespace {
 
-// Parses the whole text as a number; blanks, a `+` sign and the locale's format are not accepted.
+// Sets the value if the whole text is a number.
 template <class T> bool whole(std::string_view text, T& value) {
-  auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty();
+  const std::optional<T> number = parseNumber<T>(text);
+  if (number) value = *number;
+  return number.has_value();
 }
 
 void readTriple(std::string_view text, double out[3]) {
