@@ -52,6 +52,14 @@ def test_hints_for_pictures_that_show_nothing(vv):
     talk = vv("dark.wrl", "-o", "x.png", *SMALL).talk
     assert talk == "vv: the picture is black: the world has no light and its headlight is off; --headlight on\n"
     assert vv("dark.wrl", "-o", "x.png", "--headlight", "on", *SMALL).talk == ""
+    vv.write(
+        "lamp.wrl", HEADER +
+        "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
+        "geometry Box { size 20 20 2 } }\nTransform { translation 0 0 40 children Shape { appearance Appearance { "
+        "material Material { emissiveColor 1 1 1 } } geometry Sphere { radius 5 } } }")
+    talk = vv("lamp.wrl", "-o", "x.png", "--transport", "direct", *SMALL).talk
+    assert talk == ("vv: the picture is black: the world has no lamp, and --transport direct leaves out light of "
+                    "emitters on other surfaces; --transport path\n")
     # a silhouette before a background that an option gives
     silhouette = "vv: all shapes in view are black: the world has no light and its headlight is off; --headlight on\n"
     vv.write("small.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } geometry Box { } }")
