@@ -103,7 +103,8 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     Lanes alpha;
     const LaneVec radiance = amounts(loadQuadruples(frame.rgba + 4 * first, x, w, alpha));
     const LaneVec point = loadTriples(frame.position + 3 * first, x, w),
-                  motion = loadTriples(frame.motion + 3 * first, x, w),
+                  motion = pass.isFirst ? LaneVec{nan, nan, nan}
+                                        : loadTriples(frame.motion + 3 * first, x, w),
                   colour = loadTriples(frame.albedo + 3 * first, x, w);
     const Lanes depth = loadSome(frame.depth + first, x, w),
                 given = loadSome(frame.name + first, x, w),

@@ -110,8 +110,9 @@ struct Reconstruction::Impl {
 
   void read(const FramePlanes& planes) {
     const Moment& old = pixelsOfBefore();
-    const ReadPass pass{planes, old, areEqual(now.projection.camera, before.projection.camera),
-                        now.block > 1, shown.layout};
+    const ReadPass pass{
+        planes,        old,          areEqual(now.projection.camera, before.projection.camera),
+        now.block > 1, shown.layout, isFirst};
     if (!sparse) {
       rows(now, [&](int y) { readRow(pass, y, now, reading); });
       return;
@@ -273,11 +274,13 @@ struct Reconstruction::Impl {
     const double cells = double(now.layout.width) * now.layout.height;
     facts.reprojected = std::accumulate(work.found.begin(), work.found.end(), 0.0) / cells;
     facts.history = meanHistory();
+    isFirst = false;
     return picture;
   }
 
   tbb::task_arena arena;
-  Moment now, before; // by cell
+  bool isFirst = true; // no frame has been added since reset()
+  Moment now, before;  // by cell
   Reading reading;
   Work work;
   Layout workLayout;
@@ -313,6 +316,7 @@ void Reconstruction::reset() {
   impl_->shownLight = ShownLight();
   impl_->shown = Shown();
   impl_->coats.some = false;
+  impl_->isFirst = true;
 }
 
 Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride,

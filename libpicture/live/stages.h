@@ -130,12 +130,14 @@ struct Bounds {
 
 // Reads a row of pixels: guides, illumination, and where the surfaces were in the frame before.
 // rests: no number of the camera has changed since then. sparse: pixels without a sample of light
-// have guides. shown: the size of the picture that is shown.
+// have guides. shown: the size of the picture that is shown. isFirst: everything in the frame is
+// new, whatever it has moved since a frame that was not added.
 struct ReadPass {
   const FramePlanes& frame;
   const Moment& before;
   bool rests, sparse;
   const Layout& shown;
+  bool isFirst;
 };
 void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading);
 // Finds shapes that the frame before showed and this one shows nowhere, and marks their pixels in
