@@ -146,12 +146,10 @@ def test_a_still_world_is_rebuilt_from_all_its_pictures(rolling):
 
 
 @pytest.mark.parametrize("options, why", [
-    (("-o", "a.png"), "needs -o with several pictures"),
-    (("--frames", "3", "-o", "a.png"), "needs -o with several pictures"),
-    (("--frames", "3-4/2", "-o", "a.png"), "needs -o with several pictures"),
-    (("--turntable", "1", "-o", "a.png"), "needs -o with several pictures"),
-    ((), "needs -o with several pictures"),
-    (("--check", "--frames", "0-3"), "needs -o with several pictures"),
+    (("-o", "a.png"), "needs -o with the frames of a film"),
+    (("--time", "3", "-o", "a.png"), "needs -o with the frames of a film"),
+    ((), "needs -o with the frames of a film"),
+    (("--check", "--frames", "0-3"), "needs -o with the frames of a film"),
     (("--frames", "0-3", "-o", "a.exr", "--channels", "rgba,z"), "--channels"),
     (("--frames", "0-3", "-o", "a.exr", "--channels", "error"), "--channels"),
     (("--frames", "0-3", "-o", "a.png", "--error", "2%"), "--error"),
