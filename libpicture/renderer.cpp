@@ -180,6 +180,7 @@ struct Renderer::Impl {
     if (frame.settings.preview) {
       live::drawFreshSamples(frame.settings, uint64_t(frame.number));
       live::askForGuides(frame.settings);
+      if (frame.settings.samples > 1) frame.settings.channels |= RT_VARIANCE; // tells the noise
     }
     // The guides of a preview have names, too, but nobody asks for their nodes.
     if (hasNames(frame.settings.channels)) result.picture.names = stage.mapper()->names();
@@ -204,6 +205,7 @@ struct Renderer::Impl {
     rebuild(frame, result);
     result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
     stage.describe(frame.settings, result);
+    if (frame.settings.preview) result.stats.error = {}; // that of the samples
     if (frame.settings.raster) result.stats.scene.triangles = result.map.triangles;
     return result;
   }

@@ -39,11 +39,17 @@ FramePlanes planesOf(const Picture& frame) {
   if (frame.width < 1 || frame.height < 1 || frame.width > 65536 || frame.height > 65536)
     throw std::invalid_argument("a preview needs a frame of 1 to 65536 pixels each way, not " +
                                 std::to_string(frame.width) + " x " + std::to_string(frame.height));
-  return {planeOf(frame, RT_RGBA, 4),       planeOf(frame, RT_DEPTH, 1),
-          planeOf(frame, RT_NORMAL, 3),     planeOf(frame, RT_ALBEDO, 3),
-          planeOf(frame, RT_POSITION, 3),   planeOf(frame, RT_NAME, 1),
-          planeOf(frame, RT_MOTION, 3),     planeOf(frame, RT_SAMPLES, 1),
-          planeOf(frame, RT_REFLECTION, 3), planeOf(frame, RT_PLACE, 2)};
+  return {planeOf(frame, RT_RGBA, 4),
+          planeOf(frame, RT_DEPTH, 1),
+          planeOf(frame, RT_NORMAL, 3),
+          planeOf(frame, RT_ALBEDO, 3),
+          planeOf(frame, RT_POSITION, 3),
+          planeOf(frame, RT_NAME, 1),
+          planeOf(frame, RT_MOTION, 3),
+          planeOf(frame, RT_SAMPLES, 1),
+          planeOf(frame, RT_REFLECTION, 3),
+          planeOf(frame, RT_PLACE, 2),
+          frame.planes.count(RT_VARIANCE) ? planeOf(frame, RT_VARIANCE, 3) : nullptr};
 }
 
 } // namespace
@@ -105,6 +111,15 @@ struct Reconstruction::Impl {
       rowsOfFrame = Overlaps(picture.height, height);
   }
 
+  // Notes whether the samples in the pixels tell their noise. Those of cells do not.
+  void findVariance(FramePlanes& planes) {
+    if (sparse) planes.variance = nullptr;
+    if (!planes.variance && hasVariance)
+      for (Plane* plane : {&reading.variance, &reading.reflectionVariance})
+        std::fill(plane->begin(), plane->end(), Reading::unknown);
+    hasVariance = planes.variance != nullptr;
+  }
+
   // The surfaces of the frame before, by pixel.
   Moment& pixelsOfBefore() { return before.block > 1 ? pixelsBefore : before; }
 
@@ -138,6 +153,7 @@ struct Reconstruction::Impl {
     std::swap(now.accumulated, coats.now);
     std::swap(before.accumulated, coats.before);
     std::swap(reading.light, reading.reflection);
+    std::swap(reading.variance, reading.reflectionVariance);
     std::swap(work, coats.work);
   }
 
@@ -236,6 +252,14 @@ struct Reconstruction::Impl {
          [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
   }
 
+  // Returns the samples in a pixel of the frame, 1 or more.
+  float samplesOfPixel(const FramePlanes& planes) const {
+    const Layout& frame = (sparse ? pixels : now).layout;
+    return std::max(1.0f,
+                    *std::max_element(planes.samples,
+                                      planes.samples + size_t(frame.width) * size_t(frame.height)));
+  }
+
   // Returns the picture after this frame, in its own size.
   Picture show(const Picture& frame, const FramePlanes& planes) {
     const auto begin = Clock::now();
@@ -247,9 +271,9 @@ struct Reconstruction::Impl {
     const size_t numbers = 4 * size_t(picture.width);
     std::vector<float>& rgba = picture.planes[RT_RGBA];
     rgba.resize(numbers * size_t(picture.height));
-    const ShowPass pass{planes,      grid,       sparse ? pixelReading : reading,
-                        fresh,       bounds,     columns,
-                        rowsOfFrame, shownBefore};
+    const ShowPass pass{planes,      grid,        sparse ? pixelReading : reading,
+                        fresh,       bounds,      columns,
+                        rowsOfFrame, shownBefore, samplesOfPixel(planes)};
     rows(shown.layout, [&](int y) { showRow(pass, y, shown, rgba.data() + size_t(y) * numbers); });
     facts.showing = secondsSince(begin);
     return picture;
@@ -258,9 +282,10 @@ struct Reconstruction::Impl {
   Picture add(const Picture& frame, const FrameCamera& camera, int lightStride,
               OidnFilter* denoiser, ShownSize size) {
     facts = {};
-    const FramePlanes planes = planesOf(frame);
+    FramePlanes planes = planesOf(frame);
     const Layout layout(frame.width, frame.height);
     start(camera, layout, lightStride);
+    findVariance(planes);
     startShowing(layout, size);
     read(planes);
     names.markGone(pixelsOfBefore(), sparse ? pixels : now, shownBefore);
@@ -282,6 +307,7 @@ struct Reconstruction::Impl {
   bool isFirst = true; // no frame has been added since reset()
   Moment now, before;  // by cell
   Reading reading;
+  bool hasVariance = false; // `reading` has variances
   Work work;
   Layout workLayout;
   // These are for what coats reflect: `accumulated` of `now` and `before`, and the working storage.

@@ -291,12 +291,19 @@ inline float shareOf(const ShowPass& pass, const Layout& layout) {
 
 inline Weights weightsOf(float share, const Target& target, Lanes old, Lanes mostFrames) {
   const Lanes one = lanesOf(1);
-  const Lanes most = max(mostFrames * lanesOf(share), lanesOf(fewestSamples));
+  const Lanes most = max(mostFrames * lanesOf(share), lanesOf(share < 1 ? fewestSamples : 1));
   const Mask lends = hn::AndNot(target.hit, old < one);
   const Lanes added = hn::IfThenElseZero(
       target.some, select(target.hit, one, hn::IfThenElseZero(lends, lanesOf(share))));
   const Lanes samples = min(old + added, most);
   return {samples, hn::IfThenElseZero(added > lanesOf(0), min(added / samples, one))};
+}
+
+// Returns how many frames are accumulated in motion. Several samples smooth the edges and textures
+// of a pixel already in one frame, but not the light.
+inline Lanes framesInMotion(const ShowPass& pass, Lanes noise) {
+  const Lanes least = lanesOf(std::max(1.0f, framesMoving / pass.perPixel));
+  return least + (lanesOf(framesMoving) - least) * min(noise + noise, lanesOf(1));
 }
 
 // Returns by how much light has to change to have another level, as far as it is noisy: shadows
@@ -349,7 +356,7 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
     const Lanes noise = gather(pass.fresh.noise.data(), target.source);
     const Mask quiet = hn::And(rests, noise <= zero);
     const Lanes most = select(quiet, lanesOf(framesAtRest),
-                              select(rests, lanesOf(framesSampled), lanesOf(framesMoving)));
+                              select(rests, lanesOf(framesSampled), framesInMotion(pass, noise)));
     const Weights weights = weightsOf(share, target, samples, most);
     const Between between = betweenAt(pass, layout, target);
     LaneVec fresh = gather(pass.fresh.colour, target.source);

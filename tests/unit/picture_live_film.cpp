@@ -39,6 +39,59 @@ double difference(const Picture& a, const Picture& b) {
   return sum / double(valuesOf(a).size());
 }
 
+// A frame of eight samples per pixel. Their variance tells noise from detail.
+Picture frameOfEight(const World& world, Shot shot, bool hasVariance) {
+  constexpr uint32_t samples = 8;
+  const uint32_t number = shot.number;
+  shot.number = number * samples;
+  Picture frame = render(world, shot);
+  std::vector<float>&rgba = frame.planes[RT_RGBA], &albedo = frame.planes[RT_ALBEDO];
+  std::vector<double> sums(rgba.size()), squares(rgba.size()), albedos(albedo.size());
+  for (uint32_t k = 0; k < samples; ++k) {
+    shot.number = number * samples + k;
+    const Picture one = render(world, shot);
+    for (size_t i = 0; i < sums.size(); ++i) {
+      sums[i] += double(valuesOf(one)[i]);
+      squares[i] += double(valuesOf(one)[i]) * double(valuesOf(one)[i]);
+    }
+    for (size_t i = 0; i < albedos.size(); ++i) albedos[i] += double(one.planes.at(RT_ALBEDO)[i]);
+  }
+  std::vector<float> variance;
+  for (size_t i = 0; i < sums.size(); ++i) {
+    rgba[i] = float(sums[i] / samples);
+    const double rest = squares[i] - sums[i] * sums[i] / samples;
+    if (i % 4 != 3) variance.push_back(float(std::max(rest, 0.0) / (samples - 1)));
+  }
+  for (size_t i = 0; i < albedo.size(); ++i) albedo[i] = float(albedos[i] / samples);
+  frame.planes[RT_SAMPLES].assign(frame.planes[RT_SAMPLES].size(), float(samples));
+  if (hasVariance) frame.planes[RT_VARIANCE] = variance;
+  return frame;
+}
+
+// Light that changes every few pixels: without noise, but as rough as noise.
+World roughLight() {
+  return [](Vec origin, Vec direction) {
+    Hit hit = plane(origin, direction, 0, -infinite, infinite);
+    const Vec p = origin + direction * hit.distance;
+    hit.light =
+        random(uint32_t(int(std::floor(p.x * 10)) * 4099 + int(std::floor(p.y * 10))), 1, 2);
+    hit.name = 1;
+    return hit;
+  };
+}
+
+// Returns how far the last of some frames is from the truth.
+double errorOf(const World& world, bool noisy, bool hasVariance) {
+  picture::live::Reconstruction reconstruction;
+  Picture shown;
+  Shot shot;
+  for (uint32_t n = 0; n < 5; ++n) {
+    shot = shotAt({0.03 * n, 0, 3}, n, noisy);
+    shown = reconstruction.add(frameOfEight(world, shot, hasVariance), shot.camera);
+  }
+  return rms(shown, converged(world, shot), inner(shot));
+}
+
 } // namespace
 
 TEST(LiveFilm, AFrameIsMadeOfTheFramesOfTwoHistories) {
@@ -109,4 +162,18 @@ TEST(LiveFilm, NoFrameShowsThatAHistoryEnds) {
   others /= double(last - 2 * period - 4);
   EXPECT_GT(others, 0);
   EXPECT_LT(seams, 1.1 * others);
+}
+
+TEST(LiveFilm, DetailThatSamplesTellFromNoiseStays) {
+  const double with = errorOf(roughLight(), false, true),
+               without = errorOf(roughLight(), false, false);
+  EXPECT_LT(with, 0.5 * without);
+}
+
+TEST(LiveFilm, NoiseThatSamplesTellIsFilteredAsBefore) {
+  const World world = [](Vec origin, Vec direction) {
+    return movingPlane(0, 0, false)(origin, direction);
+  };
+  const double with = errorOf(world, true, true), without = errorOf(world, true, false);
+  EXPECT_LT(with, 1.1 * without);
 }
