@@ -104,7 +104,7 @@ struct Renderer::Impl {
   std::optional<live::FilmHistory> history;   // none before the first preview
   std::unique_ptr<live::OidnFilter> denoiser; // none before the first preview with it
   Sums continueFrom;                          // begins the next frame; may be none
-  int64_t nextNumber = 0;                     // of the next frame, if nobody says another one
+  int64_t nextNumber = 0;  // the number that the next frame has if nobody says one
   bool otherWorld = false; // the browser shows another world than in the last frame
 
   Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings,

@@ -147,7 +147,7 @@ void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
         odd = odd + hn::IfThenElseZero(hn::Or(same, anyShape), load(unlike + j));
         calm = calm + count(hn::And(same, load(work.verdict.data() + j) == lanesOf(0)));
       }
-    // What the samples in the pixels do not explain is detail.
+    // It is detail, and no noise, as far as the samples in the pixels do not explain it.
     const Mask known = load(expected + i) >= lanesOf(0);
     store(select(known, min(deviations, noises), deviations) / max(pixels, lanesOf(1)),
           work.variance.data() + i);

@@ -15,7 +15,7 @@ namespace picture::live {
 struct FramePlanes {
   const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples, *reflection,
       *place;
-  const float* variance; // of samples, not of their mean; null: unknown
+  const float* variance; // that of the samples in a pixel, not that of their mean; null: unknown
 };
 
 // The surfaces of a frame, by pixel or by cell, and what is kept of them for the next frame.
