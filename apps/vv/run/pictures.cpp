@@ -200,7 +200,8 @@ int Pictures::makeMoment(const Moment& moment, bool first) {
   for (PictureRequest& request : requests) {
     request.turns = !options_.turnsFirstSide() || &request == &requests.front();
     request.isStill = first || !options_.turnsIntoFilm();
-    if (request.turns && !options_.turnsIntoFilm()) request.name.frame = moment.frame;
+    if (request.turns && !options_.turnsIntoFilm() && moment.isShown)
+      request.name.frame = moment.frame;
     request.view.turn = moment.turn;
     if (const int code = makeOne(request, moment); code != exitDone) return code;
   }
