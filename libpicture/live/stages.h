@@ -186,12 +186,14 @@ void accumulateRow(const Reading& reading, int y, Moment& now, Work& work);
 void boundRow(int y, Moment& now);
 
 // One pass of the à-trous filter over illumination and variance. Neighbours are `step` cells apart.
+// perPixel: samples in a pixel of the frame, 1 or more.
 struct FilterPass {
   const Plane3* from;
   const Plane* variance;
   Plane3* to;
   Plane* toVariance;
   int step;
+  float perPixel;
 };
 void filterRow(const FilterPass& pass, int y, const Moment& now);
 
@@ -229,7 +231,7 @@ struct ShowPass {
   const Bounds& bounds;
   const Overlaps &columns, &rows;
   const Shown& before; // what the frame before has shown
-  float perPixel;      // samples in a pixel of the frame, 1 or more
+  float perPixel;      // as in FilterPass
 };
 // Accumulates the colours over time, which smooths edges and textures, in a row of the shown
 // picture: each sample counts for the pixel that it lies in. Writes width * 4 floats with the alpha
