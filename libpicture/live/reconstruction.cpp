@@ -197,8 +197,12 @@ struct Reconstruction::Impl {
     constexpr int reach = 16;
     constexpr double fewFrames = 4;
     const int farthest = meanHistory() < fewFrames ? reach : reach / now.block;
-    FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
-                    1};
+    FilterPass pass{&now.accumulated.light,
+                    &work.variance,
+                    &work.filtered,
+                    &work.filteredVariance,
+                    1,
+                    perPixel};
     for (; pass.step <= farthest; pass.step *= 2) {
       rows(now, [&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
@@ -252,14 +256,6 @@ struct Reconstruction::Impl {
          [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
   }
 
-  // Returns the samples in a pixel of the frame, 1 or more.
-  float samplesOfPixel(const FramePlanes& planes) const {
-    const Layout& frame = (sparse ? pixels : now).layout;
-    return std::max(1.0f,
-                    *std::max_element(planes.samples,
-                                      planes.samples + size_t(frame.width) * size_t(frame.height)));
-  }
-
   // Returns the picture after this frame, in its own size.
   Picture show(const Picture& frame, const FramePlanes& planes) {
     const auto begin = Clock::now();
@@ -273,7 +269,7 @@ struct Reconstruction::Impl {
     rgba.resize(numbers * size_t(picture.height));
     const ShowPass pass{planes,      grid,        sparse ? pixelReading : reading,
                         fresh,       bounds,      columns,
-                        rowsOfFrame, shownBefore, samplesOfPixel(planes)};
+                        rowsOfFrame, shownBefore, perPixel};
     rows(shown.layout, [&](int y) { showRow(pass, y, shown, rgba.data() + size_t(y) * numbers); });
     facts.showing = secondsSince(begin);
     return picture;
@@ -286,6 +282,8 @@ struct Reconstruction::Impl {
     const Layout layout(frame.width, frame.height);
     start(camera, layout, lightStride);
     findVariance(planes);
+    const size_t count = size_t(frame.width) * size_t(frame.height);
+    perPixel = std::max(1.0f, *std::max_element(planes.samples, planes.samples + count));
     startShowing(layout, size);
     read(planes);
     names.markGone(pixelsOfBefore(), sparse ? pixels : now, shownBefore);
@@ -308,6 +306,7 @@ struct Reconstruction::Impl {
   Moment now, before;  // by cell
   Reading reading;
   bool hasVariance = false; // `reading` has variances
+  float perPixel = 1;       // samples in a pixel of the frame, 1 or more
   Work work;
   Layout workLayout;
   // These are for what coats reflect: `accumulated` of `now` and `before`, and the working storage.
