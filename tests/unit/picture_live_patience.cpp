@@ -108,9 +108,9 @@ TEST_F(LivePatience, RootsComeLaterToo) {
   LiveRenderer live(browser_, settings_);
   finish(live, frame(LiveFrame::Purpose::still, 0));
   const uint64_t before = finish(live, frame(LiveFrame::Purpose::preview, 0)).stats.scene.triangles;
-  browser_.addRoot(xvrml::loadWorldFromMemory(worldText(), "root.wrl")->scope.roots.at(1));
   const auto other = xvrml::loadWorldFromMemory(worldText(), "other.wrl");
-  xvrml::NodeRef big = other->scope.roots.at(2);
+  browser_.addRoot(other->scope.roots.at(1));
+  const xvrml::NodeRef big = other->scope.roots.at(2);
   browser_.addRoot(big);
   browser_.set(*big, "whichChoice", xvrml::Value(int32_t(0)));
   LivePicture shown = finish(live, frame(LiveFrame::Purpose::preview, .1));

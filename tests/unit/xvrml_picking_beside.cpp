@@ -81,8 +81,8 @@ TEST_F(PickBeside, NobodyPassesWhereTheSameInputGivesTheSameWorld) {
   load(grid("A", 0, 1), 0);
   EXPECT_TRUE(pick(10.2, true));
   browser_->setScriptPatience(.05);
-  browser_->addRoot(
-      loadWorldFromMemory("#VRML V2.0 utf8\n" + grid("B", 0, 3), "b.wrl")->scope.roots.at(0));
+  const auto other = loadWorldFromMemory("#VRML V2.0 utf8\n" + grid("B", 0, 3), "b.wrl");
+  browser_->addRoot(other->scope.roots.at(0));
   EXPECT_TRUE(pick(10.2, true));
   EXPECT_NEAR(hit_.point.y, 1, .26) << "the one before is still met";
   browser_->setScriptPatience(0);
