@@ -10,7 +10,6 @@
 #include <optional>
 #include <system_error>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -27,12 +26,16 @@ template <class Result> class GeometryJobs {
     ended    // take() does not wait
   };
 
-  // Returns the state of a node's job, after it has begun one if the node is slow to build. A node
-  // that has changed during its job gets no other one until take() or forget(), so that what
-  // changes all the time is shown, too.
+  // Returns the state of a node's job, after it has begun one if the node is slow to build. After a
+  // job that was in vain the next results are made at once, so that what changes all the time is
+  // shown, too.
   State ask(Node& geometry, const Make& make) {
     if (!jobs_.contains(&geometry)) {
-      if (changed_.contains(&geometry) || !isSlowToBuild(geometry)) return State::none;
+      if (!isSlowToBuild(geometry)) return State::none;
+      if (atOnce_ > 0) {
+        --atOnce_;
+        return State::none;
+      }
       jobs_.emplace(&geometry, Job{NodeRef(&geometry), make, {}});
       advance();
       return State::pending; // however fast the thread is
@@ -46,7 +49,6 @@ template <class Result> class GeometryJobs {
   // Ends a node's job and returns its result; waits for it. Nothing: there is none, and it is to be
   // made at once.
   std::optional<Result> take(const Node& geometry) {
-    changed_.erase(&geometry);
     const auto known = jobs_.find(&geometry);
     if (known == jobs_.end()) return {};
     Job job = std::move(known->second);
@@ -55,22 +57,22 @@ template <class Result> class GeometryJobs {
     return job.result.get();
   }
 
-  // Gives up the job of a node that has changed.
-  void changed(const Node& geometry) {
-    if (abandon(geometry)) changed_.insert(&geometry);
-  }
-  // Gives up the job of a node, and all that is known of it.
-  void forget(const Node& geometry) {
-    abandon(geometry);
-    changed_.erase(&geometry);
+  // Gives up the job of a node, if it has one: it has changed, or nobody needs it. The destructor
+  // of a future waits, so those of jobs that run are kept until they have ended.
+  void giveUp(const Node& geometry) {
+    const auto known = jobs_.find(&geometry);
+    if (known == jobs_.end()) return;
+    Job job = std::move(known->second);
+    jobs_.erase(known);
+    if (job.isRunning()) abandoned_.push_back(std::move(job.result));
+    atOnce_ = afterVainJob;
   }
   // Gives up the jobs that nobody has asked for since the last call.
   void sweep() {
-    changed_.clear();
     std::vector<NodeRef> unasked;
     for (auto& [node, job] : jobs_)
       if (!std::exchange(job.asked, false)) unasked.push_back(job.geometry);
-    for (const NodeRef& node : unasked) abandon(*node);
+    for (const NodeRef& node : unasked) giveUp(*node);
   }
 
   bool empty() const { return jobs_.empty(); }
@@ -85,6 +87,7 @@ template <class Result> class GeometryJobs {
 
  private:
   static constexpr size_t most = 2; // jobs that run at a time, so that memory is bounded
+  static constexpr int afterVainJob = 8;
   static bool isReady(const std::future<Result>& result) {
     return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
@@ -119,20 +122,9 @@ template <class Result> class GeometryJobs {
       job.result = std::async(std::launch::async, job.make, copy);
     } catch (const std::system_error&) { job.failed = true; }
   }
-  // The destructor of a future waits, so those of jobs that run are kept until they have ended.
-  // Returns whether there was a job.
-  bool abandon(const Node& geometry) {
-    const auto known = jobs_.find(&geometry);
-    if (known == jobs_.end()) return false;
-    Job job = std::move(known->second);
-    jobs_.erase(known);
-    if (job.isRunning()) abandoned_.push_back(std::move(job.result));
-    return true;
-  }
-
   std::unordered_map<const Node*, Job> jobs_;
-  std::unordered_set<const Node*> changed_; // compared only; see forget()
   std::vector<std::future<Result>> abandoned_;
+  int atOnce_ = 0; // slow results that are still to be made at once
 };
 
 } // namespace xvrml

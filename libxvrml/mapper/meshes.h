@@ -38,7 +38,7 @@ class Meshes {
   // begins the job if it takes long.
   bool awaits(Node& geometry, TextureNeed need);
   // Gives up the job of a geometry that has changed.
-  void spoil(const Node& geometry) { jobs_.changed(geometry); }
+  void spoil(const Node& geometry) { jobs_.giveUp(geometry); }
   size_t size() const { return entries_.size(); }
   // Requires texture coordinates for these textures from now on. Returns true if an already built
   // mesh has to be rebuilt.

@@ -147,6 +147,19 @@ TEST_F(MapPatient, AMeshThatChangesMeanwhileIsReadAtOnce) {
   expectSameAsAnew();
 }
 
+TEST_F(MapPatient, AMeshThatIsNewInEachFrameIsShown) {
+  load("DEF A Shape { geometry Box { } }\nViewpoint { position 4 4 30 }\n");
+  mapper_->setPatient(true);
+  int shown = 0;
+  for (int i = 0; i < 12; ++i) {
+    send("A", "set_geometry", make(grid(side)));
+    triangles();
+    shown += !mapper_->isBehind();
+  }
+  EXPECT_GE(shown, 8);
+  EXPECT_EQ(finish(), many);
+}
+
 TEST_F(MapPatient, WhatMovesWhileItWaitsComesAtItsPlace) {
   loadHidden("DEF T Transform { children " + large() + " }");
   show();

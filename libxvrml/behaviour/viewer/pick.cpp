@@ -89,7 +89,7 @@ void Picker::dropEntries(Node& first) {
   while (!open.empty()) {
     Node* node = open.back();
     open.pop_back();
-    jobs_.changed(*node);
+    jobs_.giveUp(*node);
     const auto found = entries_.find(node);
     // If a group or Shape has no entry, nothing above it has one.
     if (found != entries_.end())
@@ -116,7 +116,6 @@ PickMesh* Picker::meshOf(Node& node) {
     return mesh;
   };
   if (lags_ && jobs_.ask(*geometry, prepare) != Jobs::State::none) return nullptr;
-  jobs_.forget(*geometry);
   entry.mesh = std::make_unique<PickMesh>(*geometry, browser ? &limits : nullptr);
   return entry.mesh.get();
 }
@@ -125,10 +124,12 @@ PickMesh* Picker::meshOf(Node& node) {
 void Picker::settleJobs(bool mayLag) {
   lags_ = lagging_ && mayLag;
   if (jobs_.empty()) return;
+  for (const NodeRef& geometry : jobs_.nodes(true))
+    if (!geometry->live || liveOf(*geometry)->parents.size() == 0) jobs_.giveUp(*geometry);
   for (const NodeRef& geometry : jobs_.nodes(!lags_)) {
     auto mesh = jobs_.take(*geometry);
     dropEntries(*geometry); // the boxes around it lack the mesh
-    if (mesh && geometry->live) entries_[geometry.get()].mesh = std::move(*mesh);
+    if (mesh) entries_[geometry.get()].mesh = std::move(*mesh);
   }
 }
 

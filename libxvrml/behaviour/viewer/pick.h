@@ -49,7 +49,7 @@ class Picker {
 
   void changed(Node& node);
   void forgotten(const Node& node) {
-    jobs_.forget(node);
+    jobs_.giveUp(node);
     entries_.erase(&node);
   }
   // Returns the world matrix of the last node's children, with Billboards turned to the viewer.
