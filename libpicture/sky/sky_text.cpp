@@ -1,7 +1,6 @@
 // sky_text.cpp: Reads the words of --sky: a kind of sky, and words KEY=VALUE behind commas.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "libpicture/sky/epw.h"
 #include "libpicture/sky/perez.h"
 #include "libpicture/sky/sky.h"
+#include "number_text.h"
 
 namespace picture {
 
@@ -24,9 +24,7 @@ using Text = std::string_view;
 
 double numberOf(Text word, Text text, double least, double most) {
   double value = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (read.ec != std::errc() || read.ptr != text.data() + text.size() ||
-      !(value >= least && value <= most))
+  if (!isNumber(text, value) || !(value >= least && value <= most))
     refuse(fmt::format("{}: a number from {} to {} was expected, not \"{}\"", word, least, most,
                        text));
   return value;
