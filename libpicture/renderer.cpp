@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -22,6 +21,7 @@
 #include "libpicture/measure.h"
 #include "libpicture/stage.h"
 #include "libpicture/sums.h"
+#include "number_text.h"
 
 namespace picture {
 
@@ -465,9 +465,7 @@ int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std
   for (size_t i = 0; i < viewpoints.size(); ++i)
     if (!name.empty() && viewpoints[i].description == name) return int(i);
   size_t number = 0;
-  auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc() && end == name.data() + name.size() && number < viewpoints.size())
-    return int(number);
+  if (isNumber(name, number) && number < viewpoints.size()) return int(number);
   return -1;
 }
 

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 
 #include "nearest.h"
-#include "parse_number.h"
+#include "number_text.h"
 #include "xvrml/appearance.h"
 #include "xvrml/mapper.h"
 
@@ -77,8 +77,8 @@ std::vector<float> numbers(const std::string& text) {
   for (std::string_view word : split(std::string_view(text), ',')) {
     while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
     if (word.starts_with('+')) word.remove_prefix(1);
-    const std::optional<float> value = parseNumber<float>(word);
-    if (!value)
+    float value = 0;
+    if (!isNumber(word, value))
       throw ShaderError(
           fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
     list.push_back(*value);
@@ -117,9 +117,10 @@ std::string fileUrl(const std::string& path, const std::string& folder) {
 }
 
 int wholeNumber(const std::string& text) {
-  const std::optional<int> value = parseNumber<int>(text);
-  if (!value) throw ShaderError(fmt::format("a whole number was expected, not \"{}\"", text));
-  return *value;
+  int value = 0;
+  if (!isNumber(text, value))
+    throw ShaderError(fmt::format("a whole number was expected, not \"{}\"", text));
+  return value;
 }
 
 std::string quoted(const std::string& text) {

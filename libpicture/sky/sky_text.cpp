@@ -12,7 +12,7 @@
 #include "libpicture/sky/epw.h"
 #include "libpicture/sky/perez.h"
 #include "libpicture/sky/sky.h"
-#include "parse_number.h"
+#include "number_text.h"
 
 namespace picture {
 
@@ -23,8 +23,8 @@ using Text = std::string_view;
 [[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument(why); }
 
 double numberOf(Text word, Text text, double least, double most) {
-  const std::optional<double> value = parseNumber<double>(text);
-  if (!value || !(*value >= least && *value <= most))
+  double value = 0;
+  if (!isNumber(text, value) || !(value >= least && value <= most))
     refuse(fmt::format("{}: a number from {} to {} was expected, not \"{}\"", word, least, most,
                        text));
   return *value;

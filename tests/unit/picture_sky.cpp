@@ -194,14 +194,20 @@ TEST(Weather, wrongFilesAndTimesAreRefused) {
   std::string missing = noon;
   missing.replace(missing.find(",600,"), 5, ",9999,");
   EXPECT_NE(why(epwOf(missing), "06-21T12:30").find("direct normal"), std::string::npos);
-  for (const char* wrong : {",6x00,", ",600 W,", ",,", ",600;,", ",6e2e1,", ",nan,"}) {
-    std::string damaged = noon;
-    damaged.replace(damaged.find(",600,"), 5, wrong);
-    EXPECT_NE(why(epwOf(damaged), "06-21T12:30").find("direct normal"), std::string::npos) << wrong;
+  for (const char* wrong : {"600x", "600 1", "6e999", "nan", "+-600", "0x258", ""}) {
+    std::string text = noon;
+    text.replace(text.find(",600,") + 1, 3, wrong);
+    EXPECT_NE(why(epwOf(text), "06-21T12:30").find("direct normal"), std::string::npos) << wrong;
+    text = noon;
+    text.replace(text.find(",11.0,") + 1, 4, wrong);
+    EXPECT_NE(why(epwOf(text), "06-21T12:30").find("dew point"), std::string::npos) << wrong;
   }
-  std::string spaced = noon;
-  spaced.replace(spaced.find(",600,"), 5, ", +600 ,");
-  EXPECT_EQ(why(epwOf(spaced), "06-21T12:30"), "");
+  for (const char* good : {" 600", "+600", "600 ", "6e2"}) {
+    std::string text = noon;
+    text.replace(text.find(",600,") + 1, 3, good);
+    EXPECT_EQ(weatherHour(epwOf(text), "06-21T12:30").directNormal, 600) << good;
+  }
+  EXPECT_NE(why(epwOf(noon), "06-21T-0:30").find("was expected after the @"), std::string::npos);
   for (size_t end = 0; end < noon.size(); end += 3) // a file that was cut off
     why(epwOf(noon.substr(0, end)), "06-21T12:30");
 }

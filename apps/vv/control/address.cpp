@@ -1,9 +1,8 @@
 #include "control/address.h"
 
-#include <optional>
-
 #include <fmt/format.h>
 
+#include "number_text.h"
 #include "options/values.h"
 #include "parse_number.h"
 
@@ -40,9 +39,7 @@ Address Address::parse(std::string_view text) {
   for (const char c : host)
     if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
       refuse(text, "it contains blanks or invisible characters");
-  const std::optional<uint16_t> port = parseNumber<uint16_t>(digits);
-  if (!port) refuse(text, "a port is a number from 0 to 65535");
-  address.port = *port;
+  if (!isNumber(digits, address.port)) refuse(text, "a port is a number from 0 to 65535");
   address.host = host.empty() ? "127.0.0.1" : host;
   return address;
 }
