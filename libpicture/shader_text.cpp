@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -81,7 +80,7 @@ std::vector<float> numbers(const std::string& text) {
     if (!isNumber(word, value))
       throw ShaderError(
           fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
-    list.push_back(*value);
+    list.push_back(value);
   }
   return list;
 }

@@ -27,7 +27,7 @@ double numberOf(Text word, Text text, double least, double most) {
   if (!isNumber(text, value) || !(value >= least && value <= most))
     refuse(fmt::format("{}: a number from {} to {} was expected, not \"{}\"", word, least, most,
                        text));
-  return *value;
+  return value;
 }
 
 constexpr double leastLux = 1e-6; // a thousandth of a sky of stars

@@ -4,7 +4,6 @@
 
 #include "number_text.h"
 #include "options/values.h"
-#include "parse_number.h"
 
 namespace vv::control {
 
