@@ -376,9 +376,9 @@ typedef struct RtsClass {
   /* light: looks along n rays of the light's local space for its luminous opening, the bright face
    * that is seen where the light hangs. The camera sees it straight, in mirrors and through glass.
    * It is opaque there, and nowhere else: it blocks no light and sends none, because that is
-   * `illuminate`. Directions have any length. Writes to `distance` how many lengths of its direction
-   * each ray goes to the opening, infinite if it does not meet it, and the radiance that the ray
-   * sees there. NULL: no opening. [render] */
+   * `illuminate`. Directions have any length. Writes to `distance` how many lengths of its
+   * direction each ray goes to the opening, infinite if it does not meet it, and the radiance that
+   * the ray sees there. NULL: no opening. [render] */
   void (*opening)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                   const float* const origin[3], const float* const direction[3], float* distance,
                   float* const radiance[3]);

@@ -47,8 +47,8 @@
 //                                                    local space
 //     Extent extent() const                          optional: position and strength
 //     Opening opening(Vec3 origin, Vec3 direction) const
-//                                                    optional: what a ray of the local space sees of
-//                                                    the light's luminous opening
+//                                                    optional: where a ray of the local space
+//                                                    meets the luminous opening, and its radiance
 //     static constexpr bool directional = true;      optional: toLight has no end point
 //     static constexpr bool shadows = false;         optional: the light casts no shadows
 //   Camera<T>
@@ -297,7 +297,7 @@ struct Extent {
   // parallel: light falls along `direction` everywhere. known: false if the rest is unknown.
   bool parallel = false, known = true;
 };
-// What a ray sees of a light's luminous opening (RtsClass.opening).
+// The place where a ray meets a light's luminous opening (RtsClass.opening).
 struct Opening {
   float distance = infinity; // in lengths of the ray's direction; infinite: nothing is seen
   Color radiance;

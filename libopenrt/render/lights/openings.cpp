@@ -12,7 +12,7 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-// What some rays of a wave see of one light, by index into their lanes.
+// Rays that look for one light, and how they see it, by index into their lanes.
 struct Look {
   float *origin[3], *direction[3], *distance, *radiance[3];
 };
