@@ -1,5 +1,5 @@
 // file_contents.h: Reads small files that users name on a command line: also pipes, such as those
-// that a shell makes of the output of a program. What is read is bounded. [any thread]
+// that a shell makes of the output of a program. Reading is bounded. [any thread]
 #pragma once
 
 #include <cerrno>
