@@ -1,15 +1,16 @@
 #include "libpicture/shader_rules.h"
 
 #include <array>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "file_contents.h"
 #include "libpicture/shader_selector.h"
 #include "xvrml/appearance.h"
 #include "xvrml/nodes.h"
@@ -144,15 +145,12 @@ std::vector<std::vector<const SelectedShape*>> shapesByRule(const std::vector<Re
 void checkShaderRule(const std::string& text) { readRule(text); }
 
 std::vector<ShaderRule> readShaderRules(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(rulesFileBytes + 1, '\0');
-  if (file) file.read(text.data(), std::streamsize(text.size()));
-  if (file.bad() || !file.is_open() || (file.gcount() == 0 && !file.eof()))
-    throw std::runtime_error(fmt::format("cannot read the rules in {}", path));
-  text.resize(size_t(file.gcount()));
-  if (text.size() > rulesFileBytes)
-    throw std::runtime_error(
-        fmt::format("{} is longer than {} bytes, too long for rules", path, rulesFileBytes));
+  std::string text;
+  try {
+    text = fileContents(path, rulesFileBytes);
+  } catch (const std::runtime_error& why) {
+    throw std::runtime_error(fmt::format("cannot read the rules in {}: {}", path, why.what()));
+  }
   if (text.starts_with(byteOrderMark)) text.erase(0, byteOrderMark.size());
   std::vector<ShaderRule> rules;
   std::istringstream lines(text);

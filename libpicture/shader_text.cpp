@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "nearest.h"
+#include "number_text.h"
 #include "xvrml/appearance.h"
 #include "xvrml/mapper.h"
 
@@ -77,8 +77,7 @@ std::vector<float> numbers(const std::string& text) {
     while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
     if (word.starts_with('+')) word.remove_prefix(1);
     float value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+    if (!isNumber(word, value))
       throw ShaderError(
           fmt::format("numbers, separated by commas, were expected, not \"{}\"", text));
     list.push_back(value);
@@ -118,8 +117,7 @@ std::string fileUrl(const std::string& path, const std::string& folder) {
 
 int wholeNumber(const std::string& text) {
   int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
+  if (!isNumber(text, value))
     throw ShaderError(fmt::format("a whole number was expected, not \"{}\"", text));
   return value;
 }

@@ -4,10 +4,10 @@
 #include "api/config.h"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 
 #include "api/errors.h"
+#include "number_text.h"
 
 namespace openrt {
 namespace {
@@ -16,8 +16,7 @@ constexpr uint32_t maxThreads = 1024, maxWorkers = 65536;
 
 uint32_t parseNumber(std::string_view key, std::string_view text, uint32_t most) {
   uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size() || value > most)
+  if (!isNumber(text, value) || value > most)
     fail(RT_INVALID_VALUE, std::string(key) + "=" + std::string(text) +
                                ": expected a number from 0 to " + std::to_string(most));
   return value;

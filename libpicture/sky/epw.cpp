@@ -1,15 +1,15 @@
 #include "libpicture/sky/epw.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "file_contents.h"
 #include "libpicture/files/picture.h"
+#include "number_text.h"
 
 namespace picture {
 
@@ -37,10 +37,13 @@ std::optional<double> numberAt(std::string_view line, int field) {
     if (comma == line.npos) return {};
     line.remove_prefix(comma + 1);
   }
-  while (!line.empty() && (line[0] == ' ' || line[0] == '+')) line.remove_prefix(1);
+  std::string_view text = line.substr(0, line.find(','));
+  constexpr std::string_view blanks = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  text = text.substr(0, text.find_last_not_of(blanks) + 1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
-  const auto read = std::from_chars(line.data(), line.data() + line.size(), value);
-  if (read.ec != std::errc() || !std::isfinite(value)) return {};
+  if (!isNumber(text, value)) return {};
   return value;
 }
 
@@ -60,11 +63,8 @@ struct Wanted {
 Wanted wantedOf(std::string_view time) {
   const auto two = [&](size_t at) {
     int value = -1;
-    if (at + 2 <= time.size() && time[at] != '-')
-      if (std::from_chars(time.data() + at, time.data() + at + 2, value).ptr !=
-          time.data() + at + 2)
-        value = -1;
-    return value;
+    const bool is = at + 2 <= time.size() && time[at] != '-' && isNumber(time.substr(at, 2), value);
+    return is ? value : -1;
   };
   const int month = two(0), day = two(3), hours = two(6), minutes = two(9);
   if (time.size() != 11 || time[2] != '-' || time[5] != 'T' || time[8] != ':' || month < 1 ||
@@ -101,22 +101,20 @@ WeatherHour weatherHour(std::string_view text, std::string_view time) {
   // 9999 stands for a value that is missing.
   out.directNormal = numberAt(line, direct, "the direct normal radiation", 0, 2000);
   out.diffuseHorizontal = numberAt(line, diffuse, "the diffuse horizontal radiation", 0, 2000);
-  const std::optional<double> dew = numberAt(line, dewPoint);
-  out.dewPoint = dew && *dew >= -90 && *dew < 60 ? *dew : 11;
+  const double dew = numberAt(line, dewPoint, "the dew point", -90, 100);
+  out.dewPoint = dew < 60 ? dew : 11; // 99.9 stands for a value that is missing
   return out;
 }
 
 WeatherHour readWeatherHour(const std::string& path, std::string_view time) {
   wantedOf(time);
-  std::ifstream file(path, std::ios::binary);
-  std::string text(mostBytes + 1, '\0');
-  if (!file.read(text.data(), std::streamsize(text.size())) && !file.eof())
-    throw InputError(path, "there is no such file, or it is a folder");
-  text.resize(size_t(file.gcount()));
-  if (text.size() > mostBytes) throw InputError(path, "is larger than any weather file");
+  std::string text;
   try {
+    text = fileContents(path, mostBytes);
     return weatherHour(text, time);
-  } catch (const std::invalid_argument& wrong) { throw InputError(path, wrong.what()); }
+  } catch (const std::bad_alloc&) { throw; } catch (const std::exception& wrong) {
+    throw InputError(path, wrong.what());
+  }
 }
 
 } // namespace picture

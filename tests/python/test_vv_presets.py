@@ -113,7 +113,7 @@ def test_a_rule_that_throws_colours_away_is_a_warning(board):
     ("material:PIN-*=Metal:rough=1", "Metal has no parameter rough"),
     (b"\xff\xfe\x00=", "rules.txt:1: text was expected, not a byte that is 0"),
     (b"*=Metal\n# a\x00\n", "rules.txt:2: text was expected"),
-    ("long", "too long for rules"),
+    ("long", "cannot read the rules in rules.txt: it is longer than"),
 ])
 def test_wrong_rules(board, rules, message):
     board.write("rules.txt", written(rules))

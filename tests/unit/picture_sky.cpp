@@ -194,6 +194,20 @@ TEST(Weather, wrongFilesAndTimesAreRefused) {
   std::string missing = noon;
   missing.replace(missing.find(",600,"), 5, ",9999,");
   EXPECT_NE(why(epwOf(missing), "06-21T12:30").find("direct normal"), std::string::npos);
+  for (const char* wrong : {"600x", "600 1", "6e999", "nan", "+-600", "0x258", ""}) {
+    std::string text = noon;
+    text.replace(text.find(",600,") + 1, 3, wrong);
+    EXPECT_NE(why(epwOf(text), "06-21T12:30").find("direct normal"), std::string::npos) << wrong;
+    text = noon;
+    text.replace(text.find(",11.0,") + 1, 4, wrong);
+    EXPECT_NE(why(epwOf(text), "06-21T12:30").find("dew point"), std::string::npos) << wrong;
+  }
+  for (const char* good : {" 600", "+600", "600 ", "6e2"}) {
+    std::string text = noon;
+    text.replace(text.find(",600,") + 1, 3, good);
+    EXPECT_EQ(weatherHour(epwOf(text), "06-21T12:30").directNormal, 600) << good;
+  }
+  EXPECT_NE(why(epwOf(noon), "06-21T-0:30").find("was expected after the @"), std::string::npos);
   for (size_t end = 0; end < noon.size(); end += 3) // a file that was cut off
     why(epwOf(noon.substr(0, end)), "06-21T12:30");
 }
@@ -211,6 +225,18 @@ TEST(SkyWords, saySkiesAndSuns) {
   EXPECT_GT(readSky("perez:600/200,sun=60/180").direct, 50000);
 }
 
+TEST(SkyWords, sayThatTheSunHasSet) {
+  for (const char* words : {"cie:12,sun=0/90,direct=80000", "cie:12,sun=-4/90,direct=80000",
+                            "perez:60/20,sun=-.1/60", "perez:60/20,sun=0/60"}) {
+    const Sky sky = readSky(words);
+    EXPECT_EQ(sky.direct, 0) << words;
+    EXPECT_NE(warningOf(sky).find("not above the horizon"), std::string::npos) << words;
+  }
+  for (const char* words :
+       {"cie:12,sun=0/90", "cie:12,sun=.1/90,direct=80000", "cie:1", "perez:0/20,sun=-1/60"})
+    EXPECT_EQ(warningOf(readSky(words)), "") << words;
+}
+
 TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "was expected"},
@@ -223,6 +249,8 @@ TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
       {"cie:1,sun=9", "slash"},
       {"cie:1,lux=-1", "lux: a number"},
       {"cie:1,lux=nan", "lux: a number"},
+      {"cie:1,lux=1e-40", "lux: 0, or a number from 1e-06"},
+      {"cie:1,sun=9/0,direct=1e-9", "direct: 0, or a number from 1e-06"},
       {"cie:1,luxx=1", "was expected, not \"luxx\""},
       {"cie:1,", "was expected, not \"\""},
       {"cie:1,place=50/8", "together"},

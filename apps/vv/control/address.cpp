@@ -1,9 +1,8 @@
 #include "control/address.h"
 
-#include <charconv>
-
 #include <fmt/format.h>
 
+#include "number_text.h"
 #include "options/values.h"
 
 namespace vv::control {
@@ -39,10 +38,7 @@ Address Address::parse(std::string_view text) {
   for (const char c : host)
     if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
       refuse(text, "it contains blanks or invisible characters");
-  const auto [end, error] =
-      std::from_chars(digits.data(), digits.data() + digits.size(), address.port);
-  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
-    refuse(text, "a port is a number from 0 to 65535");
+  if (!isNumber(digits, address.port)) refuse(text, "a port is a number from 0 to 65535");
   address.host = host.empty() ? "127.0.0.1" : host;
   return address;
 }

@@ -1,12 +1,12 @@
 #include "habits.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 
 #include "libpicture/files/film.h"
 #include "libpicture/files/formats.h"
+#include "number_text.h"
 
 namespace vv {
 
@@ -50,10 +50,7 @@ constexpr ForeignOption habits[] = {
     {"--headless", "-o FILE writes a picture and opens no window"},
 };
 
-bool isNumber(std::string_view text, int& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value > 0;
-}
+bool isCount(std::string_view text, int& value) { return isNumber(text, value) && value > 0; }
 
 } // namespace
 
@@ -61,12 +58,11 @@ std::string sizeHint(std::string_view text) {
   const size_t apart = text.find_first_of(",*: X");
   int width = 0, height = 0;
   if (apart == text.npos) {
-    if (!isNumber(text, width)) return "";
+    if (!isCount(text, width)) return "";
     return fmt::format(": did you mean --size {}x{}? Width and height are both needed", width,
                        std::max(1, width * 3 / 4));
   }
-  if (!isNumber(text.substr(0, apart), width) || !isNumber(text.substr(apart + 1), height))
-    return "";
+  if (!isCount(text.substr(0, apart), width) || !isCount(text.substr(apart + 1), height)) return "";
   return fmt::format(": did you mean --size {}x{}?", width, height);
 }
 

@@ -1,34 +1,27 @@
 #include "values.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "file_contents.h"
 #include "habits.h"
 #include "lower_case.h"
+#include "number_text.h"
 #include "picture_size.h"
 
 namespace vv {
 
 namespace {
 
-// Parses the whole text as a number; blanks, a `+` sign and the locale's format are not accepted.
-template <class T> bool whole(std::string_view text, T& value) {
-  auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty();
-}
-
 void readTriple(std::string_view text, double out[3]) {
   std::vector<std::string_view> parts = split(text, ',');
   if (parts.size() != 3) throw UsageError("");
   for (size_t i = 0; i < 3; ++i)
-    if (!whole(parts[i], out[i]) || !(std::abs(out[i]) < 1e30)) throw UsageError("");
+    if (!isNumber(parts[i], out[i]) || !(std::abs(out[i]) < 1e30)) throw UsageError("");
 }
 
 } // namespace
@@ -45,7 +38,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 long long readInteger(std::string_view text, long long minimum, long long maximum) {
   long long value = 0;
-  if (!whole(text, value) || value < minimum || value > maximum)
+  if (!isNumber(text, value) || value < minimum || value > maximum)
     throw UsageError(fmt::format("a whole number from {} to {} was expected, not \"{}\"", minimum,
                                  maximum, text));
   return value;
@@ -53,7 +46,7 @@ long long readInteger(std::string_view text, long long minimum, long long maximu
 
 double readNumber(std::string_view text, double minimum, double maximum) {
   double value = 0;
-  if (!whole(text, value) || !(value > minimum && value < maximum))
+  if (!isNumber(text, value) || !(value > minimum && value < maximum))
     throw UsageError(maximum > 1e30
                          ? fmt::format("a number above {} was expected, not \"{}\"", minimum, text)
                          : fmt::format("a number between {} and {} was expected, not \"{}\"",
@@ -71,7 +64,7 @@ double readQuality(RTenum quality, std::string_view text) {
   }
   double value = 0;
   long long count = 0;
-  const bool read = info.isReal ? whole(text, value) : whole(text, count);
+  const bool read = info.isReal ? isNumber(text, value) : isNumber(text, count);
   if (!info.isReal) value = double(count);
   if (!read || !rtIsQualityAllowed(quality, value))
     throw UsageError(
@@ -81,7 +74,7 @@ double readQuality(RTenum quality, std::string_view text) {
 
 double readSeconds(std::string_view text) {
   double value = 0;
-  if (!whole(text, value) || !(value >= 0 && value <= 1e6))
+  if (!isNumber(text, value) || !(value >= 0 && value <= 1e6))
     throw UsageError(fmt::format("seconds from 0 to 1000000 were expected, not \"{}\"", text));
   return value;
 }
@@ -89,7 +82,7 @@ double readSeconds(std::string_view text) {
 double readShare(RTenum quality, std::string_view text) {
   const bool percent = text.ends_with('%');
   double value = 0;
-  const bool read = whole(text.substr(0, text.size() - (percent ? 1 : 0)), value);
+  const bool read = isNumber(text.substr(0, text.size() - (percent ? 1 : 0)), value);
   if (percent) value /= 100;
   if (!read || !rtIsQualityAllowed(quality, value))
     throw UsageError(fmt::format("{}, or up to {:.10g}%, was expected, not \"{}\"",
@@ -103,7 +96,7 @@ FrameRange readFrames(std::string_view text) {
   FrameRange range;
   std::string_view numbers = text;
   const auto good = [](std::string_view digits, long long least, long long& out) {
-    return whole(digits, out) && out >= least && out <= most;
+    return isNumber(digits, out) && out >= least && out <= most;
   };
   bool fine = true;
   if (const size_t slash = numbers.find('/'); slash != numbers.npos) {
@@ -134,7 +127,7 @@ uint64_t readCount(std::string_view text) {
     if (shift) digits.remove_suffix(1);
   }
   uint64_t value = 0;
-  if (!whole(digits, value) || value > (std::numeric_limits<uint64_t>::max() >> shift))
+  if (!isNumber(digits, value) || value > (std::numeric_limits<uint64_t>::max() >> shift))
     throw UsageError(
         fmt::format("a count was expected (digits, then k, M or G if wanted), not \"{}\"", text));
   return value << shift;
@@ -149,7 +142,7 @@ bool readSwitch(std::string_view text) {
 void readSize(std::string_view text, int& width, int& height) {
   std::vector<std::string_view> parts = split(text, 'x');
   int w = 0, h = 0;
-  const bool read = parts.size() == 2 && whole(parts[0], w) && whole(parts[1], h);
+  const bool read = parts.size() == 2 && isNumber(parts[0], w) && isNumber(parts[1], h);
   if (!read || !isPictureSize(w, h))
     throw UsageError(fmt::format("a size such as 640x480 was expected (each side 1 to 65536, at "
                                  "most 2^28 pixels), not \"{}\"{}",
@@ -184,9 +177,9 @@ picture::Crop readCrop(std::string_view text) {
   picture::Crop crop;
   const std::vector<std::string_view> parts = split(text, ',');
   const std::vector<std::string_view> size = split(parts.back(), 'x');
-  const bool read = parts.size() == 3 && size.size() == 2 && whole(parts[0], crop.x) &&
-                    whole(parts[1], crop.y) && whole(size[0], crop.width) &&
-                    whole(size[1], crop.height);
+  const bool read = parts.size() == 3 && size.size() == 2 && isNumber(parts[0], crop.x) &&
+                    isNumber(parts[1], crop.y) && isNumber(size[0], crop.width) &&
+                    isNumber(size[1], crop.height);
   if (!read || crop.x < 0 || crop.y < 0 || crop.width < 1 || crop.height < 1)
     throw UsageError(fmt::format("X,Y,WxH was expected: the left upper pixel and the size of the "
                                  "part, such as 100,50,320x240, not \"{}\"",
@@ -197,7 +190,7 @@ picture::Crop readCrop(std::string_view text) {
 std::array<int, 2> readSamplesOfTwo(std::string_view text) {
   std::array<int, 2> samples{};
   const std::vector<std::string_view> parts = split(text, ',');
-  if (parts.size() != 2 || !whole(parts[0], samples[0]) || !whole(parts[1], samples[1]) ||
+  if (parts.size() != 2 || !isNumber(parts[0], samples[0]) || !isNumber(parts[1], samples[1]) ||
       samples[0] < 1 || samples[1] < 1)
     throw UsageError(fmt::format("N,M was expected: the samples per pixel of two pictures that are "
                                  "compared, not \"{}\" (--spp N sets those of a picture)",
@@ -211,7 +204,7 @@ picture::Intrinsics readIntrinsics(std::string_view text) {
   double numbers[4] = {};
   bool read = parts.size() == 4;
   for (size_t i = 0; i < 4 && read; ++i)
-    read = whole(parts[i], numbers[i]) && std::abs(numbers[i]) <= most &&
+    read = isNumber(parts[i], numbers[i]) && std::abs(numbers[i]) <= most &&
            (i > 1 || numbers[i] >= 1 / most);
   if (!read)
     throw UsageError(
@@ -230,7 +223,7 @@ bool readMatrix(std::string_view text, double rows[16]) {
     at = text.find_first_not_of(" \t\r\n,", at);
     if (at == text.npos) return count == 16;
     const size_t end = std::min(text.find_first_of(" \t\r\n,", at), text.size());
-    if (count == 16 || !whole(text.substr(at, end - at), rows[count]) ||
+    if (count == 16 || !isNumber(text.substr(at, end - at), rows[count]) ||
         !std::isfinite(rows[count]))
       return false;
     ++count;
@@ -240,14 +233,12 @@ bool readMatrix(std::string_view text, double rows[16]) {
 
 // Reads at most as much as a matrix can need. Throws Failure.
 std::string readPoseFile(const std::string& path) {
-  constexpr std::streamsize most = 4096;
-  std::ifstream file(path, std::ios::binary);
-  std::string text(size_t(most) + 1, ' ');
-  file.read(text.data(), most + 1);
-  if (!file.is_open() || file.bad())
-    throw Failure{exitInput, fmt::format("--pose: cannot read {}: {}", path, std::strerror(errno))};
-  text.resize(size_t(file.gcount()));
-  return text;
+  constexpr size_t most = 4096;
+  try {
+    return fileContents(path, most);
+  } catch (const std::runtime_error& why) {
+    throw Failure{exitInput, fmt::format("--pose: cannot read {}: {}", path, why.what())};
+  }
 }
 
 } // namespace

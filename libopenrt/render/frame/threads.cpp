@@ -1,13 +1,13 @@
 #include "render/frame/threads.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <string>
 
+#include "number_text.h"
 #include "system/threads.h"
 
 namespace openrt {
@@ -25,9 +25,7 @@ std::string_view word(std::string_view& text) {
 double number(std::string_view text) {
   const std::string_view digits = word(text);
   int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  return error == std::errc() && end == digits.data() + digits.size() && value > 0 ? double(value)
-                                                                                   : 0;
+  return isNumber(digits, value) && value > 0 ? double(value) : 0;
 }
 
 std::string contents(const std::string& path) {

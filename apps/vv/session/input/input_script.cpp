@@ -1,12 +1,13 @@
 #include "session/input/input_script.h"
 
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "file_contents.h"
 #include "options/values.h"
 
 namespace vv {
@@ -160,13 +161,14 @@ InputScript parseInputScript(std::string_view text, const std::string& name) {
 }
 
 InputScript readInputScript(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf()))
-    throw Failure{exitInput, fmt::format("--input: cannot read {}", path)};
+  constexpr size_t most = 256 << 20; // hours of moves
   try {
-    return parseInputScript(text.str(), path);
-  } catch (const UsageError& error) { throw Failure{exitInput, error.what()}; }
+    return parseInputScript(fileContents(path, most), path);
+  } catch (const UsageError& error) {
+    throw Failure{exitInput, error.what()};
+  } catch (const std::runtime_error& why) {
+    throw Failure{exitInput, fmt::format("--input: cannot read {}: {}", path, why.what())};
+  }
 }
 
 std::string inputLine(double time, const InputEvent& event) {

@@ -1,12 +1,12 @@
 #include "backend/cluster/master/hosts.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <sstream>
+#include <stdexcept>
 
 #include "backend/backend.h"
 #include "backend/cluster/net/addresses.h"
+#include "file_contents.h"
 
 namespace openrt::cluster {
 namespace {
@@ -16,6 +16,15 @@ std::string trimmed(std::string line) {
   constexpr const char* blanks = " \t\r\n";
   const size_t first = line.find_first_not_of(blanks);
   return first == line.npos ? "" : line.substr(first, line.find_last_not_of(blanks) - first + 1);
+}
+
+std::string listOf(const std::string& path) {
+  constexpr size_t most = 16 << 20; // bytes
+  try {
+    return fileContents(path, most);
+  } catch (const std::runtime_error& why) {
+    throw ClusterError(path + ": the list of workers cannot be read: " + why.what());
+  }
 }
 
 } // namespace
@@ -28,11 +37,7 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
       hosts.push_back(entry);
       continue;
     }
-    errno = 0;
-    std::ifstream file(entry.substr(1));
-    if (!file)
-      throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " +
-                         std::strerror(errno ? errno : EIO));
+    std::istringstream file(listOf(entry.substr(1)));
     const size_t before = hosts.size();
     size_t number = 1; // line number
     for (std::string line; hosts.size() < most && std::getline(file, line); ++number) {

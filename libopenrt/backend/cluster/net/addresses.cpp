@@ -1,6 +1,5 @@
 #include "backend/cluster/net/addresses.h"
 
-#include <charconv>
 #include <cstring>
 #include <stdexcept>
 
@@ -8,6 +7,7 @@
 #include <netdb.h>
 
 #include "backend/cluster/net/wire.h"
+#include "number_text.h"
 
 namespace openrt::cluster {
 namespace {
@@ -66,9 +66,7 @@ Address Address::parse(std::string_view text) {
   a.port = defaultPort;
   if (!port.empty()) {
     port.remove_prefix(1);
-    const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), a.port);
-    if (error != std::errc() || end != port.data() + port.size())
-      failed(whole, "a port is a number from 0 to 65535");
+    if (!isNumber(port, a.port)) failed(whole, "a port is a number from 0 to 65535");
   }
   return a;
 }

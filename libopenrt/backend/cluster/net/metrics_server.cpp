@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <exception>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -87,24 +88,35 @@ struct MetricsServer::Impl {
 
   void run() {
     while (!stopping) {
-      std::vector<pollfd> all{{wakeUp.fd(), POLLIN, 0}};
-      // While there are too many, the others wait in the system's queue.
-      all.push_back({clients.size() < mostClients ? listening : -1, POLLIN, 0});
-      for (const Client& client : clients)
-        all.push_back({client.fd, short(client.answer.empty() ? POLLIN : POLLOUT), 0});
-      constexpr int milliseconds = 500; // for the clients' limit
-      ::poll(all.data(), nfds_t(all.size()), clients.empty() ? -1 : milliseconds);
-      if (all[0].revents) wakeUp.clear();
-      const double now = steadySeconds();
-      for (size_t i = 0; i < clients.size(); i++)
-        if (now > clients[i].until || (all[i + 2].revents && !serve(clients[i]))) close(clients[i]);
-      std::erase_if(clients, [](const Client& client) { return client.fd < 0; });
-      if (!all[1].revents) continue;
-      if (const int fd = os::acceptStream(listening); fd >= 0)
-        clients.push_back({fd, now + patience, {}, {}, 0});
-      else
-        ::poll(nullptr, 0, 10); // no descriptor is free, perhaps for long
+      try {
+        waitAndServe();
+      } catch (const std::exception&) { // no memory, perhaps for a while
+        for (Client& client : clients) close(client);
+        clients.clear();
+        ::poll(nullptr, 0, 100);
+      }
     }
+  }
+
+  void waitAndServe() {
+    std::vector<pollfd> all{{wakeUp.fd(), POLLIN, 0}};
+    // While there are too many, the others wait in the system's queue.
+    all.push_back({clients.size() < mostClients ? listening : -1, POLLIN, 0});
+    for (const Client& client : clients)
+      all.push_back({client.fd, short(client.answer.empty() ? POLLIN : POLLOUT), 0});
+    clients.reserve(clients.size() + 1);
+    constexpr int milliseconds = 500; // for the clients' limit
+    ::poll(all.data(), nfds_t(all.size()), clients.empty() ? -1 : milliseconds);
+    if (all[0].revents) wakeUp.clear();
+    const double now = steadySeconds();
+    for (size_t i = 0; i < clients.size(); i++)
+      if (now > clients[i].until || (all[i + 2].revents && !serve(clients[i]))) close(clients[i]);
+    std::erase_if(clients, [](const Client& client) { return client.fd < 0; });
+    if (!all[1].revents) return;
+    if (const int fd = os::acceptStream(listening); fd >= 0)
+      clients.push_back({fd, now + patience, {}, {}, 0});
+    else
+      ::poll(nullptr, 0, 10); // no descriptor is free, perhaps for long
   }
 
   static void close(Client& client) { ::close(std::exchange(client.fd, -1)); }

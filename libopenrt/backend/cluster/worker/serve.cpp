@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -228,8 +229,27 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
     post([=, why = std::move(event.text)](Worker& w) { w.left(peer, why, now); });
   }
 
+  // Throws std::bad_alloc if there is no memory for a message.
   void run() {
     std::thread session([this] { sessionLoop(); });
+    std::exception_ptr failure;
+    try {
+      serve();
+    } catch (...) {
+      failure = std::current_exception();
+      stopping = true;
+    }
+    {
+      const std::lock_guard lock(mutex); // no waiter can miss the notification
+    }
+    changed.notify_all();
+    session.join();
+    if (failure) std::rethrow_exception(failure);
+    flush(); // last messages
+  }
+
+  // Exchanges messages until stop() is called.
+  void serve() {
     double advanced = 0;
     while (!stopping) {
       const bool all = flush();
@@ -243,12 +263,6 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
         post([=](Worker& w) { w.advance(now); });
       }
     }
-    {
-      const std::lock_guard lock(mutex); // no waiter can miss the notification
-    }
-    changed.notify_all();
-    session.join();
-    flush(); // last messages
   }
 
   size_t bytesWaiting() {
