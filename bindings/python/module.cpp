@@ -72,8 +72,9 @@ template <class Load> std::unique_ptr<World> loadWith(Load load) {
 
 WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute,
               double stepError) {
-  if (!(stepError >= 0 && stepError <= std::numeric_limits<double>::max()))
-    throw py::value_error("step_error: millimetres, from 0 on, expected");
+  if (stepError != 0 &&
+      !(stepError > LoadOptions::leastStepError && stepError < LoadOptions::mostStepError))
+    throw py::value_error("step_error: 0, or millimetres between 1e-6 and 1e18, expected");
   auto made = std::make_shared<WorldObject>();
   made->world = loadSource(source, limits, allowAbsolute, stepError);
   return made;
