@@ -144,8 +144,6 @@ struct LoadOptions {
   // STEP models: millimetres between a triangle and the surface that it stands for, at most. 0: a
   // thousandth of the size of each part.
   double stepError = 0;
-  static constexpr double leastStepError = 1e-6; // below it there would be no end of triangles
-  static constexpr double mostStepError = 1e18;
 };
 
 // The target of a URL inside a world: a file to read, or the reason why it is refused.
