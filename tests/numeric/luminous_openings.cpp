@@ -94,6 +94,14 @@ TEST_F(LuminousOpenings, GlassShowsIt) {
   expectGrey(seenFrom({0, 0, -3}), straight * through, .02);
 }
 
+TEST_F(LuminousOpenings, AMediumThatScattersDimsIt) {
+  use(lamp(".6 .3 0"));
+  Shader fog("Fog");
+  fog.set("scattering", {.2, .2, .2}).set("absorption", {.1, .1, .1});
+  ball(fog, 8);
+  expectGrey(seenFrom({0, 0, -1}), 100 / .18 * std::exp(-3 * .3), 1e-4);
+}
+
 TEST_F(LuminousOpenings, WhatIsBeforeItHidesItAndACeilingDoesNot) {
   use(lamp(".6 .3 0"));
   placeAt({0, 0, 2}, square(matt(.5)), true); // the ceiling, in the plane of the opening
