@@ -242,7 +242,10 @@ struct Exchange::Impl {
     m.bytes = next.bytes;
     m.stored = next.stored.stored;
     m.offset = next.offset;
-    if (!next.stored.read(next.offset, m.data)) return false;
+    if (!next.stored.read(next.offset, m.data)) {
+      folder.discard(next.hash);
+      return false;
+    }
     next.piece = encode(0, std::move(m));
     return true;
   }
