@@ -14,6 +14,7 @@ template <class T> void writeValues(NodeStream& nodes, std::string_view field,
 }
 
 void writePositionsAndColors(NodeStream& nodes, MeshGeometry& geometry) {
+  nodes.extent().add(geometry.points);
   writeValues(nodes, "coord", "Coordinate", "point", std::move(geometry.points));
   writeValues(nodes, "color", "Color", "color", std::move(geometry.colors));
 }

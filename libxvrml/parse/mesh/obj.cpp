@@ -176,6 +176,7 @@ void ObjReader::read() {
                    "statements of free-form curves and surfaces are left out");
   for (Part& part : parts_) write(part);
   if (parts_.empty() && !points_.empty()) writeVertices();
+  nodes_.extent().report(file_.locator);
 }
 
 void ObjReader::statement(std::string_view word) {

@@ -260,6 +260,7 @@ class OffReader {
     if (shape_.coordIndex.empty()) shape_.kind = MeshKind::points;
     NodeStream nodes(file_);
     writeBareShape(nodes, std::move(shape_));
+    nodes.extent().report(file_.locator);
   }
 
   const MeshFile& file_;

@@ -267,6 +267,7 @@ class PlyReader {
     if (!shape_.texCoords.empty()) shape_.texture = header_.texture;
     NodeStream nodes(file_);
     writeBareShape(nodes, std::move(shape_));
+    nodes.extent().report(file_.locator);
   }
 
   const MeshFile& file_;

@@ -42,19 +42,23 @@ bool isStep(std::string_view bytes, std::string_view) {
 }
 
 void readStep(const MeshFile& file) {
+  const double error = file.options.stepError;
+  const auto fail = [&](std::string message) {
+    throw LoadError{{Severity::error, file.path, 0, 0, std::move(message), {}, 0}};
+  };
+  if (error != 0 && !(error >= LoadOptions::leastStepError && error <= LoadOptions::mostStepError))
+    fail(
+        fmt::format("a chord error from {} to {} millimetres was expected for a STEP model, not {}",
+                    LoadOptions::leastStepError, LoadOptions::mostStepError, error));
   Scratch scratch(file.budget);
   std::string glb;
   uint64_t leftOut = 0;
   try {
     glb = glbOf(file, scratch, leftOut);
-  } catch (const std::runtime_error& error) {
-    throw LoadError{{Severity::error,
-                     file.path,
-                     0,
-                     0,
-                     fmt::format("this STEP model cannot be read: {}", error.what()),
-                     {},
-                     0}};
+  } catch (const std::runtime_error& why) {
+    fail(fmt::format("this STEP model cannot be read{}: {}",
+                     error == 0 ? "" : fmt::format(" with a chord error of {} millimetres", error),
+                     why.what()));
   }
   if (leftOut > 0)
     file.locator.warn(nullptr, fmt::format("{} faces of the STEP model are left out: no triangles "

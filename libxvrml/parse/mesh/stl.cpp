@@ -112,6 +112,7 @@ class TextReader {
     unknown_.report(file_.locator, Severity::error,
                     "lines are left out: expected a statement of an STL file (facet, vertex, "
                     "endsolid)");
+    nodes_.extent().report(file_.locator);
   }
 
  private:
@@ -261,6 +262,7 @@ void readBinary(const MeshFile& file) {
              "triangles are left out, because their vertices are not finite");
   NodeStream nodes(file);
   writeSolid(file, nodes, std::move(solid));
+  nodes.extent().report(file.locator);
 }
 
 } // namespace

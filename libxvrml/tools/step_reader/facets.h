@@ -1,6 +1,7 @@
 // facets.h: divides the faces of a part into triangles. [one thread]
 #pragma once
 
+#include <Bnd_Box.hxx>
 #include <TDF_Label.hxx>
 #include <TopoDS_Shape.hxx>
 #include <XCAFPrs_Style.hxx>
@@ -19,7 +20,7 @@ class Facets {
 
  private:
   size_t materialOf(const Model::Material& material);
-  double chordErrorOf(const TopoDS_Shape& shape) const;
+  double chordErrorOf(const Bnd_Box& box) const;
 
   Model& model_;
   const double chordError_;

@@ -14,6 +14,7 @@
 #include <poll.h>
 
 #include "backend/cluster/net/addresses.h"
+#include "keep_running.h"
 #include "steady_clock.h"
 #include "system/sockets.h"
 #include "system/wake_up.h"
@@ -75,36 +76,46 @@ struct MetricsServer::Impl {
   Impl(const std::string& where, std::function<std::string()> t)
       : address(Address::parse(where)), text(std::move(t)), listening(listenAt(address)) {
     address.port = portOf(listening);
+    clients.reserve(mostClients); // so that an accepted client can always be kept
     thread = std::thread([this] { run(); });
   }
   ~Impl() {
     stopping = true;
     wakeUp.call();
     thread.join();
-    for (const Client& client : clients) ::close(client.fd);
+    closeAll();
     ::close(listening);
   }
 
   void run() {
-    while (!stopping) {
-      std::vector<pollfd> all{{wakeUp.fd(), POLLIN, 0}};
-      // While there are too many, the others wait in the system's queue.
-      all.push_back({clients.size() < mostClients ? listening : -1, POLLIN, 0});
-      for (const Client& client : clients)
-        all.push_back({client.fd, short(client.answer.empty() ? POLLIN : POLLOUT), 0});
-      constexpr int milliseconds = 500; // for the clients' limit
-      ::poll(all.data(), nfds_t(all.size()), clients.empty() ? -1 : milliseconds);
-      if (all[0].revents) wakeUp.clear();
-      const double now = steadySeconds();
-      for (size_t i = 0; i < clients.size(); i++)
-        if (now > clients[i].until || (all[i + 2].revents && !serve(clients[i]))) close(clients[i]);
-      std::erase_if(clients, [](const Client& client) { return client.fd < 0; });
-      if (!all[1].revents) continue;
-      if (const int fd = os::acceptStream(listening); fd >= 0)
-        clients.push_back({fd, now + patience, {}, {}, 0});
-      else
-        ::poll(nullptr, 0, 10); // no descriptor is free, perhaps for long
-    }
+    keepRunning([this] { return stopping.load(); }, [this] { step(); }, [this] { closeAll(); });
+  }
+
+  void step() {
+    std::vector<pollfd> all{{wakeUp.fd(), POLLIN, 0}};
+    // While there are too many, the others wait in the system's queue.
+    all.push_back({clients.size() < mostClients ? listening : -1, POLLIN, 0});
+    for (const Client& client : clients)
+      all.push_back({client.fd, short(client.answer.empty() ? POLLIN : POLLOUT), 0});
+    constexpr int milliseconds = 500; // for the clients' limit
+    ::poll(all.data(), nfds_t(all.size()), clients.empty() ? -1 : milliseconds);
+    if (all[0].revents) wakeUp.clear();
+    const double now = steadySeconds();
+    for (size_t i = 0; i < clients.size(); i++)
+      if (now > clients[i].until || (all[i + 2].revents && !serve(clients[i]))) close(clients[i]);
+    std::erase_if(clients, [](const Client& client) { return client.fd < 0; });
+    if (!all[1].revents) return;
+    if (const int fd = os::acceptStream(listening); fd >= 0)
+      clients.push_back({fd, now + patience, {}, {}, 0});
+    else
+      ::poll(nullptr, 0, 10); // no descriptor is free, perhaps for long
+  }
+
+  // Frees what the clients need, where memory is short.
+  void closeAll() {
+    for (Client& client : clients)
+      if (client.fd >= 0) close(client);
+    clients.clear();
   }
 
   static void close(Client& client) { ::close(std::exchange(client.fd, -1)); }

@@ -48,7 +48,7 @@ FileHandle openFolder(const std::string& path) {
   if (info.st_uid != ::geteuid()) refuse(path, "it belongs to another user");
   if (info.st_mode & (S_IWGRP | S_IWOTH))
     refuse(path, "other users may write there: chmod go-w " + path);
-  if (::faccessat(folder.get(), ".", W_OK | X_OK, 0) != 0) refuse(path, std::strerror(errno));
+  if (::faccessat(folder.get(), ".", X_OK, 0) != 0) refuse(path, std::strerror(errno));
   return folder;
 }
 
@@ -94,6 +94,8 @@ FileHandle::~FileHandle() {
 ArrayFolder::ArrayFolder(const std::string& path, uint64_t bytes,
                          std::function<void(int level, const std::string& text)> log)
     : path_(path), limit_(bytes), log_(std::move(log)), folder_(openFolder(path)) {
+  if (::faccessat(folder_.get(), ".", W_OK, 0) != 0)
+    warnOnce(std::string("it is read, and nothing is kept there: ") + std::strerror(errno));
   shrink();
 }
 
@@ -109,16 +111,21 @@ void ArrayFolder::warnOnce(const std::string& text) {
   if (log_) log_(2, "the folder of arrays " + path_ + ": " + text);
 }
 
-std::optional<ArrayFolder::Stored> ArrayFolder::open(const Hash& hash, uint64_t bytes) const {
+std::optional<ArrayFolder::Stored> ArrayFolder::find(const Hash& hash) const {
   // O_NONBLOCK: a pipe of this name could wait for ever.
   FileHandle file(::openat(folder_.get(), nameOf(hash).c_str(),
                            O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat info;
   if (!file || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode) ||
-      info.st_uid != ::geteuid() || bytes > limits::arrayBytes ||
-      !plausible(bytes, uint64_t(info.st_size)))
+      info.st_uid != ::geteuid())
     return std::nullopt;
   return Stored{std::move(file), uint64_t(info.st_size)};
+}
+
+std::optional<ArrayFolder::Stored> ArrayFolder::open(const Hash& hash, uint64_t bytes) const {
+  std::optional<Stored> found = find(hash);
+  if (found && !plausible(bytes, found->stored)) found.reset();
+  return found;
 }
 
 bool ArrayFolder::Stored::read(uint64_t offset, std::vector<std::byte>& piece) const {
@@ -134,8 +141,13 @@ bool ArrayFolder::Stored::read(uint64_t offset, std::vector<std::byte>& piece) c
 }
 
 ArrayPtr ArrayFolder::load(const Hash& hash, uint64_t bytes) {
-  const std::optional<Stored> found = open(hash, bytes);
+  if (bytes > limits::arrayBytes) return nullptr;
+  const std::optional<Stored> found = find(hash);
   if (!found) return nullptr;
+  if (!plausible(bytes, found->stored)) {
+    removeDamaged(hash);
+    return nullptr;
+  }
   ArrayStream stream(hash, bytes);
   message::Piece piece;
   piece.hash = hash;
@@ -151,10 +163,14 @@ ArrayPtr ArrayFolder::load(const Hash& hash, uint64_t bytes) {
     ::futimens(found->file.get(), nullptr); // it was used now
     return array;
   }
+  removeDamaged(hash);
+  return nullptr;
+}
+
+void ArrayFolder::removeDamaged(const Hash& hash) {
   damaged_++;
   remove(nameOf(hash));
   warnOnce("a file was damaged and is removed: " + nameOf(hash));
-  return nullptr;
 }
 
 void ArrayFolder::added(uint64_t bytes) {
