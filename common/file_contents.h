@@ -1,5 +1,5 @@
-// file_contents.h: Reads small files that users or worlds name. Only regular files are opened,
-// because a pipe or a device may block for ever, and what is read is bounded. [any thread]
+// file_contents.h: Reads small files that users name on a command line: also pipes, such as those
+// that a shell makes of the output of a program. Reading is bounded. [any thread]
 #pragma once
 
 #include <cerrno>
@@ -20,12 +20,10 @@ inline std::string fileContents(const std::string& path, size_t most) {
       if (fd >= 0) ::close(fd);
     }
   };
-  // With O_NONBLOCK the open of a pipe returns at once; regular files ignore it.
-  const File file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)};
+  const File file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY)};
   struct stat info {};
   if (file.fd < 0 || ::fstat(file.fd, &info) != 0) throw std::runtime_error(std::strerror(errno));
   if (S_ISDIR(info.st_mode)) throw std::runtime_error("it is a folder");
-  if (!S_ISREG(info.st_mode)) throw std::runtime_error("it is not a regular file");
   std::string text;
   char block[65536];
   while (text.size() <= most) {

@@ -81,6 +81,7 @@ struct FrameInFlight {
   live::FrameCamera camera;
   live::WorldStep step;
   double denoising = 0; // seconds that the denoiser may take
+  bool behind = false;  // see OpenRTMapper::isBehind()
 };
 
 // A frame that has finished or was cancelled.
@@ -92,6 +93,7 @@ struct EndedFrame {
   double seconds = 0, alone = 0, rebuilding = 0, showing = 0;
   std::string denoisedBy; // see LivePicture
   bool whole = false;
+  bool outdated = false; // see LivePicture
 };
 
 bool all(const std::vector<float>& samples, float least) {
@@ -202,7 +204,8 @@ struct LiveRenderer::Impl {
   void begin(FrameRequest frame);
 
   // Applies changes of the world to the context, which is made anew where there is none.
-  void apply(WorldChanges worldChanges);
+  // patient: see Stage::apply().
+  void apply(WorldChanges worldChanges, bool patient);
 
   // Reads sensors.
   std::vector<Measurement> read(MeasureRequest request);
@@ -318,6 +321,7 @@ void LiveRenderer::Impl::begin(FrameRequest frame) {
   try {
     map(std::move(frame));
     flight.map = stage.mapper()->stats();
+    flight.behind = stage.mapper()->isBehind();
     flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height,
                      flight.settings.background.kind == Background::Kind::file};
     if (flight.facts.purpose == Purpose::still && hasNames(flight.settings.channels))
@@ -336,7 +340,7 @@ void LiveRenderer::Impl::begin(FrameRequest frame) {
   if (cancelled) stage.cancel(); // a cancellation that came before the frame existed
 }
 
-void LiveRenderer::Impl::apply(WorldChanges worldChanges) {
+void LiveRenderer::Impl::apply(WorldChanges worldChanges, bool patient) {
   if (!stage.context() || worldChanges.otherWorld)
     steps.beginAnew();
   else if (!worldChanges.changes.empty())
@@ -346,7 +350,7 @@ void LiveRenderer::Impl::apply(WorldChanges worldChanges) {
     worldChanges.changes.clear(); // the new mapper already contains them
     worldChanges.otherWorld = false;
   }
-  stage.apply(worldChanges);
+  stage.apply(worldChanges, patient);
 }
 
 void LiveRenderer::Impl::drawFastView(const FrameRequest& frame) {
@@ -362,7 +366,8 @@ void LiveRenderer::Impl::drawFastView(const FrameRequest& frame) {
 
 void LiveRenderer::Impl::map(FrameRequest frame) {
   const bool otherWorld = !stage.context() || frame.worldChanges.otherWorld;
-  apply(std::move(frame.worldChanges));
+  const bool still = frame.facts.purpose == Purpose::still;
+  apply(std::move(frame.worldChanges), !still && !given.cluster && given.record.empty());
   if (otherWorld && !frame.facts.falseColour && stage.mapper()->stats().triangles > fewTriangles)
     drawFastView(frame);
   const uint64_t moved = stage.mapper()->stats().instancesMoved;
@@ -371,13 +376,13 @@ void LiveRenderer::Impl::map(FrameRequest frame) {
   if (stage.mapper()->stats().instancesMoved != moved) steps.change();
   stage.setUpFrame();
   rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
-  rtQualityf(RT_PATIENCE, frame.facts.purpose == Purpose::still ? 0 : previewPatience);
+  rtQualityf(RT_PATIENCE, still ? 0 : previewPatience);
 }
 
 std::vector<Measurement> LiveRenderer::Impl::read(MeasureRequest request) {
   std::vector<PlacedSensor> sensors = std::move(request.what.sensors);
   try {
-    apply(std::move(request.worldChanges));
+    apply(std::move(request.worldChanges), false);
     stage.prepareSensors(request.what.view);
     rtQualityf(RT_PATIENCE, 0);
     steps.beginAnew(); // RT_MOTION of the next frame begins here
@@ -407,7 +412,8 @@ std::shared_ptr<const EndedFrame> LiveRenderer::Impl::finish() {
     lastStill = nullptr;
   }
   stage.describe(flight.settings, result->result);
-  if (result->result.stats.outdated) steps.change(); // the next frame shows more of the world
+  result->outdated = flight.behind || result->result.stats.outdated != 0;
+  if (result->outdated) steps.change(); // the next frame shows more of the world
   result->picture.names = std::move(flight.names);
   stage.readChannels(flight.settings, result->picture);
   result->result.map = flight.map;
@@ -593,7 +599,7 @@ bool LiveRenderer::Impl::look(LivePicture& out) {
   show(finished->picture, facts, finished->whole, finished->seconds, out);
   out.alone = finished->alone;
   out.ended = true;
-  out.outdated = finished->result.stats.outdated != 0;
+  out.outdated = finished->outdated;
   out.rebuilding = finished->rebuilding;
   out.showing = finished->showing;
   out.denoisedBy = finished->denoisedBy;

@@ -73,7 +73,7 @@ struct LivePicture {
   // Finished or cancelled; no more updates follow. overhead, map and stats are valid.
   bool ended = false;
   // Shows the world before its last changes, from the present camera: what these need is still
-  // being built. Holds for previews that have ended. Another preview should follow.
+  // being read or built. Holds for previews that have ended. Another preview should follow.
   bool outdated = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;

@@ -146,8 +146,7 @@ void Luminaire::readProfile(const std::string& text, const Options& options) {
 }
 
 bool Luminaire::hasOpening() const {
-  const photometry::Opening& opening = photometry_->opening;
-  return opening.zero > 0 && (opening.isRound || opening.ninety > 0);
+  return photometry_->opening.exists();
 }
 
 SeenLuminaire Luminaire::from(Vec point) const {

@@ -14,9 +14,9 @@
 #include <fmt/format.h>
 
 #include "libpicture/cluster.h"
+#include "libpicture/live/film_history.h"
 #include "libpicture/live/oidn.h"
 #include "libpicture/live/preview_settings.h"
-#include "libpicture/live/reconstruction.h"
 #include "libpicture/luminaires.h"
 #include "libpicture/measure.h"
 #include "libpicture/stage.h"
@@ -41,6 +41,7 @@ struct FrameInFlight {
   RenderSettings settings;
   RenderResult result{};   // without pixels and statistics; the camera still has its shader
   bool otherWorld = false; // the first frame of another world
+  int64_t number = 0;      // in its film
 };
 
 // denoisedBy: the library that has filtered the picture; "": none has.
@@ -99,11 +100,11 @@ struct Renderer::Impl {
 
   // Used by the calling thread, and by the render thread while the calling thread waits.
   std::deque<FrameInFlight> inFlight;
-  Clock::time_point lastEnd;                          // when the last frame ended
-  std::optional<live::Reconstruction> reconstruction; // none before the first preview
-  std::unique_ptr<live::OidnFilter> denoiser;         // none before the first preview with it
-  Sums continueFrom;                                  // begins the next frame; may be none
-  uint32_t previews = 0;                              // number of previews that were started
+  Clock::time_point lastEnd;                  // when the last frame ended
+  std::optional<live::FilmHistory> history;   // none before the first preview
+  std::unique_ptr<live::OidnFilter> denoiser; // none before the first preview with it
+  Sums continueFrom;                          // begins the next frame; may be none
+  int64_t nextNumber = 0;  // the number that the next frame has if nobody says one
   bool otherWorld = false; // the browser shows another world than in the last frame
 
   Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings,
@@ -160,13 +161,15 @@ struct Renderer::Impl {
   }
 
   // Maps the world for a view and sets up its frame. Returns what is known before the frame begins.
-  FrameInFlight setUp(const View& view) {
+  FrameInFlight setUp(const View& view, std::optional<int64_t> number = {}) {
     const auto begin = Clock::now();
     if (stage.settings.raster)
       stage.place(view);
     else
       stage.prepare(view);
     FrameInFlight frame;
+    frame.number = number.value_or(nextNumber);
+    nextNumber = frame.number + 1;
     RenderResult& result = frame.result;
     // meshes are built once, with the first picture
     result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
@@ -175,8 +178,9 @@ struct Renderer::Impl {
     frame.otherWorld = std::exchange(otherWorld, false);
     frame.settings = stage.settings;
     if (frame.settings.preview) {
-      live::drawFreshSamples(frame.settings, previews++);
+      live::drawFreshSamples(frame.settings, uint64_t(frame.number));
       live::askForGuides(frame.settings);
+      if (frame.settings.samples > 1) frame.settings.channels |= RT_VARIANCE; // tells the noise
     }
     // The guides of a preview have names, too, but nobody asks for their nodes.
     if (hasNames(frame.settings.channels)) result.picture.names = stage.mapper()->names();
@@ -201,6 +205,7 @@ struct Renderer::Impl {
     rebuild(frame, result);
     result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
     stage.describe(frame.settings, result);
+    if (frame.settings.preview) result.stats.error = {}; // that of the samples
     if (frame.settings.raster) result.stats.scene.triangles = result.map.triangles;
     return result;
   }
@@ -208,17 +213,20 @@ struct Renderer::Impl {
   // Replaces the samples of a frame by the picture that is rebuilt from them, if it is a preview.
   void rebuild(const FrameInFlight& frame, RenderResult& result) {
     const RenderSettings& settings = frame.settings;
-    if (frame.otherWorld && reconstruction) reconstruction->reset();
+    if (frame.otherWorld && history) history->reset();
     if (!settings.preview || result.interrupted) return;
-    if (!reconstruction) reconstruction.emplace(settings.threads);
+    if (!history) history.emplace(settings.threads);
     if (settings.denoiser == Denoiser::oidn && !denoiser) denoiser = newDenoiser(settings.threads);
-    result.picture = reconstruction->add(result.picture,
-                                         {result.camera, double(settings.width) / settings.height},
-                                         1, denoiser.get());
-    if (const std::string& problem = reconstruction->facts().problem; !problem.empty())
-      throw RenderError(problem);
-    result.picture.note = previewNote(settings.samples, denoiser ? denoiser->name() : "");
-    result.renderSeconds += reconstruction->facts().seconds;
+    Picture rebuilt =
+        history->add(frame.number, result.picture,
+                     {result.camera, double(settings.width) / settings.height}, denoiser.get());
+    const live::Reconstruction::Facts& facts = history->facts();
+    if (!facts.problem.empty()) throw RenderError(facts.problem);
+    if (denoiser) rebuilt.denoisedBy = denoiser->name();
+    rebuilt.note = previewNote(settings.samples, rebuilt.denoisedBy);
+    result.sampled = std::exchange(result.picture, std::move(rebuilt));
+    result.denoiseSeconds = facts.denoising;
+    result.renderSeconds += facts.seconds - facts.denoising;
     lastEnd = Clock::now();
   }
 
@@ -237,9 +245,9 @@ struct Renderer::Impl {
     return complete(std::move(frame));
   }
 
-  void start(const View& view) {
+  void start(const View& view, std::optional<int64_t> number) {
     doing = "mapping";
-    FrameInFlight frame = setUp(view);
+    FrameInFlight frame = setUp(view, number);
     if (frame.settings.raster) {
       rasterize(frame);
     } else {
@@ -391,13 +399,13 @@ void Renderer::checkViewpoint(const View& view) {
                                   viewpoints().size()));
 }
 
-void Renderer::start(const View& view) {
+void Renderer::start(const View& view, std::optional<int64_t> frame) {
   checkViewpoint(view);
   if (impl_->inFlight.empty()) impl_->cancelled = false;
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
     impl_->apply(worldChanges);
-    impl_->start(view);
+    impl_->start(view, frame);
   });
 }
 

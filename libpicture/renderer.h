@@ -73,8 +73,8 @@ struct RenderSettings {
   Studio studio;          // on: replaces the world's Background; excludes the three above
   // Each picture is rebuilt from its samples and those of the renderer's earlier pictures
   // (live/reconstruction.h). It has only the channel rgba, it is biased, and Picture::note says so.
-  // A picture that was interrupted has its samples as they are, and no note. For pictures of one
-  // sequence and one view at each moment, in the order of their time.
+  // A picture that was interrupted has its samples as they are, and no note. For the frames of one
+  // film in their order; Renderer::start says which frame it is.
   bool preview = false;
   // Pictures are drawn by a z-buffer (raster/raster.h) instead of rays, and Picture::note says so.
   // They have the channel rgba alone, and no samples.
@@ -123,6 +123,7 @@ struct RenderResult {
   bool missing = false;
   bool interrupted = false; // the picture holds what was finished when it was interrupted
   double mapSeconds = 0, renderSeconds = 0;
+  std::optional<Picture> sampled;   // only for previews: the samples as they are
   double denoiseSeconds = 0;        // the time of whoever has denoised the picture; 0: nobody
   std::optional<DoubtCounts> doubt; // only for a denoised picture that was audited
   std::vector<RTworker> workers;    // workers of the cluster at the end of the picture
@@ -200,7 +201,10 @@ class Renderer {
   // Overlapping frames, for settings with a cluster. start() returns when the world is mapped and
   // the frame is under way; the world may then change. finish() waits for the oldest frame. Each
   // frame has the same bytes as from render(). Do not call render() while a frame is in flight.
-  void start(const View& view);
+  // frame: the number of the picture in its film; none: it follows the one before. A preview
+  // depends on the frames from live::FilmHistory::firstFor(frame) on, which must have been made in
+  // turn.
+  void start(const View& view, std::optional<int64_t> frame = {});
   RenderResult finish();
   size_t framesInFlight() const; // number of frames started and not finished
   // Returns how many frames to keep in flight, so that all machines have work and memory stays

@@ -219,12 +219,14 @@ WorldChanges Stage::collectChanges() {
   return worldChanges;
 }
 
-void Stage::apply(const WorldChanges& worldChanges) {
+void Stage::apply(const WorldChanges& worldChanges, bool patient) {
   if (!browser_) return;
-  if (worldChanges.otherWorld)
+  if (worldChanges.otherWorld) {
     makeMapper();
-  else
+  } else {
+    mapper_->setPatient(patient);
     mapper_->update(worldChanges.changes);
+  }
   mapper_->bind(worldChanges.bound);
   bound_ = worldChanges.bound;
   viewer_.reset();

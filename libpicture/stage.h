@@ -56,7 +56,8 @@ class Stage {
   // Ends the context. Returns why a recording is incomplete; empty if it is complete. leaveMapper:
   // gives up the mapper without destroying it; no other mapper may use the context then.
   std::string close(bool leaveMapper = false);
-  void apply(const WorldChanges& worldChanges);
+  // patient: large meshes that appear may come with a later call (OpenRTMapper::setPatient).
+  void apply(const WorldChanges& worldChanges, bool patient = false);
   // Returns the camera of a view. The default is the viewer of a running world.
   xvrml::CameraSettings cameraOf(const View& view) const;
   // Returns whether the view leaves out the first Viewpoint (camera.h).

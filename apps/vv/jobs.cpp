@@ -43,10 +43,11 @@ int print(const std::string& text) {
   return exitDone;
 }
 
-// Prepares what a world needs, and warns of folders that are missing.
+// Prepares what a world needs, and warns of folders that are missing and of suns that have set.
 void prepare(Options& options) {
   readScript(options);
   warnOfFolders(options);
+  warnOfSky(options);
   joinCluster(options);
 }
 

@@ -325,6 +325,10 @@ void setSky(const char* name, const Given& given, RenderRequest& request) {
   } catch (const std::exception& wrong) {
     throw py::value_error(fmt::format("{}: {}", name, wrong.what()));
   }
+  if (const std::string warning = picture::warningOf(*settings.sky);
+      !warning.empty() &&
+      PyErr_WarnEx(PyExc_RuntimeWarning, fmt::format("{}: {}", name, warning).c_str(), 1) != 0)
+    throw py::error_already_set();
   request.isLookOpen = false;
 }
 

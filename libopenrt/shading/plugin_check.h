@@ -13,8 +13,9 @@
 namespace openrt {
 
 // Sizes of RtsClass in the minor versions of the ABI, from 0 to that of this library.
-inline constexpr size_t classBytesByMinor[] = {sizeof(RtsClass), sizeof(RtsClass),
-                                                sizeof(RtsClass)};
+inline constexpr size_t classBytesByMinor[] = {offsetof(RtsClass, opening),
+                                               offsetof(RtsClass, opening),
+                                               offsetof(RtsClass, opening), sizeof(RtsClass)};
 static_assert(std::size(classBytesByMinor) == RTS_ABI_MINOR + 1);
 
 // Checks magic, versions, sizes and every table of a plug-in. Returns its classes as the host sees

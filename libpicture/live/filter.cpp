@@ -46,7 +46,7 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
     // Few samples are rarely like their mean: most lack the light that some have. Judged by what
     // they have in common with their neighbours they would lose it.
     const Lanes frames = max(load(now.accumulated.frames.data() + i), one);
-    const Lanes tolerance = lanesOf(lumaSpread) + lanesOf(earlySpread) / frames;
+    const Lanes tolerance = lanesOf(lumaSpread) + lanesOf(earlySpread / pass.perPixel) / frames;
     const Lanes perLuma = one / (tolerance * hn::Sqrt(spread) + lanesOf(1e-6f));
     const Lanes slope = abs(slopeX) + abs(slopeY);
     const Lanes scale = now.projection.parallel ? one : abs(ownNear);

@@ -85,6 +85,22 @@ inline Lanes shownPixel(Lanes pixel, Lanes within, int frame, int shown) {
   return min(hn::Floor((pixel + inside) * ratio), hn::Ceil((pixel + one) * ratio) - one);
 }
 
+// Returns the standard deviations of colours from the variances of their samples.
+inline LaneVec deviationOf(const LaneVec& variance, Lanes samples, Mask some) {
+  const LaneVec v = amounts(variance);
+  const Lanes per = lanesOf(1) / max(samples, lanesOf(1));
+  return {hn::IfThenElseZero(some, hn::Sqrt(v.x * per)),
+          hn::IfThenElseZero(some, hn::Sqrt(v.y * per)),
+          hn::IfThenElseZero(some, hn::Sqrt(v.z * per))};
+}
+
+// Stores the variance of the luma, which one sample does not tell. The colours of a sample vary
+// together.
+inline void storeVariance(const LaneVec& deviation, Lanes samples, Plane& plane, size_t i) {
+  const Lanes luma = min(lumaOf(deviation).x, lanesOf(brightest));
+  store(select(samples == lanesOf(1), lanesOf(Reading::unknown), luma * luma), plane.data() + i);
+}
+
 void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
   const FramePlanes& frame = pass.frame;
   const Moment& before = pass.before;
@@ -103,7 +119,8 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     Lanes alpha;
     const LaneVec radiance = amounts(loadQuadruples(frame.rgba + 4 * first, x, w, alpha));
     const LaneVec point = loadTriples(frame.position + 3 * first, x, w),
-                  motion = loadTriples(frame.motion + 3 * first, x, w),
+                  motion = pass.isFirst ? LaneVec{nan, nan, nan}
+                                        : loadTriples(frame.motion + 3 * first, x, w),
                   colour = loadTriples(frame.albedo + 3 * first, x, w);
     const Lanes depth = loadSome(frame.depth + first, x, w),
                 given = loadSome(frame.name + first, x, w),
@@ -184,6 +201,13 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     const LaneVec rest = radiance - reflected;
     const LaneVec light{min(rest.x / albedo.x, most), min(rest.y / albedo.y, most),
                         min(rest.z / albedo.z, most)};
+    if (frame.variance) {
+      const LaneVec deviation =
+          deviationOf(loadTriples(frame.variance + 3 * first, x, w), samples, some);
+      storeVariance(deviation, samples, reading.reflectionVariance, i);
+      storeVariance({deviation.x / albedo.x, deviation.y / albedo.y, deviation.z / albedo.z},
+                    samples, reading.variance, i);
+    }
     const LaneVec nothing{zero, zero, zero};
     store(albedo, reading.albedo, i);
     store(lumaOf(select(some, light, nothing)), reading.light, i);

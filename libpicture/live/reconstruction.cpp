@@ -39,11 +39,17 @@ FramePlanes planesOf(const Picture& frame) {
   if (frame.width < 1 || frame.height < 1 || frame.width > 65536 || frame.height > 65536)
     throw std::invalid_argument("a preview needs a frame of 1 to 65536 pixels each way, not " +
                                 std::to_string(frame.width) + " x " + std::to_string(frame.height));
-  return {planeOf(frame, RT_RGBA, 4),       planeOf(frame, RT_DEPTH, 1),
-          planeOf(frame, RT_NORMAL, 3),     planeOf(frame, RT_ALBEDO, 3),
-          planeOf(frame, RT_POSITION, 3),   planeOf(frame, RT_NAME, 1),
-          planeOf(frame, RT_MOTION, 3),     planeOf(frame, RT_SAMPLES, 1),
-          planeOf(frame, RT_REFLECTION, 3), planeOf(frame, RT_PLACE, 2)};
+  return {planeOf(frame, RT_RGBA, 4),
+          planeOf(frame, RT_DEPTH, 1),
+          planeOf(frame, RT_NORMAL, 3),
+          planeOf(frame, RT_ALBEDO, 3),
+          planeOf(frame, RT_POSITION, 3),
+          planeOf(frame, RT_NAME, 1),
+          planeOf(frame, RT_MOTION, 3),
+          planeOf(frame, RT_SAMPLES, 1),
+          planeOf(frame, RT_REFLECTION, 3),
+          planeOf(frame, RT_PLACE, 2),
+          frame.planes.count(RT_VARIANCE) ? planeOf(frame, RT_VARIANCE, 3) : nullptr};
 }
 
 } // namespace
@@ -105,13 +111,23 @@ struct Reconstruction::Impl {
       rowsOfFrame = Overlaps(picture.height, height);
   }
 
+  // Notes whether the samples in the pixels tell their noise. Those of cells do not.
+  void findVariance(FramePlanes& planes) {
+    if (sparse) planes.variance = nullptr;
+    if (!planes.variance && hasVariance)
+      for (Plane* plane : {&reading.variance, &reading.reflectionVariance})
+        std::fill(plane->begin(), plane->end(), Reading::unknown);
+    hasVariance = planes.variance != nullptr;
+  }
+
   // The surfaces of the frame before, by pixel.
   Moment& pixelsOfBefore() { return before.block > 1 ? pixelsBefore : before; }
 
   void read(const FramePlanes& planes) {
     const Moment& old = pixelsOfBefore();
-    const ReadPass pass{planes, old, areEqual(now.projection.camera, before.projection.camera),
-                        now.block > 1, shown.layout};
+    const ReadPass pass{
+        planes,        old,          areEqual(now.projection.camera, before.projection.camera),
+        now.block > 1, shown.layout, isFirst};
     if (!sparse) {
       rows(now, [&](int y) { readRow(pass, y, now, reading); });
       return;
@@ -137,6 +153,7 @@ struct Reconstruction::Impl {
     std::swap(now.accumulated, coats.now);
     std::swap(before.accumulated, coats.before);
     std::swap(reading.light, reading.reflection);
+    std::swap(reading.variance, reading.reflectionVariance);
     std::swap(work, coats.work);
   }
 
@@ -180,8 +197,12 @@ struct Reconstruction::Impl {
     constexpr int reach = 16;
     constexpr double fewFrames = 4;
     const int farthest = meanHistory() < fewFrames ? reach : reach / now.block;
-    FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
-                    1};
+    FilterPass pass{&now.accumulated.light,
+                    &work.variance,
+                    &work.filtered,
+                    &work.filteredVariance,
+                    1,
+                    perPixel};
     for (; pass.step <= farthest; pass.step *= 2) {
       rows(now, [&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
@@ -246,9 +267,9 @@ struct Reconstruction::Impl {
     const size_t numbers = 4 * size_t(picture.width);
     std::vector<float>& rgba = picture.planes[RT_RGBA];
     rgba.resize(numbers * size_t(picture.height));
-    const ShowPass pass{planes,      grid,       sparse ? pixelReading : reading,
-                        fresh,       bounds,     columns,
-                        rowsOfFrame, shownBefore};
+    const ShowPass pass{planes,      grid,        sparse ? pixelReading : reading,
+                        fresh,       bounds,      columns,
+                        rowsOfFrame, shownBefore, perPixel};
     rows(shown.layout, [&](int y) { showRow(pass, y, shown, rgba.data() + size_t(y) * numbers); });
     facts.showing = secondsSince(begin);
     return picture;
@@ -257,9 +278,12 @@ struct Reconstruction::Impl {
   Picture add(const Picture& frame, const FrameCamera& camera, int lightStride,
               OidnFilter* denoiser, ShownSize size) {
     facts = {};
-    const FramePlanes planes = planesOf(frame);
+    FramePlanes planes = planesOf(frame);
     const Layout layout(frame.width, frame.height);
     start(camera, layout, lightStride);
+    findVariance(planes);
+    const size_t count = size_t(frame.width) * size_t(frame.height);
+    perPixel = std::max(1.0f, *std::max_element(planes.samples, planes.samples + count));
     startShowing(layout, size);
     read(planes);
     names.markGone(pixelsOfBefore(), sparse ? pixels : now, shownBefore);
@@ -273,12 +297,16 @@ struct Reconstruction::Impl {
     const double cells = double(now.layout.width) * now.layout.height;
     facts.reprojected = std::accumulate(work.found.begin(), work.found.end(), 0.0) / cells;
     facts.history = meanHistory();
+    isFirst = false;
     return picture;
   }
 
   tbb::task_arena arena;
-  Moment now, before; // by cell
+  bool isFirst = true; // no frame has been added since reset()
+  Moment now, before;  // by cell
   Reading reading;
+  bool hasVariance = false; // `reading` has variances
+  float perPixel = 1;       // samples in a pixel of the frame, 1 or more
   Work work;
   Layout workLayout;
   // These are for what coats reflect: `accumulated` of `now` and `before`, and the working storage.
@@ -313,6 +341,7 @@ void Reconstruction::reset() {
   impl_->shownLight = ShownLight();
   impl_->shown = Shown();
   impl_->coats.some = false;
+  impl_->isFirst = true;
 }
 
 Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride,

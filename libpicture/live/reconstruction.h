@@ -61,6 +61,7 @@ class Reconstruction {
   // and its only plane is RT_RGBA. Frames may differ in size. The bytes depend on the frames since
   // reset() and on nothing else, in particular not on the number of threads. `frame` must have the
   // planes of previewChannels, RT_RGBA and RT_SAMPLES; otherwise std::invalid_argument is thrown.
+  // With RT_VARIANCE and several samples per pixel, these tell noise from detail.
   //
   // A frame without noise comes out unchanged but for anti-aliasing over time: its illumination is
   // that of neighbours on the same surface, or of straight edges.

@@ -15,6 +15,7 @@ namespace picture::live {
 struct FramePlanes {
   const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples, *reflection,
       *place;
+  const float* variance; // that of the samples in a pixel, not that of their mean; null: unknown
 };
 
 // The surfaces of a frame, by pixel or by cell, and what is kept of them for the next frame.
@@ -45,6 +46,7 @@ struct Reading {
     for (Plane3* planes : {&albedo, &light, &reflection}) planes->assign(layout.size(), 0);
     for (Plane* plane : {&moveX, &moveY, &pastX, &pastY, &pastNearness, &hitX, &hitY})
       plane->assign(layout.size(), 0);
+    for (Plane* plane : {&variance, &reflectionVariance}) plane->assign(layout.size(), unknown);
   }
 
   // By pixel: how far the surface has moved in the picture since the frame before, in widths and
@@ -59,14 +61,18 @@ struct Reading {
   Plane3 albedo;     // what the illumination is multiplied by; nowhere 0
   Plane3 light;      // illumination of this frame's samples, without what coats reflect
   Plane3 reflection; // radiance that coats reflect
+  // Variance of the luma of both, as the samples in a pixel tell; unknown: there are too few.
+  static constexpr float unknown = -1;
+  Plane variance, reflectionVariance;
 };
 
 // Holds what is computed of the illumination and not kept, by cell.
 struct Work {
   void resize(const Layout& layout) {
     filtered.assign(layout.size(), 0);
-    for (Plane* plane : {&deviation, &unlike, &variance, &filteredVariance, &limit, &noise, &change,
-                         &level, &doubt, &otherChange, &otherLevel, &otherDoubt, &calm})
+    for (Plane* plane :
+         {&deviation, &expected, &unlike, &variance, &filteredVariance, &limit, &noise, &change,
+          &level, &doubt, &otherChange, &otherLevel, &otherDoubt, &calm})
       plane->assign(layout.size(), 0);
     verdict.assign(layout.size(), notJudged);
     found.assign(size_t(layout.height), 0);
@@ -76,6 +82,8 @@ struct Work {
   // Square of what a cell's luma differs from its neighbours', scaled to the variance of noise
   // without correlation; 1 where that is more than edges and smooth shading explain.
   Plane deviation, unlike;
+  // The deviation that the noise of the samples in the pixels explains; negative: unknown.
+  Plane expected;
   Plane variance; // variance of the illumination's luma as it goes into the filter
   Plane limit;    // luma beyond that is taken for a rare bright sample
   Plane noise;    // whether this frame's samples are noisy around here, 0 to 1
@@ -130,12 +138,14 @@ struct Bounds {
 
 // Reads a row of pixels: guides, illumination, and where the surfaces were in the frame before.
 // rests: no number of the camera has changed since then. sparse: pixels without a sample of light
-// have guides. shown: the size of the picture that is shown.
+// have guides. shown: the size of the picture that is shown. isFirst: everything in the frame is
+// new, whatever it has moved since a frame that was not added.
 struct ReadPass {
   const FramePlanes& frame;
   const Moment& before;
   bool rests, sparse;
   const Layout& shown;
+  bool isFirst;
 };
 void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading);
 // Finds shapes that the frame before showed and this one shows nowhere, and marks their pixels in
@@ -176,12 +186,14 @@ void accumulateRow(const Reading& reading, int y, Moment& now, Work& work);
 void boundRow(int y, Moment& now);
 
 // One pass of the à-trous filter over illumination and variance. Neighbours are `step` cells apart.
+// perPixel: samples in a pixel of the frame, 1 or more.
 struct FilterPass {
   const Plane3* from;
   const Plane* variance;
   Plane3* to;
   Plane* toVariance;
   int step;
+  float perPixel;
 };
 void filterRow(const FilterPass& pass, int y, const Moment& now);
 
@@ -219,6 +231,7 @@ struct ShowPass {
   const Bounds& bounds;
   const Overlaps &columns, &rows;
   const Shown& before; // what the frame before has shown
+  float perPixel;      // as in FilterPass
 };
 // Accumulates the colours over time, which smooths edges and textures, in a row of the shown
 // picture: each sample counts for the pixel that it lies in. Writes width * 4 floats with the alpha

@@ -23,6 +23,8 @@ namespace HWY_NAMESPACE {
 constexpr float framesAtRest = 256, framesSampled = 16, framesMoving = 4;
 // A pixel that a sample lies in only now and then keeps at least as many samples.
 constexpr float fewestSamples = 2;
+// Neighbours of one shape lie on one side of an edge if the cosine between their normals is larger.
+constexpr float sameSide = 0.9f;
 
 // Some pixels of the shown picture, and the pixels of the frame that their colours come from.
 struct Target {
@@ -291,12 +293,66 @@ inline float shareOf(const ShowPass& pass, const Layout& layout) {
 
 inline Weights weightsOf(float share, const Target& target, Lanes old, Lanes mostFrames) {
   const Lanes one = lanesOf(1);
-  const Lanes most = max(mostFrames * lanesOf(share), lanesOf(fewestSamples));
+  const Lanes most = max(mostFrames * lanesOf(share), lanesOf(share < 1 ? fewestSamples : 1));
   const Mask lends = hn::AndNot(target.hit, old < one);
   const Lanes added = hn::IfThenElseZero(
       target.some, select(target.hit, one, hn::IfThenElseZero(lends, lanesOf(share))));
   const Lanes samples = min(old + added, most);
   return {samples, hn::IfThenElseZero(added > lanesOf(0), min(added / samples, one))};
+}
+
+// The pixels of the frame that those of `target` have the middles of, in planes without a border.
+inline Indices pixelsOf(const ShowPass& pass, const Target& target) {
+  const IndicesTag tag;
+  const int row = pass.rows.middle[size_t(target.y)];
+  return hn::Set(tag, row * pass.pixels.layout.width) +
+         hn::LoadU(tag, pass.columns.middle.data() + target.x);
+}
+
+// Returns where several samples of a pixel may show more than one surface. `low` and `high` receive
+// the colours around.
+inline Mask mixesSurfaces(const ShowPass& pass, const Target& target, LaneVec& low, LaneVec& high) {
+  const Guides& guides = pass.pixels.guides;
+  const auto stride = int32_t(pass.pixels.layout.stride);
+  const Lanes name = gather(guides.name.data(), target.source);
+  const LaneVec normal = gather(guides.normal, target.source);
+  low = high = gather(pass.fresh.colour, target.source);
+  Mask mixes = name < name;
+  for (int k = 0; k < 9; k++) {
+    const Indices at = target.source + hn::Set(IndicesTag(), (k / 3 - 1) * stride + k % 3 - 1);
+    const Lanes other = gather(guides.name.data(), at);
+    const LaneVec colour = gather(pass.fresh.colour, at);
+    const Mask otherSide =
+        hn::Or(hn::Not(other == name), dot(gather(guides.normal, at), normal) < lanesOf(sameSide));
+    mixes = hn::Or(mixes, hn::And(other >= lanesOf(0), otherSide));
+    low = {min(low.x, colour.x), min(low.y, colour.y), min(low.z, colour.z)};
+    high = {max(high.x, colour.x), max(high.y, colour.y), max(high.z, colour.z)};
+  }
+  return hn::And(mixes, target.some);
+}
+
+// The colours of a frame, how noisy their light is, and how many frames are accumulated in motion.
+struct New {
+  LaneVec fresh;
+  Lanes noisy, frames;
+};
+
+// Several samples smooth the edges and textures of a pixel in one frame already, but not the light.
+// At edges they show several surfaces, and the filter has only followed one: the samples themselves
+// count there, within the colours around.
+inline New severalSamples(const ShowPass& pass, const Target& target, const New& one) {
+  const Lanes least = lanesOf(std::max(1.0f, framesMoving / pass.perPixel)), zero = lanesOf(0);
+  LaneVec low, high;
+  const Mask mixes = mixesSurfaces(pass, target, low, high);
+  const Indices first = hn::ShiftLeft<2>(pixelsOf(pass, target));
+  const auto sampled = [&](int colour, Lanes least, Lanes most) {
+    const Lanes v = gather(pass.frame.rgba + colour, first);
+    return clamp(select(isFinite(v), v, zero), least, most);
+  };
+  const LaneVec samples{sampled(0, low.x, high.x), sampled(1, low.y, high.y),
+                        sampled(2, low.z, high.z)};
+  const Lanes noisy = hn::IfThenElseZero(hn::Not(mixes), one.noisy);
+  return {select(mixes, samples, one.fresh), noisy, least + (one.frames - least) * noisy};
 }
 
 // Returns by how much light has to change to have another level, as far as it is noisy: shadows
@@ -316,11 +372,7 @@ inline Lanes mixed(Lanes old, Lanes fresh, Lanes low, Lanes high, Lanes part) {
 // Writes the colours of pixels with the alpha of the frame.
 inline void writeColours(const ShowPass& pass, const Layout& layout, const Target& target,
                          const LaneVec& colour, float* rgba) {
-  const Layout& frame = pass.pixels.layout;
-  const IndicesTag tag;
-  const int row = pass.rows.middle[size_t(target.y)];
-  const Indices pixel =
-      hn::Set(tag, row * frame.width) + hn::LoadU(tag, pass.columns.middle.data() + target.x);
+  const Indices pixel = pixelsOf(pass, target);
   // Pixels without light of their own have no alpha of their own.
   const Mask lit = gather(pass.frame.samples, pixel) > lanesOf(0);
   const Lanes alpha = gather(pass.frame.rgba + 3, hn::ShiftLeft<2>(pixel));
@@ -336,6 +388,7 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
   const Layout &layout = shown.layout, &old = pass.before.layout;
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   const float share = shareOf(pass, layout);
+  const bool areSeveral = pass.perPixel > 1 && layout == pass.pixels.layout;
   for (int x = 0; x < layout.width; x += width()) {
     const Target target = targetAt(pass, layout, x, y);
     Origin origin = originOf(pass, layout, target);
@@ -348,11 +401,14 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
     samples = samples * gather(pass.bounds.valid.data(), target.source);
     const Lanes noise = gather(pass.fresh.noise.data(), target.source);
     const Mask quiet = hn::And(rests, noise <= zero);
-    const Lanes most = select(quiet, lanesOf(framesAtRest),
-                              select(rests, lanesOf(framesSampled), lanesOf(framesMoving)));
+    New now{gather(pass.fresh.colour, target.source), min(noise + noise, one),
+            lanesOf(framesMoving)};
+    if (areSeveral) now = severalSamples(pass, target, now);
+    const Lanes most =
+        select(quiet, lanesOf(framesAtRest), select(rests, lanesOf(framesSampled), now.frames));
     const Weights weights = weightsOf(share, target, samples, most);
     const Between between = betweenAt(pass, layout, target);
-    LaneVec fresh = gather(pass.fresh.colour, target.source);
+    LaneVec fresh = now.fresh;
     const Mask lent = hn::And(target.exists, hn::AndNot(target.hit, samples < one));
     if (!hn::AllFalse(LanesTag(), lent))
       fresh = select(target.hit, fresh, coloursAround(pass, between));
@@ -364,13 +420,12 @@ void showRow(const ShowPass& pass, int y, Shown& shown, float* rgba) {
                     hn::IfThenElseZero(origin.known, gather(pass.before.level.data(), origin.at));
     const Lanes frames = min(samples * lanesOf(1 / share) + one, most);
     const Mask known = hn::And(level > zero, around > zero);
-    const Lanes now = select(known, level + (around - level) / max(frames, one),
-                             select(around > zero, around, level));
-    const Lanes noisy = min(noise + noise, one);
-    before = before * changeOf(level, now, noisy);
+    const Lanes brightness = select(known, level + (around - level) / max(frames, one),
+                                    select(around > zero, around, level));
+    before = before * changeOf(level, brightness, now.noisy);
     const Lanes own = gather(pass.fresh.light.x.data(), target.source);
-    fresh = fresh * changeOf(select(target.hit, own, around), now, noisy);
-    store(now, shown.level.data() + target.i);
+    fresh = fresh * changeOf(select(target.hit, own, around), brightness, now.noisy);
+    store(brightness, shown.level.data() + target.i);
     const LaneVec low = gather(pass.bounds.low, target.source),
                   high = gather(pass.bounds.high, target.source);
     const LaneVec accumulated{mixed(before.x, fresh.x, low.x, high.x, weights.part),

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace picture {
 
 namespace {
@@ -85,9 +87,16 @@ double Sky::outdoors() const {
   return diffuse + direct * std::max(0.0, std::sin(sun.altitude * pi / 180));
 }
 
+std::string warningOf(const Sky& sky) {
+  if (!sky.hasSet) return "";
+  return fmt::format("the sun is not above the horizon (altitude {:.2f} degrees), so there is only "
+                     "the light of the sky",
+                     sky.sun.altitude);
+}
+
 // Pixels of the sky begin at the horizon, between two rows.
 xvrml::RadianceImage pictureOf(const Sky& sky) {
-  const bool shines = sky.direct > 0 && sky.sun.altitude > 0;
+  const bool shines = sky.direct > 0;
   Sphere sphere(shines ? 1024 : 256); // a sun is three pixels wide
   const Direction sun = directionOf(sky.sun, sky.north);
   const double scale = sky.diffuse / horizontalIlluminance(sky.luminance, sun);

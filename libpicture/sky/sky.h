@@ -17,6 +17,7 @@ struct Sky {
   SunPosition sun{45, 180}; // where it stands, whether it shines or not
   double diffuse = 10000;   // illuminance of a horizontal plane by the sky without the sun, lux
   double direct = 0;        // illuminance of a plane that faces the sun, by the sun, lux
+  bool hasSet = false;      // the sun was to shine, but is not above the horizon; direct is 0
   double ground = .2;       // reflectance of what is below the horizon
   double north = 0;         // degrees that north is turned from -z towards +x
 
@@ -32,6 +33,8 @@ struct Sky {
 Sky readSky(const std::string& text);
 inline constexpr const char* skyForms =
     "cie:TYPE (1 to 16), perez:DIRECT/DIFFUSE (W/m2) or epw:FILE@MM-DDTHH:MM";
+// Returns what the user should know about a sky, as one line; empty: nothing.
+std::string warningOf(const Sky& sky);
 // Returns the file that the words name; empty: none.
 std::string fileOfSky(const std::string& text);
 

@@ -30,6 +30,8 @@ double numberOf(Text word, Text text, double least, double most) {
   return value;
 }
 
+constexpr double leastLux = 1e-6; // a thousandth of a sky of stars
+
 // Returns the two parts of a text at its only slash.
 std::array<Text, 2> halves(Text word, Text text) {
   const size_t slash = text.find('/');
@@ -53,6 +55,13 @@ void readWord(Text word, Words& words) {
   const Text key = word.substr(0, equals),
              value = equals == word.npos ? Text() : word.substr(equals + 1);
   const auto number = [&](double least, double most) { return numberOf(key, value, least, most); };
+  const auto illuminance = [&] {
+    const double lux = number(0, 1e9);
+    if (lux > 0 && lux < leastLux)
+      refuse(fmt::format("{}: 0, or a number from {} to 1e9 was expected, not \"{}\"", key,
+                         leastLux, value));
+    return lux;
+  };
   const auto two = [&](double most0, double least1, double most1) {
     const auto [first, second] = halves(key, value);
     return std::array{numberOf(key, first, -most0, most0), numberOf(key, second, least1, most1)};
@@ -66,9 +75,9 @@ void readWord(Text word, Words& words) {
   } else if (key == "time") {
     words.moment = readMoment(value);
   } else if (key == "lux") {
-    words.diffuse = number(0, 1e9);
+    words.diffuse = illuminance();
   } else if (key == "direct") {
-    words.direct = number(0, 1e9);
+    words.direct = illuminance();
   } else if (key == "dew") {
     words.dewPoint = number(-90, 60);
   } else if (key == "ground") {
@@ -110,12 +119,15 @@ void setStandard(Text type, const Words& words, Sky& sky) {
   if (words.direct.value_or(0) > 0 && !words.sun)
     refuse("direct needs sun=ALTITUDE/AZIMUTH, or place and time");
   sky.diffuse = words.diffuse.value_or(sky.diffuse);
-  sky.direct = words.direct.value_or(0);
+  const double direct = words.direct.value_or(0);
+  sky.hasSet = direct > 0 && words.sun->altitude <= 0;
+  sky.direct = sky.hasSet ? 0 : direct;
 }
 
 void setMeasured(const Irradiance& measured, const Words& words, Sky& sky) {
   if (words.diffuse || words.direct) refuse("lux and direct belong to cie");
   const PerezSky made = perezSky(measured);
+  sky.hasSet = measured.directNormal > 0 && measured.sunAltitude <= 0;
   sky.luminance = made.luminance;
   sky.diffuse = made.diffuseHorizontal;
   sky.direct = made.directNormal;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "behaviour/viewer/interaction.h"
 #include "browser/state.h"
 #include "geometry/edited.h"
 #include "graph/crossing.h"
@@ -19,6 +20,7 @@ Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double st
                  const RunOptions& run)
     : impl_(std::make_unique<Impl>(*this, std::move(world), options, run)) {
   impl_->time = start;
+  setScriptPatience(impl_->options.scriptPatience);
   followEdits(*impl_->world);
   impl_->engine->beginCascade(impl_->run.epoch + start);
   impl_->engine->adoptScope(impl_->world->scope, true);
@@ -45,6 +47,7 @@ ScriptCounts Browser::scripts() const {
 }
 void Browser::setScriptPatience(double seconds) {
   impl_->options.scriptPatience = seconds > 0 ? seconds : 0;
+  interactionOf(*impl_->engine).picker.setLagging(seconds > 0);
 }
 uint64_t Browser::generation() const { return impl_->generation; }
 

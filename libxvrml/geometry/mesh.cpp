@@ -24,6 +24,25 @@ void Mesh::viewOwn() {
   fogCoords = ownFogCoords;
 }
 
+namespace {
+template <class T> void takeView(std::span<const T>& view, std::vector<T>& own) {
+  if (view.data() == own.data()) return;
+  own.assign(view.begin(), view.end());
+  view = own;
+}
+} // namespace
+
+void Mesh::takeAll() {
+  takeView(points, ownPoints);
+  takeView(indices, ownIndices);
+  takeView(normals, ownNormals);
+  takeView(texCoords, ownTexCoords);
+  takeView(texPlaces, ownTexPlaces);
+  takeView(colors, ownColors);
+  takeView(alphas, ownAlphas);
+  takeView(fogCoords, ownFogCoords);
+}
+
 Coordinates coordinates(const NodeRef& node) {
   Coordinates result;
   Node* rendered = renderedNode(node.get());

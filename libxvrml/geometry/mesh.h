@@ -70,6 +70,7 @@ struct Mesh {
   std::vector<Color> ownColors;
   std::vector<float> ownAlphas, ownFogCoords;
   void viewOwn(); // makes all views refer to the owned vectors
+  void takeAll(); // copies what the views show of the node's arrays, so that the node may go
 
   Mesh() = default;
   Mesh(Mesh&&) = default; // moved vectors keep their storage, so views stay valid

@@ -260,6 +260,10 @@ void OpenRTMapper::bind(const BoundNodes& nodes) {
 
 void OpenRTMapper::update(const FieldChanges& changes) { impl_->update(changes); }
 
+void OpenRTMapper::setPatient(bool patient) { impl_->patient = patient; }
+
+bool OpenRTMapper::isBehind() const { return impl_->rootsAwait || !impl_->awaiting.empty(); }
+
 void OpenRTMapper::map(const CameraSettings& camera) {
   Impl& m = *impl_;
   report(m.world.diagnostics, {}, "before the world was mapped");

@@ -69,9 +69,13 @@ struct OpenRTMapper::Impl {
 
   // Changes between frames: update.cpp.
   void update(const FieldChanges& changes);
+  bool patient = false;          // set by setPatient()
+  std::vector<NodeRef> awaiting; // nodes that have changed, and are planned later
+  bool rootsAwait = false;       // the roots of the world are
 
  private:
   struct Work;
+  void planChanged(Work& work);
   void transformChanged(Work& work, Node& node);
   void geometryChanged(Work& work, Node& node);
   void appearanceChanged(Work& work, Node& node);

@@ -109,6 +109,30 @@ int32_t Meshes::find(const Node* geometry) const {
   return known ? *known : none_;
 }
 
+MeshOptions Meshes::optionsFor(TextureNeed need) const {
+  return {.needTexCoords = need != TextureNeed::none,
+          .exactShapes = exactShapes_,
+          .pointSize = pointSize_,
+          .lineWidth = lineWidth_,
+          .needTexPlaces = need >= TextureNeed::volume};
+}
+
+bool Meshes::awaits(Node& geometry, TextureNeed need) {
+  if (find(&geometry) != none_) return false;
+  const auto make = [need, options = optionsFor(need),
+                     limits = world_.options.limits](const NodeRef& copy) {
+    Diagnostics found;
+    MeshOptions own = options;
+    own.limits = &limits;
+    own.diagnostics = &found;
+    auto mesh = std::make_unique<Mesh>(buildMesh(*copy, own));
+    const uint64_t bytes = ownBytes(*mesh);
+    mesh->takeAll();
+    return Built{std::move(mesh), bytes, found.list(), need};
+  };
+  return jobs_.ask(geometry, make) == GeometryJobs<Built>::State::pending;
+}
+
 bool Meshes::require(int32_t mesh, TextureNeed need) {
   Entry& entry = entries_[size_t(mesh)];
   if (entry.need >= need) return false;
@@ -132,6 +156,7 @@ void Meshes::setThickness(float points, float lines) {
 }
 
 void Meshes::rebuildAll() {
+  jobs_ = {};
   for (size_t mesh = 0; mesh < entries_.size(); ++mesh)
     if (entries_[mesh].geometry) changed(int32_t(mesh));
 }
@@ -164,28 +189,37 @@ bool isThick(const Mesh& mesh, Node& geometry) {
 }
 } // namespace
 
+Meshes::Built Meshes::build(Entry& entry) {
+  Limits limits = world_.options.limits;
+  if (!entry.known) entry.triangles = quota_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+  const bool scarce = entry.triangles < limits.triangles;
+  if (!entry.said && !scarce)
+    if (std::optional<Built> built = jobs_.take(*entry.geometry);
+        built && built->need == entry.need) {
+      for (const Diagnostic& problem : built->problems) world_.diagnostics.add(problem);
+      return std::move(*built);
+    }
+  if (scarce) limits.triangles = entry.triangles;
+  const std::string name = scarce ? quota_.budget().name() : std::string();
+  Diagnostics silent; // problems of the geometry were reported by the first build
+  MeshOptions options = optionsFor(entry.need);
+  options.limits = &limits;
+  options.diagnostics = entry.said ? &silent : &world_.diagnostics;
+  options.limitName = name;
+  options.former = entry.topology.get();
+  auto mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
+  const uint64_t bytes = ownBytes(*mesh);
+  return {std::move(mesh), bytes, {}, entry.need};
+}
+
 const Mesh& Meshes::get(int32_t mesh) {
   // Equal meshes share the arrays of the first of their group.
   if (const int32_t first = equal(mesh); first != mesh) return get(first);
   Entry& entry = entries_[size_t(mesh)];
   if (entry.mesh) return *entry.mesh;
-  Diagnostics silent; // problems of the geometry were reported by the first build
-  Limits limits = world_.options.limits;
-  if (!entry.known) entry.triangles = quota_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
-  const bool scarce = entry.triangles < limits.triangles;
-  if (scarce) limits.triangles = entry.triangles;
-  const std::string name = scarce ? quota_.budget().name() : std::string();
-  const MeshOptions options{.needTexCoords = entry.need != TextureNeed::none,
-                            .limits = &limits,
-                            .diagnostics = entry.said ? &silent : &world_.diagnostics,
-                            .limitName = name,
-                            .exactShapes = exactShapes_,
-                            .former = entry.topology.get(),
-                            .pointSize = pointSize_,
-                            .lineWidth = lineWidth_,
-                            .needTexPlaces = entry.need >= TextureNeed::volume};
-  entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
-  if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
+  Built built = build(entry);
+  entry.mesh = std::move(built.mesh);
+  if (!quota_.take(built.bytes, entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
   built_.push_back(mesh);
   if (entry.known) return *entry.mesh;
@@ -201,7 +235,7 @@ const Mesh& Meshes::get(int32_t mesh) {
       entry.extent.primitives >= minimumComparedPrimitives)
     join(mesh);
   if (equal(mesh) == mesh) return *entry.mesh;
-  quota_.give(ownBytes(*entry.mesh));
+  quota_.give(built.bytes);
   entry.mesh.reset();
   return get(mesh);
 }
@@ -273,6 +307,7 @@ Meshes::Extent Meshes::extent(int32_t mesh) {
 }
 
 void Meshes::release() {
+  jobs_.sweep();
   for (const int32_t mesh : built_) {
     Entry& entry = entries_[size_t(mesh)];
     if (entry.dynamic && entry.mesh) entry.topology = topologyOf(*entry.mesh);

@@ -1,11 +1,13 @@
 // meshes.h: the meshes of a world: one per geometry node, however many shapes use it. Meshes of
-// equal content form groups. Meshes are built on first use. [the mapper's thread]
+// equal content form groups. Meshes are built on first use, or before by jobs that others asked
+// for. [the mapper's thread; jobs have copies of their nodes]
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "base/index_table.h"
+#include "geometry/geometry_jobs.h"
 #include "geometry/half_space.h"
 #include "geometry/matrix.h"
 #include "geometry/mesh.h"
@@ -32,6 +34,11 @@ class Meshes {
   const std::vector<int32_t>& dropped() const { return dropped_; }
   void recycle();
   int32_t find(const Node* geometry) const;
+  // Returns whether a geometry without a mesh is to be added later, because a job builds its mesh;
+  // begins the job if it takes long.
+  bool awaits(Node& geometry, TextureNeed need);
+  // Gives up the job of a geometry that has changed.
+  void spoil(const Node& geometry) { jobs_.giveUp(geometry); }
   size_t size() const { return entries_.size(); }
   // Requires texture coordinates for these textures from now on. Returns true if an already built
   // mesh has to be rebuilt.
@@ -81,11 +88,12 @@ class Meshes {
   double reach(int32_t mesh, const Matrix& matrix, const Vector& from, const HalfSpaces& kept);
   // Adds the points of the transformed mesh.
   void add(Outermost& outermost, int32_t mesh, const Matrix& matrix, const HalfSpaces& kept);
-  // Frees the arrays; get() builds them again.
+  // Frees the arrays; get() builds them again. Gives up jobs that nobody waits for.
   void release();
 
  private:
   void rebuildAll();
+  MeshOptions optionsFor(TextureNeed need) const; // without limits and diagnostics
   static constexpr int32_t none_ = -1;
   struct Entry {
     NodeRef geometry;
@@ -100,7 +108,14 @@ class Meshes {
     TextureNeed need = TextureNeed::none;
     bool known = false, dynamic = false, said = false;
   };
-  struct Group { // meshes with equal content
+  struct Built {
+    std::unique_ptr<Mesh> mesh;
+    uint64_t bytes;                   // that the mesh takes beside the arrays of its node
+    std::vector<Diagnostic> problems; // found by a job
+    TextureNeed need;
+  };
+  Built build(Entry& entry); // takes the mesh that a job has built, if there is one
+  struct Group {             // meshes with equal content
     uint64_t hash = 0;
     uint32_t users = 0;
     int32_t first = none_; // the member that stands for all
@@ -126,6 +141,7 @@ class Meshes {
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;
   NodeMap<int32_t> index_;
+  GeometryJobs<Built> jobs_;
   std::vector<Group> groups_;
   int32_t freeGroup_ = none_;
   IndexTable byContent_;      // groups by their hash

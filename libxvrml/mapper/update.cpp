@@ -55,7 +55,6 @@ template <class Visit> void forEachShape(const Graph& graph, Node& part, const V
 
 void OpenRTMapper::Impl::update(const FieldChanges& changes) {
   Work work;
-  work.regroup = graph.planRoots();
   for (const FieldChange& change : changes) {
     if (!change.node || !change.field) continue; // the roots: handled by planRoots()
     Node& node = *change.node;
@@ -70,15 +69,13 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
       viewsStale = true;
       break;
     case Change::children:
-      if (const ItemId item = graph.find(&node)) {
-        graph.plan(item);
-        work.regroup = true;
-      }
+      if (graph.find(&node) != 0) awaiting.push_back(change.node);
       break;
     case Change::time:
     case Change::none: break;
     }
   }
+  planChanged(work);
   newSurfaces(work);
   if (work.regroup) regroup();
   for (const int32_t mesh : work.meshes) objects.meshChanged(mesh);
@@ -86,6 +83,25 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
   std::erase_if(work.replace, [&](ItemId id) { return !graph.items[id].planned; });
   if (!work.rewrite.empty()) objects.contentChanged(work.rewrite);
   if (!work.replace.empty()) objects.placingChanged(work.replace);
+}
+
+// Plans what has other children, and keeps for the next update what awaits large meshes.
+void OpenRTMapper::Impl::planChanged(Work& work) {
+  rootsAwait = patient && graph.awaits(nullptr);
+  if (!rootsAwait) work.regroup |= graph.planRoots();
+  std::vector<NodeRef> later;
+  SeenNodes seen;
+  for (const NodeRef& node : std::exchange(awaiting, {})) {
+    const ItemId item = graph.find(node.get());
+    if (item == 0 || !seen.insert(node.get())) continue;
+    if (patient && graph.awaits(node.get())) {
+      later.push_back(node);
+      continue;
+    }
+    graph.plan(item);
+    work.regroup = true;
+  }
+  awaiting = std::move(later);
 }
 
 void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
@@ -117,6 +133,7 @@ void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
                            first.type().index == nodes::Normal::typeIndex;
   walkHolders(first, visited, [&](Node& node) {
     const int32_t mesh = graph.meshes.find(&node);
+    if (mesh == none) graph.meshes.spoil(node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
     const bool otherSurface = graph.meshes.switchedSurface(mesh);

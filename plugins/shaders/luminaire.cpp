@@ -37,6 +37,11 @@ struct Luminaire : rts::LightSource<Luminaire> {
       "towards horizontal angle 0; angles grow counter-clockwise seen from above; types A and B: "
       "to the right"};
 
+  rts::Param<int> shown{"shown", 1,
+                        "1: the luminous opening that the profile tells is seen where the "
+                        "luminaire hangs; 0: it is not",
+                        0, 1};
+
   // Computed by prepare.
   const photometry::Photometry* photometry;
   rts::Vec3 down, zero, ninety; // orthonormal axes of the photometric angles
@@ -105,6 +110,23 @@ struct Luminaire : rts::LightSource<Luminaire> {
     if (!photometry || !(square > 1e-30)) return {};
     const double seen = double(photometry->towards(d, x, y)) * factor / (M_PI * square);
     return {-way, *color * float(std::fmin(seen, 1e30)), {}};
+  }
+  // The luminance of the opening is the intensity over the area that is seen of it. A direction in
+  // which the luminaire does not shine shows nothing.
+  rts::Opening opening(rts::Vec3 origin, rts::Vec3 direction) const {
+    if (!photometry || !*shown || !photometry->opening.exists()) return {};
+    const auto axes = [this](rts::Vec3 v) {
+      return photometry::Coordinates{rts::dot(v, down), rts::dot(v, zero), rts::dot(v, ninety)};
+    };
+    const photometry::Coordinates from = axes(origin - *location), along = axes(direction);
+    const double distance = photometry->opening.meet(from, along),
+                 length = std::hypot(along[0], along[1], along[2]);
+    if (!std::isfinite(distance)) return {};
+    const double a = -along[0] / length, x = -along[1] / length, y = -along[2] / length,
+                 luminance = double(photometry->towards(a, x, y)) * factor /
+                             photometry->opening.projected(a, x, y);
+    if (!(luminance > 0)) return {};
+    return {float(distance), *color * float(std::fmin(luminance, 1e30))};
   }
   rts::Extent extent() const {
     rts::Extent e;

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +27,9 @@ enum class Type {
   A  // polar axis vertical: horizontal turns around it, vertical leads up, -90 to 90
 };
 
+// A point or direction: along the photometric axis, and towards horizontal angles 0 and 90.
+using Coordinates = std::array<double, 3>;
+
 // The part of a luminaire that shines, in metres: a box, or an upright cylinder, about the
 // photometric centre. A file that does not say it has zeros.
 struct Opening {
@@ -33,6 +38,31 @@ struct Opening {
   double heights[4] = {};
   bool isRound = false; // with the diameter `zero`
 
+  bool exists() const { return zero > 0 && (isRound || ninety > 0); }
+  // Returns where a ray meets the opening from outside, in lengths of its direction; infinite: it
+  // does not. Coordinates are along the axis, towards horizontal angle 0, and towards 90. The sides
+  // stand on the lower face, which is half of the largest height below the centre.
+  double meet(const Coordinates& from, const Coordinates& along) const {
+    const double low = *std::max_element(heights, heights + 4) / 2;
+    const auto at = [&](double distance, size_t k) { return from[k] + distance * along[k]; };
+    const auto isOnFace = [&](double d) {
+      return isRound ? std::hypot(at(d, 1), at(d, 2)) <= zero / 2
+                     : std::fabs(at(d, 1)) <= zero / 2 && std::fabs(at(d, 2)) <= ninety / 2;
+    };
+    double nearest = std::numeric_limits<double>::infinity();
+    const auto meets = [&](double distance, bool isInside) {
+      if (distance > 0 && isInside) nearest = std::fmin(nearest, distance);
+    };
+    if (const double d = reach(from[0], along[0], low); d > 0) meets(d, isOnFace(d));
+    for (size_t k = 1; k <= (isRound ? 1 : 2); k++) { // the side that the ray comes from
+      const double d = isRound ? reachMantle(from, along)
+                               : reach(from[k], along[k], (k == 1 ? zero : ninety) / 2),
+                   height = heights[k - 1 + (along[k] > 0 ? 2 : 0)];
+      meets(d, at(d, 0) <= low && at(d, 0) >= low - height && height > 0 &&
+                   (isRound || std::fabs(at(d, 3 - k)) <= (k == 1 ? ninety : zero) / 2));
+    }
+    return nearest;
+  }
   // Returns the area that is seen from a direction, a unit vector as for Photometry::towards.
   double projected(double axis, double toZero, double toNinety) const {
     const double along = std::hypot(toZero, toNinety), h0 = heights[toZero < 0 ? 2 : 0],
@@ -40,6 +70,19 @@ struct Opening {
     if (isRound) return M_PI / 4 * zero * zero * std::fabs(axis) + zero * h0 * along;
     return zero * ninety * std::fabs(axis) + ninety * h0 * std::fabs(toZero) +
            zero * h90 * std::fabs(toNinety);
+  }
+
+ private:
+  // Returns how far it is to the nearer of two planes at both sides of the centre; 0: never.
+  static double reach(double from, double along, double plane) {
+    return along == 0 ? 0 : ((along < 0 ? plane : -plane) - from) / along;
+  }
+  // Returns how far it is to the mantle of a round opening, from outside; 0: never.
+  double reachMantle(const Coordinates& from, const Coordinates& along) const {
+    const double a = along[1] * along[1] + along[2] * along[2],
+                 b = from[1] * along[1] + from[2] * along[2],
+                 c = from[1] * from[1] + from[2] * from[2] - zero * zero / 4, root = b * b - a * c;
+    return a > 0 && root > 0 ? (-b - std::sqrt(root)) / a : 0;
   }
 };
 

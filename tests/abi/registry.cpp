@@ -46,8 +46,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refused{"missing_symbol", "exports no rtsPlugin"}, Refused{"small_symbol", "has 4 bytes"},
         Refused{"wrong_magic", "wrong magic number"},
-        Refused{"other_major", "made for shader ABI 2.2; this library has 1.2"},
-        Refused{"newer_minor", "made for shader ABI 1.3; this library has 1.2"},
+        Refused{"other_major", "made for shader ABI 2.2; this library has 1.3"},
+        Refused{"newer_minor", "made for shader ABI 1.4; this library has 1.3"},
         Refused{"plugin_size", "claims a plug-in structure of"},
         Refused{"no_classes", "claims 0 shader classes"},
         Refused{"many_classes", "claims 4294967295 shader classes"},

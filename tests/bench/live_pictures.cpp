@@ -5,6 +5,10 @@
 //
 //   bench_live [--size=WxH] [--fps=N] [--threads=N] [--seconds=N] [WORLD...]
 //
+// It measures how long pictures stand still when much appears (live_appear.h):
+//
+//   bench_live --appear [--threads=N]
+//
 // On a cluster it alternates between overlapping frames and one frame at a time, both paced like
 // the window and at full size as often as possible:
 //
@@ -36,6 +40,7 @@
 #include "libpicture/live.h"
 #include "libpicture/live/pacing.h"
 #include "libpicture/live/reconstruction.h"
+#include "live_appear.h"
 #include "live_show.h"
 
 using namespace picture;
@@ -49,6 +54,7 @@ struct Options {
   double fps = 30, seconds = 4;
   ClusterSettings cluster;
   std::vector<std::string> worlds;
+  bool appear = false;
   ShowOptions show;         // its folder is empty: not asked for
   ConvergeOptions converge; // the same
 };
@@ -94,6 +100,10 @@ Options read(int argc, char** argv) {
   for (int i = 1; i < argc; i++) {
     const std::string a = argv[i];
     if (readShow(a, o)) continue;
+    if (a == "--appear") {
+      o.appear = true;
+      continue;
+    }
     if (std::sscanf(a.c_str(), "--size=%dx%d", &o.width, &o.height) == 2) continue;
     if (std::sscanf(a.c_str(), "--fps=%lf", &o.fps) == 1 ||
         std::sscanf(a.c_str(), "--seconds=%lf", &o.seconds) == 1)
@@ -416,6 +426,7 @@ void measureWorld(const std::string& world, const Options& options,
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 4096);
   const Options options = read(argc, argv);
+  if (options.appear) return measureAppearance(options.threads) ? 0 : 1;
   if (!options.show.folder.empty() || !options.converge.folder.empty())
     return keepPictures(options);
   std::shared_ptr<Cluster> cluster;

@@ -5,7 +5,8 @@ hardening.py [--plain] [--partial] PLACE...
 PLACE      a file, a folder (all programs and shared libraries below it), a wheel, a Debian package
 --plain    does not require stack protector, _FORTIFY_SOURCE and endbr64: for debug builds and
            plug-ins of other projects
---partial  PLACE need not hold all programs and libraries of the project: one package, a plug-in
+--partial  the places together need not hold all programs and libraries of the project: one package, a
+           plug-in
 hardening.py --self    tests this check with programs made for it
 
 For every file:
@@ -179,6 +180,7 @@ def unpacked(place, scratch):
 
 def check(places, plain, partial):
     bad = 0
+    names = set()
     with tempfile.TemporaryDirectory() as scratch:
         for place in map(pathlib.Path, places):
             packed = place.suffix in (".deb", ".whl")
@@ -194,14 +196,11 @@ def check(places, plain, partial):
                         f"{place if packed else ''}{'/' if packed else ''}{path.relative_to(folder) if packed else path}: {complaint}"
                     )
                     bad += 1
-            names = {re.sub(r"(\.so)[.\d]*$", r"\1", p.name) for p in files}
-            for missing in (name for name in WANTED if name not in names and not partial):
-                print(f"{place}: {missing} is not there: the check reads the wrong place")
-                bad += 1
-            if not files:
-                print(f"{place}: no program and no library")
-                bad += 1
+            names |= {re.sub(r"(\.so)[.\d]*$", r"\1", p.name) for p in files}
             print(f"{place}: {len(files)} programs and libraries")
+    for missing in (name for name in WANTED if name not in names and not partial):
+        print(f"{missing} is not there: the check reads the wrong place")
+        bad += 1
     print(f"{bad} complaints")
     return bad
 

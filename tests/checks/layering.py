@@ -189,7 +189,7 @@ TABLE = [
     part("vv-start", "apps/vv/start/", "starts worlds as the options say, and runs their clock",
          "xvrml-h picture vv-process vv-options vv-report common system"),
     part("vv-input", "apps/vv/session/input/", "what a user does, as events, keys and scripts",
-         "xvrml-h picture vv-options"),
+         "xvrml-h picture vv-options common"),
     part("vv-edit", "apps/vv/edit/",
          "the editor of a world: selection, outline and properties as rows that each face draws",
          "xvrml-h picture common"),

@@ -234,6 +234,17 @@ def test_a_sun_shines_from_its_place_and_casts_shadows(world):
     assert north.values[0, 0] < 1
 
 
+def test_a_sun_that_has_set_is_told(vv, world):
+    sky = "cie:12,sun=-3/90,direct=80000"
+    (vv.folder / "open.wrl").write_text(HEAD + "ORTSensor { size 1 1 columns 1 rows 1 }")
+    done = vv("open.wrl", "--measure", "out.csv", "--sky", sky)
+    assert done.returncode == 0 and "sun is not above the horizon (altitude -3.00" in done.stderr
+    done = vv("open.wrl", "--measure", "out.csv", "--sky", sky, "--quiet")
+    assert "horizon" not in done.stderr
+    with pytest.warns(RuntimeWarning, match="not above the horizon"):
+        world(sensor((0, 0, 0), (0, 1, 0))).measure(sky=sky)
+
+
 def test_intervals_under_a_clear_sky_hold(world):
     """The room of case 5.9 under a clear sky: 400 readings with seeds of their own."""
     reference = Reference(12)

@@ -143,7 +143,6 @@ def test_transparent_pictures(usable):
     (("-o", "a.png", "--compare", "ref.exr"), "--compare"),
     (("--measure", "a.csv"), "--measure"),
     (("-o", "a.png", "--false-colour", "auto"), "--false-colour"),
-    (("-o", "a.png", "--preview", "--frames", "0-3"), "--preview"),
     (("-o", "a.pfm", ), "PFM files cannot say that they are denoised"),
     (("-o", "a.exr", "--channels", "error"), "--raw FILE.exr keeps them"),
     (("-o", "a.exr", "--channels", "trust", "--raw", "r.png"), "--raw FILE.exr keeps them"),

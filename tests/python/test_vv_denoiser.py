@@ -1,5 +1,5 @@
-"""Tests --denoiser: previews that a fake of the library Open Image Denoise filters, its absence and
-its failures, and what files and messages say. Pictures without --preview are never touched."""
+"""Tests the denoiser of previews: a fake of the library Open Image Denoise, its absence and its
+failures, and what files and messages say. Pictures without --preview are never touched."""
 import shutil
 import subprocess
 
@@ -44,7 +44,7 @@ def test_it_filters_previews_and_they_say_so(rolling, fake):
     rolling.library(fake())
     unasked = frames(rolling, "unasked.ppm", "--preview", "--spp", "1", last=2)
     assert unasked == own, "files do not depend on an installed library unless that is asked for"
-    asked = frames(rolling, "oidn.ppm", "--preview", "--spp", "1", "--denoiser", "oidn", last=2)
+    asked = frames(rolling, "oidn.ppm", "--preview", "--spp", "1", "--denoise", last=2)
     note = NOTE.format("1 sample").replace("per pixel", f"per pixel by {NAME}")
     assert note.encode() in asked
     assert bytes_of(without_note(asked)) != bytes_of(without_note(own))
@@ -53,8 +53,7 @@ def test_it_filters_previews_and_they_say_so(rolling, fake):
                    "--preview",
                    "--spp",
                    "1",
-                   "--denoiser",
-                   "oidn",
+                   "--denoise",
                    "--threads",
                    "1",
                    last=2)
@@ -64,7 +63,7 @@ def test_it_filters_previews_and_they_say_so(rolling, fake):
 def test_pictures_without_bias_are_not_touched(rolling, fake):
     true = frames(rolling, "true.ppm", "--spp", "2", last=1)
     rolling.library(fake())
-    assert frames(rolling, "oidn.ppm", "--spp", "2", "--denoiser", "oidn", last=1) == true
+    assert frames(rolling, "oidn.ppm", "--spp", "2", "--denoiser", "auto", last=1) == true
 
 
 @pytest.mark.parametrize("fault, words", [
@@ -83,8 +82,8 @@ def test_a_library_that_cannot_be_used_is_refused(rolling, fake, fault, words):
 
 def test_a_failure_ends_the_sequence(rolling, fake):
     rolling.library(fake("FAKE_FAILING_LARGE"))
-    done = rolling("rolling.wrl", "--frames", "0-2", "--preview", "--denoiser", "oidn", "--size",
-                   "64x48", "-o", "a.png")
+    done = rolling("rolling.wrl", "--frames", "0-2", "--preview", "--denoise", "--size", "64x48",
+                   "-o", "a.png")
     assert done.returncode == 1 and "the fake cannot filter this" in done.talk, done.talk
 
 

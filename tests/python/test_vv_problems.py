@@ -52,6 +52,14 @@ def test_hints_for_pictures_that_show_nothing(vv):
     talk = vv("dark.wrl", "-o", "x.png", *SMALL).talk
     assert talk == "vv: the picture is black: the world has no light and its headlight is off; --headlight on\n"
     assert vv("dark.wrl", "-o", "x.png", "--headlight", "on", *SMALL).talk == ""
+    diffuse = 'appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse" options "color emission %s" } } '
+    vv.write(
+        "lamp.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { position 0 0 5 fieldOfView .1 }\nShape { " +
+        diffuse % "0 0 0" + "geometry Box { } }\nTransform { translation 0 3 2 children Shape { " + diffuse % "9 9 9" +
+        "geometry Sphere { radius .5 } } }")
+    talk = vv("lamp.wrl", "-o", "x.png", "--transport", "direct", *SMALL).talk
+    assert talk == ("vv: the picture is black: the world has no lamp, and --transport direct leaves out light of "
+                    "emitters on other surfaces; --transport path\n")
     # a silhouette before a background that an option gives
     silhouette = "vv: all shapes in view are black: the world has no light and its headlight is off; --headlight on\n"
     vv.write("small.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } geometry Box { } }")

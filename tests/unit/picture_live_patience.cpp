@@ -1,5 +1,5 @@
-// picture_live_patience.cpp: previews go on while structures are built for what has appeared, and
-// still pictures wait for them.
+// picture_live_patience.cpp: previews go on while what has appeared is read and built, and still
+// pictures wait for it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -102,6 +102,38 @@ TEST_F(LivePatience, StillPicturesWaitAndHaveTheirBytes) {
   settings.height = same.height;
   settings.samples = same.samples;
   EXPECT_EQ(shown, displayBytes(Renderer(browser_, settings).render(same.view).picture));
+}
+
+TEST_F(LivePatience, RootsComeLaterToo) {
+  LiveRenderer live(browser_, settings_);
+  finish(live, frame(LiveFrame::Purpose::still, 0));
+  const uint64_t before = finish(live, frame(LiveFrame::Purpose::preview, 0)).stats.scene.triangles;
+  const auto other = xvrml::loadWorldFromMemory(worldText(), "other.wrl");
+  browser_.addRoot(other->scope.roots.at(1));
+  const xvrml::NodeRef big = other->scope.roots.at(2);
+  browser_.addRoot(big);
+  browser_.set(*big, "whichChoice", xvrml::Value(int32_t(0)));
+  LivePicture shown = finish(live, frame(LiveFrame::Purpose::preview, .1));
+  EXPECT_TRUE(shown.outdated);
+  EXPECT_EQ(shown.stats.scene.triangles, before);
+  for (int i = 0; shown.outdated && i < 10'000; ++i)
+    shown = finish(live, frame(LiveFrame::Purpose::preview, .1));
+  EXPECT_GE(shown.stats.scene.triangles, 2u * (side - 1) * (side - 1));
+}
+
+TEST_F(LivePatience, AnotherWorldTakesThePlaceOfOneThatIsRead) {
+  LiveRenderer live(browser_, settings_);
+  finish(live, frame(LiveFrame::Purpose::still, 0));
+  appear();
+  EXPECT_TRUE(finish(live, frame(LiveFrame::Purpose::preview, .1)).outdated);
+  const auto other = xvrml::loadWorldFromMemory("#VRML V2.0 utf8\nShape { geometry IndexedFaceSet "
+                                                "{ coord Coordinate { point [ 0 0 0, 1 0 0, 0 "
+                                                "1 0 ] } coordIndex [ 0 1 2 ] } }",
+                                                "other.wrl");
+  browser_.replaceWorld(other->scope.roots);
+  browser_.tick(2);
+  const LivePicture shown = finish(live, frame(LiveFrame::Purpose::preview, .1));
+  EXPECT_EQ(shown.map.triangles, 1u);
 }
 
 } // namespace

@@ -1,12 +1,15 @@
 // picture_notes.cpp: Tests that files say what a picture's note says, and nothing without one.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "libpicture/files/film.h"
 #include "libpicture/files/formats.h"
+#include "libpicture/files/read_note.h"
 #include "libpicture/renderer.h"
 #include "openrt/openrt.h"
 #include "xvrml/browser.h"
@@ -55,6 +58,27 @@ TEST(Notes, areInTheFilesOfTheFormatsThatKeepThem) {
     EXPECT_EQ(timesIn(format.encode(pictureWith("")), "preview"), 0u);
   }
   EXPECT_EQ(formatsWith(&Format::keepsNote), "EXR, PNG, JPEG, PPM and HDR");
+}
+
+TEST(Notes, areReadFromPngAndJpeg) {
+  const std::string file = testing::TempDir() + "picture_note";
+  const auto readBack = [&](const std::string& bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    return readNote(file);
+  };
+  for (const Format& format : formatTable()) {
+    SCOPED_TRACE(format.name);
+    const bool isRead = format.encode == encodePng || format.encode == encodeJpeg;
+    const std::string bytes = format.encode(pictureWith(note));
+    EXPECT_EQ(readBack(bytes), isRead ? note : "");
+    EXPECT_EQ(readBack(format.encode(pictureWith(""))), "");
+    for (size_t length = 0; length < bytes.size(); ++length) {
+      const std::string read = readBack(bytes.substr(0, length));
+      EXPECT_TRUE(read.empty() || read == note) << length;
+    }
+  }
+  std::remove(file.c_str());
+  EXPECT_EQ(readNote(file), "");
 }
 
 TEST(Notes, areInFilms) {

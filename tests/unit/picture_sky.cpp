@@ -225,6 +225,18 @@ TEST(SkyWords, saySkiesAndSuns) {
   EXPECT_GT(readSky("perez:600/200,sun=60/180").direct, 50000);
 }
 
+TEST(SkyWords, sayThatTheSunHasSet) {
+  for (const char* words : {"cie:12,sun=0/90,direct=80000", "cie:12,sun=-4/90,direct=80000",
+                            "perez:60/20,sun=-.1/60", "perez:60/20,sun=0/60"}) {
+    const Sky sky = readSky(words);
+    EXPECT_EQ(sky.direct, 0) << words;
+    EXPECT_NE(warningOf(sky).find("not above the horizon"), std::string::npos) << words;
+  }
+  for (const char* words :
+       {"cie:12,sun=0/90", "cie:12,sun=.1/90,direct=80000", "cie:1", "perez:0/20,sun=-1/60"})
+    EXPECT_EQ(warningOf(readSky(words)), "") << words;
+}
+
 TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "was expected"},
@@ -237,6 +249,8 @@ TEST(SkyWords, thatAreWrongSayWhatWasExpected) {
       {"cie:1,sun=9", "slash"},
       {"cie:1,lux=-1", "lux: a number"},
       {"cie:1,lux=nan", "lux: a number"},
+      {"cie:1,lux=1e-40", "lux: 0, or a number from 1e-06"},
+      {"cie:1,sun=9/0,direct=1e-9", "direct: 0, or a number from 1e-06"},
       {"cie:1,luxx=1", "was expected, not \"luxx\""},
       {"cie:1,", "was expected, not \"\""},
       {"cie:1,place=50/8", "together"},

@@ -58,6 +58,25 @@ TEST(JobCuts, WorldsThatAreDearToStepGetLongerJobsInTheBeginning) {
             2 * (pieces.back().second - pieces.back().first));
 }
 
+// A job of previews draws a block of frames that are not its own before, from a block's beginning.
+TEST(JobCuts, BlocksAreNotCut) {
+  SequenceCosts costs{1, 0, std::vector<double>(40, 1.0)};
+  costs.block = costs.history = 8;
+  const auto frames = numbers(40, 4); // 4 to 43: six blocks, the first and the last one shorter
+  const Pieces pieces = cutIntoJobs(costs, frames, 3);
+  ASSERT_EQ(pieces.size(), 3u);
+  EXPECT_EQ(pieces.front().first, 0u);
+  EXPECT_EQ(pieces.back().second, 39u);
+  for (size_t i = 1; i < pieces.size(); ++i) {
+    EXPECT_EQ(pieces[i].first, pieces[i - 1].second + 1);
+    EXPECT_EQ(frames[pieces[i].first] % 8, 0);
+    EXPECT_LE(pieces[i].second - pieces[i].first + 1, 16u);
+  }
+  EXPECT_EQ(cutIntoJobs(costs, frames, 99).size(), 6u);
+  costs.history = 1000; // nothing is gained
+  EXPECT_EQ(cutIntoJobs(costs, frames, 1), (Pieces{{0, 39}}));
+}
+
 TEST(JobCuts, CommandsAreReadBackByAShell) {
   const std::vector<std::string> words{"vv", "my world.wrl",    "--frames", "0-99",    "--jobs=4",
                                        "-o", "f-{frame:4}.png", "-D",       "A.b='c'", "--jobs",

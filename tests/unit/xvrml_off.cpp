@@ -52,6 +52,14 @@ TEST(Off, ColoursOfFacesAreIntegersTo255OrNumbersTo1) {
             (MFColor{{.8f, .8f, .8f}, {1, 0, .2f}, {0, 1, .5f}, {.8f, .8f, .8f}}));
 }
 
+TEST(Off, CommentsMayStandDirectlyBehindNumbers) {
+  const auto world = load("OFF#a\n3 1 0#b\n0 0 0#c\n1 0 0 #d\n0 1 0#\n3 0 1 2#e\n");
+  EXPECT_EQ(messages(*world), "");
+  EXPECT_TRUE(geometry<nodes::IndexedFaceSet>(*world));
+  EXPECT_NE(messages(*load("OFF\n3 1 0\n0 0 1.#INF\n1 0 0\n0 1 0\n3 0 1 2\n")).find("expected a"),
+            std::string::npos);
+}
+
 TEST(Off, OpacitiesAreNotUsed) {
   const auto world = load("OFF 3 1 0\n" + threePoints + "3 0 1 2 255 0 51 128\n");
   EXPECT_EQ(messages(*world),

@@ -317,9 +317,7 @@ const OptionInfo table[] = {
           excludes("--sums", "{} are those of the samples, and a denoised picture is not their "
                              "mean: they cannot be used with --denoise"),
           excludes("--crop", "--denoise looks around each pixel, so that a part would differ from "
-                             "the whole picture: it cannot be used with {}"),
-          excludes("--preview",
-                   "only one of {}, which smooths pictures itself, and --denoise can be used"))},
+                             "the whole picture: it cannot be used with {}"))},
     {"--raw", "FILE", "Picture",
      "With --denoise: also write the picture as it was rendered, in the formats and with the names "
      "that -o knows. May be given several times.",
@@ -449,14 +447,13 @@ const OptionInfo table[] = {
     {"--missing", "", "Time",
      "Make only those frames of --frames whose files are absent or damaged.",
      [](Options& o, const std::string&) { o.missing = true; },
-     with(needs("--frames"), needs("-o"),
-          excludes("--viewpoint all,several sides of --from,--preview"))},
+     with(needs("--frames"), needs("-o"), excludes("--viewpoint all,several sides of --from"))},
     {"--jobs", "N", "Time",
      "Make no pictures, but print N commands, each for a part of --frames, for the machines of a "
      "farm (docs/farms.md). They cost about the same, by a few frames that are drawn in small.",
      [](Options& o, const std::string& v) { o.farmJobs = int(readInteger(v, 1, 1000000)); },
      with(needs("--frames"), needs("-o"),
-          excludes("--check,--measure,--compare,--stats,--input,--preview,--watch,--resume"))},
+          excludes("--check,--measure,--compare,--stats,--input,--watch,--resume"))},
     {"--join", "", "Time",
      "Make a film of pictures that are there: vv film --join f-*.png -o film.mp4, in the order of "
      "the "
@@ -473,9 +470,10 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); },
      with(inPresets, needs("-o,--check", sequenceNeeds))},
     {"--preview", "", "Time",
-     "Rebuild each picture of a sequence from few samples and from the pictures before it, as the "
-     "window does while something moves. Such pictures are biased and have no error bars, and "
-     "their files say so. They depend on the frame that the sequence begins with.",
+     "Rebuild each picture of a film from few samples and from the 8 to 15 frames before it, as "
+     "the "
+     "window does while something moves; --denoise filters them, too. Such pictures are biased and "
+     "have no error bars, and their files say so.",
      [](Options& o, const std::string&) { o.render.preview = true; },
      with(excludes("--viewpoint all,several sides of --from",
                    "--preview follows one view: it cannot be used with {}"),
@@ -484,10 +482,9 @@ const OptionInfo table[] = {
           excludes("--compare",
                    "{} needs pictures without bias: it cannot be used with --preview"))},
     {"--denoiser", "auto|own|oidn", "Time",
-     "What smooths the light of previews: own, the filter that vv always has; oidn, beside it "
-     "Open Image Denoise 2, which must be installed; auto (default), in windows and on pages that "
-     "library "
-     "where it is there and fast enough, in files own, so that they do not depend on it.",
+     "What smooths the light of previews in windows and on pages: own, the filter that vv always "
+     "has; oidn, beside it Open Image Denoise 2, which must be installed; auto (default), that "
+     "library where it is there and fast enough.",
      setDenoiser},
     {"--input", "FILE", "Time",
      "Replay mouse and keyboard input from FILE, one event per line: SECONDS EVENT (move X Y, "

@@ -143,6 +143,10 @@ const Rule rules[] = {
      "--exposure and --view need -o with a film or a file that they change, such as .png"},
     {[](const Options& o) { return o.fitExposure && (o.showsWorld() || o.audit); },
      "--exposure auto needs -o without --audit; the window and vv serve take a number"},
+    {[](const Options& o) {
+       return o.makesPictures() && o.render.denoiser == picture::Denoiser::oidn;
+     },
+     "--denoiser oidn is for windows and pages: with -o, --denoise filters pictures and previews"},
     // pictures that survive
     {[](const Options& o) { return o.keepsSums() && o.outputs.empty() && o.compare.empty(); },
      "--resume, --sums and --seed A-B need -o"},
@@ -243,11 +247,9 @@ void checkNotes(const Options& o, const char* option, const char* what) {
 // Refuses what a preview cannot be, or could not say of itself.
 void checkPreview(const Options& o) {
   if (!o.render.preview) return;
-  const bool several =
-      o.frames ? o.frames->last - o.frames->first >= o.frames->step : o.turntable > 1;
   const std::pair<bool, const char*> refused[] = {
-      {!several || o.outputs.empty(),
-       "--preview needs -o with several pictures: --frames FIRST-LAST or --turntable N"},
+      {!o.isSequence() || o.outputs.empty(),
+       "--preview needs -o with the frames of a film: --frames or --turntable"},
       {o.render.channels != RT_RGBA, "--preview rebuilds rgba only: it cannot be used with other "
                                      "--channels"}};
   for (const auto& [isBroken, message] : refused)

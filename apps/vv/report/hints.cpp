@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/transport.h"
+
 namespace vv {
 
 namespace {
@@ -111,8 +113,16 @@ std::string hintFor(const Options& options, const picture::View& view,
   if (!seen.black || lookAt(probe(view, renderer, Headlight::on)).black) return {};
   const std::string black =
       showsNothing(result.picture) ? "the picture is black: " : "all shapes in view are black: ";
-  if (result.stats.scene.lights == 0)
+  if (result.stats.scene.lights == 0) {
+    constexpr uint32_t other = RT_LEAVES_EMITTERS | RT_LEAVES_SKY;
+    const RTenum transport = result.stats.transport.chosen;
+    for (const picture::OmittedLight& left :
+         picture::omittedLights(transport, result.stats.transport.leavesOut & other))
+      return black + fmt::format("the world has no lamp, and --transport {} leaves out {}; "
+                                 "--transport path",
+                                 picture::transportName(transport), left.text);
     return black + "the world has no light and its headlight is off; --headlight on";
+  }
   return black + "no light reaches what is in view; --headlight on adds one at the camera";
 }
 

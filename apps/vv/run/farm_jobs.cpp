@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/live/film_history.h"
 #include "process/exit_codes.h"
 #include "run/job_cuts.h"
 #include "run/timeline.h"
@@ -33,6 +34,7 @@ picture::RenderSettings probeSettings(const Options& options, double& factor) {
   settings.crop = {};
   settings.samples = std::min(wanted, probeSamples);
   settings.error = settings.timeLimit = 0;
+  settings.preview = false;
   settings.channels = RT_RGBA;
   settings.record.clear();
   settings.cluster.reset();
@@ -53,6 +55,17 @@ void fillIn(const std::vector<std::pair<size_t, double>>& probed, std::vector<do
     const auto& [b, after] = probed[next];
     frames[i] = before + (after - before) * double(i - a) / double(b - a);
   }
+}
+
+// Adds what previews cost: frames that are drawn for their history alone.
+void addHistory(const Options& options, SequenceCosts& costs) {
+  using picture::live::FilmHistory;
+  if (!options.render.preview) return;
+  costs.block = FilmHistory::period;
+  costs.history = double(FilmHistory::period);
+  const auto between = double(std::min<long long>(options.frames->step, 2 * FilmHistory::period));
+  for (double& cost : costs.frames) cost *= between;
+  costs.history /= between;
 }
 
 SequenceCosts probe(const Options& options, const Timeline& timeline, xvrml::Browser& browser) {
@@ -93,6 +106,7 @@ SequenceCosts probe(const Options& options, const Timeline& timeline, xvrml::Bro
   costs.step = steps > 0 ? stepping / double(steps) : 0;
   costs.frames.resize(count);
   fillIn(probed, costs.frames);
+  addHistory(options, costs);
   return costs;
 }
 

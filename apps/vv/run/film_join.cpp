@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/film.h"
+#include "libpicture/files/read_note.h"
 #include "process/messages.h"
 #include "process/signals.h"
 #include "report/describe.h"
@@ -45,12 +46,20 @@ std::vector<uint8_t> rgbOf(const xvrml::Image& image) {
   return rgb;
 }
 
+// Returns what the first picture says that says anything: a film of previews is a preview.
+std::string noteOf(const std::vector<std::string>& pictures) {
+  for (const std::string& path : pictures)
+    if (std::string note = picture::readNote(path); !note.empty()) return note;
+  return "";
+}
+
 } // namespace
 
 int joinFilm(const Options& options) {
   checkOutputs(options);
   std::vector<std::pair<const Output*, std::unique_ptr<picture::Film>>> films;
   int width = 0, height = 0;
+  const std::string note = noteOf(options.joined);
   for (const std::string& path : options.joined) {
     if (interrupted()) return exitInterrupted;
     const xvrml::Image image = read(path);
@@ -58,8 +67,8 @@ int joinFilm(const Options& options) {
       width = image.width;
       height = image.height;
       for (const Output& output : options.outputs)
-        films.emplace_back(
-            &output, std::make_unique<picture::Film>(output.film, width, height, options.fps));
+        films.emplace_back(&output, std::make_unique<picture::Film>(output.film, width, height,
+                                                                    options.fps, note));
     }
     if (image.width != width || image.height != height)
       throw Failure{exitInput,

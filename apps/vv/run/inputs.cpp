@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "libpicture/sky/sky.h"
 #include "process/messages.h"
 #include "report/audit.h"
 
@@ -40,6 +41,12 @@ void warnOfFolders(const Options& options) {
       if (!folder.empty() && !std::filesystem::is_directory(folder, error))
         sayWarning(fmt::format("{}: there is no folder {}", option, folder));
     }
+}
+
+void warnOfSky(const Options& options) {
+  if (options.quiet || !options.render.sky) return;
+  if (const std::string warning = picture::warningOf(*options.render.sky); !warning.empty())
+    sayWarning("--sky: " + warning);
 }
 
 } // namespace vv

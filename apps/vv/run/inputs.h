@@ -12,5 +12,7 @@ void checkInputs(const Options& options);
 
 // Prints a warning for each folder of --shader-path, --script-path and --node-path that is missing.
 void warnOfFolders(const Options& options);
+// Prints a warning if the sun of --sky was to shine and is not above the horizon.
+void warnOfSky(const Options& options);
 
 } // namespace vv

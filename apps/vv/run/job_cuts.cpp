@@ -13,22 +13,37 @@ double costOfJob(const SequenceCosts& costs, long long last, double drawing) {
   return costs.start + costs.step * double(last) + drawing;
 }
 
-// Returns how many jobs are needed if none costs more than `limit`, but for those of one frame.
+// The pictures of a block, which are not cut.
+struct Block {
+  size_t first, last;
+  double history, drawing; // seconds
+};
+
+std::vector<Block> blocksOf(const SequenceCosts& costs, const std::vector<long long>& numbers) {
+  std::vector<Block> blocks;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    if (i == 0 || numbers[i] / costs.block != numbers[i - 1] / costs.block)
+      blocks.push_back({i, i, costs.history * costs.frames[i], 0});
+    blocks.back().last = i;
+    blocks.back().drawing += costs.frames[i];
+  }
+  return blocks;
+}
+
+// Returns how many jobs are needed if none costs more than `limit`, but for those of one block.
 size_t cutByLimit(const SequenceCosts& costs, const std::vector<long long>& numbers, double limit,
                   std::vector<std::pair<size_t, size_t>>* pieces) {
-  size_t count = 0, first = 0;
+  size_t count = 0;
   double drawing = 0;
-  const auto end = [&](size_t last) {
-    ++count;
-    if (pieces) pieces->emplace_back(first, last);
-    first = last + 1;
-    drawing = 0;
-  };
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    if (i > first && costOfJob(costs, numbers[i], drawing + costs.frames[i]) > limit) end(i - 1);
-    drawing += costs.frames[i];
+  for (const Block& block : blocksOf(costs, numbers)) {
+    drawing += block.drawing;
+    if (count == 0 || costOfJob(costs, numbers[block.last], drawing) > limit) {
+      ++count;
+      drawing = block.history + block.drawing;
+      if (pieces) pieces->emplace_back(block.first, block.last);
+    }
+    if (pieces) pieces->back().second = block.last;
   }
-  if (first < numbers.size()) end(numbers.size() - 1);
   return count;
 }
 
@@ -51,7 +66,7 @@ cutIntoJobs(const SequenceCosts& costs, const std::vector<long long>& numbers, s
   std::vector<std::pair<size_t, size_t>> pieces;
   if (numbers.empty()) return pieces;
   double all = 0;
-  for (const double cost : costs.frames) all += cost;
+  for (const double cost : costs.frames) all += cost * (1 + costs.history);
   double low = 0, high = costOfJob(costs, numbers.back(), all);
   for (int i = 0; i < 60; ++i) { // halves the interval to the last bits
     const double middle = (low + high) / 2;

@@ -17,6 +17,10 @@ struct SequenceCosts {
   double start = 0;           // reading the world and building it
   double step = 0;            // a step of the world's clock
   std::vector<double> frames; // drawing each picture
+  // A job begins with a frame of another block than the one before it, and draws so many frames
+  // that are not its own before.
+  long long block = 1;
+  double history = 0;
 };
 
 // Cuts the pictures of a sequence into at most `jobs` pieces, the most expensive of which costs as

@@ -44,20 +44,27 @@ void PictureFiles::prepare(const PictureRequest& request, size_t total,
     result.picture.view.exposure = *exposure_;
   }
   if (!options_.denoise) return;
-  writePictures(request, result.picture, {}, !result.interrupted, Which::raw);
+  if (result.sampled) result.sampled->view = result.picture.view;
+  const picture::Picture& before = result.sampled ? *result.sampled : result.picture;
+  writePictures(request, before, {}, !result.interrupted, Which::raw);
   if (result.interrupted) return;
-  addToFilms(request, result.picture, Which::raw);
+  addToFilms(request, before, Which::raw);
   const double start = steadySeconds();
   const StageProgress progress(request.name.text(), "denoising", options_.quiet);
-  if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
-  picture::Picture made = denoiser_->denoised(result.picture);
+  // The renderer has denoised previews.
+  picture::Picture made = result.sampled ? std::move(result.picture) : denoised(before);
   if (options_.mostDoubt) {
-    std::vector<float> doubt = picture::doubtOf(result.picture, picture::rgbaOf(made));
+    std::vector<float> doubt = picture::doubtOf(before, picture::rgbaOf(made));
     result.doubt = picture::countDoubt(doubt);
     made.planes[picture::doubtBit] = std::move(doubt);
   }
   result.picture = std::move(made);
-  result.denoiseSeconds = steadySeconds() - start;
+  result.denoiseSeconds += steadySeconds() - start;
+}
+
+picture::Picture PictureFiles::denoised(const picture::Picture& noisy) {
+  if (!denoiser_) denoiser_ = std::make_unique<picture::PictureDenoiser>(options_.render.threads);
+  return denoiser_->denoised(noisy);
 }
 
 void PictureFiles::write(const PictureRequest& request, std::optional<double> falseColour,

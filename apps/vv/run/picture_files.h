@@ -25,8 +25,9 @@ class PictureFiles {
 
   // The functions throw Failure and std::runtime_error, which name the option.
 
-  // Prepares a picture for its files: chooses its exposure, writes the files of --raw and denoises
-  // it. A picture that was interrupted stays as it is, in all files. total: pictures of the run.
+  // Prepares a picture for its files: chooses its exposure, writes the files of --raw, and denoises
+  // it if the renderer has not done so. A picture that was interrupted stays as it is, in all
+  // files. total: pictures of the run.
   void prepare(const PictureRequest& request, size_t total, picture::RenderResult& result);
   // Writes the files of a prepared picture, and adds it to the film of its view. falseColour: end
   // of the scale in cd/m2, 0: chosen by the first picture; none: false colours are not wanted.
@@ -48,6 +49,7 @@ class PictureFiles {
   void writePictures(const PictureRequest& request, const picture::Picture& made,
                      const std::optional<picture::Picture>& coloured, bool complete, Which only);
   void addToFilms(const PictureRequest& request, const picture::Picture& made, Which only);
+  picture::Picture denoised(const picture::Picture& noisy);
 
   const Options& options_;
   const xvrml::World& world_;

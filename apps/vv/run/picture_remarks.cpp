@@ -60,9 +60,10 @@ void PictureRemarks::sayLook(const picture::RenderResult& result, bool falseColo
   const picture::Picture& made = result.picture;
   if (!made.note.empty() && !std::exchange(biasSaid_, true) && !options_.quiet)
     say(fmt::format("vv: {}; without {}, pictures are unbiased", made.note,
-                    options_.denoise         ? "--denoise"
-                    : options_.render.raster ? "--preview-raster"
-                                             : "--preview"));
+                    options_.render.raster     ? "--preview-raster"
+                    : !options_.render.preview ? "--denoise"
+                    : options_.denoise         ? "--preview and --denoise"
+                                               : "--preview"));
   const bool shown =
       std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
         return output.film != picture::FilmKind::none || output.format->appliesCurve;

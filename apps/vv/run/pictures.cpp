@@ -79,6 +79,9 @@ class Pictures {
   // Prints messages about workers; the progress bar is cleared for them.
   void reportClusterMessages();
 
+  // Makes the pictures of a moment. first: it is the first one that is shown.
+  int makeMoment(const Moment& moment, bool first);
+
   // Starts a picture. Keeps as many frames in flight as there are machines to work on them, and
   // saves them in order.
   int makeOne(const PictureRequest& request, const Moment& moment);
@@ -91,6 +94,9 @@ class Pictures {
 
   // Waits for the oldest frame and saves it.
   int finishOldest();
+
+  // Tells whether there is an oldest frame, which files get.
+  bool showsOldest() const { return !inFlight_.empty() && inFlight_.front().moment.isShown; }
 
   // Tells whether --measure is not all that is asked for.
   bool makesPicture() const { return !options_.outputs.empty() || !options_.compare.empty(); }
@@ -151,6 +157,7 @@ int Pictures::make() {
   // With RT_VARIANCE, RTstats contains the error; spp_mean needs the samples.
   if (!options_.stats.empty() && !options_.isSequence())
     settings.channels |= RT_VARIANCE | RT_SAMPLES;
+  settings.denoiser = options_.denoise ? picture::Denoiser::oidn : picture::Denoiser::own;
   if (options_.denoise) settings.channels |= picture::denoiserGuides;
   if (options_.mostDoubt) settings.channels |= RT_ERROR | RT_TRUST;
   if (settings.error > 0) settings.channels |= RT_SAMPLES; // warnOfError() needs the samples
@@ -162,30 +169,19 @@ int Pictures::make() {
     scripted_ = std::make_unique<ScriptedView>(options_, browser_, *renderer_, view_);
   }
   WorldClock clock([this](double time) { tick(time); }, options_.fps);
-  if (!clock.advance(instantOf(timeline[0])))
+  if (!clock.advance(instantOf(timeline.withHistory(0).front())))
     return stopped("vv: interrupted before the first picture");
   if (!renderer_) makeRenderer(settings);
-  picture::Renderer& renderer = *renderer_;
   moments_ = timeline.size();
   if (options_.measures())
     if (const int code = measure(); code != exitDone || !makesPicture()) return code;
-  for (size_t i = 0; i < timeline.size(); ++i) {
-    const Moment moment = timeline[i];
-    if (!clock.advance(instantOf(moment)))
-      return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
-                               : finishOldest();
-    std::vector<PictureRequest> requests =
-        scripted_ ? std::vector<PictureRequest>{{scripted_->view(), {}}}
-                  : chooseRequests(options_, view_, renderer.viewpoints(), i == 0);
-    views_ = requests.size();
-    for (PictureRequest& request : requests) {
-      request.turns = !options_.turnsFirstSide() || &request == &requests.front();
-      request.isStill = i == 0 || !options_.turnsIntoFilm();
-      if (request.turns && !options_.turnsIntoFilm()) request.name.frame = moment.frame;
-      request.view.turn = moment.turn;
-      if (const int code = makeOne(request, moment); code != exitDone) return code;
+  for (size_t i = 0; i < timeline.size(); ++i)
+    for (const Moment& moment : timeline.withHistory(i)) {
+      if (!clock.advance(instantOf(moment)))
+        return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
+                                 : finishOldest();
+      if (const int code = makeMoment(moment, i == 0); code != exitDone) return code;
     }
-  }
   while (!inFlight_.empty())
     if (const int code = finishOldest(); code != exitDone) return code;
   finishSequence();
@@ -194,6 +190,22 @@ int Pictures::make() {
     sayWarning(total() == 1 ? "no worker answered; this machine made the picture alone"
                             : "no worker answered; this machine made the pictures alone");
   return remarks_.hasDoubt() ? exitProblems : exitDone;
+}
+
+int Pictures::makeMoment(const Moment& moment, bool first) {
+  std::vector<PictureRequest> requests =
+      scripted_ ? std::vector<PictureRequest>{{scripted_->view(), {}}}
+                : chooseRequests(options_, view_, renderer_->viewpoints(), first);
+  views_ = requests.size();
+  for (PictureRequest& request : requests) {
+    request.turns = !options_.turnsFirstSide() || &request == &requests.front();
+    request.isStill = first || !options_.turnsIntoFilm();
+    if (request.turns && !options_.turnsIntoFilm() && moment.isShown)
+      request.name.frame = moment.frame;
+    request.view.turn = moment.turn;
+    if (const int code = makeOne(request, moment); code != exitDone) return code;
+  }
+  return exitDone;
 }
 
 size_t Pictures::total() const {
@@ -240,7 +252,7 @@ bool Pictures::watch(float fraction) {
   saveWanted_ |= takeSaveRequest();
   if (checkpoint_ && !inFlight_.empty() && checkpoint_->due()) saveSums();
   picture::Picture soFar;
-  if (!inFlight_.empty() && saveWanted_ && renderer_->snapshot(soFar)) {
+  if (showsOldest() && saveWanted_ && renderer_->snapshot(soFar)) {
     saveWanted_ = false;
     savePart(inFlight_.front().request, soFar);
   }
@@ -269,7 +281,7 @@ bool Pictures::saveEnded(const picture::Sums& sums, const std::vector<std::strin
 
 void Pictures::giveUp(picture::Picture& soFar) {
   progress_.reset();
-  const bool saved = !inFlight_.empty() && renderer_->snapshot(soFar);
+  const bool saved = showsOldest() && renderer_->snapshot(soFar);
   if (checkpoint_) saveSums();
   interruptHandled();
   if (saved) savePart(inFlight_.front().request, soFar);
@@ -295,7 +307,7 @@ int Pictures::makeOne(const PictureRequest& request, const Moment& moment) {
   if (options_.audit) return auditOne(request);
   if (checkpoint_) return makeKept(request, moment);
   if (!progress_) progress_ = std::make_unique<Progress>(request.name.text(), options_.quiet);
-  renderer_->start(request.view);
+  renderer_->start(request.view, moment.frame);
   inFlight_.push_back({request, moment});
   const size_t most = options_.strict ? 1 : renderer_->maxFramesInFlight();
   while (inFlight_.size() >= most)
@@ -366,7 +378,8 @@ int Pictures::finishOldest() {
   interruptHandled();
   const FrameInFlight flight = std::move(inFlight_.front());
   inFlight_.pop_front();
-  ++done_;
+  const bool isShown = flight.moment.isShown;
+  if (isShown) ++done_;
   if (done_ == total()) progress_.reset();
   if (progress_) progress_->clear();
   reportClusterMessages();
@@ -378,8 +391,11 @@ int Pictures::finishOldest() {
                          done_ > 1 ? "no further picture" : "nothing"));
     return result.missing ? exitMissing : exitProblems;
   }
-  finish(flight.request, flight.moment, result);
-  return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
+  if (isShown) finish(flight.request, flight.moment, result);
+  if (!interrupted()) return exitDone;
+  return stopped(isShown     ? "vv: interrupted; the picture so far is saved"
+                 : done_ > 0 ? "vv: interrupted; the pictures so far are saved"
+                             : "vv: interrupted before the first picture");
 }
 
 int Pictures::measure() {
@@ -438,7 +454,7 @@ void Pictures::savePart(const PictureRequest& request, picture::Picture soFar) {
 
 void Pictures::finish(const PictureRequest& request, const Moment& moment,
                       picture::RenderResult& result) {
-  const double start = steadySeconds();
+  const double start = steadySeconds() + result.denoiseSeconds; // previews were denoised before
   files_.prepare(request, total(), result);
   remarks_.sayLook(result, falseColour().has_value());
   files_.write(request, falseColour(), result);

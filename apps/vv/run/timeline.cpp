@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "libpicture/files/whole.h"
+#include "libpicture/live/film_history.h"
 #include "options/names.h"
 
 namespace vv {
@@ -33,19 +34,34 @@ Timeline::Timeline(const Options& options) : options_(options) {
 }
 
 Moment Timeline::operator[](size_t i) const {
-  if (options_.frames) {
-    const long long frame =
-        i < missing_.size() && missing_.size() == count_
-            ? missing_[i]
-            : options_.frames->first + static_cast<long long>(i) * options_.frames->step;
-    return {double(frame) / options_.fps, frame};
+  if (options_.frames)
+    return momentOf(i < missing_.size() && missing_.size() == count_
+                        ? missing_[i]
+                        : options_.frames->first +
+                              static_cast<long long>(i) * options_.frames->step);
+  if (options_.turntable > 0) return momentOf(static_cast<long long>(i));
+  return {options_.time.value_or(0)};
+}
+
+std::vector<Moment> Timeline::withHistory(size_t i) const {
+  std::vector<Moment> moments;
+  const Moment shown = (*this)[i];
+  if (options_.render.preview) {
+    long long next = picture::live::FilmHistory::firstFor(*shown.frame);
+    if (i > 0) next = std::max(next, *(*this)[i - 1].frame + 1);
+    for (; next < *shown.frame; ++next) {
+      moments.push_back(momentOf(next));
+      moments.back().isShown = false;
+    }
   }
-  Moment moment{options_.time.value_or(0)};
-  if (options_.turntable > 0) {
-    moment.frame = static_cast<long long>(i);
-    moment.turn = 2 * std::numbers::pi * double(i) / double(options_.turntable);
-  }
-  return moment;
+  moments.push_back(shown);
+  return moments;
+}
+
+Moment Timeline::momentOf(long long frame) const {
+  if (options_.frames) return {double(std::max(0LL, frame)) / options_.fps, frame};
+  const long long count = options_.turntable, place = (frame % count + count) % count;
+  return {options_.time.value_or(0), frame, 2 * std::numbers::pi * double(place) / double(count)};
 }
 
 } // namespace vv

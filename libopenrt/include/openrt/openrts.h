@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 2 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 3 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -373,6 +373,15 @@ typedef struct RtsClass {
    * occluded and random. [render] */
   void (*radiance)(const RtsHost* host, RtsBatch* batch, const void* params, const RtsRequest* rays,
                    float* const rgba[4]);
+  /* light: looks along n rays of the light's local space for its luminous opening, the bright face
+   * that is seen where the light hangs. The camera sees it straight, in mirrors and through glass.
+   * It is opaque there, and nowhere else: it blocks no light and sends none, because that is
+   * `illuminate`. Directions have any length. Writes to `distance` how many lengths of its
+   * direction each ray goes to the opening, infinite if it does not meet it, and the radiance that
+   * the ray sees there. NULL: no opening. [render] */
+  void (*opening)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
+                  const float* const origin[3], const float* const direction[3], float* distance,
+                  float* const radiance[3]);
 } RtsClass;
 
 typedef struct RtsPlugin {

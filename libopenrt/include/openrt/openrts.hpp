@@ -46,6 +46,9 @@
 //     Illumination illuminate(Vec3 point) const      illumination of a point, both in the light's
 //                                                    local space
 //     Extent extent() const                          optional: position and strength
+//     Opening opening(Vec3 origin, Vec3 direction) const
+//                                                    optional: where a ray of the local space
+//                                                    meets the luminous opening, and its radiance
 //     static constexpr bool directional = true;      optional: toLight has no end point
 //     static constexpr bool shadows = false;         optional: the light casts no shadows
 //   Camera<T>
@@ -293,6 +296,11 @@ struct Extent {
   float radius = infinity; // nothing beyond this distance is lit
   // parallel: light falls along `direction` everywhere. known: false if the rest is unknown.
   bool parallel = false, known = true;
+};
+// The place where a ray meets a light's luminous opening (RtsClass.opening).
+struct Opening {
+  float distance = infinity; // in lengths of the ray's direction; infinite: nothing is seen
+  Color radiance;
 };
 // Where a point appears in the picture (RtsProjection).
 struct Projection {

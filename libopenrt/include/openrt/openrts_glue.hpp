@@ -72,6 +72,7 @@ template <class T> void fillFunctions(RtsClass& c) {
     c.traits = traits<T>;
     c.illuminate = illuminate<T>;
     if constexpr (HasExtent<T>::value) c.extent = extent<T>;
+    if constexpr (HasOpening<T>::value) c.opening = opening<T>;
   } else if constexpr (std::is_base_of_v<Camera<T>, T>) {
     c.kind = RTS_CAMERA;
     c.generate = generate<T>;

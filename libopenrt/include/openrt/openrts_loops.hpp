@@ -40,6 +40,7 @@ RTS_DETECT(HasMedium, std::declval<const T&>().medium());
 RTS_DETECT(HasNeeds, T::needs);
 RTS_DETECT(ComputesNeeds, std::declval<const T&>().needs());
 RTS_DETECT(HasExtent, std::declval<const T&>().extent());
+RTS_DETECT(HasOpening, std::declval<const T&>().opening(Vec3(), Vec3()));
 RTS_DETECT(HasProject, std::declval<const T&>().project(Vec3(), Vec2(), Vec2()));
 RTS_DETECT(HasAttenuate, std::declval<const T&>().attenuate(Vec3()));
 RTS_DETECT(HasPrepare, std::declval<T&>().prepare());
@@ -299,6 +300,17 @@ template <class T> int extent(const RtsHost*, const void* params, RtsExtent* out
   out->power = e.power;
   out->radius = e.radius;
   return e.known;
+}
+
+template <class T> void opening(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
+                                const float* const origin[3], const float* const direction[3],
+                                float* distance, float* const radiance[3]) {
+  for (uint32_t i = 0; i < n; i++) {
+    const Opening seen =
+        static_cast<const T*>(params)->opening(vec3<float>(origin, i), vec3<float>(direction, i));
+    distance[i] = seen.distance;
+    put(radiance, i, seen.radiance);
+  }
 }
 
 template <class T> void generate(const RtsHost*, RtsBatch*, const void* params, uint32_t n,

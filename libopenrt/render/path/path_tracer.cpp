@@ -6,6 +6,7 @@
 #include "render/lights/emitted.h"
 #include "render/lights/environment.h"
 #include "render/lights/lamps.h"
+#include "render/lights/openings.h"
 #include "render/path/accumulate.h"
 #include "render/path/scatter_in_media.h"
 #include "render/surface/sanitize_output.h"
@@ -51,7 +52,10 @@ void PathTracer::follow(Wave& wave, PixelSamples& found) {
 
 void PathTracer::traceWave(Wave& wave, PixelSamples& found) {
   ArenaScope scope(tile_.arena);
-  intersectWave(context_, level_ == 0 ? WaveSource::camera : WaveSource::surfaces, wave);
+  findHits(context_, level_ == 0 ? WaveSource::camera : WaveSource::surfaces, wave);
+  const SeenOpenings openings = meetOpenings(context_, wave);
+  goToHits(context_, wave);
+  addOpenings(context_, openings, wave, found);
   if (!scene_.mediumLights.empty()) scatterInMedia(*this, wave, found);
   addEnvironment(context_, wave, tile_.unsampled, found);
   const auto shade = shadings[size_t(traitsOf(scene_.frame.transport).shading)];

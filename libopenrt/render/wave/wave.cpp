@@ -34,7 +34,7 @@ static const uint8_t* findAimed(const StageContext& context, WaveSource source, 
   return aimed;
 }
 
-void intersectWave(const StageContext& context, WaveSource source, Wave& wave) {
+void findHits(const StageContext& context, WaveSource source, Wave& wave) {
   const uint32_t n = wave.rays.count;
   // A culled back face that a ray skips is a front face for the ray the other way.
   uint8_t* oneWay = context.scene.countsLightPaths() && context.scene.kernel->cullsBacks()
@@ -47,8 +47,16 @@ void intersectWave(const StageContext& context, WaveSource source, Wave& wave) {
                             findAimed(context, source, wave), oneWay);
   for (uint32_t i = 0; oneWay && i < n; i++)
     if (oneWay[i]) wave.states.lightPathRatio[i] = 0;
+}
+
+void goToHits(const StageContext& context, Wave& wave) {
   absorbAlongRays(context.scene, wave.rays, wave.hits, wave.states);
   splitByHit(context.arena, wave);
+}
+
+void intersectWave(const StageContext& context, WaveSource source, Wave& wave) {
+  findHits(context, source, wave);
+  goToHits(context, wave);
 }
 
 void splitByHit(Arena& arena, Wave& wave) {

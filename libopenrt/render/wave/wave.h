@@ -30,8 +30,12 @@ void loadWave(const RayQueue& queue, size_t begin, uint32_t n, Wave& wave);
 //   lamps     those within media, because the others have random directions
 enum class WaveSource : uint8_t { camera, surfaces, lamps };
 
-// Finds the nearest hit of each ray, looks through culled backs, attenuates the throughputs by the
-// media along the rays, and lists the rays that missed and met. The hits lie in the arena.
+// Finds the nearest hit of each ray and looks through culled backs. The hits lie in the arena.
+void findHits(const StageContext& context, WaveSource source, Wave& wave);
+// Attenuates the throughputs by the media along the rays to their hits, and lists the rays that
+// missed and met.
+void goToHits(const StageContext& context, Wave& wave);
+// Does both.
 void intersectWave(const StageContext& context, WaveSource source, Wave& wave);
 
 // Lists the rays of a wave that hit nothing, and the others, in the order of the lanes.

@@ -46,7 +46,7 @@ Avatar Navigator::avatarAt(const Node* viewpoint, const Vector& upWithoutViewpoi
 bool Navigator::findObstacle(const PickRay& ray, const Matrix& view, bool touch, double& t,
                              Vector& normal) {
   Hit hit;
-  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true}, view,
+  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true, .mayLag = true}, view,
                                 interaction_.scope->roots, hit))
     return false;
   t = hit.t;
@@ -88,11 +88,11 @@ Vector Navigator::centerOf(const Matrix& view) {
   const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
       back(view.x[2][0], view.x[2][1], view.x[2][2]);
   const auto& roots = interaction_.scope->roots;
-  PickBox box = picker.bounds(roots);
+  PickBox box = picker.bounds(roots, true);
   if (box.empty()) return eye - back * 10;
   Vector center = (box.low + box.high) / 2;
-  if (Hit hit; picker.pick({eye, -back}, {.bothSides = true}, view, roots, hit)) {
-    box = picker.bounds({NodeRef(hit.path.back().node)});
+  if (Hit hit; picker.pick({eye, -back}, {.bothSides = true, .mayLag = true}, view, roots, hit)) {
+    box = picker.bounds({NodeRef(hit.path.back().node)}, true);
     center = transformPoint(hit.path.back().toWorld, (box.low + box.high) / 2);
   }
   if (const double ahead = (eye - center).dot(back); ahead > 0) return eye - back * ahead;

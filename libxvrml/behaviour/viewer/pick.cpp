@@ -80,11 +80,16 @@ void cutByClipPlanes(PickBox& box, const std::vector<Node*>& children) {
 } // namespace
 
 void Picker::changed(Node& first) {
-  if (entries_.empty()) return;
+  if (!entries_.empty()) dropEntries(first);
+}
+
+// Drops what is known of a node and of all that holds it.
+void Picker::dropEntries(Node& first) {
   std::vector<Node*> open{&first};
   while (!open.empty()) {
     Node* node = open.back();
     open.pop_back();
+    jobs_.giveUp(*node);
     const auto found = entries_.find(node);
     // If a group or Shape has no entry, nothing above it has one.
     if (found != entries_.end())
@@ -102,10 +107,30 @@ PickMesh* Picker::meshOf(Node& node) {
   Node* geometry = renderedNode(shape.geometry.get());
   if (!geometry) return nullptr;
   Entry& entry = entries_[geometry];
-  if (!entry.mesh)
-    entry.mesh = std::make_unique<PickMesh>(
-        *geometry, engine_.browser() ? &engine_.browser()->world().options.limits : nullptr);
+  if (entry.mesh) return entry.mesh.get();
+  Browser* const browser = engine_.browser();
+  const Limits limits = browser ? browser->world().options.limits : Limits();
+  const auto prepare = [limits](const NodeRef& copy) {
+    auto mesh = std::make_unique<PickMesh>(*copy, &limits);
+    mesh->prepare();
+    return mesh;
+  };
+  if (lags_ && jobs_.ask(*geometry, prepare) != Jobs::State::none) return nullptr;
+  entry.mesh = std::make_unique<PickMesh>(*geometry, browser ? &limits : nullptr);
   return entry.mesh.get();
+}
+
+// Takes over the meshes that are prepared. Those who may not lag wait for all of them.
+void Picker::settleJobs(bool mayLag) {
+  lags_ = lagging_ && mayLag;
+  if (jobs_.empty()) return;
+  for (const NodeRef& geometry : jobs_.nodes(true))
+    if (!geometry->live || liveOf(*geometry)->parents.size() == 0) jobs_.giveUp(*geometry);
+  for (const NodeRef& geometry : jobs_.nodes(!lags_)) {
+    auto mesh = jobs_.take(*geometry);
+    dropEntries(*geometry); // the boxes around it lack the mesh
+    if (mesh) entries_[geometry.get()].mesh = std::move(*mesh);
+  }
 }
 
 PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
@@ -163,7 +188,8 @@ const PickBox& Picker::boundsOf(Node& first) {
   return entries_[&first].bounds;
 }
 
-PickBox Picker::bounds(const std::vector<NodeRef>& roots) {
+PickBox Picker::bounds(const std::vector<NodeRef>& roots, bool mayLag) {
+  settleJobs(mayLag);
   PickBox box;
   std::vector<Node*> parts;
   for (const NodeRef& root : roots) {
@@ -178,6 +204,7 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
                   const std::vector<NodeRef>& roots, Hit& hit) {
   const double probe = whole.origin.dot(whole.origin) + whole.direction.dot(whole.direction);
   if (!std::isfinite(probe) || !(whole.direction.length() > 0)) return false;
+  settleJobs(rules.mayLag);
   constexpr uint32_t none = ~0u, stale = none - 1;
   struct Visit {
     Node* node;

@@ -141,6 +141,16 @@ void PickMesh::split(uint32_t number) {
   bvh_[number].state = BvhNode::State::hasHalves;
 }
 
+void PickMesh::prepare() {
+  constexpr uint32_t few = 16'384; // triangles that a ray may have to sort
+  mesh_.takeAll();
+  for (uint32_t number = 0; number < bvh_.size(); ++number) { // split() appends the halves
+    if (bvh_[number].count <= few) continue;
+    if (bvh_[number].state == BvhNode::State::fresh) measure(bvh_[number]);
+    if (bvh_[number].state == BvhNode::State::splits) split(number);
+  }
+}
+
 // Textures wrap counterclockwise, seen from above, from the back of the sphere (clause 6.43).
 bool PickMesh::sphere(const PickRay& ray, bool bothSides, MeshHit& hit) const {
   const double radius = mesh_.radius, a = ray.direction.dot(ray.direction);

@@ -1,7 +1,7 @@
 // pick_mesh.h: intersects a ray with one geometry node, in the node's own coordinate system. Large
 // meshes have a bounding volume hierarchy, which is built where rays go: so the first ray waits for
 // one path of it alone, and hits do not depend on the rays before. Used by the picker. [the
-// browser's thread]
+// browser's thread; one that nobody else has yet may be made and prepared on another]
 #pragma once
 
 #include <limits>
@@ -44,6 +44,9 @@ struct MeshHit {
 class PickMesh {
  public:
   PickMesh(Node& geometry, const Limits* limits);
+  // Builds the upper levels of the hierarchy, so that no ray waits for them, and copies what it has
+  // used of the node, which may go then.
+  void prepare();
   const PickBox& bounds() const { return bounds_; }
   // Finds the nearest hit. Back faces of solid geometry are ignored unless bothSides. Returns false
   // if nothing is hit.

@@ -130,8 +130,9 @@ void Pointer::point(const PickRay& ray, bool button) {
   Engine& engine = interaction_.engine;
   if (engine.settling() || !interaction_.scope) return; // a listener must not move the pointer
   Hit hit;
-  const bool hits =
-      interaction_.picker.pick(ray, {}, interaction_.viewer.view(), interaction_.scope->roots, hit);
+  const PickRules rules{.mayLag = !button && !button_}; // a click must hit what is seen
+  const bool hits = interaction_.picker.pick(ray, rules, interaction_.viewer.view(),
+                                             interaction_.scope->roots, hit);
   const std::vector<Candidate> candidates = hits ? candidatesOf(hit) : std::vector<Candidate>();
   const bool moved = !pointed_ || ray.origin != last_.origin || ray.direction != last_.direction;
   engine.beginCascade(engine.now());

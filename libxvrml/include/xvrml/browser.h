@@ -54,7 +54,7 @@ struct BrowserOptions {
   // Seconds that all calls between two ticks together wait for Scripts in processes of their own;
   // those that are often late are not waited for in every call. Events that a Script sends later
   // belong to a later tick. 0 waits until the Script returns, so that the same input gives the same
-  // world on any machine.
+  // world on any machine. It holds for preparing large meshes, too: see setScriptPatience().
   double scriptPatience = 0;
   // Receives the text that Scripts print; null: the text becomes notes in world().diagnostics.
   std::function<void(const std::string& text)> print;
@@ -117,7 +117,9 @@ class Browser {
   bool hasChanges() const;      // true if takeChanges would return any
   ScriptCounts scripts() const; // what the world's Scripts have done so far
   // Changes BrowserOptions::scriptPatience from the next tick on, in seconds. Negative values and
-  // NaN count as 0. Programs that are late then go on beside the world.
+  // NaN count as 0. Programs that are late then go on beside the world. With more than 0, a viewer
+  // that moves and a pointer that hovers pass through large meshes until these are prepared for
+  // rays, beside the world; pick() and the pointer's button wait for them.
   void setScriptPatience(double seconds);
   // Grows by one when another world takes the place of this one (loadUrl, replaceWorld). Make a new
   // mapper then.

@@ -156,6 +156,13 @@ class OpenRTMapper {
   // Applies the changes that takeChanges() returned, between frames. Updates only what the changes
   // affect. A world whose nodes change without such records needs a new mapper.
   void update(const FieldChanges& changes);
+  // If true, update() leaves out what appears with a large mesh until threads of their own have
+  // read the mesh. A node that gets it shows its former content meanwhile. If false, update()
+  // waits; this is the default. The scene is the same in the end.
+  void setPatient(bool patient);
+  // Returns whether the last update() has left something out. Call it again then, also without
+  // changes.
+  bool isBehind() const;
   // Returns the present objects, those with the most triangles first. Call it after map().
   std::vector<ExplainedObject> explain() const;
 

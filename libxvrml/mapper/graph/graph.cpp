@@ -10,6 +10,7 @@
 #include "mapper/shading/appearance.h"
 #include "nodes/visible.h"
 #include "xvrml/nodes.h"
+#include "xvrml/walk.h"
 
 namespace xvrml::mapper {
 
@@ -53,10 +54,38 @@ Matrix Graph::below(const Matrix& outside, const Item& item) {
   return matrix == Matrix() ? outside : compose(outside, matrix);
 }
 
+Plan Graph::planFor(Node& node) {
+  Plan plan;
+  if (const PlanFunction function = planOf(node.type())) function(context_, node, plan);
+  return plan;
+}
+
+// Geometry may be used by several Shapes, so their textures are collected first.
+bool Graph::awaits(Node* changed) {
+  if (!changed && roots_ == context_.world.scope.roots) return false;
+  std::unordered_map<Node*, TextureNeed> found;
+  std::vector<Node*> first{changed};
+  if (!changed)
+    for (const NodeRef& root : context_.world.scope.roots)
+      first.push_back(renderedNode(root.get()));
+  walk(first, [&](Node& node, std::vector<Node*>& open) {
+    if (&node != changed && find(&node) != 0) return; // its changes are told of separately
+    if (node.type().index == nodes::ClipPlane::typeIndex || !isVisible(node)) return;
+    const Plan plan = planFor(node);
+    for (Node* child : plan.children) open.push_back(renderedNode(child));
+    if (plan.kind != Kind::shape) return;
+    const auto& shape = static_cast<nodes::Shape&>(node);
+    TextureNeed& need = found[renderedNode(shape.geometry.get())];
+    need = std::max(need, textureNeed(shape.appearance.get()));
+  });
+  bool any = false;
+  for (const auto& [geometry, need] : found) any |= meshes.awaits(*geometry, need);
+  return any;
+}
+
 void Graph::readSwitch(ItemId id) {
   Item& item = items[id];
-  Plan plan;
-  planOf(item.node->type())(context_, *item.node, plan);
+  const Plan plan = planFor(*item.node);
   item.on = plan.on;
   item.scoped = plan.scoped;
 }
@@ -92,7 +121,7 @@ void Graph::planItem(ItemId id) {
     plan.add(context_.world.scope.roots);
   } else {
     Node& node = *items[id].node;
-    if (isVisible(node)) planOf(node.type())(context_, node, plan);
+    if (isVisible(node)) plan = planFor(node);
   }
   std::vector<ItemId> children;
   children.reserve(plan.children.size());

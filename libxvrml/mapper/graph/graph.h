@@ -172,6 +172,9 @@ class Graph {
   void plan(ItemId item);
   // Calls plan(root) if the roots of the world have changed. Returns whether they have.
   bool planRoots();
+  // Returns whether a node that has changed, or one of the roots (null), is to be planned later,
+  // because something new at or below it has a large mesh that a job builds. Begins these jobs.
+  bool awaits(Node* changed);
   void readSwitch(ItemId item); // reads whether a light or a LocalFog is on
   // Plans marked and new items, drops unreachable ones and computes the order.
   void settle();
@@ -199,6 +202,7 @@ class Graph {
   Meshes meshes;
 
  private:
+  Plan planFor(Node& node);
   ItemId itemFor(Node* written);
   ItemId newItem();
   void planItem(ItemId id);

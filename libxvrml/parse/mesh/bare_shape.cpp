@@ -19,8 +19,6 @@ void writePositionsAndColors(NodeStream& nodes, MeshGeometry& geometry) {
   writeValues(nodes, "color", "Color", "color", std::move(geometry.colors));
 }
 
-} // namespace
-
 void writeFaces(NodeStream& nodes, MeshGeometry&& geometry) {
   nodes.open("IndexedFaceSet");
   if (!geometry.colorPerVertex && !geometry.colors.empty()) nodes.set("colorPerVertex", false);
@@ -52,6 +50,18 @@ void writePoints(NodeStream& nodes, MeshGeometry&& geometry) {
   nodes.close();
 }
 
+} // namespace
+
+void writeGeometry(NodeStream& nodes, MeshKind kind, MeshGeometry&& geometry) {
+  nodes.openField("geometry");
+  switch (kind) {
+  case MeshKind::faces: writeFaces(nodes, std::move(geometry)); break;
+  case MeshKind::lines: writeLines(nodes, std::move(geometry)); break;
+  case MeshKind::points: writePoints(nodes, std::move(geometry)); break;
+  }
+  nodes.closeField();
+}
+
 void writeBareShape(NodeStream& nodes, BareShape&& shape) {
   const MeshKind kind = shape.kind;
   nodes.open("Shape", shape.name.empty() ? std::string_view() : nodes.define(shape.name, {}));
@@ -65,14 +75,7 @@ void writeBareShape(NodeStream& nodes, BareShape&& shape) {
     nodes.closeIn();
   }
   nodes.closeIn();
-  nodes.openField("geometry");
-  if (kind == MeshKind::faces)
-    writeFaces(nodes, std::move(shape));
-  else if (kind == MeshKind::lines)
-    writeLines(nodes, std::move(shape));
-  else
-    writePoints(nodes, std::move(shape));
-  nodes.closeField();
+  writeGeometry(nodes, kind, std::move(shape));
   nodes.close();
 }
 

@@ -27,12 +27,10 @@ struct MeshGeometry {
   float creaseAngle = meshCreaseAngle;
 };
 
-// Write the node of the open field `geometry`.
-void writeFaces(NodeStream& nodes, MeshGeometry&& geometry);
-void writeLines(NodeStream& nodes, MeshGeometry&& geometry);
-void writePoints(NodeStream& nodes, MeshGeometry&& geometry);
-
 enum class MeshKind : uint8_t { faces, lines, points };
+
+// Writes the field `geometry` of the open Shape.
+void writeGeometry(NodeStream& nodes, MeshKind kind, MeshGeometry&& geometry);
 
 struct BareShape : MeshGeometry {
   MeshKind kind = MeshKind::faces;

@@ -457,14 +457,7 @@ void ObjReader::writeShape(const Part& part, MeshGeometry&& geometry) {
   const bool lit = part.kind == MeshKind::faces;
   if (lit || geometry.colors.empty())
     writeObjAppearance(nodes_, file_, materials_, part.material, lit);
-  nodes_.openField("geometry");
-  if (part.kind == MeshKind::faces)
-    writeFaces(nodes_, std::move(geometry));
-  else if (part.kind == MeshKind::lines)
-    writeLines(nodes_, std::move(geometry));
-  else
-    writePoints(nodes_, std::move(geometry));
-  nodes_.closeField();
+  writeGeometry(nodes_, part.kind, std::move(geometry));
   nodes_.close();
 }
 

@@ -36,7 +36,8 @@ bool readHead(TextCursor& text, OffHead& head) {
   for (const std::string_view prefix : {"4", "n"})
     if (take(rest, prefix)) head.refused = prefix;
   if (!take(rest, "OFF")) return false;
-  if (!rest.empty() && !TextCursor::isSpace(rest[0]) && !(rest[0] >= '0' && rest[0] <= '9'))
+  if (!rest.empty() && !TextCursor::isSpace(rest[0]) && rest[0] != '#' &&
+      !(rest[0] >= '0' && rest[0] <= '9'))
     return false;
   text.seek(rest.data());
   return true;
@@ -53,7 +54,7 @@ bool hasMore(TextCursor& text) { return !text.atLineEnd() && *text.at() != '#'; 
 class OffReader {
  public:
   explicit OffReader(const MeshFile& file)
-      : file_(file), text_(file.bytes), scratch_(file.budget) {}
+      : file_(file), text_(file.bytes, '#'), scratch_(file.budget) {}
 
   void read() {
     readCounts();

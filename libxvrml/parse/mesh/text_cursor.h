@@ -6,13 +6,16 @@
 #include <string>
 #include <string_view>
 
+#include "base/lexer.h"
 #include "base/number.h"
 
 namespace xvrml {
 
 class TextCursor {
  public:
-  explicit TextCursor(std::string_view text) : p_(text.data()), end_(text.data() + text.size()) {}
+  // comment: begins a comment, also directly behind a number; 0: nothing does.
+  explicit TextCursor(std::string_view text, char comment = 0)
+      : p_(text.data()), end_(text.data() + text.size()), comment_(comment) {}
 
   const char* at() const { return p_; }
   const char* end() const { return end_; }
@@ -51,13 +54,13 @@ class TextCursor {
     while (to > from && (to[-1] == ' ' || to[-1] == '\t')) --to;
     return {from, size_t(to - from)};
   }
-  // Reads a number that ends at a blank. Returns false, and stays at it, if this is none or it is
-  // out of range.
+  // Reads a number that ends at a blank or a comment. Returns false, and stays at it, if this is
+  // none or it is out of range.
   template <class T> bool number(T& out) {
     skipBlanks();
     const char* q = p_;
     if (q < end_ && *q == '+') ++q;
-    if (readNumber(q, end_, out) != NumberError::none || (q < end_ && !isSpace(*q))) return false;
+    if (readNumber(q, end_, out) != NumberError::none || !endsNumber(q)) return false;
     p_ = q;
     return true;
   }
@@ -66,8 +69,14 @@ class TextCursor {
   static bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
  private:
+  // "1.#INF" is no number with a comment.
+  bool endsNumber(const char* at) const {
+    if (at == end_ || isSpace(*at)) return true;
+    return comment_ != 0 && *at == comment_ && !isNonFiniteSuffix({at, size_t(end_ - at)});
+  }
   const char* p_;
   const char* end_;
+  char comment_;
 };
 
 // Returns a keyword in lower case. No keyword has more than 20 letters.

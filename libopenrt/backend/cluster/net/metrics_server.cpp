@@ -88,10 +88,11 @@ struct MetricsServer::Impl {
   }
 
   void run() {
-    keepRunning([this] { return stopping.load(); }, [this] { step(); }, [this] { closeAll(); });
+    keepRunning([this] { return stopping.load(); }, [this] { waitAndServe(); },
+                [this] { closeAll(); });
   }
 
-  void step() {
+  void waitAndServe() {
     std::vector<pollfd> all{{wakeUp.fd(), POLLIN, 0}};
     // While there are too many, the others wait in the system's queue.
     all.push_back({clients.size() < mostClients ? listening : -1, POLLIN, 0});
@@ -111,7 +112,7 @@ struct MetricsServer::Impl {
       ::poll(nullptr, 0, 10); // no descriptor is free, perhaps for long
   }
 
-  // Frees what the clients need, where memory is short.
+  // Frees what the clients need, where memory is short. One that was closed has no descriptor.
   void closeAll() {
     for (Client& client : clients)
       if (client.fd >= 0) close(client);

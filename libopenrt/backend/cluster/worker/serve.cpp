@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -232,19 +233,27 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
     post([=, why = std::move(event.text)](Worker& w) { w.left(peer, why, now); });
   }
 
+  // Throws std::bad_alloc if there is no memory for a message.
   void run() {
     std::thread session([this] { sessionLoop(); });
+    std::exception_ptr failure;
     try {
-      exchangeMessages();
+      serve();
     } catch (...) {
-      end(session);
-      throw;
+      failure = std::current_exception();
+      stopping = true;
     }
-    end(session);
+    {
+      const std::lock_guard lock(mutex); // no waiter can miss the notification
+    }
+    changed.notify_all();
+    session.join();
+    if (failure) std::rethrow_exception(failure);
     flush(); // last messages
   }
 
-  void exchangeMessages() {
+  // Exchanges messages until stop() is called.
+  void serve() {
     double advanced = 0;
     while (!stopping) {
       const bool all = flush();
@@ -258,15 +267,6 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
         post([=](Worker& w) { w.advance(now); });
       }
     }
-  }
-
-  void end(std::thread& session) {
-    stopping = true;
-    {
-      const std::lock_guard lock(mutex); // no waiter can miss the notification
-    }
-    changed.notify_all();
-    session.join();
   }
 
   size_t bytesWaiting() {

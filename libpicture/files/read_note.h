@@ -1,0 +1,13 @@
+// read_note.h: Reads what the file of a picture says about it (Picture::note), without reading its
+// pixels. [any thread]
+#pragma once
+
+#include <string>
+
+namespace picture {
+
+// Returns the comment of a PNG or JPEG file, as one line of ASCII; "" if it has none, has it behind
+// its first 64 kB, or is another file.
+std::string readNote(const std::string& path);
+
+} // namespace picture

@@ -1,0 +1,18 @@
+// copied.h: copies of geometry nodes. A thread may build a mesh of a copy while the world goes on,
+// because nobody else has the copy. [the thread that owns the original]
+#pragma once
+
+#include "xvrml/node.h"
+
+namespace xvrml {
+
+// Returns whether the mesh of a geometry node takes so long to build that a moving picture stands
+// still meanwhile. It counts what the node's arrays hold, and builds nothing.
+bool isSlowToBuild(const Node& geometry);
+
+// Returns a copy of a rendered geometry node, with copies of the Coordinate and the like that it
+// holds. buildMesh() makes the same mesh of it. Returns null for a node that cannot be copied so: a
+// figure moves its points, or it is no list of faces.
+NodeRef copyOfGeometry(const Node& geometry);
+
+} // namespace xvrml
