@@ -12,6 +12,7 @@
 #include "objects.h"
 #include "openrt/openrt.h"
 #include "xvrml/node_plugin.h"
+#include "xvrml/step_error.h"
 
 using namespace xvrml;
 
@@ -71,8 +72,7 @@ template <class Load> std::unique_ptr<World> loadWith(Load load) {
 
 WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute,
               double stepError) {
-  if (stepError != 0 &&
-      !(stepError >= LoadOptions::leastStepError && stepError <= LoadOptions::mostStepError))
+  if (stepError != 0 && !(stepError >= leastStepError && stepError <= mostStepError))
     throw py::value_error("step_error: 0, or millimetres from 1e-6 to 1e9, expected");
   auto made = std::make_shared<WorldObject>();
   made->world = loadSource(source, limits, allowAbsolute, stepError);

@@ -11,6 +11,7 @@
 
 #include "names.h"
 #include "nearest.h"
+#include "xvrml/step_error.h"
 
 namespace vv {
 
@@ -539,8 +540,7 @@ const OptionInfo table[] = {
      "Divide the surfaces of STEP models into triangles that are at most MM millimetres away from "
      "them. Without it, MM is a thousandth of the size of each part.",
      [](Options& o, const std::string& v) {
-       o.load.stepError =
-           readNumber(v, xvrml::LoadOptions::leastStepError, xvrml::LoadOptions::mostStepError);
+       o.load.stepError = readNumber(v, xvrml::leastStepError, xvrml::mostStepError);
      }},
     {"--point-size", "SIZE", "Change",
      "Draw the points of PointSets, point clouds (PLY) and the like as balls of this diameter, in "

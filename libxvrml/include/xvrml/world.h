@@ -141,11 +141,9 @@ struct LoadOptions {
   Limits limits;
   bool allowAbsolute = false; // allows absolute paths and file: URLs inside a world
   bool loadInlines = true;
-  // STEP models: millimetres between a triangle and the surface that it stands for, at most. 0: a
-  // thousandth of the size of each part. Other values are from leastStepError to mostStepError;
-  // loading throws LoadError for those outside.
+  // STEP models: millimetres between a triangle and the surface that it stands for, at most
+  // (xvrml/step_error.h). 0: a thousandth of the size of each part.
   double stepError = 0;
-  static constexpr double leastStepError = 1e-6, mostStepError = 1e9;
 };
 
 // The target of a URL inside a world: a file to read, or the reason why it is refused.

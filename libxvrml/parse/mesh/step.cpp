@@ -7,6 +7,7 @@
 
 #include "decode/decoder.h"
 #include "parse/encodings.h"
+#include "xvrml/step_error.h"
 
 namespace xvrml {
 namespace {
@@ -46,10 +47,10 @@ void readStep(const MeshFile& file) {
   const auto fail = [&](std::string message) {
     throw LoadError{{Severity::error, file.path, 0, 0, std::move(message), {}, 0}};
   };
-  if (error != 0 && !(error >= LoadOptions::leastStepError && error <= LoadOptions::mostStepError))
+  if (error != 0 && !(error >= leastStepError && error <= mostStepError))
     fail(
         fmt::format("a chord error from {} to {} millimetres was expected for a STEP model, not {}",
-                    LoadOptions::leastStepError, LoadOptions::mostStepError, error));
+                    leastStepError, mostStepError, error));
   Scratch scratch(file.budget);
   std::string glb;
   uint64_t leftOut = 0;
