@@ -2,6 +2,7 @@
 what vv says about them. Open CASCADE wrote the models."""
 import gzip
 import math
+import re
 import shutil
 
 import numpy as np
@@ -55,9 +56,64 @@ def test_a_smaller_error_makes_more_triangles():
         len(m.faces) for m in xvrml.load(str(MODELS / "round.step"), step_error=error).meshes())
     assert count(.2) < count(.02) < count(.004)
     assert count(0) == count(0)
-    for wrong in (-1, math.nan, math.inf):
+    for wrong in (-1, math.nan, math.inf, 1e-30, 1e-7, 1e10):
         with pytest.raises(ValueError, match="step_error"):
             xvrml.load(str(MODELS / "round.step"), step_error=wrong)
+
+
+def moved(text, offset):
+    """Returns a STEP file with another place of its points."""
+
+    def point(match):
+        numbers = [float(n) for n in match[2].split(",")]
+        if len(numbers) != 3:  # of a curve in a surface
+            return match[0]
+        return match[1] + ",".join(f"{n + o:.17E}" for n, o in zip(numbers, offset)) + match[3]
+
+    return re.sub(r"(CARTESIAN_POINT\('[^']*',\()([^)]*)(\))", point, text, flags=re.S)
+
+
+@pytest.mark.parametrize("far", [1e4, 1e7, 1e9])  # mm
+@pytest.mark.parametrize("name", ["round.step", "machine.step"])
+def test_parts_far_away_keep_their_shape_and_place(tmp_path, name, far):
+    offset = np.array([1.0003 * far, .77 * far, -1.1 * far])
+    (tmp_path / name).write_text(moved((MODELS / name).read_text(), offset))
+    there = xvrml.load(str(tmp_path / name), step_error=.02).meshes()
+    here = xvrml.load(str(MODELS / name), step_error=.02).meshes()
+    assert len(there) == len(here)
+    for a, b in zip(there, here):
+        assert abs(sizes_about_middle(a) - sizes_about_middle(b)) < 1e-4
+    if name == "round.step":  # its parts have moved, and their places with them
+        for a, b in zip(there, here):
+            moved_box = box(b) + 2 * np.tile(offset, 2)
+            np.testing.assert_allclose(box(a), moved_box, rtol=1e-15, atol=2e-3)
+
+
+def sizes_about_middle(mesh):
+    """Returns the cube root of the volume, which does not depend on the place, in mm."""
+    points = np.asarray(mesh.vertices, dtype=float) * 1000
+    a, b, c = ((points - points.mean(axis=0))[np.asarray(mesh.faces)[:, i]] for i in range(3))
+    return np.cbrt(abs(np.einsum("ij,ij->", a, np.cross(b, c)) / 6))
+
+
+@pytest.mark.parametrize("number", [
+    "1.E999", "1.E+31", "1" + "0" * 400 + ".", "NAN", "-inf", "1.#INF", "-1.#IND", "1.E"
+])
+def test_numbers_that_are_not_finite_are_refused_at_once(tmp_path, number):
+    text = (MODELS / "round.step").read_text()
+    point = "CARTESIAN_POINT('',(5.,-1.224646799147E-15,20.))"
+    line = text[:text.index(point)].count("\n") + 1
+    (tmp_path / "huge.step").write_text(text.replace(point, point.replace("5.", number)))
+    with pytest.raises(xvrml.ParseError, match=f"line {line}: a number up to 1e30 was expected"):
+        xvrml.load(str(tmp_path / "huge.step"))
+
+
+def test_words_in_strings_and_comments_are_no_numbers(tmp_path):
+    text = (MODELS / "round.step").read_text()
+    text = text.replace("DATA;", "DATA;/* (1.E999,NAN) */", 1)
+    text = text.replace("CARTESIAN_POINT('',", "CARTESIAN_POINT('it''s (NAN,1.E999)',", 1)
+    (tmp_path / "words.step").write_text(text.replace("1.224646799147E-15", "1.2E-999"))
+    assert len(xvrml.load(str(tmp_path / "words.step")).meshes()) == 3
 
 
 def test_normals_are_those_of_the_surface():
@@ -128,7 +184,7 @@ def test_vv_draws_describes_and_converts(models):
     assert len(again.meshes()) == 6 and abs(high[4] - 35) < .01, "y is up in glTF"
     coarse = models("round.step", "--info", "--json", "--step-error", "1").text
     assert coarse != models("round.step", "--info", "--json", "--step-error", ".01").text
-    for wrong in ("-1", "x", "nan"):
+    for wrong in ("-1", "x", "nan", "1e-30", "0"):
         assert models("round.step", "--info", "--step-error", wrong).returncode == 2
 
 

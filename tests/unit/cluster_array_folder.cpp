@@ -120,6 +120,37 @@ TEST(ArrayFolder, foldersOfOthersAreRefused) {
   EXPECT_EQ(thrown(open), "the folder of arrays " + path + ": it belongs to another user");
 }
 
+// Somebody else has filled it, for example on a disk that is mounted read-only.
+TEST(ArrayFolder, oneThatNothingCanBeWrittenToIsRead) {
+  Kept k;
+  const Sample kept(50000), other(50000, 2);
+  put(k.folder, kept);
+  constexpr uid_t nobody = 65534;
+  const bool isRoot = geteuid() == 0; // root may write everywhere
+  if (isRoot) {
+    ASSERT_EQ(chmod(fs::path(k.path).parent_path().c_str(), 0755), 0);
+    ASSERT_EQ(chown(k.path.c_str(), nobody, nobody), 0);
+    ASSERT_EQ(chown((k.path + "/" + kept.name()).c_str(), nobody, nobody), 0);
+  }
+  ASSERT_EQ(chmod(k.path.c_str(), 0500), 0);
+  if (isRoot) ASSERT_EQ(seteuid(nobody), 0);
+  std::vector<std::string> said;
+  {
+    ArrayFolder folder(k.path, megabyte,
+                       [&](int, const std::string& text) { said.push_back(text); });
+    EXPECT_TRUE(has(folder, kept));
+    put(folder, other);
+    EXPECT_FALSE(has(folder, other));
+    EXPECT_TRUE(has(folder, kept));
+  }
+  if (isRoot) ASSERT_EQ(seteuid(0), 0);
+  ASSERT_EQ(chmod(k.path.c_str(), 0700), 0);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("it is read, and nothing is kept there: Permission denied"),
+            std::string::npos)
+      << said[0];
+}
+
 TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   Kept k;
   const Sample sample(50000);
@@ -145,6 +176,11 @@ TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   put(k.folder, sample);
   std::ofstream(file, std::ios::app) << "more";
   expectDamaged("longer");
+  for (const uintmax_t size : {uintmax_t(0), uintmax_t(1), uintmax_t(40 * megabyte)}) {
+    put(k.folder, sample);
+    fs::resize_file(file, size); // such as after a crash of the machine
+    expectDamaged("of a size that no such array has");
+  }
   fs::create_symlink("/etc/passwd", file);
   EXPECT_FALSE(has(k.folder, sample));
   EXPECT_EQ(k.folder.damaged(), damaged) << "links are not followed, and not read";

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "lower_case.h"
+
 namespace xvrml::decoding {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr double most = 1e30;
 constexpr size_t longestPlain = 25; // digits without an exponent that cannot reach `most`
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 bool isNameCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 class Scan {
@@ -32,9 +35,10 @@ class Scan {
       else if (isDigit(c))
         number();
       else if (isNameCharacter(c) || c == '#')
-        skipName();
+        word();
       else
         step(1);
+      if (!isBlank(c)) before_ = c;
     }
   }
 
@@ -47,9 +51,19 @@ class Scan {
     const size_t found = text_.find(end, at_ + head);
     step(found == text_.npos ? text_.size() : found + end.size() - at_);
   }
-  void skipName() {
-    ++at_;
+  std::string_view takeWord() {
+    const size_t begin = at_++;
     while (at_ < text_.size() && isNameCharacter(text_[at_])) ++at_;
+    return text_.substr(begin, at_ - begin);
+  }
+
+  // Takes a keyword or an instance name. As a parameter, a word stands before a list.
+  void word() {
+    const bool isParameter = before_ == '(' || before_ == ',' || before_ == '-' || before_ == '+';
+    const std::string_view word = takeWord();
+    if (!isParameter || word[0] == '#') return;
+    for (const std::string_view wrong : {"nan", "inf", "infinity"})
+      if (word.size() == wrong.size() && beginsWithoutCase(word, wrong)) refuse(word);
   }
 
   void number() {
@@ -59,7 +73,6 @@ class Scan {
     };
     digits();
     const bool hasExponent = at_ < text_.size() && (text_[at_] == 'E' || text_[at_] == 'e');
-    if (!hasExponent && at_ - begin <= longestPlain) return;
     bool isSmall = false;
     if (hasExponent) {
       ++at_;
@@ -67,7 +80,11 @@ class Scan {
       if (at_ < text_.size() && (isSmall || text_[at_] == '+')) ++at_;
       digits();
     }
-    if (!isSmall) check(text_.substr(begin, at_ - begin));
+    const bool goesOn = at_ < text_.size() && (text_[at_] == '#' || isNameCharacter(text_[at_]));
+    if (goesOn) takeWord(); // such as 1.#INF
+    const std::string_view word = text_.substr(begin, at_ - begin);
+    if (goesOn || !isDigit(word.back() == '.' ? word[0] : word.back())) refuse(word);
+    if ((hasExponent && !isSmall) || word.size() > longestPlain) check(word);
   }
 
   void check(std::string_view word) const {
@@ -75,16 +92,23 @@ class Scan {
     if (const size_t plus = number.find('+'); plus != number.npos) number.erase(plus, 1);
     double value = 0;
     const auto read = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (read.ec != std::errc::result_out_of_range && !(std::abs(value) > most)) return;
+    const bool isSmall = number.find('-') != number.npos; // a negative exponent
+    if (read.ec == std::errc::result_out_of_range ? !isSmall : std::abs(value) > most) refuse(word);
+  }
+
+  [[noreturn]] void refuse(std::string_view word) const {
     constexpr size_t shown = 40;
-    if (number.size() > shown) number = number.substr(0, shown) + "...";
-    throw std::runtime_error("line " + std::to_string(line_) + ": " + number +
-                             " is no number that a part can have: up to 1e30 was expected");
+    const bool isLong = word.size() > shown;
+    throw std::runtime_error("line " + std::to_string(line_) +
+                             ": a number up to 1e30 was expected, "
+                             "not " +
+                             std::string(word.substr(0, shown)) + (isLong ? "..." : ""));
   }
 
   std::string_view text_;
   size_t at_ = 0;
   uint64_t line_ = 1;
+  char before_ = 0; // the first character of what stands before; blanks do not count
 };
 
 } // namespace

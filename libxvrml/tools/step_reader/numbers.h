@@ -6,8 +6,8 @@
 
 namespace xvrml::decoding {
 
-// Throws std::runtime_error that names the line if a number has a magnitude beyond 1e30. Open
-// CASCADE would take it as infinite, and compute for ever.
+// Throws std::runtime_error that names the line if a number is not finite, or has a magnitude
+// beyond 1e30: Open CASCADE would compute for ever.
 void checkNumbers(std::span<const uint8_t> file);
 
 } // namespace xvrml::decoding
