@@ -1,6 +1,7 @@
 // module.cpp: Defines the extension module xvrml._xvrml, load() and the exceptions.
 #include <cerrno>
 #include <cstring>
+#include <limits>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -72,8 +73,8 @@ template <class Load> std::unique_ptr<World> loadWith(Load load) {
 
 WorldPtr load(const py::object& source, const py::object& limits, bool allowAbsolute,
               double stepError) {
-  if (stepError != 0 && !(stepError >= leastStepError && stepError <= mostStepError))
-    throw py::value_error("step_error: 0, or millimetres from 1e-6 to 1e9, expected");
+  if (stepError != 0 && !(stepError > leastStepError && stepError < mostStepError))
+    throw py::value_error("step_error: 0, or millimetres between 1e-6 and 1e18, expected");
   auto made = std::make_shared<WorldObject>();
   made->world = loadSource(source, limits, allowAbsolute, stepError);
   return made;

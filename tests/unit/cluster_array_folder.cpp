@@ -120,37 +120,6 @@ TEST(ArrayFolder, foldersOfOthersAreRefused) {
   EXPECT_EQ(thrown(open), "the folder of arrays " + path + ": it belongs to another user");
 }
 
-// Somebody else has filled it, for example on a disk that is mounted read-only.
-TEST(ArrayFolder, oneThatNothingCanBeWrittenToIsRead) {
-  Kept k;
-  const Sample kept(50000), other(50000, 2);
-  put(k.folder, kept);
-  constexpr uid_t nobody = 65534;
-  const bool isRoot = geteuid() == 0; // root may write everywhere
-  if (isRoot) {
-    ASSERT_EQ(chmod(fs::path(k.path).parent_path().c_str(), 0755), 0);
-    ASSERT_EQ(chown(k.path.c_str(), nobody, nobody), 0);
-    ASSERT_EQ(chown((k.path + "/" + kept.name()).c_str(), nobody, nobody), 0);
-  }
-  ASSERT_EQ(chmod(k.path.c_str(), 0500), 0);
-  if (isRoot) ASSERT_EQ(seteuid(nobody), 0);
-  std::vector<std::string> said;
-  {
-    ArrayFolder folder(k.path, megabyte,
-                       [&](int, const std::string& text) { said.push_back(text); });
-    EXPECT_TRUE(has(folder, kept));
-    put(folder, other);
-    EXPECT_FALSE(has(folder, other));
-    EXPECT_TRUE(has(folder, kept));
-  }
-  if (isRoot) ASSERT_EQ(seteuid(0), 0);
-  ASSERT_EQ(chmod(k.path.c_str(), 0700), 0);
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].find("it is read, and nothing is kept there: Permission denied"),
-            std::string::npos)
-      << said[0];
-}
-
 TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   Kept k;
   const Sample sample(50000);
@@ -176,11 +145,18 @@ TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   put(k.folder, sample);
   std::ofstream(file, std::ios::app) << "more";
   expectDamaged("longer");
-  for (const uintmax_t size : {uintmax_t(0), uintmax_t(1), uintmax_t(40 * megabyte)}) {
-    put(k.folder, sample);
-    fs::resize_file(file, size); // such as after a crash of the machine
-    expectDamaged("of a size that no such array has");
-  }
+  put(k.folder, sample);
+  fs::resize_file(file, 0); // as a machine leaves it that has crashed
+  expectDamaged("empty");
+  put(k.folder, sample);
+  fs::resize_file(file, 0);
+  EXPECT_FALSE(k.folder.open(sample.hash, sample.bytes.size())) << "nothing to send";
+  EXPECT_EQ(k.folder.damaged(), ++damaged);
+  put(k.folder, sample);
+  fs::resize_file(file, uint64_t(1) << 30); // sparse; more than the array could ever have
+  EXPECT_FALSE(k.folder.open(sample.hash, sample.bytes.size()));
+  EXPECT_EQ(k.folder.damaged(), damaged) << "the size may be a stranger's word";
+  expectDamaged("far longer");
   fs::create_symlink("/etc/passwd", file);
   EXPECT_FALSE(has(k.folder, sample));
   EXPECT_EQ(k.folder.damaged(), damaged) << "links are not followed, and not read";
@@ -190,6 +166,39 @@ TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   put(k.folder, sample);               // replaces it
   EXPECT_TRUE(has(k.folder, sample));
   EXPECT_EQ(k.said.size(), 1u) << "a user is told once";
+}
+
+TEST(ArrayFolder, oneThatMayOnlyBeReadGivesWhatItHas) {
+  Kept k;
+  const Sample kept(50000), other(50000, 7), spoiled(50000, 8);
+  put(k.folder, kept);
+  put(k.folder, spoiled);
+  fs::resize_file(k.path + "/" + spoiled.name(), 100);
+  constexpr uid_t nobody = 65534;
+  const bool root = geteuid() == 0; // may write everywhere
+  for (const std::string& path : {std::string(k.place / "."), k.path, k.path + "/" + kept.name(),
+                                  k.path + "/" + spoiled.name()})
+    ASSERT_TRUE(!root || chown(path.c_str(), nobody, nobody) == 0);
+  ASSERT_EQ(chmod(k.path.c_str(), 0500), 0);
+  ASSERT_TRUE(!root || seteuid(nobody) == 0);
+  std::vector<std::string> said;
+  {
+    ArrayFolder folder(k.path, megabyte,
+                       [&](int, const std::string& text) { said.push_back(text); });
+    EXPECT_TRUE(has(folder, kept));
+    put(folder, other);
+    EXPECT_FALSE(has(folder, other));
+    for (uint64_t i = 1; i <= 2; ++i) {
+      EXPECT_FALSE(has(folder, spoiled));
+      EXPECT_EQ(folder.damaged(), i) << "it is still there";
+    }
+  }
+  ASSERT_TRUE(!root || seteuid(0) == 0);
+  ASSERT_EQ(chmod(k.path.c_str(), 0700), 0);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0], "the folder of arrays " + k.path +
+                         ": what it has is used, and nothing is added: Permission denied");
+  EXPECT_EQ(filesIn(k.path), 2u);
 }
 
 TEST(ArrayFolder, aSmallFileIsNotUnpackedWithoutEnd) {

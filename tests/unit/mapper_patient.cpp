@@ -24,7 +24,11 @@ class MapPatient : public MapRunning {
   }
   void show() { send("S", "set_whichChoice", int32_t(1)); }
   static std::string large(const std::string& more = "") {
-    return "Shape { " + more + " geometry DEF G " + grid(side) + " }";
+    return "Shape { " + more + " geometry DEF G " + MapRunning::grid(side) + " }";
+  }
+  NodeRef grid() {
+    const NodeRef shape = make("Shape { geometry " + MapRunning::grid(side) + " }");
+    return static_cast<nodes::Shape&>(*shape).geometry;
   }
   uint64_t triangles() { return frame().scene.triangles; }
   // Draws frames until nothing is left out. Returns the triangles of the last one.
@@ -68,7 +72,7 @@ TEST_F(MapPatient, ALargeMeshComesLaterAndTheSceneIsTheSame) {
 }
 
 TEST_F(MapPatient, SmallMeshesComeAtOnce) {
-  loadHidden("Shape { geometry " + grid(100) + " }");
+  loadHidden("Shape { geometry " + MapRunning::grid(100) + " }");
   const uint64_t before = triangles();
   show();
   EXPECT_EQ(triangles(), before + 20'000);
@@ -152,7 +156,7 @@ TEST_F(MapPatient, AMeshThatIsNewInEachFrameIsShown) {
   mapper_->setPatient(true);
   int shown = 0;
   for (int i = 0; i < 12; ++i) {
-    send("A", "set_geometry", make(grid(side)));
+    send("A", "set_geometry", grid());
     triangles();
     shown += !mapper_->isBehind();
   }
@@ -174,7 +178,7 @@ TEST_F(MapPatient, AShapeKeepsItsGeometryUntilTheOtherIsRead) {
   load("DEF A Shape { geometry Box { } }\nViewpoint { position 4 4 30 }\n");
   mapper_->setPatient(true);
   EXPECT_EQ(triangles(), 12u);
-  send("A", "set_geometry", make(grid(side)));
+  send("A", "set_geometry", grid());
   EXPECT_EQ(triangles(), 12u);
   EXPECT_EQ(finish(), many);
   expectSameAsAnew();
@@ -197,7 +201,7 @@ TEST_F(MapPatient, MoreMeshesThanThreadsComeTogether) {
   std::string content = "Group { children [ ";
   for (int i = 0; i < 5; ++i)
     content += "Transform { translation 0 " + std::to_string(i) + " 0 children Shape { geometry " +
-               grid(side) + " } } ";
+               MapRunning::grid(side) + " } } ";
   loadHidden(content + "] }");
   const uint64_t before = triangles();
   show();

@@ -1,10 +1,8 @@
 // xvrml_meshes.cpp: STL, PLY, OBJ, glTF and OFF as worlds: how they are found out, the nodes that
 // they become, and what a hostile file may cost. The values follow from the bytes by hand.
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "parse/mesh/mesh_file.h"
@@ -134,38 +132,6 @@ TEST(Meshes, WeldingKeepsTheFirstOfEqualPoints) {
   std::vector<Vec3f> points = {{0, 0, 0}, {1, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}, {1, 0, 1e-30f}};
   EXPECT_EQ(weldPoints(points), (std::vector<uint32_t>{0, 1, 0, 1, 2}));
   EXPECT_EQ(points, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 0, 1e-30f}}));
-}
-
-// A surveyor's coordinates: floats have steps of half a metre there.
-TEST(Meshes, PointsTooFarAwayForSinglePrecisionAreTold) {
-  const auto triangle = [](const std::string& format, double size, double away) {
-    const std::string a = fmt::format("{0} {0} 0", away),
-                      b = fmt::format("{} {} 0", away + size, away),
-                      c = fmt::format("{0} {0} {1}", away, size);
-    if (format == "off") return "OFF\n3 1 0\n" + a + "\n" + b + "\n" + c + "\n3 0 1 2\n";
-    if (format == "obj") return "v " + a + "\nv " + b + "\nv " + c + "\nf 1 2 3\n";
-    if (format == "ply")
-      return std::string(plyHead) +
-             "element face 1\nproperty list uchar int vertex_indices\n"
-             "end_header\n" +
-             a + "\n" + b + "\n" + c + "\n3 0 1 2\n";
-    return "solid x\nfacet normal 0 0 1\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " +
-           c + "\nendloop\nendfacet\nendsolid x\n";
-  };
-  for (const char* format : {"stl", "obj", "ply", "off"}) {
-    const auto warnings = [&](double size, double away) {
-      const auto world = load(triangle(format, size, away), std::string("a.") + format);
-      return messages(*world);
-    };
-    EXPECT_EQ(warnings(100, 0), "") << format;
-    EXPECT_EQ(warnings(100, 50000), "") << format;
-    const std::string text = warnings(100, 5e6);
-    EXPECT_NE(text.find("points are 5e+06 units away from the origin, where single precision has "
-                        "steps of 0.5, and the model has a size of 141"),
-              std::string::npos)
-        << format << ": " << text;
-    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << format << ": " << text;
-  }
 }
 
 TEST(Meshes, StlVerticesAreWelded) {

@@ -141,8 +141,8 @@ struct LoadOptions {
   Limits limits;
   bool allowAbsolute = false; // allows absolute paths and file: URLs inside a world
   bool loadInlines = true;
-  // STEP models: millimetres between a triangle and the surface that it stands for, at most
-  // (xvrml/step_error.h). 0: a thousandth of the size of each part.
+  // STEP models: millimetres between a triangle and the surface that it stands for, at most. 0: a
+  // thousandth of the size of each part.
   double stepError = 0;
 };
 

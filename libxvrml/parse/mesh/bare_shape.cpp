@@ -14,10 +14,11 @@ template <class T> void writeValues(NodeStream& nodes, std::string_view field,
 }
 
 void writePositionsAndColors(NodeStream& nodes, MeshGeometry& geometry) {
-  nodes.extent().add(geometry.points);
   writeValues(nodes, "coord", "Coordinate", "point", std::move(geometry.points));
   writeValues(nodes, "color", "Color", "color", std::move(geometry.colors));
 }
+
+} // namespace
 
 void writeFaces(NodeStream& nodes, MeshGeometry&& geometry) {
   nodes.open("IndexedFaceSet");
@@ -50,18 +51,6 @@ void writePoints(NodeStream& nodes, MeshGeometry&& geometry) {
   nodes.close();
 }
 
-} // namespace
-
-void writeGeometry(NodeStream& nodes, MeshKind kind, MeshGeometry&& geometry) {
-  nodes.openField("geometry");
-  switch (kind) {
-  case MeshKind::faces: writeFaces(nodes, std::move(geometry)); break;
-  case MeshKind::lines: writeLines(nodes, std::move(geometry)); break;
-  case MeshKind::points: writePoints(nodes, std::move(geometry)); break;
-  }
-  nodes.closeField();
-}
-
 void writeBareShape(NodeStream& nodes, BareShape&& shape) {
   const MeshKind kind = shape.kind;
   nodes.open("Shape", shape.name.empty() ? std::string_view() : nodes.define(shape.name, {}));
@@ -75,7 +64,14 @@ void writeBareShape(NodeStream& nodes, BareShape&& shape) {
     nodes.closeIn();
   }
   nodes.closeIn();
-  writeGeometry(nodes, kind, std::move(shape));
+  nodes.openField("geometry");
+  if (kind == MeshKind::faces)
+    writeFaces(nodes, std::move(shape));
+  else if (kind == MeshKind::lines)
+    writeLines(nodes, std::move(shape));
+  else
+    writePoints(nodes, std::move(shape));
+  nodes.closeField();
   nodes.close();
 }
 

@@ -27,10 +27,12 @@ struct MeshGeometry {
   float creaseAngle = meshCreaseAngle;
 };
 
-enum class MeshKind : uint8_t { faces, lines, points };
+// Write the node of the open field `geometry`.
+void writeFaces(NodeStream& nodes, MeshGeometry&& geometry);
+void writeLines(NodeStream& nodes, MeshGeometry&& geometry);
+void writePoints(NodeStream& nodes, MeshGeometry&& geometry);
 
-// Writes the field `geometry` of the open Shape.
-void writeGeometry(NodeStream& nodes, MeshKind kind, MeshGeometry&& geometry);
+enum class MeshKind : uint8_t { faces, lines, points };
 
 struct BareShape : MeshGeometry {
   MeshKind kind = MeshKind::faces;

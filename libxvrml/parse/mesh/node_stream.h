@@ -10,7 +10,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "parse/mesh/extent.h"
 #include "parse/mesh/mesh_file.h"
 
 namespace xvrml {
@@ -42,9 +41,6 @@ class NodeStream {
   // Returns a DEF name made from a name of the file: valid in every encoding, and unique here. An
   // empty name gives `otherwise`.
   std::string_view define(std::string_view name, std::string_view otherwise);
-  // The points of all meshes that were written.
-  MeshExtent& extent() { return extent_; }
-
   // Returns whether there is such a node type, or a field of one.
   bool knows(std::string_view type) const { return file_.sink.typeNamed(type); }
   bool knows(std::string_view type, std::string_view field) const;
@@ -53,7 +49,6 @@ class NodeStream {
   bool skips() const { return skipped_ > 0; }
 
   const MeshFile& file_;
-  MeshExtent extent_;
   uint64_t skipped_ = 0;    // open nodes and fields within one that is left out
   std::vector<bool> known_; // for each open node or field: the sink has it
   std::unordered_map<std::string, uint64_t> used_; // DEF names, with the last number given to each

@@ -115,7 +115,6 @@ class ObjReader {
   // Reads an index of a list: from 1, or from -1 backwards.
   bool readIndex(size_t listSize, int32_t& out);
   bool accept(char c);
-
   // Reads an index behind a '/'. An index that is not written is none.
   bool readOptionalIndex(size_t listSize, int32_t& out);
 
@@ -174,9 +173,9 @@ void ObjReader::read() {
                      "the file does not have above; they are drawn without these");
   freeForm_.report(file_.locator, Severity::warning,
                    "statements of free-form curves and surfaces are left out");
+  PointRange().add(points_).report(file_.locator);
   for (Part& part : parts_) write(part);
   if (parts_.empty() && !points_.empty()) writeVertices();
-  nodes_.extent().report(file_.locator);
 }
 
 void ObjReader::statement(std::string_view word) {
@@ -457,7 +456,14 @@ void ObjReader::writeShape(const Part& part, MeshGeometry&& geometry) {
   const bool lit = part.kind == MeshKind::faces;
   if (lit || geometry.colors.empty())
     writeObjAppearance(nodes_, file_, materials_, part.material, lit);
-  writeGeometry(nodes_, part.kind, std::move(geometry));
+  nodes_.openField("geometry");
+  if (part.kind == MeshKind::faces)
+    writeFaces(nodes_, std::move(geometry));
+  else if (part.kind == MeshKind::lines)
+    writeLines(nodes_, std::move(geometry));
+  else
+    writePoints(nodes_, std::move(geometry));
+  nodes_.closeField();
   nodes_.close();
 }
 

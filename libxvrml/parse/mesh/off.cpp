@@ -254,6 +254,7 @@ class OffReader {
 
   void finish() {
     if (shape_.points.empty()) return;
+    PointRange().add(shape_.points).report(file_.locator);
     if (!faceColors_.empty()) {
       shape_.colors = std::move(faceColors_);
       shape_.colorPerVertex = false;
@@ -261,7 +262,6 @@ class OffReader {
     if (shape_.coordIndex.empty()) shape_.kind = MeshKind::points;
     NodeStream nodes(file_);
     writeBareShape(nodes, std::move(shape_));
-    nodes.extent().report(file_.locator);
   }
 
   const MeshFile& file_;

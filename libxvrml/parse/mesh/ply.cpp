@@ -256,6 +256,7 @@ class PlyReader {
 
   void finish() {
     if (shape_.points.empty()) return;
+    PointRange().add(shape_.points).report(file_.locator);
     if (!faceColors_.empty()) {
       shape_.colors = std::move(faceColors_);
       shape_.colorPerVertex = false;
@@ -267,7 +268,6 @@ class PlyReader {
     if (!shape_.texCoords.empty()) shape_.texture = header_.texture;
     NodeStream nodes(file_);
     writeBareShape(nodes, std::move(shape_));
-    nodes.extent().report(file_.locator);
   }
 
   const MeshFile& file_;

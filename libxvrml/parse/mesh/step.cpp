@@ -7,14 +7,13 @@
 
 #include "decode/decoder.h"
 #include "parse/encodings.h"
-#include "xvrml/step_error.h"
 
 namespace xvrml {
 namespace {
 
-// Returns the model as a binary glTF file, and sets the number of faces that are left out. The
-// memory is taken from scratch.
-std::string glbOf(const MeshFile& file, Scratch& scratch, uint64_t& leftOut) {
+// Returns the model as a binary glTF file, and sets what the reader says about it. The memory is
+// taken from scratch.
+std::string glbOf(const MeshFile& file, Scratch& scratch, decoding::Contents& about) {
   const auto* const bytes = reinterpret_cast<const uint8_t*>(file.bytes.data());
   std::string glb;
   stepReaderOf(file.budget.get())
@@ -28,7 +27,7 @@ std::string glbOf(const MeshFile& file, Scratch& scratch, uint64_t& leftOut) {
               throw std::runtime_error("the process that reads it broke the protocol");
             scratch.take(contents.columns);
             glb.reserve(contents.columns);
-            leftOut = contents.leftOut;
+            about = contents;
             return true;
           },
           [&](std::span<const char> part) { glb.append(part.data(), part.size()); });
@@ -43,28 +42,25 @@ bool isStep(std::string_view bytes, std::string_view) {
 }
 
 void readStep(const MeshFile& file) {
-  const double error = file.options.stepError;
-  const auto fail = [&](std::string message) {
-    throw LoadError{{Severity::error, file.path, 0, 0, std::move(message), {}, 0}};
-  };
-  if (error != 0 && !(error >= leastStepError && error <= mostStepError))
-    fail(
-        fmt::format("a chord error from {} to {} millimetres was expected for a STEP model, not {}",
-                    leastStepError, mostStepError, error));
   Scratch scratch(file.budget);
   std::string glb;
-  uint64_t leftOut = 0;
+  decoding::Contents about{};
   try {
-    glb = glbOf(file, scratch, leftOut);
-  } catch (const std::runtime_error& why) {
-    fail(fmt::format("this STEP model cannot be read{}: {}",
-                     error == 0 ? "" : fmt::format(" with a chord error of {} millimetres", error),
-                     why.what()));
+    glb = glbOf(file, scratch, about);
+  } catch (const std::runtime_error& error) {
+    throw LoadError{{Severity::error,
+                     file.path,
+                     0,
+                     0,
+                     fmt::format("this STEP model cannot be read: {}", error.what()),
+                     {},
+                     0}};
   }
-  if (leftOut > 0)
+  if (about.leftOut > 0)
     file.locator.warn(nullptr, fmt::format("{} faces of the STEP model are left out: no triangles "
                                            "could be made of them",
-                                           leftOut));
+                                           about.leftOut));
+  if (about.away > 0) warnIfFar(file.locator, about.away, about.size, "metres");
   readGltf({glb, file.path, file.locator, file.sink, file.options, file.budget, file.names});
 }
 

@@ -13,7 +13,7 @@
 #include <TopoDS.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
-#include "local_origin.h"
+#include "origins.h"
 
 namespace xvrml::decoding {
 namespace {
@@ -37,29 +37,20 @@ bool isFinite(const gp_XYZ& v) {
   return std::isfinite(v.X()) && std::isfinite(v.Y()) && std::isfinite(v.Z());
 }
 
-// Sets the origin of the points of a part, and its size. The origin is 0 for parts near their own.
-// The points of others would lose digits in single precision.
-void setPlace(const Bnd_Box& box, Mesh& mesh) {
-  constexpr double near = 64; // a float of this many sizes has steps of 1e-5 of the size
-  if (box.IsVoid() || box.IsOpen()) return;
-  const gp_XYZ low = box.CornerMin().XYZ() * metres, high = box.CornerMax().XYZ() * metres;
-  double furthest = 0;
-  for (int i = 1; i <= 3; ++i)
-    furthest = std::max({furthest, std::abs(low.Coord(i)), std::abs(high.Coord(i))});
-  if (!std::isfinite(furthest)) return;
-  mesh.size = (high - low).Modulus();
-  if (!(furthest > near * mesh.size)) return;
-  for (int i = 0; i < 3; ++i)
-    mesh.origin[size_t(i)] = openrt::localOrigin(low.Coord(i + 1), high.Coord(i + 1));
+// Returns the box of a shape's triangles, in millimetres; void if it has none.
+Bnd_Box boxOf(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, true);
+  if (box.IsOpen()) box.SetVoid();
+  return box;
 }
 
-// Appends the triangles of a face. A vertex whose surface has no normal (the tip of a cone), or a
-// strange one, has that of the triangle.
-void addFace(const RWMesh_FaceIterator& face, const std::array<double, 3>& origin, Primitive& to) {
+// Appends the triangles of a face, with points that count from an origin. A vertex whose surface
+// has no normal (the tip of a cone), or a strange one, has that of the triangle.
+void addFace(const RWMesh_FaceIterator& face, const gp_XYZ& origin, Primitive& to) {
   const size_t first = to.points.size() / 3;
-  const gp_XYZ from(origin[0], origin[1], origin[2]);
   for (int i = face.NodeLower(); i <= face.NodeUpper(); ++i) {
-    append(to.points, face.NodeTransformed(i).XYZ() * metres - from);
+    append(to.points, face.NodeTransformed(i).XYZ() * metres - origin);
     append(to.normals, face.HasNormals() ? face.NormalTransformed(i).XYZ() : gp_XYZ(0, 0, 0));
   }
   for (int i = face.ElemLower(); i <= face.ElemUpper(); ++i) {
@@ -104,8 +95,10 @@ size_t Facets::materialOf(const Model::Material& material) {
   return all.size() - 1;
 }
 
-double Facets::chordErrorOf(const Bnd_Box& box) const {
+double Facets::chordErrorOf(const TopoDS_Shape& shape) const {
   if (chordError_ > 0) return chordError_;
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, false);
   const double size = box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
   return size > 0 && std::isfinite(size) ? size * partOfSize : partOfSize;
 }
@@ -116,9 +109,7 @@ std::optional<size_t> Facets::meshOf(const TDF_Label& part, const std::string& n
   if (!XCAFDoc_ShapeTool::GetShape(part, shape) || shape.IsNull()) return {};
   shape.Location(TopLoc_Location(), false);
   IMeshTools_Parameters parameters;
-  Bnd_Box box;
-  BRepBndLib::Add(shape, box, false);
-  parameters.Deflection = chordErrorOf(box);
+  parameters.Deflection = chordErrorOf(shape);
   parameters.Angle = turn;
   parameters.InParallel = false; // no thread may be made in the cage
   BRepMesh_IncrementalMesh(shape, parameters);
@@ -126,8 +117,11 @@ std::optional<size_t> Facets::meshOf(const TDF_Label& part, const std::string& n
     TopLoc_Location place;
     model_.leftOut += BRep_Tool::Triangulation(TopoDS::Face(faces.Current()), place).IsNull();
   }
-  Mesh mesh{.name = name, .primitives = {}};
-  setPlace(box, mesh);
+  Mesh mesh{name};
+  gp_XYZ origin;
+  if (const Bnd_Box box = boxOf(shape); !box.IsVoid())
+    origin = originFor(box.CornerMin().XYZ() * metres, box.CornerMax().XYZ() * metres);
+  mesh.origin = {origin.X(), origin.Y(), origin.Z()};
   for (RWMesh_FaceIterator face(part, TopLoc_Location(), true, style); face.More(); face.Next()) {
     if (face.IsEmptyMesh()) continue;
     const size_t material = materialOf(colorOf(face));
@@ -135,7 +129,7 @@ std::optional<size_t> Facets::meshOf(const TDF_Label& part, const std::string& n
                            [&](const Primitive& one) { return one.material == material; });
     if (of == mesh.primitives.end())
       of = mesh.primitives.insert(of, Primitive{.material = material});
-    addFace(face, mesh.origin, *of);
+    addFace(face, origin, *of);
   }
   std::erase_if(mesh.primitives, [](const Primitive& one) { return one.corners.empty(); });
   if (mesh.primitives.empty()) return {};

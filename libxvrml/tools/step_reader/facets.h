@@ -1,7 +1,6 @@
 // facets.h: divides the faces of a part into triangles. [one thread]
 #pragma once
 
-#include <Bnd_Box.hxx>
 #include <TDF_Label.hxx>
 #include <TopoDS_Shape.hxx>
 #include <XCAFPrs_Style.hxx>
@@ -20,7 +19,7 @@ class Facets {
 
  private:
   size_t materialOf(const Model::Material& material);
-  double chordErrorOf(const Bnd_Box& box) const;
+  double chordErrorOf(const TopoDS_Shape& shape) const;
 
   Model& model_;
   const double chordError_;

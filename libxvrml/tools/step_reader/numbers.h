@@ -1,13 +1,13 @@
-// numbers.h: checks the numbers of a STEP file before Open CASCADE reads them. [one thread]
+// numbers.h: finds numbers of STEP files that Open CASCADE does not stand. [one thread]
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include <string_view>
 
 namespace xvrml::decoding {
 
-// Throws std::runtime_error that names the line if a number is not finite, or has a magnitude
-// beyond 1e30: Open CASCADE would compute for ever.
-void checkNumbers(std::span<const uint8_t> file);
+// Throws std::runtime_error with the line of the first number (ISO 10303-21, 6.4.2) that is beyond
+// the range of double precision. Open CASCADE takes it as infinite, and divides such surfaces for
+// ever.
+void checkNumbers(std::string_view file);
 
 } // namespace xvrml::decoding

@@ -2,8 +2,6 @@
 // CASCADE: the tree of assemblies with its names, places and colours.
 #include "step.h"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <new>
 #include <stdexcept>
@@ -29,14 +27,12 @@
 
 #include "facets.h"
 #include "numbers.h"
+#include "origins.h"
 
 namespace xvrml::decoding {
 namespace {
 
 constexpr double metres = .001; // in a millimetre
-// Translations that single precision changes by more than this are divided: a share of the size of
-// the part, or metres for an assembly.
-constexpr double leastShare = 1e-5, leastLoss = 1e-6;
 
 // Reads the bytes of the file in place.
 struct Bytes : std::streambuf {
@@ -99,56 +95,24 @@ class Tree {
       above.resize(std::min(above.size(), depth));
       const size_t number = model_.nodes.size();
       model_.nodes.push_back(nodeOf(from));
-      const size_t inner = divide(number);
       (above.empty() ? model_.roots : model_.nodes[above.back()].children).push_back(number);
-      if (from.IsAssembly) above.push_back(inner);
+      if (from.IsAssembly) above.push_back(number);
     }
   }
 
  private:
-  // Gives a node an inner one if its translation loses digits in single precision. The two
-  // translations together hold it. Returns the node that has the children.
-  size_t divide(size_t number) {
-    ModelNode& outer = model_.nodes[number];
-    std::array<double, 3> rest{};
-    double lost = 0;
-    for (size_t k = 0; k < 3; ++k) {
-      rest[k] = outer.translation[k] - double(float(outer.translation[k]));
-      lost = std::max(lost, std::abs(rest[k]));
-    }
-    const double size = outer.mesh ? model_.meshes[*outer.mesh].size : 0;
-    if (!(lost > (size > 0 ? size * leastShare : leastLoss))) return number;
-    ModelNode inner = outer;
-    inner.name.clear();
-    inner.translation = rest;
-    for (size_t k = 0; k < 3; ++k) outer.translation[k] -= rest[k];
-    outer.rotation = ModelNode().rotation;
-    outer.scale = 1;
-    outer.mesh.reset();
-    const size_t added = model_.nodes.size();
-    outer.children = {added};
-    model_.nodes.push_back(std::move(inner));
-    return added;
-  }
-
   ModelNode nodeOf(const XCAFPrs_DocumentNode& from) {
     ModelNode node;
     const std::string part = nameOf(from.RefLabel);
     node.name = nameOf(from.Label);
     if (saysNothing(node.name)) node.name = part;
-    if (!from.IsAssembly && !from.RefLabel.IsNull()) node.mesh = meshOf(from, part);
     const gp_Trsf place = from.LocalTrsf.Transformation();
-    gp_XYZ move;
-    if (node.mesh) {
-      const auto& [x, y, z] = model_.meshes[*node.mesh].origin;
-      move = gp_XYZ(x, y, z) / metres;
-    }
-    place.Transforms(move);
-    move *= metres;
+    const gp_XYZ move = place.TranslationPart() * metres;
     const gp_Quaternion turn = place.GetRotation();
     node.translation = {move.X(), move.Y(), move.Z()};
     node.rotation = {turn.X(), turn.Y(), turn.Z(), turn.W()};
     node.scale = place.ScaleFactor();
+    if (!from.IsAssembly && !from.RefLabel.IsNull()) node.mesh = meshOf(from, part);
     return node;
   }
 
@@ -178,7 +142,7 @@ Model modelOf(std::span<const uint8_t> file, double chordError) {
   const auto fail = [&](const char* otherwise) {
     throw std::runtime_error(failure->text().empty() ? otherwise : failure->text());
   };
-  checkNumbers(file);
+  checkNumbers({reinterpret_cast<const char*>(file.data()), file.size()});
   Bytes bytes(file);
   std::istream text(&bytes);
   STEPCAFControl_Reader reader;
@@ -207,7 +171,10 @@ void decodeStep(const Request& request, std::span<const uint8_t> file, Answer& a
   Contents contents{0, 1, 1, 1};
   try {
     Model model = modelOf(file, request.chordError);
+    const Extent extent = moveOrigins(model);
     contents.leftOut = model.leftOut;
+    contents.away = extent.away;
+    contents.size = extent.size;
     parts = writeGlb(std::move(model), "Open CASCADE " OCC_VERSION_STRING_EXT);
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();

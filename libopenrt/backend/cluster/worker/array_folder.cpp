@@ -48,7 +48,7 @@ FileHandle openFolder(const std::string& path) {
   if (info.st_uid != ::geteuid()) refuse(path, "it belongs to another user");
   if (info.st_mode & (S_IWGRP | S_IWOTH))
     refuse(path, "other users may write there: chmod go-w " + path);
-  if (::faccessat(folder.get(), ".", X_OK, 0) != 0) refuse(path, std::strerror(errno));
+  if (::faccessat(folder.get(), ".", X_OK, AT_EACCESS) != 0) refuse(path, std::strerror(errno));
   return folder;
 }
 
@@ -94,13 +94,14 @@ FileHandle::~FileHandle() {
 ArrayFolder::ArrayFolder(const std::string& path, uint64_t bytes,
                          std::function<void(int level, const std::string& text)> log)
     : path_(path), limit_(bytes), log_(std::move(log)), folder_(openFolder(path)) {
-  if (::faccessat(folder_.get(), ".", W_OK, 0) != 0)
-    warnOnce(std::string("it is read, and nothing is kept there: ") + std::strerror(errno));
-  shrink();
+  if (::faccessat(folder_.get(), ".", W_OK, AT_EACCESS) != 0)
+    warnOnce(std::string("what it has is used, and nothing is added: ") + std::strerror(errno));
+  else
+    shrink();
 }
 
-void ArrayFolder::remove(const std::string& name) const {
-  ::unlinkat(folder_.get(), name.c_str(), 0);
+bool ArrayFolder::remove(const std::string& name) const {
+  return ::unlinkat(folder_.get(), name.c_str(), 0) == 0;
 }
 
 void ArrayFolder::warnOnce(const std::string& text) {
@@ -111,6 +112,7 @@ void ArrayFolder::warnOnce(const std::string& text) {
   if (log_) log_(2, "the folder of arrays " + path_ + ": " + text);
 }
 
+// Returns the file of this user, whatever it holds.
 std::optional<ArrayFolder::Stored> ArrayFolder::find(const Hash& hash) const {
   // O_NONBLOCK: a pipe of this name could wait for ever.
   FileHandle file(::openat(folder_.get(), nameOf(hash).c_str(),
@@ -122,10 +124,18 @@ std::optional<ArrayFolder::Stored> ArrayFolder::find(const Hash& hash) const {
   return Stored{std::move(file), uint64_t(info.st_size)};
 }
 
-std::optional<ArrayFolder::Stored> ArrayFolder::open(const Hash& hash, uint64_t bytes) const {
+std::optional<ArrayFolder::Stored> ArrayFolder::open(const Hash& hash, uint64_t bytes) {
   std::optional<Stored> found = find(hash);
-  if (found && !plausible(bytes, found->stored)) found.reset();
+  if (found && found->stored == 0) discard(hash); // a machine has crashed (Writer::keep)
+  if (!found || bytes > limits::arrayBytes || !plausible(bytes, found->stored)) return std::nullopt;
   return found;
+}
+
+void ArrayFolder::discard(const Hash& hash) {
+  damaged_++;
+  const bool removed = remove(nameOf(hash));
+  warnOnce(std::string("a file was damaged and ") +
+           (removed ? "is removed: " : "cannot be removed: ") + nameOf(hash));
 }
 
 bool ArrayFolder::Stored::read(uint64_t offset, std::vector<std::byte>& piece) const {
@@ -141,11 +151,10 @@ bool ArrayFolder::Stored::read(uint64_t offset, std::vector<std::byte>& piece) c
 }
 
 ArrayPtr ArrayFolder::load(const Hash& hash, uint64_t bytes) {
-  if (bytes > limits::arrayBytes) return nullptr;
   const std::optional<Stored> found = find(hash);
-  if (!found) return nullptr;
+  if (!found || bytes > limits::arrayBytes) return nullptr;
   if (!plausible(bytes, found->stored)) {
-    removeDamaged(hash);
+    discard(hash);
     return nullptr;
   }
   ArrayStream stream(hash, bytes);
@@ -163,14 +172,8 @@ ArrayPtr ArrayFolder::load(const Hash& hash, uint64_t bytes) {
     ::futimens(found->file.get(), nullptr); // it was used now
     return array;
   }
-  removeDamaged(hash);
+  discard(hash);
   return nullptr;
-}
-
-void ArrayFolder::removeDamaged(const Hash& hash) {
-  damaged_++;
-  remove(nameOf(hash));
-  warnOnce("a file was damaged and is removed: " + nameOf(hash));
 }
 
 void ArrayFolder::added(uint64_t bytes) {

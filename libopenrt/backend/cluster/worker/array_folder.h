@@ -38,14 +38,13 @@ class ArrayFolder {
   // Opens the folder, or makes it with rights for this user alone. bytes: about how many the files
   // may have together. log: receives warnings, on any thread; may be empty. Throws
   // std::runtime_error with a message for the user: among others if another user owns the folder or
-  // may write there. A folder that nothing can be written to is read; a warning says so.
+  // may write there. One in which this user may not write gives what it has, after a warning.
   ArrayFolder(const std::string& path, uint64_t bytes,
               std::function<void(int level, const std::string& text)> log);
   ArrayFolder(const ArrayFolder&) = delete;
   ArrayFolder& operator=(const ArrayFolder&) = delete;
 
-  // Returns the array; null if the folder does not have it. A file with other contents is removed,
-  // and so is one that is too short or too long to be this array.
+  // Returns the array; null if the folder does not have it. A file with other contents is removed.
   ArrayPtr load(const Hash& hash, uint64_t bytes);
 
   // A file to be sent to another worker, which checks it.
@@ -55,8 +54,11 @@ class ArrayFolder {
     // Reads the piece at an offset. Returns false if the file no longer has these bytes.
     bool read(uint64_t offset, std::vector<std::byte>& piece) const;
   };
-  // Returns the file of an array; nothing if there is none that can be one of this size.
-  std::optional<Stored> open(const Hash& hash, uint64_t bytes) const;
+  // Returns the file of an array; nothing if there is none that can be one of this size. The size
+  // may come from a stranger: only an empty file is removed.
+  std::optional<Stored> open(const Hash& hash, uint64_t bytes);
+  // Counts and removes a file whose contents are wrong.
+  void discard(const Hash& hash);
 
   // A file that is being written. It has no name that anybody looks for until keep() is called.
   class Writer {
@@ -78,16 +80,12 @@ class ArrayFolder {
     FileHandle file_;
   };
 
-  // Removes a file that turned out to have other contents than its name says, and counts it.
-  void removeDamaged(const Hash& hash);
-
   uint64_t limit() const { return limit_; }
   uint64_t damaged() const { return damaged_; } // files whose contents were wrong
 
  private:
-  // Returns the file with the name of an array, whatever it holds.
   std::optional<Stored> find(const Hash& hash) const;
-  void remove(const std::string& name) const;
+  bool remove(const std::string& name) const;
   void added(uint64_t bytes);
   void shrink(); // removes the files that were not used for longest
   void warnOnce(const std::string& text);

@@ -80,8 +80,7 @@ std::string metricsText(const WorkerCounts& counts, const WorkerGauges& gauges,
   addArrays(m, counts);
   m.one("fetches_failed_total", "counter", "Arrays that another worker did not send.",
         double(counts.failedFetches));
-  m.one("damaged_files_total", "counter",
-        "Files of the folder that had wrong contents, or another size, when they were read.",
+  m.one("damaged_files_total", "counter", "Files of the folder with wrong contents.",
         double(gauges.damagedFiles));
   return m.take();
 }

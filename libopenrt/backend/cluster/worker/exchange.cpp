@@ -242,7 +242,7 @@ struct Exchange::Impl {
     m.stored = next.stored.stored;
     m.offset = next.offset;
     if (!next.stored.read(next.offset, m.data)) {
-      folder.removeDamaged(next.hash);
+      folder.discard(next.hash);
       return false;
     }
     next.piece = encode(0, std::move(m));
