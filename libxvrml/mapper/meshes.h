@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/index_table.h"
+#include "geometry/copied.h" // for the templates of the jobs
 #include "geometry/geometry_jobs.h"
 #include "geometry/half_space.h"
 #include "geometry/matrix.h"
