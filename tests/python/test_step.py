@@ -195,7 +195,8 @@ def test_parts_of_an_assembly_far_away_keep_their_places_to_each_other(tmp_path)
     assert sorted(max(map(abs, p)) for p in places)[-2] < 1, places
 
 
-@pytest.mark.parametrize("number", ["1.E400", "-2.5E+999", "1" * 400 + "."])
+@pytest.mark.parametrize(
+    "number", ["1.E400", "-2.5E+999", "1" * 400 + ".", "NAN", "-nan", "INF", "-Infinity", "1.#INF"])
 def test_a_number_out_of_range_is_named_with_its_line(models, number):
     text = (MODELS / "round.step").read_text()
     middle = text.index("CARTESIAN_POINT('',(", len(text) // 2) + len("CARTESIAN_POINT('',(")
@@ -206,7 +207,7 @@ def test_a_number_out_of_range_is_named_with_its_line(models, number):
     assert done.returncode == 3 and done.talk.count("\n") == 1, done.talk
     assert f"Line {line}: the number {number.strip('-')[:40]}" in done.talk, done.talk
     assert "out of range" in done.talk
-    named = text.replace("FILE_NAME('", "FILE_NAME('it''s 1.E400 /* 2.E999 ", 1)
-    named = named.replace("DATA;", "/* 1.E400 ' */ DATA;", 1)
+    named = text.replace("FILE_NAME('", "FILE_NAME('it''s (NAN,1.E400 /* 2.E999 ", 1)
+    named = named.replace("DATA;", "/* (inf, 1.E400 ' */ DATA;", 1)
     models.write("named.step", named.encode())
     assert models("named.step", "--info").returncode == 0, "names and comments hold no numbers"

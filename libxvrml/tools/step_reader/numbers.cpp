@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "lower_case.h"
+
 namespace xvrml::decoding {
 namespace {
 
@@ -31,6 +33,15 @@ bool isFinite(std::string_view number) {
   return std::isfinite(std::strtod(std::string(number).c_str(), nullptr));
 }
 
+// Programs write these words for numbers that are not finite, and also 1.#INF (printf of some C
+// libraries). A word with the character `before` it is a parameter.
+bool isNotFinite(std::string_view word, char before) {
+  constexpr std::string_view around = "(,+-";
+  if (around.find(before) == around.npos) return false;
+  const std::string lower = lowerCase(word);
+  return lower == "nan" || lower == "inf" || lower == "infinity";
+}
+
 [[noreturn]] void refuse(std::string_view file, size_t at, std::string_view number) {
   constexpr size_t shown = 40;
   const auto line = 1 + std::count(file.begin(), file.begin() + std::ptrdiff_t(at), '\n');
@@ -42,7 +53,9 @@ bool isFinite(std::string_view number) {
 } // namespace
 
 void checkNumbers(std::string_view file) {
+  char before = 0; // the last character that is no blank
   for (size_t at = 0; at < file.size();) {
+    const size_t begin = at;
     const char c = file[at];
     if (c == '\'') {
       at = std::min(file.find('\'', at + 1), file.size() - 1) + 1;
@@ -50,13 +63,19 @@ void checkNumbers(std::string_view file) {
       at = std::min(file.find("*/", at + 2), file.size() - 1) + 1;
     } else if (isDigit(c)) {
       const size_t end = endOfNumber(file, at);
-      if (!isFinite(file.substr(at, end - at))) refuse(file, at, file.substr(at, end - at));
+      const bool goesOn = end < file.size() && file[end] == '#';
+      if (goesOn || !isFinite(file.substr(at, end - at)))
+        refuse(file, at,
+               file.substr(at, end - at + (goesOn ? std::string_view("#INF").size() : 0)));
       at = end;
     } else if (isOfName(c)) { // keywords may hold digits
       while (at < file.size() && isOfName(file[at])) ++at;
+      const std::string_view word = file.substr(begin, at - begin);
+      if (isNotFinite(word, before)) refuse(file, begin, word);
     } else {
       ++at;
     }
+    if (c != ' ' && c != '\t' && c != '\r' && c != '\n') before = c;
   }
 }
 
