@@ -25,7 +25,9 @@ void mix(const Picture& other, float weight, Picture& picture) {
 int64_t FilmHistory::firstFor(int64_t number) { return number - ageAt(number) - period; }
 
 float FilmHistory::weightOfYounger(int64_t number) {
-  return float(ageAt(number) + 1) / float(period + 1);
+  // Smooth at both ends, where one of the histories has few frames or is about to end.
+  const float t = float(ageAt(number) + 1) / float(period + 1);
+  return t * t * (3 - 2 * t);
 }
 
 void FilmHistory::reset() {

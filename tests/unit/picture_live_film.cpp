@@ -74,7 +74,7 @@ World roughLight() {
     Hit hit = plane(origin, direction, 0, -infinite, infinite);
     const Vec p = origin + direction * hit.distance;
     hit.light =
-        random(uint32_t(int(std::floor(p.x * 10)) * 4099 + int(std::floor(p.y * 10))), 1, 2);
+        random(uint32_t(int(std::floor(p.x * 22)) * 4099 + int(std::floor(p.y * 22))), 1, 2);
     hit.name = 1;
     return hit;
   };
