@@ -12,7 +12,7 @@
 
 namespace xvrml::decoding {
 
-constexpr uint32_t version = 2;
+constexpr uint32_t version = 3;
 
 enum class Format : uint32_t {
   exr = 1,
@@ -54,6 +54,8 @@ struct Contents {
   uint32_t componentBytes; // 1: bytes; 4: floats
   double rate = 0;         // sounds: frames a second
   uint64_t leftOut = 0;    // models: faces that could not be divided into triangles
+  double away = 0;         // models: the largest coordinate in the file, metres
+  double size = 0;         // models: the diagonal of the box, metres
 };
 
 constexpr size_t partBytes = 256 << 10; // bytes of a part at most

@@ -78,6 +78,7 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
   planChanged(work);
   newSurfaces(work);
   if (work.regroup) regroup();
+  std::erase_if(awaiting, [&](const NodeRef& node) { return graph.find(node.get()) == 0; });
   for (const int32_t mesh : work.meshes) objects.meshChanged(mesh);
   std::erase_if(work.rewrite, [&](ItemId id) { return !graph.items[id].planned; });
   std::erase_if(work.replace, [&](ItemId id) { return !graph.items[id].planned; });

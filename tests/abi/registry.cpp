@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refused{"missing_symbol", "exports no rtsPlugin"}, Refused{"small_symbol", "has 4 bytes"},
         Refused{"wrong_magic", "wrong magic number"},
-        Refused{"other_major", "made for shader ABI 2.2; this library has 1.3"},
+        Refused{"other_major", "made for shader ABI 2.3; this library has 1.3"},
         Refused{"newer_minor", "made for shader ABI 1.4; this library has 1.3"},
         Refused{"plugin_size", "claims a plug-in structure of"},
         Refused{"no_classes", "claims 0 shader classes"},
@@ -106,7 +106,8 @@ TEST(Abi, StructuresGrowAtTheirEndsAlone) {
   if (sizeof(void*) != 8) GTEST_SKIP();
   EXPECT_EQ(offsetof(RtsClass, traits), 40u);
   EXPECT_EQ(offsetof(RtsClass, radiance), 152u);
-  EXPECT_EQ(sizeof(RtsClass), 160u);
+  EXPECT_EQ(offsetof(RtsClass, opening), 160u);
+  EXPECT_EQ(sizeof(RtsClass), 168u);
   EXPECT_EQ(sizeof(RtsParam), 96u);
   EXPECT_EQ(sizeof(RtsPlugin), 24u);
   EXPECT_EQ(offsetof(RtsHost, lobe), 64u);

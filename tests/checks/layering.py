@@ -142,7 +142,7 @@ TABLE = [
     part("decoder", "libxvrml/tools/decoder/", "the program that decodes pictures and sounds",
          "cage xvrml-decode xvrml-process"),
     part("step-reader", "libxvrml/tools/step_reader/", "the program that reads STEP models",
-         "decoder xvrml-decode"),
+         "decoder xvrml-decode common"),
     part("xvrml-image", "libxvrml/image/", "decodes pictures and films",
          "xvrml-h xvrml-base xvrml-decode common"),
     part("xvrml-event", "libxvrml/event/",

@@ -238,9 +238,9 @@ def test_a_sun_that_has_set_is_told(vv, world):
     sky = "cie:12,sun=-3/90,direct=80000"
     (vv.folder / "open.wrl").write_text(HEAD + "ORTSensor { size 1 1 columns 1 rows 1 }")
     done = vv("open.wrl", "--measure", "out.csv", "--sky", sky)
-    assert done.returncode == 0 and "sun is not above the horizon (altitude -3.00" in done.stderr
+    assert done.returncode == 0 and "sun is not above the horizon (altitude -3.00" in done.talk
     done = vv("open.wrl", "--measure", "out.csv", "--sky", sky, "--quiet")
-    assert "horizon" not in done.stderr
+    assert "horizon" not in done.talk
     with pytest.warns(RuntimeWarning, match="not above the horizon"):
         world(sensor((0, 0, 0), (0, 1, 0))).measure(sky=sky)
 

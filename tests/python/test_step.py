@@ -2,6 +2,7 @@
 what vv says about them. Open CASCADE wrote the models."""
 import gzip
 import math
+import re
 import shutil
 
 import numpy as np
@@ -55,7 +56,7 @@ def test_a_smaller_error_makes_more_triangles():
         len(m.faces) for m in xvrml.load(str(MODELS / "round.step"), step_error=error).meshes())
     assert count(.2) < count(.02) < count(.004)
     assert count(0) == count(0)
-    for wrong in (-1, math.nan, math.inf):
+    for wrong in (-1, math.nan, math.inf, 1e-30, 1e300):
         with pytest.raises(ValueError, match="step_error"):
             xvrml.load(str(MODELS / "round.step"), step_error=wrong)
 
@@ -128,7 +129,7 @@ def test_vv_draws_describes_and_converts(models):
     assert len(again.meshes()) == 6 and abs(high[4] - 35) < .01, "y is up in glTF"
     coarse = models("round.step", "--info", "--json", "--step-error", "1").text
     assert coarse != models("round.step", "--info", "--json", "--step-error", ".01").text
-    for wrong in ("-1", "x", "nan"):
+    for wrong in ("-1", "x", "nan", "1e-30"):
         assert models("round.step", "--info", "--step-error", wrong).returncode == 2
 
 
@@ -148,3 +149,65 @@ def test_without_the_program_it_says_what_is_missing(models):
     done = models("inch.step", "-o", "x.png", *SMALL,
                   env={"XVRML_STEP_READER": "/nonexistent/xvrml-step-reader"})
     assert done.returncode == 3 and "libocct-data-exchange-dev" in done.talk, done.talk
+
+
+def moved(text, by):
+    """Returns a STEP file whose points in space are moved."""
+    numbers = r"(?<=CARTESIAN_POINT\('',\()([^,()]+),([^,()]+),([^,()]+)(?=\)\))"
+    there = lambda m: ",".join(f"{float(n) + b:.17E}" for n, b in zip(m.groups(), by))
+    return re.sub(numbers, there, text)
+
+
+def local_sizes(mesh):
+    points = np.asarray(mesh.vertices, dtype=float) * 1000
+    a, b, c = (points[np.asarray(mesh.faces)[:, i]] for i in range(3))
+    return (np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, abs(
+        np.einsum("ij,ij->", a, np.cross(b, c)) / 6), np.ptp(points, axis=0))
+
+
+@pytest.mark.parametrize("by", [(1e7, 0, 0), (0, -1e9, 3e8), (1e12, 1e12, 1e12)])
+def test_a_part_far_away_keeps_its_shape(tmp_path, by):
+    near = xvrml.load(str(MODELS / "inch.step"))
+    inches = [b / 25.4 for b in by]
+    (tmp_path / "far.step").write_text(moved((MODELS / "inch.step").read_text(), inches))
+    world = xvrml.load(str(tmp_path / "far.step"))
+    expected, = map(local_sizes, near.meshes())
+    got, = map(local_sizes, world.meshes())
+    # The double precision of the file itself has steps of 1e-4 mm at 1e12 mm.
+    for one, other in zip(got, expected):
+        np.testing.assert_allclose(one, other, rtol=1e-4)
+    middle = box(world.meshes()[0]).reshape(2, 3).mean(axis=0)
+    np.testing.assert_allclose(middle, by, rtol=2e-7, atol=.1)
+    said, = (w.message for w in world.warnings)
+    assert "metres away from the origin" in said and "the model's size is 0.088" in said, said
+    assert not near.warnings
+
+
+def test_parts_of_an_assembly_far_away_keep_their_places_to_each_other(tmp_path):
+    text = (MODELS / "machine.step").read_text()
+    (tmp_path / "far.step").write_text(moved(text, (0, 2e9, 0)))
+    near, far = xvrml.load(str(MODELS / "machine.step")), xvrml.load(str(tmp_path / "far.step"))
+    assert len(near.warnings) == 0 and len(far.warnings) == 1
+    for one, other in zip(near.meshes(), far.meshes()):
+        np.testing.assert_allclose(local_sizes(one)[2], local_sizes(other)[2], rtol=1e-5)
+    # Under the node that carries the whole, all places are as small as those of the near model.
+    places = [[float(n) for n in t] for t in re.findall(r"translation (\S+) (\S+) (\S+)", far.to_vrml())]
+    assert sorted(max(map(abs, p)) for p in places)[-2] < 1, places
+
+
+@pytest.mark.parametrize(
+    "number", ["1.E400", "-2.5E+999", "1" * 400 + ".", "NAN", "-nan", "INF", "-Infinity", "1.#INF"])
+def test_a_number_out_of_range_is_named_with_its_line(models, number):
+    text = (MODELS / "round.step").read_text()
+    middle = text.index("CARTESIAN_POINT('',(", len(text) // 2) + len("CARTESIAN_POINT('',(")
+    end = text.index(",", middle)
+    models.write("wide.step", (text[:middle] + number + text[end:]).encode())
+    done = models("wide.step", "--info")
+    line = text[:middle].count("\n") + 1
+    assert done.returncode == 3 and done.talk.count("\n") == 1, done.talk
+    assert f"Line {line}: the number {number.strip('-')[:40]}" in done.talk, done.talk
+    assert "out of range" in done.talk
+    named = text.replace("FILE_NAME('", "FILE_NAME('it''s (NAN,1.E400 /* 2.E999 ", 1)
+    named = named.replace("DATA;", "/* (inf, 1.E400 ' */ DATA;", 1)
+    models.write("named.step", named.encode())
+    assert models("named.step", "--info").returncode == 0, "names and comments hold no numbers"

@@ -145,6 +145,18 @@ TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   put(k.folder, sample);
   std::ofstream(file, std::ios::app) << "more";
   expectDamaged("longer");
+  put(k.folder, sample);
+  fs::resize_file(file, 0); // as a machine leaves it that has crashed
+  expectDamaged("empty");
+  put(k.folder, sample);
+  fs::resize_file(file, 0);
+  EXPECT_FALSE(k.folder.open(sample.hash, sample.bytes.size())) << "nothing to send";
+  EXPECT_EQ(k.folder.damaged(), ++damaged);
+  put(k.folder, sample);
+  fs::resize_file(file, uint64_t(1) << 30); // sparse; more than the array could ever have
+  EXPECT_FALSE(k.folder.open(sample.hash, sample.bytes.size()));
+  EXPECT_EQ(k.folder.damaged(), damaged) << "the size may be a stranger's word";
+  expectDamaged("far longer");
   fs::create_symlink("/etc/passwd", file);
   EXPECT_FALSE(has(k.folder, sample));
   EXPECT_EQ(k.folder.damaged(), damaged) << "links are not followed, and not read";
@@ -154,6 +166,39 @@ TEST(ArrayFolder, damagedFilesAreNoArraysAndGo) {
   put(k.folder, sample);               // replaces it
   EXPECT_TRUE(has(k.folder, sample));
   EXPECT_EQ(k.said.size(), 1u) << "a user is told once";
+}
+
+TEST(ArrayFolder, oneThatMayOnlyBeReadGivesWhatItHas) {
+  Kept k;
+  const Sample kept(50000), other(50000, 7), spoiled(50000, 8);
+  put(k.folder, kept);
+  put(k.folder, spoiled);
+  fs::resize_file(k.path + "/" + spoiled.name(), 100);
+  constexpr uid_t nobody = 65534;
+  const bool root = geteuid() == 0; // may write everywhere
+  for (const std::string& path : {std::string(k.place / "."), k.path, k.path + "/" + kept.name(),
+                                  k.path + "/" + spoiled.name()})
+    ASSERT_TRUE(!root || chown(path.c_str(), nobody, nobody) == 0);
+  ASSERT_EQ(chmod(k.path.c_str(), 0500), 0);
+  ASSERT_TRUE(!root || seteuid(nobody) == 0);
+  std::vector<std::string> said;
+  {
+    ArrayFolder folder(k.path, megabyte,
+                       [&](int, const std::string& text) { said.push_back(text); });
+    EXPECT_TRUE(has(folder, kept));
+    put(folder, other);
+    EXPECT_FALSE(has(folder, other));
+    for (uint64_t i = 1; i <= 2; ++i) {
+      EXPECT_FALSE(has(folder, spoiled));
+      EXPECT_EQ(folder.damaged(), i) << "it is still there";
+    }
+  }
+  ASSERT_TRUE(!root || seteuid(0) == 0);
+  ASSERT_EQ(chmod(k.path.c_str(), 0700), 0);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_EQ(said[0], "the folder of arrays " + k.path +
+                         ": what it has is used, and nothing is added: Permission denied");
+  EXPECT_EQ(filesIn(k.path), 2u);
 }
 
 TEST(ArrayFolder, aSmallFileIsNotUnpackedWithoutEnd) {

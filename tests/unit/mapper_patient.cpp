@@ -24,7 +24,11 @@ class MapPatient : public MapRunning {
   }
   void show() { send("S", "set_whichChoice", int32_t(1)); }
   static std::string large(const std::string& more = "") {
-    return "Shape { " + more + " geometry DEF G " + grid(side) + " }";
+    return "Shape { " + more + " geometry DEF G " + MapRunning::grid(side) + " }";
+  }
+  NodeRef grid() {
+    const NodeRef shape = make("Shape { geometry " + MapRunning::grid(side) + " }");
+    return static_cast<nodes::Shape&>(*shape).geometry;
   }
   uint64_t triangles() { return frame().scene.triangles; }
   // Draws frames until nothing is left out. Returns the triangles of the last one.
@@ -64,11 +68,12 @@ TEST_F(MapPatient, ALargeMeshComesLaterAndTheSceneIsTheSame) {
   EXPECT_EQ(triangles(), before);
   EXPECT_TRUE(mapper_->isBehind());
   EXPECT_EQ(finish(), before + many);
+  EXPECT_EQ(mapper_->readBeside(), 1u);
   expectSameAsAnew();
 }
 
 TEST_F(MapPatient, SmallMeshesComeAtOnce) {
-  loadHidden("Shape { geometry " + grid(100) + " }");
+  loadHidden("Shape { geometry " + MapRunning::grid(100) + " }");
   const uint64_t before = triangles();
   show();
   EXPECT_EQ(triangles(), before + 20'000);
@@ -82,6 +87,7 @@ TEST_F(MapPatient, WhoeverIsNotPatientGetsAllAtOnce) {
   EXPECT_EQ(triangles(), before);
   mapper_->setPatient(false);
   EXPECT_EQ(triangles(), before + many) << "also what has waited";
+  EXPECT_EQ(mapper_->readBeside(), 1u) << "that is taken over";
   EXPECT_FALSE(mapper_->isBehind());
   expectSameAsAnew();
 }
@@ -152,7 +158,7 @@ TEST_F(MapPatient, AMeshThatIsNewInEachFrameIsShown) {
   mapper_->setPatient(true);
   int shown = 0;
   for (int i = 0; i < 12; ++i) {
-    send("A", "set_geometry", make(grid(side)));
+    send("A", "set_geometry", grid());
     triangles();
     shown += !mapper_->isBehind();
   }
@@ -174,7 +180,7 @@ TEST_F(MapPatient, AShapeKeepsItsGeometryUntilTheOtherIsRead) {
   load("DEF A Shape { geometry Box { } }\nViewpoint { position 4 4 30 }\n");
   mapper_->setPatient(true);
   EXPECT_EQ(triangles(), 12u);
-  send("A", "set_geometry", make(grid(side)));
+  send("A", "set_geometry", grid());
   EXPECT_EQ(triangles(), 12u);
   EXPECT_EQ(finish(), many);
   expectSameAsAnew();
@@ -190,6 +196,7 @@ TEST_F(MapPatient, UsesOfOneGeometryWithAndWithoutTextures) {
   triangles();
   EXPECT_TRUE(mapper_->isBehind());
   finish();
+  EXPECT_EQ(mapper_->readBeside(), 1u);
   expectSameAsAnew();
 }
 
@@ -197,12 +204,13 @@ TEST_F(MapPatient, MoreMeshesThanThreadsComeTogether) {
   std::string content = "Group { children [ ";
   for (int i = 0; i < 5; ++i)
     content += "Transform { translation 0 " + std::to_string(i) + " 0 children Shape { geometry " +
-               grid(side) + " } } ";
+               MapRunning::grid(side) + " } } ";
   loadHidden(content + "] }");
   const uint64_t before = triangles();
   show();
   EXPECT_EQ(triangles(), before);
   EXPECT_EQ(finish(), before + 5 * many);
+  EXPECT_EQ(mapper_->readBeside(), 5u);
   expectSameAsAnew();
 }
 

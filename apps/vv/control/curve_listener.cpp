@@ -6,7 +6,6 @@
 #include <chrono>
 #include <map>
 #include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -16,6 +15,7 @@
 #include <zmq.hpp>
 
 #include "control/listener.h"
+#include "keep_running.h"
 #include "options/values.h"
 #include "spare_descriptors.h"
 #include "system/wake_up.h"
@@ -96,16 +96,16 @@ class CurveListener final : public Listener {
   }
 
   void run() {
-    while (!ending_) {
+    const auto step = [this] {
       try {
         work();
-      } catch (const zmq::error_t&) {
-        // a socket that was interrupted; the next round tries again
-      } catch (const std::bad_alloc&) {
-        for (const auto& [route, client] : clients_) mailbox_.leave(client.id);
-        clients_.clear();
-      }
-    }
+      } catch (const zmq::error_t&) {} // a socket that was interrupted; the next round tries again
+    };
+    keepRunning([this] { return ending_.load(); }, step,
+                [this] {
+                  for (const auto& [route, client] : clients_) mailbox_.leave(client.id);
+                  clients_.clear();
+                });
   }
 
   void work() {

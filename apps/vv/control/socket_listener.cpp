@@ -18,6 +18,7 @@
 
 #include "control/connection.h"
 #include "control/listener.h"
+#include "keep_running.h"
 #include "steady_clock.h"
 #include "system/sockets.h"
 #include "system/wake_up.h"
@@ -52,11 +53,8 @@ class SocketListener final : public Listener {
 
  private:
   void run() {
-    while (!ending_) {
-      try {
-        step();
-      } catch (const std::bad_alloc&) { connections_.clear(); } // the clients see that they are cut
-    }
+    keepRunning([this] { return ending_.load(); }, [this] { step(); },
+                [this] { connections_.clear(); }); // the clients see that they are cut
   }
 
   void step() {

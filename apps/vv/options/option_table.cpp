@@ -11,6 +11,7 @@
 
 #include "names.h"
 #include "nearest.h"
+#include "xvrml/step_error.h"
 
 namespace vv {
 
@@ -538,7 +539,9 @@ const OptionInfo table[] = {
     {"--step-error", "MM", "Change",
      "Divide the surfaces of STEP models into triangles that are at most MM millimetres away from "
      "them. Without it, MM is a thousandth of the size of each part.",
-     [](Options& o, const std::string& v) { o.load.stepError = readNumber(v, 0, 1e18); }},
+     [](Options& o, const std::string& v) {
+       o.load.stepError = readNumber(v, xvrml::leastStepError, xvrml::mostStepError);
+     }},
     {"--point-size", "SIZE", "Change",
      "Draw the points of PointSets, point clouds (PLY) and the like as balls of this diameter, in "
      "the units of their Shape. They are lit in their colours and cast shadows; without it they "

@@ -102,9 +102,11 @@ void Progress::showStage(const std::string& stage) {
 StageProgress::StageProgress(const std::string& what, const std::string& stage, bool quiet) {
   if (quiet) return;
   thread_ = std::thread([this, what, stage] {
-    Progress progress(what, false);
-    std::unique_lock lock(mutex_);
-    while (!ending_.wait_for(lock, 100ms, [this] { return ended_; })) progress.showStage(stage);
+    try {
+      Progress progress(what, false);
+      std::unique_lock lock(mutex_);
+      while (!ending_.wait_for(lock, 100ms, [this] { return ended_; })) progress.showStage(stage);
+    } catch (const std::exception&) {} // no memory: the work goes on without a display
   });
 }
 

@@ -8,18 +8,24 @@
 namespace rts {
 namespace detail {
 
-// A request of one ray, with arrays padded to RTS_LANES because the host may read whole vectors.
+// Writes a vector to all lanes, because the host may read whole vectors.
+inline void spread(Vec3 v, float (&to)[3][RTS_LANES]) {
+  for (int i = 0; i < RTS_LANES; i++) {
+    to[0][i] = v.x;
+    to[1][i] = v.y;
+    to[2][i] = v.z;
+  }
+}
+
+// A request of one ray, with arrays of RTS_LANES.
 struct OneRay {
   OneRay(const Tracer& from, const Vec3* start, Vec3 direction, float end) {
     for (int i = 0; i < RTS_LANES; i++) {
       hit[i] = from.lane;
       length[i] = end;
-      const float d[3] = {direction.x, direction.y, direction.z};
-      for (int k = 0; k < 3; k++) towards[k][i] = d[k];
-      if (!start) continue;
-      const float o[3] = {start->x, start->y, start->z};
-      for (int k = 0; k < 3; k++) origin[k][i] = o[k];
     }
+    spread(direction, towards);
+    if (start) spread(*start, origin);
     request.count = 1;
     request.hit = hit;
     for (int k = 0; k < 3; k++) {
@@ -118,11 +124,7 @@ inline Vec4 Hit::sample(Texture texture, Vec2 place) const {
 inline Vec4 Hit::sampleVolume(Texture texture, Vec3 place) const {
   if (texture.id == 0) return {1, 1, 1, 1};
   alignas(64) float in[3][RTS_LANES], out[4][RTS_LANES];
-  for (int i = 0; i < RTS_LANES; i++) {
-    in[0][i] = place.x;
-    in[1][i] = place.y;
-    in[2][i] = place.z;
-  }
+  detail::spread(place, in);
   const float* const str[3] = {in[0], in[1], in[2]};
   float* const rgba[4] = {out[0], out[1], out[2], out[3]};
   host->sampleVolume(batch, texture.id, 1, str, rgba);
@@ -131,11 +133,7 @@ inline Vec4 Hit::sampleVolume(Texture texture, Vec3 place) const {
 
 inline bool Hit::pixel(Vec2& place) const {
   alignas(64) float in[3][RTS_LANES], out[2][RTS_LANES];
-  for (int i = 0; i < RTS_LANES; i++) {
-    in[0][i] = position.x;
-    in[1][i] = position.y;
-    in[2][i] = position.z;
-  }
+  detail::spread(position, in);
   const float* const at[3] = {in[0], in[1], in[2]};
   float* const xy[2] = {out[0], out[1]};
   if (!host->pixels(batch, 1, at, xy)) return false;

@@ -58,4 +58,19 @@ class FaultCount {
   const char* first_ = nullptr;
 };
 
+// Warns if coordinates of this size, in single precision, have steps of more than 1/10000 of the
+// model's size. units: "units" or "metres".
+void warnIfFar(Locator& locator, double away, double size, std::string_view units);
+
+// Gathers the points of a file, to call warnIfFar() once.
+class PointRange {
+ public:
+  PointRange& add(const MFVec3f& points);
+  void report(Locator& locator) const;
+
+ private:
+  uint64_t count_ = 0;
+  Vec3f least_{}, most_{};
+};
+
 } // namespace xvrml

@@ -115,7 +115,6 @@ class ObjReader {
   // Reads an index of a list: from 1, or from -1 backwards.
   bool readIndex(size_t listSize, int32_t& out);
   bool accept(char c);
-
   // Reads an index behind a '/'. An index that is not written is none.
   bool readOptionalIndex(size_t listSize, int32_t& out);
 
@@ -174,6 +173,7 @@ void ObjReader::read() {
                      "the file does not have above; they are drawn without these");
   freeForm_.report(file_.locator, Severity::warning,
                    "statements of free-form curves and surfaces are left out");
+  PointRange().add(points_).report(file_.locator);
   for (Part& part : parts_) write(part);
   if (parts_.empty() && !points_.empty()) writeVertices();
 }

@@ -254,6 +254,7 @@ class OffReader {
 
   void finish() {
     if (shape_.points.empty()) return;
+    PointRange().add(shape_.points).report(file_.locator);
     if (!faceColors_.empty()) {
       shape_.colors = std::move(faceColors_);
       shape_.colorPerVertex = false;

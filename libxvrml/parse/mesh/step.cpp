@@ -11,9 +11,9 @@
 namespace xvrml {
 namespace {
 
-// Returns the model as a binary glTF file, and sets the number of faces that are left out. The
-// memory is taken from scratch.
-std::string glbOf(const MeshFile& file, Scratch& scratch, uint64_t& leftOut) {
+// Returns the model as a binary glTF file, and sets what the reader says about it. The memory is
+// taken from scratch.
+std::string glbOf(const MeshFile& file, Scratch& scratch, decoding::Contents& about) {
   const auto* const bytes = reinterpret_cast<const uint8_t*>(file.bytes.data());
   std::string glb;
   stepReaderOf(file.budget.get())
@@ -27,7 +27,7 @@ std::string glbOf(const MeshFile& file, Scratch& scratch, uint64_t& leftOut) {
               throw std::runtime_error("the process that reads it broke the protocol");
             scratch.take(contents.columns);
             glb.reserve(contents.columns);
-            leftOut = contents.leftOut;
+            about = contents;
             return true;
           },
           [&](std::span<const char> part) { glb.append(part.data(), part.size()); });
@@ -44,9 +44,9 @@ bool isStep(std::string_view bytes, std::string_view) {
 void readStep(const MeshFile& file) {
   Scratch scratch(file.budget);
   std::string glb;
-  uint64_t leftOut = 0;
+  decoding::Contents about{};
   try {
-    glb = glbOf(file, scratch, leftOut);
+    glb = glbOf(file, scratch, about);
   } catch (const std::runtime_error& error) {
     throw LoadError{{Severity::error,
                      file.path,
@@ -56,10 +56,11 @@ void readStep(const MeshFile& file) {
                      {},
                      0}};
   }
-  if (leftOut > 0)
+  if (about.leftOut > 0)
     file.locator.warn(nullptr, fmt::format("{} faces of the STEP model are left out: no triangles "
                                            "could be made of them",
-                                           leftOut));
+                                           about.leftOut));
+  if (about.away > 0) warnIfFar(file.locator, about.away, about.size, "metres");
   readGltf({glb, file.path, file.locator, file.sink, file.options, file.budget, file.names});
 }
 

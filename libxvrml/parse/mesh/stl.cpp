@@ -70,7 +70,7 @@ bool isFinite(const Vec3f& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-void writeSolid(const MeshFile& file, NodeStream& nodes, Solid&& solid) {
+void writeSolid(const MeshFile& file, NodeStream& nodes, PointRange& range, Solid&& solid) {
   if (solid.corners.empty()) return;
   if (solid.corners.size() > INT32_MAX / 2)
     throw MeshFault{
@@ -80,6 +80,7 @@ void writeSolid(const MeshFile& file, NodeStream& nodes, Solid&& solid) {
   scratch.take(weldBytes(solid.corners.size()) + facets * 4 * sizeof(int32_t));
   const std::vector<uint32_t> index = weldPoints(solid.corners);
   solid.corners.shrink_to_fit();
+  range.add(solid.corners);
   MFInt32 coordIndex(4 * facets);
   for (size_t i = 0; i < facets; ++i) {
     for (size_t k = 0; k < 3; ++k) coordIndex[4 * i + k] = int32_t(index[3 * i + k]);
@@ -109,6 +110,7 @@ class TextReader {
     }
     bad_.report(file_.locator, Severity::error,
                 "facets are left out, because they do not have three vertices of three numbers");
+    range_.report(file_.locator);
     unknown_.report(file_.locator, Severity::error,
                     "lines are left out: expected a statement of an STL file (facet, vertex, "
                     "endsolid)");
@@ -179,7 +181,7 @@ class TextReader {
   }
 
   void finish() {
-    writeSolid(file_, nodes_, std::move(solid_));
+    writeSolid(file_, nodes_, range_, std::move(solid_));
     solid_ = {};
     open_ = false;
   }
@@ -194,6 +196,7 @@ class TextReader {
   int vertices_ = 0;
   const char* facetAt_ = nullptr;
   FaultCount bad_, unknown_;
+  PointRange range_;
 };
 
 // Colours of facets in 15 bits. Magics: the header holds "COLOR=" with red, green, blue, alpha;
@@ -260,7 +263,9 @@ void readBinary(const MeshFile& file) {
   bad.report(file.locator, Severity::error,
              "triangles are left out, because their vertices are not finite");
   NodeStream nodes(file);
-  writeSolid(file, nodes, std::move(solid));
+  PointRange range;
+  writeSolid(file, nodes, range, std::move(solid));
+  range.report(file.locator);
 }
 
 } // namespace

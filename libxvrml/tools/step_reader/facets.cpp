@@ -13,6 +13,8 @@
 #include <TopoDS.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
+#include "origins.h"
+
 namespace xvrml::decoding {
 namespace {
 
@@ -35,12 +37,20 @@ bool isFinite(const gp_XYZ& v) {
   return std::isfinite(v.X()) && std::isfinite(v.Y()) && std::isfinite(v.Z());
 }
 
-// Appends the triangles of a face. A vertex whose surface has no normal (the tip of a cone), or a
-// strange one, has that of the triangle.
-void addFace(const RWMesh_FaceIterator& face, Primitive& to) {
+// Returns the box of a shape's triangles, in millimetres; void if it has none.
+Bnd_Box boxOf(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, true);
+  if (box.IsOpen()) box.SetVoid();
+  return box;
+}
+
+// Appends the triangles of a face, with points that count from an origin. A vertex whose surface
+// has no normal (the tip of a cone), or a strange one, has that of the triangle.
+void addFace(const RWMesh_FaceIterator& face, const gp_XYZ& origin, Primitive& to) {
   const size_t first = to.points.size() / 3;
   for (int i = face.NodeLower(); i <= face.NodeUpper(); ++i) {
-    append(to.points, face.NodeTransformed(i).XYZ() * metres);
+    append(to.points, face.NodeTransformed(i).XYZ() * metres - origin);
     append(to.normals, face.HasNormals() ? face.NormalTransformed(i).XYZ() : gp_XYZ(0, 0, 0));
   }
   for (int i = face.ElemLower(); i <= face.ElemUpper(); ++i) {
@@ -107,7 +117,11 @@ std::optional<size_t> Facets::meshOf(const TDF_Label& part, const std::string& n
     TopLoc_Location place;
     model_.leftOut += BRep_Tool::Triangulation(TopoDS::Face(faces.Current()), place).IsNull();
   }
-  Mesh mesh{name, {}};
+  Mesh mesh{name};
+  gp_XYZ origin;
+  if (const Bnd_Box box = boxOf(shape); !box.IsVoid())
+    origin = originFor(box.CornerMin().XYZ() * metres, box.CornerMax().XYZ() * metres);
+  mesh.origin = {origin.X(), origin.Y(), origin.Z()};
   for (RWMesh_FaceIterator face(part, TopLoc_Location(), true, style); face.More(); face.Next()) {
     if (face.IsEmptyMesh()) continue;
     const size_t material = materialOf(colorOf(face));
@@ -115,7 +129,7 @@ std::optional<size_t> Facets::meshOf(const TDF_Label& part, const std::string& n
                            [&](const Primitive& one) { return one.material == material; });
     if (of == mesh.primitives.end())
       of = mesh.primitives.insert(of, Primitive{.material = material});
-    addFace(face, *of);
+    addFace(face, origin, *of);
   }
   std::erase_if(mesh.primitives, [](const Primitive& one) { return one.corners.empty(); });
   if (mesh.primitives.empty()) return {};

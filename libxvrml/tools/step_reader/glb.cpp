@@ -64,7 +64,8 @@ class Writer {
   }
 
   static Json nodeOf(const ModelNode& node) {
-    Json out = {{"name", node.name}};
+    Json out = Json::object();
+    if (!node.name.empty()) out["name"] = node.name;
     if (node.translation != std::array<double, 3>{}) out["translation"] = node.translation;
     if (node.rotation != std::array<double, 4>{0, 0, 0, 1}) out["rotation"] = node.rotation;
     if (node.scale != 1) out["scale"] = {node.scale, node.scale, node.scale};

@@ -19,7 +19,8 @@ struct Primitive {
 
 struct Mesh {
   std::string name;
-  std::vector<Primitive> primitives;
+  std::array<double, 3> origin{}; // points of the part are these and those of the primitives
+  std::vector<Primitive> primitives{};
 };
 
 struct ModelNode {

@@ -26,6 +26,8 @@
 #include <gp_Quaternion.hxx>
 
 #include "facets.h"
+#include "numbers.h"
+#include "origins.h"
 
 namespace xvrml::decoding {
 namespace {
@@ -140,6 +142,7 @@ Model modelOf(std::span<const uint8_t> file, double chordError) {
   const auto fail = [&](const char* otherwise) {
     throw std::runtime_error(failure->text().empty() ? otherwise : failure->text());
   };
+  checkNumbers({reinterpret_cast<const char*>(file.data()), file.size()});
   Bytes bytes(file);
   std::istream text(&bytes);
   STEPCAFControl_Reader reader;
@@ -168,7 +171,10 @@ void decodeStep(const Request& request, std::span<const uint8_t> file, Answer& a
   Contents contents{0, 1, 1, 1};
   try {
     Model model = modelOf(file, request.chordError);
+    const Extent extent = moveOrigins(model);
     contents.leftOut = model.leftOut;
+    contents.away = extent.away;
+    contents.size = extent.size;
     parts = writeGlb(std::move(model), "Open CASCADE " OCC_VERSION_STRING_EXT);
   } catch (const Standard_OutOfMemory&) {
     throw std::bad_alloc();

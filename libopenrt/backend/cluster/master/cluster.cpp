@@ -416,6 +416,9 @@ void ClusterBackend::run() noexcept {
       master_->busy(steadySeconds() - waited_);
       waited_ = steadySeconds();
     }
+  } catch (const std::bad_alloc&) {
+    const std::lock_guard lock(mutex_);
+    broken_ = "out of memory"; // so short that it needs none
   } catch (const std::exception& e) {
     const std::lock_guard lock(mutex_);
     broken_ = std::string("the cluster has failed: ") + e.what();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <exception>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -15,6 +14,7 @@
 #include <poll.h>
 
 #include "backend/cluster/net/addresses.h"
+#include "keep_running.h"
 #include "steady_clock.h"
 #include "system/sockets.h"
 #include "system/wake_up.h"
@@ -76,26 +76,20 @@ struct MetricsServer::Impl {
   Impl(const std::string& where, std::function<std::string()> t)
       : address(Address::parse(where)), text(std::move(t)), listening(listenAt(address)) {
     address.port = portOf(listening);
+    clients.reserve(mostClients); // so that an accepted client can always be kept
     thread = std::thread([this] { run(); });
   }
   ~Impl() {
     stopping = true;
     wakeUp.call();
     thread.join();
-    for (const Client& client : clients) ::close(client.fd);
+    closeAll();
     ::close(listening);
   }
 
   void run() {
-    while (!stopping) {
-      try {
-        waitAndServe();
-      } catch (const std::exception&) { // no memory, perhaps for a while
-        for (Client& client : clients) close(client);
-        clients.clear();
-        ::poll(nullptr, 0, 100);
-      }
-    }
+    keepRunning([this] { return stopping.load(); }, [this] { waitAndServe(); },
+                [this] { closeAll(); });
   }
 
   void waitAndServe() {
@@ -104,7 +98,6 @@ struct MetricsServer::Impl {
     all.push_back({clients.size() < mostClients ? listening : -1, POLLIN, 0});
     for (const Client& client : clients)
       all.push_back({client.fd, short(client.answer.empty() ? POLLIN : POLLOUT), 0});
-    clients.reserve(clients.size() + 1);
     constexpr int milliseconds = 500; // for the clients' limit
     ::poll(all.data(), nfds_t(all.size()), clients.empty() ? -1 : milliseconds);
     if (all[0].revents) wakeUp.clear();
@@ -117,6 +110,13 @@ struct MetricsServer::Impl {
       clients.push_back({fd, now + patience, {}, {}, 0});
     else
       ::poll(nullptr, 0, 10); // no descriptor is free, perhaps for long
+  }
+
+  // Frees what the clients need, where memory is short. One that was closed has no descriptor.
+  void closeAll() {
+    for (Client& client : clients)
+      if (client.fd >= 0) close(client);
+    clients.clear();
   }
 
   static void close(Client& client) { ::close(std::exchange(client.fd, -1)); }

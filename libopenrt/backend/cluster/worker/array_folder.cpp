@@ -48,7 +48,7 @@ FileHandle openFolder(const std::string& path) {
   if (info.st_uid != ::geteuid()) refuse(path, "it belongs to another user");
   if (info.st_mode & (S_IWGRP | S_IWOTH))
     refuse(path, "other users may write there: chmod go-w " + path);
-  if (::faccessat(folder.get(), ".", W_OK | X_OK, 0) != 0) refuse(path, std::strerror(errno));
+  if (::faccessat(folder.get(), ".", X_OK, AT_EACCESS) != 0) refuse(path, std::strerror(errno));
   return folder;
 }
 
@@ -94,11 +94,14 @@ FileHandle::~FileHandle() {
 ArrayFolder::ArrayFolder(const std::string& path, uint64_t bytes,
                          std::function<void(int level, const std::string& text)> log)
     : path_(path), limit_(bytes), log_(std::move(log)), folder_(openFolder(path)) {
-  shrink();
+  if (::faccessat(folder_.get(), ".", W_OK, AT_EACCESS) != 0)
+    warnOnce(std::string("what it has is used, and nothing is added: ") + std::strerror(errno));
+  else
+    shrink();
 }
 
-void ArrayFolder::remove(const std::string& name) const {
-  ::unlinkat(folder_.get(), name.c_str(), 0);
+bool ArrayFolder::remove(const std::string& name) const {
+  return ::unlinkat(folder_.get(), name.c_str(), 0) == 0;
 }
 
 void ArrayFolder::warnOnce(const std::string& text) {
@@ -109,16 +112,30 @@ void ArrayFolder::warnOnce(const std::string& text) {
   if (log_) log_(2, "the folder of arrays " + path_ + ": " + text);
 }
 
-std::optional<ArrayFolder::Stored> ArrayFolder::open(const Hash& hash, uint64_t bytes) const {
+// Returns the file of this user, whatever it holds.
+std::optional<ArrayFolder::Stored> ArrayFolder::find(const Hash& hash) const {
   // O_NONBLOCK: a pipe of this name could wait for ever.
   FileHandle file(::openat(folder_.get(), nameOf(hash).c_str(),
                            O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat info;
   if (!file || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode) ||
-      info.st_uid != ::geteuid() || bytes > limits::arrayBytes ||
-      !plausible(bytes, uint64_t(info.st_size)))
+      info.st_uid != ::geteuid())
     return std::nullopt;
   return Stored{std::move(file), uint64_t(info.st_size)};
+}
+
+std::optional<ArrayFolder::Stored> ArrayFolder::open(const Hash& hash, uint64_t bytes) {
+  std::optional<Stored> found = find(hash);
+  if (found && found->stored == 0) discard(hash); // a machine has crashed (Writer::keep)
+  if (!found || bytes > limits::arrayBytes || !plausible(bytes, found->stored)) return std::nullopt;
+  return found;
+}
+
+void ArrayFolder::discard(const Hash& hash) {
+  damaged_++;
+  const bool removed = remove(nameOf(hash));
+  warnOnce(std::string("a file was damaged and ") +
+           (removed ? "is removed: " : "cannot be removed: ") + nameOf(hash));
 }
 
 bool ArrayFolder::Stored::read(uint64_t offset, std::vector<std::byte>& piece) const {
@@ -134,8 +151,12 @@ bool ArrayFolder::Stored::read(uint64_t offset, std::vector<std::byte>& piece) c
 }
 
 ArrayPtr ArrayFolder::load(const Hash& hash, uint64_t bytes) {
-  const std::optional<Stored> found = open(hash, bytes);
-  if (!found) return nullptr;
+  const std::optional<Stored> found = find(hash);
+  if (!found || bytes > limits::arrayBytes) return nullptr;
+  if (!plausible(bytes, found->stored)) {
+    discard(hash);
+    return nullptr;
+  }
   ArrayStream stream(hash, bytes);
   message::Piece piece;
   piece.hash = hash;
@@ -151,9 +172,7 @@ ArrayPtr ArrayFolder::load(const Hash& hash, uint64_t bytes) {
     ::futimens(found->file.get(), nullptr); // it was used now
     return array;
   }
-  damaged_++;
-  remove(nameOf(hash));
-  warnOnce("a file was damaged and is removed: " + nameOf(hash));
+  discard(hash);
   return nullptr;
 }
 

@@ -38,7 +38,7 @@ class ArrayFolder {
   // Opens the folder, or makes it with rights for this user alone. bytes: about how many the files
   // may have together. log: receives warnings, on any thread; may be empty. Throws
   // std::runtime_error with a message for the user: among others if another user owns the folder or
-  // may write there.
+  // may write there. One in which this user may not write gives what it has, after a warning.
   ArrayFolder(const std::string& path, uint64_t bytes,
               std::function<void(int level, const std::string& text)> log);
   ArrayFolder(const ArrayFolder&) = delete;
@@ -54,8 +54,11 @@ class ArrayFolder {
     // Reads the piece at an offset. Returns false if the file no longer has these bytes.
     bool read(uint64_t offset, std::vector<std::byte>& piece) const;
   };
-  // Returns the file of an array; nothing if there is none that can be one of this size.
-  std::optional<Stored> open(const Hash& hash, uint64_t bytes) const;
+  // Returns the file of an array; nothing if there is none that can be one of this size. The size
+  // may come from a stranger: only an empty file is removed.
+  std::optional<Stored> open(const Hash& hash, uint64_t bytes);
+  // Counts and removes a file whose contents are wrong.
+  void discard(const Hash& hash);
 
   // A file that is being written. It has no name that anybody looks for until keep() is called.
   class Writer {
@@ -81,7 +84,8 @@ class ArrayFolder {
   uint64_t damaged() const { return damaged_; } // files whose contents were wrong
 
  private:
-  void remove(const std::string& name) const;
+  std::optional<Stored> find(const Hash& hash) const;
+  bool remove(const std::string& name) const;
   void added(uint64_t bytes);
   void shrink(); // removes the files that were not used for longest
   void warnOnce(const std::string& text);

@@ -1,7 +1,6 @@
 #include "backend/cluster/worker/exchange.h"
 
 #include <atomic>
-#include <chrono>
 #include <deque>
 #include <map>
 #include <mutex>
@@ -10,6 +9,7 @@
 
 #include "backend/cluster/net/addresses.h"
 #include "backend/cluster/worker/array_cache.h"
+#include "keep_running.h"
 #include "steady_clock.h"
 
 namespace openrt::cluster {
@@ -63,18 +63,17 @@ struct Exchange::Impl {
   }
 
   void run() {
-    while (!stopping) {
-      try {
-        takeOrders();
-        sendQuestions();
-        take(wire.receive(sendPieces()));
-        checkSources(steadySeconds());
-      } catch (const std::exception&) { // no memory, perhaps for a while
-        sending.clear();
-        while (!sources.empty()) drop(sources.begin()->first);
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      }
-    }
+    keepRunning([this] { return stopping.load(); },
+                [this] {
+                  takeOrders();
+                  sendQuestions();
+                  take(wire.receive(sendPieces()));
+                  checkSources(steadySeconds());
+                },
+                [this] { // no memory, perhaps for a while
+                  sending.clear();
+                  while (!sources.empty()) drop(sources.begin()->first);
+                });
   }
 
   // The worker that asks.
@@ -231,7 +230,7 @@ struct Exchange::Impl {
   }
 
   // Reads the next piece of an array. Returns false if the folder no longer has it.
-  bool makePiece(Sending& next) const {
+  bool makePiece(Sending& next) {
     if (!next.stored.file) {
       std::optional<ArrayFolder::Stored> found = folder.open(next.hash, next.bytes);
       if (!found) return false;
@@ -242,7 +241,10 @@ struct Exchange::Impl {
     m.bytes = next.bytes;
     m.stored = next.stored.stored;
     m.offset = next.offset;
-    if (!next.stored.read(next.offset, m.data)) return false;
+    if (!next.stored.read(next.offset, m.data)) {
+      folder.discard(next.hash);
+      return false;
+    }
     next.piece = encode(0, std::move(m));
     return true;
   }

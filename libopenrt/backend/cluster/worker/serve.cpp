@@ -16,6 +16,7 @@
 #include "backend/cluster/worker/exchange.h"
 #include "backend/cluster/worker/worker.h"
 #include "backend/cluster/worker/worker_core.h"
+#include "keep_running.h"
 
 namespace openrt::cluster {
 namespace {
@@ -157,24 +158,27 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
   void drop(Epoch epoch) override { core->drop(epoch); }
 
   void sessionLoop() {
-    for (;;) {
-      std::function<void(Worker&)> task;
-      {
-        std::unique_lock lock(mutex);
-        changed.wait(lock, [this] { return stopping || !tasks.empty(); });
-        if (stopping) return;
-        task = std::move(tasks.front().first);
-        waiting -= tasks.front().second;
-        tasks.pop_front();
-      }
-      try {
-        task(*worker);
-      } catch (const std::exception& e) {
-        if (options.log) options.log(3, e.what());
-      }
-      serving = worker->serving();
-      if (options.once && worker->masters() > 0 && !worker->serving()) stop();
+    keepRunning([this] { return stopping.load(); }, [this] { doTask(); }, [] {});
+  }
+
+  // Waits for a task, and does it.
+  void doTask() {
+    std::function<void(Worker&)> task;
+    {
+      std::unique_lock lock(mutex);
+      changed.wait(lock, [this] { return stopping || !tasks.empty(); });
+      if (stopping) return;
+      task = std::move(tasks.front().first);
+      waiting -= tasks.front().second;
+      tasks.pop_front();
     }
+    try {
+      task(*worker);
+    } catch (const std::exception& e) {
+      if (options.log) options.log(3, e.what());
+    }
+    serving = worker->serving();
+    if (options.once && worker->masters() > 0 && !worker->serving()) stop();
   }
 
   // Sends the session's messages in order, as far as the queues accept them. Returns true if all

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "backend/local/local.h"
+#include "keep_running.h"
 #include "render/frame/job_runner.h"
 #include "start_threads.h"
 
@@ -58,6 +59,14 @@ struct WorkerCore::Impl {
   void applyCommit(const Command& command);
   void makeReady(Epoch epoch);
   void reportFailure(Epoch epoch, const std::string& why);
+  // Repeats a report for which memory is short: nobody would repeat the job otherwise.
+  template <class Report> void insist(const Report& report) {
+    const auto isClosing = [this] {
+      const std::lock_guard lock(mutex);
+      return closing;
+    };
+    repeatUntilDone(isClosing, report);
+  }
   bool jobInFront() const {
     return !alone && !queue.empty() && queue.front().kind == Command::Kind::job;
   }
@@ -117,8 +126,8 @@ void WorkerCore::Impl::push(Command&& command) {
 void WorkerCore::Impl::reportFailure(Epoch epoch, const std::string& why) {
   std::lock_guard lock(sinkMutex);
   if (broken == epoch && epoch != 0) return;
-  broken = epoch;
   sink.failed(epoch, why);
+  broken = epoch;
 }
 
 void WorkerCore::Impl::work(uint32_t thread) {
@@ -147,7 +156,7 @@ void WorkerCore::Impl::work(uint32_t thread) {
       }
     } catch (const std::exception& e) {
       mine.runner = nullptr; // it may be in an undefined state
-      reportFailure(command.epoch, std::string("rendering failed: ") + e.what());
+      insist([&] { reportFailure(command.epoch, std::string("rendering failed: ") + e.what()); });
     }
     lock.lock();
     busy--;
@@ -190,7 +199,7 @@ void WorkerCore::Impl::runCommands(const Command& command) {
     if (command.failure)
       *command.failure = std::current_exception();
     else
-      reportFailure(command.epoch, e.what());
+      insist([&] { reportFailure(command.epoch, e.what()); });
   }
 }
 

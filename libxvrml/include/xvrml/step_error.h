@@ -1,0 +1,9 @@
+// step_error.h: the range of LoadOptions::stepError, in millimetres. 0 is possible, too. [any thread]
+#pragma once
+
+namespace xvrml {
+
+inline constexpr double leastStepError = 1e-6; // below it there would be no end of triangles
+inline constexpr double mostStepError = 1e18;
+
+} // namespace xvrml
