@@ -106,7 +106,7 @@ bool isSlowToBuild(const Node& geometry) { return lengthOfFaces(geometry) >= slo
 uint64_t mostTriangles(const Node& geometry) {
   const auto* faces = nodeCast<nodes::IndexedFaceSet>(&geometry);
   if (!faces) return lengthOfFaces(geometry);
-  uint64_t triangles = 0, corners = 0; // of all faces, of the present one
+  uint64_t triangles = 0, corners = 0; // the corners are those of the present face
   for (const int32_t index : faces->coordIndex) {
     corners = index == -1 ? 0 : corners + 1;
     triangles += corners > 2;
