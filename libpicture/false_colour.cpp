@@ -119,8 +119,9 @@ std::vector<float> scaled(const std::vector<float>& values, int width, int heigh
   return out;
 }
 
+// In a room luminaires are a few percent of the picture, and a hundred times as bright as the rest.
 double mostOf(std::vector<float> values) {
-  const auto at = values.begin() + std::ptrdiff_t(double(values.size() - 1) * .995);
+  const auto at = values.begin() + std::ptrdiff_t(double(values.size() - 1) * .95);
   std::nth_element(values.begin(), at, values.end());
   const double most = double(*at);
   return most > 0 ? most : 1;

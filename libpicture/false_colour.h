@@ -20,7 +20,7 @@ LuminanceScale luminanceScale(double most);
 // Returns the display colour of a share of the scale, from 0 to 1.
 std::array<float, 3> scaleColour(double at);
 
-// Returns the luminance that 99.5 % of the pixels stay below; 1 if the picture is black.
+// Returns the luminance that 95 % of the pixels stay below; 1 if the picture is black.
 double mostLuminance(const Picture& picture);
 
 enum class Legend : uint8_t {

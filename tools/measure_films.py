@@ -5,16 +5,16 @@ they flicker.
 measure_films.py --out FOLDER [--vv PROGRAM] [--worlds a,b,FILE.wrl] [--spp N] [--size WxH]
                  [--reference-spp N] [--denoise] [--threads N] [--table FILE]
 
-Each world is filmed for 24 frames while the mouse turns it, once with the samples as they are (raw)
-and once with --preview. Ten frames are then rendered with many samples. FLIP is that of `vv compare`.
+Each world is filmed for 18 frames while the mouse turns it, once with the samples as they are (raw)
+and once with --preview. Six frames are then rendered with many samples. FLIP is that of `vv compare`.
 
 * flicker: how much neighbouring pictures differ, over how much the true ones do. A film that is still
   where the true one is has 1, or less if it is smoother than it should be.
 * seams: how much pictures differ where a history of the preview ends (every eighth frame), over how
   much they differ elsewhere.
 
-References are kept in FOLDER until the world or the settings change. A picture of the middle of each
-film, raw, rebuilt and true, is left there: WORLD-raw-0020.png and so on.
+References are kept in FOLDER until the world or the settings change. The pictures of each
+film are left there: WORLD-raw-0020.png, WORLD-film-0020.png.
 """
 import argparse
 import hashlib
@@ -23,15 +23,15 @@ import pathlib
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-FIRST, LAST, PERIOD = 8, 31, 8
-PAIRS = ((11, 12), (15, 16), (19, 20), (23, 24), (27, 28))  # compared with the true ones
+FIRST, LAST, PERIOD = 8, 25, 8
+PAIRS = ((15, 16), (19, 20), (23, 24))  # compared with the true ones
 FPS, STEP = 30, 0.003  # the mouse goes on by STEP of half the width in each frame
 
 
 def drag(folder):
     """Writes the script of a mouse that turns the world slowly; returns its file."""
     lines = ["0 move 0 0", "0 press left 0 0"]
-    lines += [f"{n / FPS:.6f} move {STEP * n:.5f} 0" for n in range(1, LAST + 2)]
+    lines += [f"{(n - 0.5) / FPS:.6f} move {STEP * n:.5f} 0" for n in range(1, LAST + 2)]
     file = folder / "turn.txt"
     file.write_text("\n".join(lines) + "\n")
     return file

@@ -47,6 +47,24 @@ std::string_view commentOfJpeg(std::string_view bytes) {
   return {};
 }
 
+// Returns the attribute "comments" (OpenEXR File Layout, "Attribute Layout").
+std::string_view commentOfExr(std::string_view bytes) {
+  constexpr std::string_view head("comments\0string\0", 16);
+  const size_t found = bytes.find(head), at = found + head.size();
+  if (found == bytes.npos || at + 4 > bytes.size()) return {};
+  size_t length = 0;
+  for (size_t i = 4; i-- > 0;) length = length << 8 | uint8_t(bytes[at + i]);
+  return length > bytes.size() - at - 4 ? std::string_view() : bytes.substr(at + 4, length);
+}
+
+// Returns the first line of a head of text that is a comment, as writers of this project place it.
+std::string_view commentOfText(std::string_view bytes) {
+  constexpr std::string_view begin = "\n# ";
+  const size_t found = bytes.find(begin), at = found + begin.size();
+  const size_t end = found == bytes.npos ? bytes.npos : bytes.find('\n', at);
+  return end == bytes.npos ? std::string_view() : bytes.substr(at, end - at);
+}
+
 std::string lineOf(std::string_view comment) {
   std::string line(comment);
   std::replace_if(
@@ -63,6 +81,8 @@ std::string readNote(const std::string& path) {
   bytes.resize(size_t(file.gcount()));
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return lineOf(commentOfPng(bytes));
   if (bytes.starts_with("\xff\xd8")) return lineOf(commentOfJpeg(bytes));
+  if (bytes.starts_with("\x76\x2f\x31\x01")) return lineOf(commentOfExr(bytes));
+  if (bytes.starts_with("P6\n# ") || bytes.starts_with("#?")) return lineOf(commentOfText(bytes));
   return "";
 }
 

@@ -351,8 +351,7 @@ inline New severalSamples(const ShowPass& pass, const Target& target, const New&
   };
   const LaneVec samples{sampled(0, low.x, high.x), sampled(1, low.y, high.y),
                         sampled(2, low.z, high.z)};
-  const Lanes noisy = hn::IfThenElseZero(hn::Not(mixes), one.noisy);
-  return {select(mixes, samples, one.fresh), noisy, least + (one.frames - least) * noisy};
+  return {select(mixes, samples, one.fresh), one.noisy, least + (one.frames - least) * one.noisy};
 }
 
 // Returns by how much light has to change to have another level, as far as it is noisy: shadows

@@ -74,26 +74,44 @@ NodeRef copyOf(const Node& node, int level) {
   return copy;
 }
 
-} // namespace
-
-bool isSlowToBuild(const Node& geometry) {
-  if (!isListOfFaces(geometry.type())) return false;
-  uint64_t most = 0; // triangles
+// Returns the length of the longest array of a geometry node and the nodes that it holds.
+uint64_t longestArray(const Node& geometry) {
+  uint64_t longest = 0;
   for (const FieldInfo& field : geometry.type().fields) {
     if (!holdsValue(field) || field.isMetadata || geometry.isUnset(field)) continue;
-    if (field.type != FieldType::SFNode) { // heights or indices
-      most = std::max(most, lengthOf(geometry, field) * (field.name == "height" ? 2 : 1));
-      continue;
-    }
+    longest = std::max(longest, lengthOf(geometry, field));
+    if (field.type != FieldType::SFNode) continue;
     const auto& held = *static_cast<const NodeRef*>(geometry.storage(field));
     const Node* rendered = renderedNode(held.get());
     if (!rendered || rendered->type().index < 0) continue;
     for (const FieldInfo& own : rendered->type().fields)
-      if (holdsValue(own) && own.type != FieldType::SFNode && !rendered->isUnset(own))
-        most = std::max(most, lengthOf(*rendered, own));
+      if (holdsValue(own) && !rendered->isUnset(own))
+        longest = std::max(longest, lengthOf(*rendered, own));
   }
-  // An index list has three to four numbers for a triangle. Fewer triangles than points are rare.
-  return most >= slowTriangles * 3;
+  return longest;
+}
+
+} // namespace
+
+uint64_t lengthOfFaces(const Node& geometry) {
+  // These two are looked at thousands of times.
+  if (const auto* faces = nodeCast<nodes::IndexedFaceSet>(&geometry))
+    return faces->coordIndex.size();
+  if (const auto* grid = nodeCast<nodes::ElevationGrid>(&geometry)) return 2 * grid->height.size();
+  return isListOfFaces(geometry.type()) ? longestArray(geometry) : 0;
+}
+
+bool isSlowToBuild(const Node& geometry) { return lengthOfFaces(geometry) >= slowTriangles * 3; }
+
+uint64_t mostTriangles(const Node& geometry) {
+  const auto* faces = nodeCast<nodes::IndexedFaceSet>(&geometry);
+  if (!faces) return lengthOfFaces(geometry);
+  uint64_t triangles = 0, corners = 0; // in all faces, and in the present one
+  for (const int32_t index : faces->coordIndex) {
+    corners = index == -1 ? 0 : corners + 1;
+    triangles += corners > 2;
+  }
+  return triangles;
 }
 
 NodeRef copyOfGeometry(const Node& geometry) {

@@ -6,9 +6,17 @@
 
 namespace xvrml {
 
+// Returns the length of the arrays that decide how many triangles a list of faces has, 0 for other
+// geometry. It has no more triangles, and rarely more than a third.
+uint64_t lengthOfFaces(const Node& geometry);
+
 // Returns whether the mesh of a geometry node takes so long to build that a moving picture stands
-// still meanwhile. It counts what the node's arrays hold, and builds nothing.
+// still meanwhile.
 bool isSlowToBuild(const Node& geometry);
+
+// Returns how many triangles a list of faces has at most, if none of its faces crosses itself. It
+// reads the list.
+uint64_t mostTriangles(const Node& geometry);
 
 // Returns a copy of a rendered geometry node, with copies of the Coordinate and the like that it
 // holds. buildMesh() makes the same mesh of it. Returns null for a node that cannot be copied so: a

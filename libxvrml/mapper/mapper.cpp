@@ -262,6 +262,8 @@ void OpenRTMapper::update(const FieldChanges& changes) { impl_->update(changes);
 
 void OpenRTMapper::setPatient(bool patient) { impl_->patient = patient; }
 
+uint64_t OpenRTMapper::readBeside() const { return impl_->graph.meshes.readBeside(); }
+
 bool OpenRTMapper::isBehind() const { return impl_->rootsAwait || !impl_->awaiting.empty(); }
 
 void OpenRTMapper::map(const CameraSettings& camera) {

@@ -118,7 +118,7 @@ MeshOptions Meshes::optionsFor(TextureNeed need) const {
 }
 
 bool Meshes::awaits(Node& geometry, TextureNeed need) {
-  if (find(&geometry) != none_) return false;
+  if (find(&geometry) != none_ || lengthOfFaces(geometry) / 3 > affordable()) return false;
   const auto make = [need, options = optionsFor(need),
                      limits = world_.options.limits](const NodeRef& copy) {
     Diagnostics found;
@@ -128,7 +128,8 @@ bool Meshes::awaits(Node& geometry, TextureNeed need) {
     auto mesh = std::make_unique<Mesh>(buildMesh(*copy, own));
     const uint64_t bytes = ownBytes(*mesh);
     mesh->takeAll();
-    return Built{std::move(mesh), bytes, found.list(), need};
+    const uint64_t most = std::max(primitivesOf(*mesh), mostTriangles(*copy));
+    return Built{std::move(mesh), bytes, most, found.list(), need};
   };
   return jobs_.ask(geometry, make) == GeometryJobs<Built>::State::pending;
 }
@@ -189,16 +190,27 @@ bool isThick(const Mesh& mesh, Node& geometry) {
 }
 } // namespace
 
+// Returns how many triangles the budget left allows a mesh.
+uint64_t Meshes::affordable() const {
+  return quota_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+}
+
+// A job has no limit but that of the world. Its mesh is taken if the budget's would not have
+// mattered.
+std::optional<Meshes::Built> Meshes::takeBuilt(const Entry& entry) {
+  std::optional<Built> built = jobs_.take(*entry.geometry);
+  if (!built || built->need != entry.need || built->most > entry.triangles) return {};
+  for (const Diagnostic& problem : built->problems) world_.diagnostics.add(problem);
+  ++readBeside_;
+  return built;
+}
+
 Meshes::Built Meshes::build(Entry& entry) {
   Limits limits = world_.options.limits;
-  if (!entry.known) entry.triangles = quota_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+  if (!entry.known) entry.triangles = affordable();
   const bool scarce = entry.triangles < limits.triangles;
-  if (!entry.said && !scarce)
-    if (std::optional<Built> built = jobs_.take(*entry.geometry);
-        built && built->need == entry.need) {
-      for (const Diagnostic& problem : built->problems) world_.diagnostics.add(problem);
-      return std::move(*built);
-    }
+  if (!entry.said)
+    if (std::optional<Built> built = takeBuilt(entry)) return std::move(*built);
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
   Diagnostics silent; // problems of the geometry were reported by the first build
@@ -209,7 +221,7 @@ Meshes::Built Meshes::build(Entry& entry) {
   options.former = entry.topology.get();
   auto mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   const uint64_t bytes = ownBytes(*mesh);
-  return {std::move(mesh), bytes, {}, entry.need};
+  return {std::move(mesh), bytes, 0, {}, entry.need};
 }
 
 const Mesh& Meshes::get(int32_t mesh) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/index_table.h"
@@ -40,6 +41,7 @@ class Meshes {
   bool awaits(Node& geometry, TextureNeed need);
   // Gives up the job of a geometry that has changed.
   void spoil(const Node& geometry) { jobs_.giveUp(geometry); }
+  uint64_t readBeside() const { return readBeside_; } // meshes that jobs have built
   size_t size() const { return entries_.size(); }
   // Requires texture coordinates for these textures from now on. Returns true if an already built
   // mesh has to be rebuilt.
@@ -112,11 +114,14 @@ class Meshes {
   struct Built {
     std::unique_ptr<Mesh> mesh;
     uint64_t bytes;                   // that the mesh takes beside the arrays of its node
+    uint64_t most;                    // triangles that its builder may have counted
     std::vector<Diagnostic> problems; // found by a job
     TextureNeed need;
   };
-  Built build(Entry& entry); // takes the mesh that a job has built, if there is one
-  struct Group {             // meshes with equal content
+  uint64_t affordable() const;
+  std::optional<Built> takeBuilt(const Entry& entry); // the mesh that a job has built
+  Built build(Entry& entry);
+  struct Group { // meshes with equal content
     uint64_t hash = 0;
     uint32_t users = 0;
     int32_t first = none_; // the member that stands for all
@@ -143,6 +148,7 @@ class Meshes {
   std::vector<int32_t> free_, dropped_, built_;
   NodeMap<int32_t> index_;
   GeometryJobs<Built> jobs_;
+  uint64_t readBeside_ = 0;
   std::vector<Group> groups_;
   int32_t freeGroup_ = none_;
   IndexTable byContent_;      // groups by their hash

@@ -128,8 +128,8 @@ inline photometry::Opening readOpening(Lines& lines) {
   };
   const double length = metres(), width = metres();
   photometry::Opening out;
-  out.isRound = width == 0;
-  out.zero = out.isRound ? length : width;
+  if (width == 0) out.shape = photometry::Shape::cylinder;
+  out.zero = width == 0 ? length : width;
   out.ninety = length;
   for (double& height : out.heights) height = metres();
   return out;

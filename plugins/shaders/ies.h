@@ -62,15 +62,27 @@ inline const char* wrongAngles(const Photometry& p) {
 }
 
 // Returns the luminous opening: width across horizontal angle 0, length along it, height. units: 1
-// feet, 2 metres; a width below 0 is the diameter of a round opening (LM-63-2002, 5.11).
-inline photometry::Opening openingOf(double units, double width, double length, double height) {
+// feet, 2 metres. Two sizes below 0 are the diameters of something round, three are those of an
+// ellipsoid (LM-63-2002, 5.11). LM-63-1995 writes 0 for a diameter that equals another.
+inline photometry::Opening openingOf(double units, double width, double length, double height,
+                                     bool isOf1995) {
+  if (width < 0 && length == 0 && (height >= 0 || isOf1995)) length = width;
+  if (width == 0 && length > 0 && height < 0) width = height;
+  if (length == 0 && width > 0 && height < 0) length = height;
   const double metres = units == 1 ? .3048 : 1;
   const auto size = [metres](double value) { return std::fmin(std::fabs(value) * metres, 1e3); };
   photometry::Opening out;
-  out.isRound = width < 0;
-  out.zero = size(out.isRound ? width : length);
-  out.ninety = size(width);
-  for (double& h : out.heights) h = size(height);
+  const bool isRound = width < 0 || length < 0;
+  if (width < 0 && length < 0 && height < 0)
+    out.shape = photometry::Shape::ellipsoid;
+  else if (isRound)
+    out.shape = photometry::Shape::cylinder;
+  // A cylinder of which the height is a diameter lies along the third size.
+  if (out.shape == photometry::Shape::cylinder && height < 0) out.upright = width < 0 ? 1 : 2;
+  out.zero = size(out.upright == 1 ? height : length);
+  out.ninety = size(out.upright == 2 ? height : width);
+  for (double& h : out.heights)
+    h = size(out.upright == 0 ? height : out.upright == 1 ? length : width);
   return out;
 }
 
@@ -86,6 +98,7 @@ inline const char* parse(std::string_view text, Photometry& out, int& line, doub
   const bool factorLater = text.substr(0, 5) != "IESNA" && text.substr(0, 4) != "IES:"
                                ? true
                                : text.substr(0, 7) == "IESNA91";
+  const bool isOf1995 = text.substr(0, 16) != "IESNA:LM-63-2002" && text.substr(0, 4) != "IES:";
   std::string tilt;
   for (; !photometry::isTilt(photometry::takeLine(text), tilt); line++)
     if (text.empty()) return "this is not an IES file: there is no line TILT=";
@@ -115,7 +128,7 @@ inline const char* parse(std::string_view text, Photometry& out, int& line, doub
     return "the number of angles is out of range: 1 to 4096 each, 2^20 values";
   if (head[5] != 1 && head[5] != 2 && head[5] != 3)
     return "the photometric type is 1 (C), 2 (B) or 3 (A)";
-  out.opening = openingOf(head[6], head[7], head[8], head[9]);
+  out.opening = openingOf(head[6], head[7], head[8], head[9], isOf1995);
   out.type = head[5] == 1 ? Type::C : head[5] == 2 ? Type::B : Type::A;
   const auto rows = size_t(head[3]), columns = size_t(head[4]);
   const char* message = nullptr;

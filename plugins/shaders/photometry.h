@@ -12,6 +12,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace photometry {
@@ -30,58 +31,86 @@ enum class Type {
 // A point or direction: along the photometric axis, and towards horizontal angles 0 and 90.
 using Coordinates = std::array<double, 3>;
 
-// The part of a luminaire that shines, in metres: a box, or an upright cylinder, about the
-// photometric centre. A file that does not say it has zeros.
+enum class Shape {
+  box,
+  cylinder, // elliptic
+  ellipsoid
+};
+
+// The part of a luminaire that shines, in metres, about the photometric centre. A file that does
+// not say it has zeros.
 struct Opening {
   double zero = 0, ninety = 0; // sizes towards horizontal angles 0 and 90
   // of the sides that face horizontal angles 0, 90, 180 and 270
   double heights[4] = {};
-  bool isRound = false; // with the diameter `zero`
+  Shape shape = Shape::box;
+  // An opening that lies has the photometric axis and the coordinate `upright` exchanged: its
+  // heights are then its size along that coordinate, in place of zero (1) or ninety (2).
+  size_t upright = 0;
 
-  bool exists() const { return zero > 0 && (isRound || ninety > 0); }
+  bool exists() const {
+    return zero > 0 && ninety > 0 && (shape != Shape::ellipsoid || heights[0] > 0);
+  }
   // Returns where a ray meets the opening from outside, in lengths of its direction; infinite: it
-  // does not. Coordinates are along the axis, towards horizontal angle 0, and towards 90. The sides
-  // stand on the lower face, which is half of the largest height below the centre.
-  double meet(const Coordinates& from, const Coordinates& along) const {
-    const double low = *std::max_element(heights, heights + 4) / 2;
-    const auto at = [&](double distance, size_t k) { return from[k] + distance * along[k]; };
-    const auto isOnFace = [&](double d) {
-      return isRound ? std::hypot(at(d, 1), at(d, 2)) <= zero / 2
-                     : std::fabs(at(d, 1)) <= zero / 2 && std::fabs(at(d, 2)) <= ninety / 2;
-    };
-    double nearest = std::numeric_limits<double>::infinity();
-    const auto meets = [&](double distance, bool isInside) {
-      if (distance > 0 && isInside) nearest = std::fmin(nearest, distance);
-    };
-    if (const double d = reach(from[0], along[0], low); d > 0) meets(d, isOnFace(d));
-    for (size_t k = 1; k <= (isRound ? 1 : 2); k++) { // the side that the ray comes from
-      const double d = isRound ? reachMantle(from, along)
-                               : reach(from[k], along[k], (k == 1 ? zero : ninety) / 2),
-                   height = heights[k - 1 + (along[k] > 0 ? 2 : 0)];
-      meets(d, at(d, 0) <= low && at(d, 0) >= low - height && height > 0 &&
-                   (isRound || std::fabs(at(d, 3 - k)) <= (k == 1 ? ninety : zero) / 2));
-    }
-    return nearest;
+  // does not.
+  double meet(Coordinates from, Coordinates along) const {
+    std::swap(from[0], from[upright]);
+    std::swap(along[0], along[upright]);
+    const double distance =
+        shape == Shape::ellipsoid ? reachRound(from, along, heights[0]) : meetSides(from, along);
+    return distance > 0 ? distance : std::numeric_limits<double>::infinity();
   }
   // Returns the area that is seen from a direction, a unit vector as for Photometry::towards.
   double projected(double axis, double toZero, double toNinety) const {
-    const double along = std::hypot(toZero, toNinety), h0 = heights[toZero < 0 ? 2 : 0],
-                 h90 = heights[toNinety < 0 ? 3 : 1];
-    if (isRound) return M_PI / 4 * zero * zero * std::fabs(axis) + zero * h0 * along;
-    return zero * ninety * std::fabs(axis) + ninety * h0 * std::fabs(toZero) +
-           zero * h90 * std::fabs(toNinety);
+    Coordinates way = {axis, toZero, toNinety};
+    std::swap(way[0], way[upright]);
+    const double h0 = heights[way[1] < 0 ? 2 : 0], h90 = heights[way[2] < 0 ? 3 : 1],
+                 face = zero * ninety * std::fabs(way[0]);
+    if (shape == Shape::ellipsoid)
+      return M_PI / 4 * std::hypot(face, h0 * ninety * way[1], h0 * zero * way[2]);
+    if (shape == Shape::cylinder)
+      return M_PI / 4 * face + h0 * std::hypot(ninety * way[1], zero * way[2]);
+    return face + ninety * h0 * std::fabs(way[1]) + zero * h90 * std::fabs(way[2]);
   }
 
  private:
+  // Returns how far it is to a box or cylinder; 0: it is not met. The sides stand on the lower
+  // face, which is half of the largest height below the centre.
+  double meetSides(const Coordinates& from, const Coordinates& along) const {
+    const double low = *std::max_element(heights, heights + 4) / 2;
+    const bool isRound = shape == Shape::cylinder;
+    const auto at = [&](double distance, size_t k) { return from[k] + distance * along[k]; };
+    const auto isOnFace = [&](double d) {
+      return isRound ? std::hypot(at(d, 1) / zero, at(d, 2) / ninety) <= .5
+                     : std::fabs(at(d, 1)) <= zero / 2 && std::fabs(at(d, 2)) <= ninety / 2;
+    };
+    if (const double d = reach(from[0], along[0], low); d > 0 && isOnFace(d)) return d;
+    for (size_t k = 1; k <= (isRound ? 1 : 2); k++) { // the side that the ray comes from
+      const double d = isRound ? reachRound(from, along, std::numeric_limits<double>::infinity())
+                               : reach(from[k], along[k], (k == 1 ? zero : ninety) / 2),
+                   height = heights[k - 1 + (along[k] > 0 ? 2 : 0)];
+      if (d > 0 && at(d, 0) <= low && at(d, 0) >= low - height && height > 0 &&
+          (isRound || std::fabs(at(d, 3 - k)) <= (k == 1 ? ninety : zero) / 2))
+        return d;
+    }
+    return 0;
+  }
   // Returns how far it is to the nearer of two planes at both sides of the centre; 0: never.
   static double reach(double from, double along, double plane) {
     return along == 0 ? 0 : ((along < 0 ? plane : -plane) - from) / along;
   }
-  // Returns how far it is to the mantle of a round opening, from outside; 0: never.
-  double reachMantle(const Coordinates& from, const Coordinates& along) const {
-    const double a = along[1] * along[1] + along[2] * along[2],
-                 b = from[1] * along[1] + from[2] * along[2],
-                 c = from[1] * from[1] + from[2] * from[2] - zero * zero / 4, root = b * b - a * c;
+  // Returns how far it is to an ellipsoid, from outside; 0: never. One of infinite height is the
+  // mantle of a cylinder.
+  double reachRound(const Coordinates& from, const Coordinates& along, double height) const {
+    const double sizes[3] = {height, zero, ninety};
+    double a = 0, b = 0, c = -.25;
+    for (size_t k = 0; k < 3; k++) {
+      const double p = from[k] / sizes[k], v = along[k] / sizes[k];
+      a += v * v;
+      b += p * v;
+      c += p * p;
+    }
+    const double root = b * b - a * c;
     return a > 0 && root > 0 ? (-b - std::sqrt(root)) / a : 0;
   }
 };

@@ -84,6 +84,24 @@ TEST_F(LuminousOpenings, AMirrorShowsIt) {
              .5 * candelaAt(angle / degree) / (.18 * std::cos(angle)), 1e-4);
 }
 
+// The first surface of a ball of glass reflects R and lets 1 - R pass, and so does the second.
+TEST_F(LuminousOpenings, GlassShowsIt) {
+  use(lamp("4 4 0"));
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  ball(Shader("Glass"), .5);
+  const double r = .04, through = (1 - r) * (1 - r) / (1 - r * r);
+  const double straight = 100. / 16;
+  expectGrey(seenFrom({0, 0, -3}), straight * through, .02);
+}
+
+TEST_F(LuminousOpenings, AMediumThatScattersDimsIt) {
+  use(lamp(".6 .3 0"));
+  Shader fog("Fog");
+  fog.set("scattering", {.2, .2, .2}).set("absorption", {.1, .1, .1});
+  ball(fog, 8);
+  expectGrey(seenFrom({0, 0, -1}), 100 / .18 * std::exp(-3 * .3), 1e-4);
+}
+
 TEST_F(LuminousOpenings, WhatIsBeforeItHidesItAndACeilingDoesNot) {
   use(lamp(".6 .3 0"));
   placeAt({0, 0, 2}, square(matt(.5)), true); // the ceiling, in the plane of the opening

@@ -182,3 +182,21 @@ def test_large_grids_make_pages_of_a_bounded_size(room):
     assert done.returncode == 0, done.talk
     page = (vv.folder / "light.html").read_text()
     assert page.count("<rect") < 96 * 96 + 20 and len(page) < 3e6
+
+
+def test_pictures_show_luminaires_with_the_luminance_of_their_files(tmp_path):
+    """A disc of 100 cd from all sides, also in a scaled node: I / A in the coordinates of the node."""
+    (tmp_path / "even.ies").write_text(EVEN % "-.4 -.4 0")
+    world = tmp_path / "seen.wrl"
+    expected = 100 / (math.pi * .2**2 * math.cos(math.radians(40)))
+
+    def seen(lamp, scale=1):
+        at = 3 * math.cos(math.radians(40)), 3 * math.sin(math.radians(40))
+        world.write_text(HEAD + f"""Viewpoint {{ position 0 0 {at[1]} orientation 1 0 0 {math.radians(50)} }}
+Transform {{ translation 0 {at[0]} 0 scale {scale} {scale} {scale} children {lamp} }}""")
+        return xvrml.load(world).render(size=(3, 3), spp=4, fov=.5).array[1, 1]
+
+    assert seen(LAMP % "")[:3] == pytest.approx([expected] * 3, rel=1e-3)
+    assert seen(LAMP % "", 2)[:3] == pytest.approx([expected] * 3, rel=1e-3)
+    assert seen(LAMP % '"1f maintenance .5"')[:3] == pytest.approx([expected / 2] * 3, rel=1e-3)
+    assert not seen(LAMP % '"1i shown 0"').any()

@@ -2,7 +2,9 @@
 import re
 import shlex
 import shutil
+import struct
 import subprocess
+import zlib
 
 import pytest
 from conftest import HEADER
@@ -104,10 +106,23 @@ def test_damage_is_found_in_every_format(film, suffix):
     assert file.read_bytes() == whole
 
 
+def test_missing_makes_what_an_interrupt_cut_short(film):
+    assert film("film.wrl", *FILM, "--frames", "0-2").returncode == 0
+    whole = [file.read_bytes() for file in sorted(film.folder.glob("*.png"))]
+    file = sorted(film.folder.glob("*.png"))[1]
+    text = b"tEXtComment\0unfinished: saved before it had all samples"
+    chunk = struct.pack(">I", len(text) - 4) + text + struct.pack(">I", zlib.crc32(text))
+    file.write_bytes(whole[1][:33] + chunk + whole[1][33:])  # behind IHDR
+    assert film("film.wrl", *FILM, "--frames", "0-2", "--missing").returncode == 0
+    assert [file.read_bytes() for file in sorted(film.folder.glob("*.png"))] == whole
+
+
 def test_what_cannot_be_cut_is_refused(film):
     for options, text in ((("--jobs", "2"), "--jobs needs --frames"),
                           (("--missing",), "--missing needs --frames"),
                           (("--frames", "0-9", "--jobs", "0"), "0"),
+                          (("--frames", "0-9", "--jobs", "2", "--exposure", "auto"), "first picture of a run"),
+                          (("--frames", "0-9", "--missing", "--exposure", "auto"), "give a number"),
                           (("--frames", "0-9", "--jobs", "2", "-o", "x.gif"), "film")):
         done = film("film.wrl", *FILM, *options)
         assert done.returncode == 2 and text in done.talk, done.talk

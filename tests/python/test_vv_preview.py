@@ -166,3 +166,16 @@ def test_wrong_combinations(rolling, options, why):
     done = rolling("rolling.wrl", "--preview", *SMALL, *options)
     assert done.returncode == 2 and why in done.talk, done.talk
     assert "--preview" in done.talk and not list(rolling.folder.glob("a*"))
+
+
+def test_exposure_is_chosen_from_the_samples(vv):
+    """The filter spreads a trace of light to the black sky, which is most of this picture."""
+    vv.write("night.wrl", HEADER + """Viewpoint { position 0 0 20 }
+Shape { geometry Sphere { } appearance Appearance { material Material { emissiveColor 1 1 1 } } }""")
+    chosen = {}
+    for options in ((), ("--preview", )):
+        done = vv("night.wrl", "--frames", "0", "-o", "n-{frame}.png", "--spp", "4", "--exposure", "auto", *SIZE,
+                  *options)
+        assert done.returncode == 0, done.talk
+        chosen[options] = float(done.talk.split("--exposure auto is ")[1].split()[0])
+    assert abs(chosen[("--preview", )] - chosen[()]) < .5, chosen

@@ -68,6 +68,7 @@ TEST_F(MapPatient, ALargeMeshComesLaterAndTheSceneIsTheSame) {
   EXPECT_EQ(triangles(), before);
   EXPECT_TRUE(mapper_->isBehind());
   EXPECT_EQ(finish(), before + many);
+  EXPECT_EQ(mapper_->readBeside(), 1u);
   expectSameAsAnew();
 }
 
@@ -86,6 +87,7 @@ TEST_F(MapPatient, WhoeverIsNotPatientGetsAllAtOnce) {
   EXPECT_EQ(triangles(), before);
   mapper_->setPatient(false);
   EXPECT_EQ(triangles(), before + many) << "also what has waited";
+  EXPECT_EQ(mapper_->readBeside(), 1u) << "that is taken over";
   EXPECT_FALSE(mapper_->isBehind());
   expectSameAsAnew();
 }
@@ -194,6 +196,7 @@ TEST_F(MapPatient, UsesOfOneGeometryWithAndWithoutTextures) {
   triangles();
   EXPECT_TRUE(mapper_->isBehind());
   finish();
+  EXPECT_EQ(mapper_->readBeside(), 1u);
   expectSameAsAnew();
 }
 
@@ -207,6 +210,7 @@ TEST_F(MapPatient, MoreMeshesThanThreadsComeTogether) {
   show();
   EXPECT_EQ(triangles(), before);
   EXPECT_EQ(finish(), before + 5 * many);
+  EXPECT_EQ(mapper_->readBeside(), 5u);
   expectSameAsAnew();
 }
 

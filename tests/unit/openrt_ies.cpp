@@ -86,6 +86,70 @@ TEST(Ies, TheFactorOfTheTiltIsInterpolated) {
   }
 }
 
+// Each shape of LM-63-2002 and LM-63-1995 is seen along the three axes.
+TEST(Ies, NegativeSizesAreDiameters) {
+  constexpr double disc = M_PI / 4;
+  const std::string older = "IESNA:LM-63-1995";
+  const struct {
+    std::string version, sizes; // width, length, height
+    double down, along, across; // areas
+  } shapes[] = {{head, "2 4 0", 8, 0, 0},
+                {head, "2 4 3", 8, 6, 12},
+                {head, "-2 -2 0", disc * 4, 0, 0},
+                {head, "-2 -4 0", disc * 8, 0, 0},
+                {head, "-2 -4 3", disc * 8, 6, 12},
+                {head, "-2 -2 -2", disc * 4, disc * 4, disc * 4},
+                {head, "-2 -4 -3", disc * 8, disc * 6, disc * 12},
+                {head, "-2 4 -3", 8, disc * 6, 12},
+                {head, "2 -4 -3", 8, 6, disc * 12},
+                {head, "-2 0 -3", 0, disc * 6, 0},
+                {head, "0 -4 -3", 0, 0, disc * 12},
+                {older, "-2 0 0", disc * 4, 0, 0},
+                {older, "-2 0 3", disc * 4, 6, 6},
+                {older, "-2 0 -2", disc * 4, disc * 4, disc * 4},
+                {older, "0 4 -3", 12, disc * 9, 12},
+                {older, "2 0 -3", 6, 6, disc * 9}};
+  for (const auto& shape : shapes) {
+    const photometry::Opening o =
+        good(file(shape.version, "1 1 1 1 1 1 2 " + shape.sizes + " 1 1 1 0 0 5")).opening;
+    SCOPED_TRACE(shape.sizes);
+    EXPECT_TRUE(o.exists());
+    EXPECT_NEAR(o.projected(1, 0, 0), shape.down, 1e-9);
+    EXPECT_NEAR(o.projected(0, 1, 0), shape.along, 1e-9);
+    EXPECT_NEAR(o.projected(0, 0, -1), shape.across, 1e-9);
+  }
+}
+
+// Parallel rays that meet an opening cover the area that is seen of it.
+TEST(Ies, RaysMeetTheAreaThatIsSeen) {
+  for (const char* sizes : {"2 4 3", "-2 -4 3", "-2 -4 -3", "-2 4 -3", "2 -4 -3", "-2 0 -3"}) {
+    const photometry::Opening o =
+        good(file(head, std::string("1 1 1 1 1 1 2 ") + sizes + " 1 1 1 0 0 5")).opening;
+    SCOPED_TRACE(sizes);
+    for (const double turn : {.3, 1.9, 4.})
+      for (const double lift : {.4, -1.1}) {
+        const double c = std::cos(lift), s = std::sin(lift), x = std::cos(turn), y = std::sin(turn);
+        const photometry::Coordinates to = {s, c * x, c * y}, right = {0, -y, x},
+                                      up = {c, -s * x, -s * y};
+        int met = 0;
+        constexpr int side = 200;
+        constexpr double cell = 6. / side;
+        for (int i = 0; i < side * side; i++) {
+          const double u = (i % side + .5) * cell - 3, v = (i / side + .5) * cell - 3;
+          photometry::Coordinates from, along;
+          for (size_t k = 0; k < 3; k++) {
+            from[k] = 9 * to[k] + u * right[k] + v * up[k];
+            along[k] = -2 * to[k];
+          }
+          const double distance = o.meet(from, along);
+          met += std::isfinite(distance);
+          EXPECT_GT(distance, 2); // in lengths of `along`, from 9 m away
+        }
+        EXPECT_NEAR(met * cell * cell, o.projected(to[0], to[1], to[2]), .1);
+      }
+  }
+}
+
 // Types A and B differ in which angle turns around the polar axis: away from the axes, the same two
 // angles are two directions (CIE 121-1996).
 TEST(Ies, TypesAAndBTellDirectionsByOtherAngles) {

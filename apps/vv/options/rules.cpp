@@ -112,6 +112,10 @@ const Rule rules[] = {
      "--missing and --jobs are for files of single frames, such as .png: they cannot be used with "
      "a "
      "film"},
+    {[](const Options& o) { return (o.missing || o.farmJobs > 0) && o.fitExposure; },
+     "--exposure auto is chosen by the first picture of a run, and --missing and --jobs make "
+     "several "
+     "runs: give a number, as vv tells it for one picture of the film"},
     {[](const Options& o) { return o.farmJobs > 0 && o.input == "-"; },
      "--jobs needs a file, not standard input: each job reads it"},
     {[](const Options& o) { return o.watch && o.input == "-"; },

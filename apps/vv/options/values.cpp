@@ -237,7 +237,8 @@ std::string readPoseFile(const std::string& path) {
   try {
     return fileContents(path, most);
   } catch (const std::runtime_error& why) {
-    throw Failure{exitInput, fmt::format("--pose: cannot read {}: {}", path, why.what())};
+    throw Failure{exitInput, fmt::format("--pose: cannot read {}: {}; 16 numbers were expected",
+                                         path, why.what())};
   }
 }
 

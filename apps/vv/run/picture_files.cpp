@@ -6,6 +6,7 @@
 #include "libpicture/false_colour.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
+#include "libpicture/files/read_note.h"
 #include "process/messages.h"
 #include "report/progress.h"
 #include "run/outputs.h"
@@ -36,7 +37,8 @@ void PictureFiles::prepare(const PictureRequest& request, size_t total,
                            picture::RenderResult& result) {
   if (options_.fitExposure) {
     if (!exposure_) {
-      exposure_ = picture::fittingExposure(result.picture);
+      // The filter of previews spreads a trace of light to black pixels, which would count.
+      exposure_ = picture::fittingExposure(result.sampled ? *result.sampled : result.picture);
       if (!options_.quiet)
         say(fmt::format("vv: --exposure auto is {:g} for {}", *exposure_,
                         total > 1 ? "all pictures" : "this picture"));
@@ -106,12 +108,15 @@ std::optional<picture::Picture> PictureFiles::inFalseColours(const picture::Pict
 void PictureFiles::writePictures(const PictureRequest& request, const picture::Picture& made,
                                  const std::optional<picture::Picture>& coloured, bool complete,
                                  Which only) {
-  const picture::Picture wanted =
+  picture::Picture wanted =
       picture::withChannels(made, options_.render.channels | picture::doubtBit);
+  std::optional<picture::Picture> shown = coloured;
+  for (picture::Picture* one : {&wanted, shown ? &*shown : nullptr})
+    if (one && !complete) one->note = picture::unfinishedNote;
   for (const Output& output : options_.outputs) {
     if (output.film != picture::FilmKind::none || !request.isStill || !isOf(output, only)) continue;
-    const bool shows = coloured && output.format->appliesCurve;
-    std::string bytes = output.format->encode(shows ? *coloured : wanted);
+    const bool shows = shown && output.format->appliesCurve;
+    std::string bytes = output.format->encode(shows ? *shown : wanted);
     if (options_.sums && complete && output.format->encode == picture::encodeExr)
       picture::appendSums(bytes, checkpoint_->behindPixels());
     if (output.path == "-") {

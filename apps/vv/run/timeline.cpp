@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "libpicture/files/read_note.h"
 #include "libpicture/files/whole.h"
 #include "libpicture/live/film_history.h"
 #include "options/names.h"
@@ -11,11 +12,13 @@ namespace vv {
 
 namespace {
 
-// Returns whether a frame lacks one of its files.
+// Returns whether a frame lacks one of its files, or has one that an interrupt cut short.
 bool isMissing(const Options& options, long long frame) {
   return std::any_of(options.outputs.begin(), options.outputs.end(), [&](const Output& output) {
-    return output.format &&
-           !picture::isWholePicture(pathFor(output.path, {{}, frame}), *output.format);
+    if (!output.format) return false;
+    const std::string path = pathFor(output.path, {{}, frame});
+    return !picture::isWholePicture(path, *output.format) ||
+           picture::readNote(path) == picture::unfinishedNote;
   });
 }
 

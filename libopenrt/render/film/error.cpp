@@ -37,7 +37,6 @@ constexpr uint32_t windowOf(uint32_t reach) { return (2 * reach + 1) * (2 * reac
 // fewestHits: minimum number of hits of a rare bright feature in a window.
 constexpr double fewestMeans = 2.5, fewestHits = 4;
 constexpr double negligible = .25; // fraction of a half-width
-constexpr double fewestPaths = 16; // minimum number of light paths in a window
 
 // Spread of the replicates' means of one colour of one pixel about their mean.
 struct Spread {
@@ -373,7 +372,7 @@ void addLight(const LightSums& light, PixelError& e) {
   if (e.dark && light.brightest > 0) boundDark(light, e);
   double half = 0, lamps = 0, own = 0;
   // Mean number of light paths per pixel.
-  const double met = std::max(light.hits / windowOf(pictureReach), 1e-3);
+  const double met = std::max(light.hits / light.window, 1e-3);
   for (int k = 0; k < 3; k++) {
     const double w = light.variance[k], h = student95(light.parts - 1) * std::sqrt(w);
     e.mean[k] += float(light.mean[k]);

@@ -13,12 +13,16 @@
 
 namespace openrt {
 
+// Minimum number of light paths that tell a variance.
+inline constexpr double fewestPaths = 16;
+
 // Contribution of light paths to a pixel, estimated separately from the camera samples
 // (light_image.h).
 struct LightSums {
   double mean[3] = {}, variance[3] = {};
-  // Effective number of light paths that contributed to the pixel and its neighbours.
-  double hits = 0;
+  // Effective number of light paths that contributed to a window around the pixel, and the number
+  // of the window's pixels.
+  double hits = 0, window = 1;
   // This is the largest mean of all cells of sensors, and 0 in pictures.
   double brightest = 0;
   uint32_t parts = 16; // number of independent pictures that the variance was estimated from

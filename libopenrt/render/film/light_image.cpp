@@ -7,6 +7,11 @@
 #include "render/wave/light_stride.h"
 
 namespace openrt {
+namespace {
+
+constexpr uint32_t smallest = 2, largest = 8; // reach of windows
+
+} // namespace
 
 uint32_t LightImage::partsOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t ofPreviews = 4;
@@ -71,31 +76,41 @@ double LightImage::variance(const Pixel& pixel, int k) const {
   return n > 1 ? pixel.squares[k] / (n * (n - 1)) : std::numeric_limits<double>::infinity();
 }
 
-// Writes the sums of a pixel, colour k. A pixel with few light paths has an unreliable variance
-// (error.cpp): it uses the mean variance of the surrounding 5x5 pixels if that is larger. hits:
-// effective number of equal paths in the window, for the colour with the fewest.
-void LightImage::addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const {
-  constexpr uint32_t reach = 2;
-  const Pixel& pixel = pixels_[size_t(y) * width_ + x];
-  double mean = 0, variance = 0, count = 0;
+// Writes the sums of a pixel and of the pixels around it. A pixel with few light paths has an
+// unreliable variance (error.cpp): it uses the mean variance of its window if that is larger.
+void LightImage::addWindow(uint32_t x, uint32_t y, const Window& window, LightSums& out) const {
+  const auto [reach, colours] = window;
+  double mean[3] = {}, variance[3] = {}, count = 0;
   for (uint32_t j = y - std::min(y, reach); j <= std::min(y + reach, height_ - 1); j++)
     for (uint32_t i = x - std::min(x, reach); i <= std::min(x + reach, width_ - 1); i++) {
       const Pixel& p = pixels_[size_t(j) * width_ + i];
-      mean += p.mean[k];
-      variance += this->variance(p, k);
+      for (int k = 0; k < colours; k++) {
+        mean[k] += p.mean[k];
+        variance[k] += this->variance(p, k);
+      }
       count++;
     }
-  out.mean[k] = pixel.mean[k];
-  out.variance[k] = std::max(variance / count, this->variance(pixel, k));
-  if (variance > 0) out.hits = std::min(out.hits, mean * mean / variance);
+  const Pixel& pixel = pixels_[size_t(y) * width_ + x];
+  out.hits = std::numeric_limits<double>::infinity();
+  out.window = count;
+  for (int k = 0; k < colours; k++) {
+    out.mean[k] = pixel.mean[k];
+    out.variance[k] = std::max(variance[k] / count, this->variance(pixel, k));
+    if (variance[k] > 0) out.hits = std::min(out.hits, mean[k] * mean[k] / variance[k]);
+  }
 }
 
+// Where few light paths have come to the pixels around, the window grows until there are enough. If
+// there are nowhere enough, the smallest one counts: the light of others must not make an interval
+// wide that is not trusted, or that has hardly any light of such paths.
 LightSums LightImage::at(uint32_t x, uint32_t y) const {
   LightSums out;
-  out.hits = std::numeric_limits<double>::infinity();
   out.parts = std::max(added(), parts);
-  for (int k = 0; k < 3; k++) addWindow(x, y, k, out);
-  return out;
+  addWindow(x, y, {smallest, 3}, out);
+  LightSums wider = out;
+  for (uint32_t reach = 2 * smallest; reach <= largest && wider.hits < fewestPaths; reach *= 2)
+    addWindow(x, y, {reach, 3}, wider);
+  return wider.hits < fewestPaths ? out : wider;
 }
 
 // Returns the sums of a sensor. Its neighbours may stand in another light, so that its own variance
@@ -103,19 +118,17 @@ LightSums LightImage::at(uint32_t x, uint32_t y) const {
 // crossed the window, the rule of three bounds what may be missing: 95 of 100 such cells get less
 // than three times what one path brings.
 LightSums LightImage::ofSensor(uint32_t x, uint32_t y) const {
-  constexpr double enough = 16; // paths
   const Pixel& pixel = pixels_[size_t(y) * width_ + x];
   LightSums out;
-  out.hits = std::numeric_limits<double>::infinity();
   out.brightest = brightest_;
   out.parts = std::max(added(), parts);
   const double own = variance(pixel, 0);
-  if (own > 0 && pixel.mean[0] * pixel.mean[0] > enough * own) {
+  if (own > 0 && pixel.mean[0] * pixel.mean[0] > fewestPaths * own) {
     out.hits = pixel.mean[0] * pixel.mean[0] / own;
     out.variance[0] = own;
     out.mean[0] = pixel.mean[0];
   } else {
-    addWindow(x, y, 0, out);
+    addWindow(x, y, {smallest, 1}, out);
     if (!(out.variance[0] > 0) && ofOnePath_ > 0) {
       const double halfWidth = ruleOfThree * ofOnePath_;
       out.variance[0] = std::pow(halfWidth / student95(out.parts - 1), 2);

@@ -59,7 +59,11 @@ class LightImage {
   void addNow(const std::vector<float>& part, double number);
   void summarise();
   double variance(const Pixel& pixel, int k) const;
-  void addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const;
+  struct Window {
+    uint32_t reach; // number of pixels to each side
+    int colours;    // the first ones count
+  };
+  void addWindow(uint32_t x, uint32_t y, const Window& window, LightSums& out) const;
   LightSums at(uint32_t x, uint32_t y) const;
   LightSums ofSensor(uint32_t x, uint32_t y) const;
 

@@ -163,6 +163,8 @@ class OpenRTMapper {
   // Returns whether the last update() has left something out. Call it again then, also without
   // changes.
   bool isBehind() const;
+  // Returns how many large meshes such threads have read since the mapper was made.
+  uint64_t readBeside() const;
   // Returns the present objects, those with the most triangles first. Call it after map().
   std::vector<ExplainedObject> explain() const;
 

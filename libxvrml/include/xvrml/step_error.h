@@ -1,4 +1,4 @@
-// step_error.h: the range of LoadOptions::stepError, in millimetres. 0 is possible, too. [any thread]
+// step_error.h: the range of LoadOptions::stepError, in millimetres, beside 0. [any thread]
 #pragma once
 
 namespace xvrml {

@@ -75,7 +75,9 @@ bool Graph::awaits(Node* changed) {
     for (Node* child : plan.children) open.push_back(renderedNode(child));
     if (plan.kind != Kind::shape) return;
     const auto& shape = static_cast<nodes::Shape&>(node);
-    TextureNeed& need = found[renderedNode(shape.geometry.get())];
+    Node* const geometry = renderedNode(shape.geometry.get());
+    if (!isSlowToBuild(*geometry)) return;
+    TextureNeed& need = found[geometry];
     need = std::max(need, textureNeed(shape.appearance.get()));
   });
   bool any = false;
