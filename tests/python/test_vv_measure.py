@@ -33,6 +33,18 @@ def room(vv):
     return vv
 
 
+def test_few_samples_are_not_trusted_even_where_they_are_exact(vv):
+    """Fewer than 32 samples make no batches, from which trust is judged."""
+    vv.write("lamp.wrl", ROOM[:ROOM.index("ORTSensor { description")])
+    world = xvrml.load(str(vv.folder / "lamp.wrl"))
+    readings = [world.measure(spp=spp)[0] for spp in (16, 31, 32)]
+    for one in readings:
+        np.testing.assert_array_equal(one.values, readings[0].values)
+        assert not one.half_widths.any()
+    assert [one.trusted.all() for one in readings] == [False, False, True]
+    assert not readings[1].trusted.any()
+
+
 def test_readings_as_csv(room):
     done = room("room.wrl", "--measure", "out.csv", "--spp", "64")
     assert done.returncode == 0, done.talk
