@@ -10,6 +10,7 @@ namespace {
 
 using photometry::Coordinates;
 using photometry::Opening;
+using photometry::Shape;
 
 // Returns the area of a square across parallel rays on which they meet the opening. to: a unit
 // vector from the opening to where the rays come from.
@@ -27,9 +28,7 @@ double areaThatRaysMeet(const Opening& opening, const Coordinates& to) {
       for (size_t c = 0; c < 3; c++) from[c] = 5 * to[c] + x * u[c] + y * v[c];
       const double distance = opening.meet(from, {-2 * to[0], -2 * to[1], -2 * to[2]});
       met += std::isfinite(distance);
-      if (std::isfinite(distance)) {
-        EXPECT_NEAR(distance, 2.5, .75);
-      }
+      if (std::isfinite(distance)) { EXPECT_NEAR(distance, 2.5, .75); }
     }
   return met * cell * cell;
 }
@@ -44,16 +43,21 @@ void expectSameArea(const Opening& opening) {
     }
 }
 
-TEST(LuminousOpening, ARectangle) { expectSameArea({1.2, .7, {}, false}); }
-TEST(LuminousOpening, ABox) { expectSameArea({1.2, .7, {.4, .4, .4, .4}, false}); }
-TEST(LuminousOpening, ABoxWithSidesOfUnequalHeights) {
-  expectSameArea({.8, 1, {.5, .2, 0, .3}, false});
+TEST(LuminousOpening, ARectangle) { expectSameArea({1.2, .7}); }
+TEST(LuminousOpening, ABox) { expectSameArea({1.2, .7, {.4, .4, .4, .4}}); }
+TEST(LuminousOpening, ABoxWithSidesOfUnequalHeights) { expectSameArea({.8, 1, {.5, .2, 0, .3}}); }
+TEST(LuminousOpening, ADisc) { expectSameArea({1.1, 1.1, {}, Shape::cylinder}); }
+TEST(LuminousOpening, ACylinder) { expectSameArea({.9, .9, {.6, .6, .6, .6}, Shape::cylinder}); }
+TEST(LuminousOpening, ALyingEllipticCylinder) {
+  expectSameArea({.9, .5, {.6, .6, .6, .6}, Shape::cylinder, 1});
+  expectSameArea({.9, .5, {.6, .6, .6, .6}, Shape::cylinder, 2});
 }
-TEST(LuminousOpening, ADisc) { expectSameArea({1.1, 0, {}, true}); }
-TEST(LuminousOpening, ACylinder) { expectSameArea({.9, 0, {.6, .6, .6, .6}, true}); }
+TEST(LuminousOpening, AnEllipsoid) {
+  expectSameArea({.9, 1.2, {.6, .6, .6, .6}, Shape::ellipsoid});
+}
 
 TEST(LuminousOpening, IsNotMetFromInsideNorByRaysThatLeaveIt) {
-  const Opening box{1, 1, {1, 1, 1, 1}, false}, cylinder{1, 0, {1, 1, 1, 1}, true};
+  const Opening box{1, 1, {1, 1, 1, 1}}, cylinder{1, 1, {1, 1, 1, 1}, Shape::cylinder};
   for (const Opening& opening : {box, cylinder}) {
     EXPECT_FALSE(std::isfinite(opening.meet({0, .1, .2}, {.3, .5, -.7})));
     EXPECT_FALSE(std::isfinite(opening.meet({2, 0, 0}, {1, 0, 0})));
