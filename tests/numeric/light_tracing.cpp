@@ -21,6 +21,15 @@ class LightTracing : public Scene {
     EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     return out;
   }
+  // Above the floor z = 0, with the radius .5.
+  static void placeGlassBall() {
+    const RTid ball = rtBeginObject(0);
+    rtBindShader(Shader("Glass"));
+    rtSphere(.5);
+    rtEndObject();
+    rtBindShader(0);
+    placeAt(.8, ball);
+  }
 };
 
 // A lamp over a mirror lights a ceiling as the lamp and its mirror image would. The camera looks at
@@ -65,12 +74,7 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
 // Each path is found by exactly one of the two methods, so the picture agrees with path tracing.
 TEST_F(LightTracing, ACausticHasTheLightThatPathTracingFinds) {
   placeAt(0, square(matt(.7), 3));
-  const RTid ball = rtBeginObject(0);
-  rtBindShader(Shader("Glass"));
-  rtSphere(.5);
-  rtEndObject();
-  rtBindShader(0);
-  placeAt(.8, ball);
+  placeGlassBall();
   placeAt({-1.6, 0, 1}, square(Shader("Mirror"), .3));
   placeAt({.5, 0, 3}, square(matt(.3, 5), .6), true);
   rtPushMatrix();
@@ -100,12 +104,7 @@ TEST_F(LightTracing, ACausticHasTheLightThatPathTracingFinds) {
 // light the floor through a ball of glass; the brightest pixels are the caustic.
 TEST_F(LightTracing, ALampFarAwayLightsAsParallelRays) {
   placeAt(0, square(matt(.7), 2));
-  const RTid ball = rtBeginObject(0);
-  rtBindShader(Shader("Glass"));
-  rtSphere(.5);
-  rtEndObject();
-  rtBindShader(0);
-  placeAt(.8, ball);
+  placeGlassBall();
   cameraAt({0, -4, 1.5}, {0, 0, .3}, 50);
   const auto caustic = [](const Shader& light) {
     const RTid lamp = use(light);

@@ -223,9 +223,7 @@ bool readMatrix(std::string_view text, double rows[16]) {
     at = text.find_first_not_of(" \t\r\n,", at);
     if (at == text.npos) return count == 16;
     const size_t end = std::min(text.find_first_of(" \t\r\n,", at), text.size());
-    if (count == 16 || !isNumber(text.substr(at, end - at), rows[count]) ||
-        !std::isfinite(rows[count]))
-      return false;
+    if (count == 16 || !isNumber(text.substr(at, end - at), rows[count])) return false;
     ++count;
     at = end;
   }

@@ -108,15 +108,18 @@ std::optional<picture::Picture> PictureFiles::inFalseColours(const picture::Pict
 void PictureFiles::writePictures(const PictureRequest& request, const picture::Picture& made,
                                  const std::optional<picture::Picture>& coloured, bool complete,
                                  Which only) {
-  picture::Picture wanted =
+  const picture::Picture wanted =
       picture::withChannels(made, options_.render.channels | picture::doubtBit);
-  std::optional<picture::Picture> shown = coloured;
-  for (picture::Picture* one : {&wanted, shown ? &*shown : nullptr})
-    if (one && !complete) one->note = picture::unfinishedNote;
+  const auto encoded = [&](const picture::Format& format, const picture::Picture& one) {
+    if (complete) return format.encode(one);
+    picture::Picture part = one;
+    part.note = picture::unfinishedNote;
+    return format.encode(part);
+  };
   for (const Output& output : options_.outputs) {
     if (output.film != picture::FilmKind::none || !request.isStill || !isOf(output, only)) continue;
-    const bool shows = shown && output.format->appliesCurve;
-    std::string bytes = output.format->encode(shows ? *shown : wanted);
+    const bool shows = coloured && output.format->appliesCurve;
+    std::string bytes = encoded(*output.format, shows ? *coloured : wanted);
     if (options_.sums && complete && output.format->encode == picture::encodeExr)
       picture::appendSums(bytes, checkpoint_->behindPixels());
     if (output.path == "-") {

@@ -179,9 +179,11 @@ double LightSources::coneToTargets(const Vec3f& from, Vec3f& axis) const {
 // contains the distance of the light, and 1 - cosine is no difference.
 void LightSources::aimFromAfar(const float direction[2], LightRay& start) const {
   const Vec3d way = Vec3d(center_) - Vec3d(start.origin);
-  const double distance = length(way), sine = double(radius_) / distance,
-               cap = sine * sine / (1 + std::sqrt(1 - sine * sine)), below = cap * direction[0],
-               z = 1 - below, round = std::sqrt(below * (2 - below)), phi = 2 * M_PI * direction[1];
+  const double distance = length(way), sine = double(radius_) / distance;
+  const double cap = sine * sine / (1 + std::sqrt(1 - sine * sine)); // 1 - cosine of the cone
+  const double below = cap * direction[0], z = 1 - below;
+  const double round = std::sqrt(below * (2 - below));
+  const double phi = 2 * M_PI * direction[1];
   const Vec3d axis = way / distance;
   Vec3f s, t;
   basisOf(Vec3f(axis), s, t);
